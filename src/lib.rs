@@ -1,0 +1,20 @@
+//! Fishplate: a validation-protocol language and certification-report generator for rail vehicle simulation models.
+//!
+//! Data flows one way. Each stage is a folder:
+//!
+//! | stage | from | to | folder |
+//! |---|---|---|---|
+//! | syntax | protocol text, YAML or `.fp` | [`syntax::document::Document`] | `syntax` |
+//! | check | document | `check::plan::Plan`: resolved, SI, complete | `check` |
+//! | graph | plan | `graph::Graph`: typed operations, shared parts once | `graph` |
+//! | run | graph and campaign | [`result::Certification`] | `run` |
+//! | report | certification | PDF, HTML, JSON, CSV | `report` |
+//!
+//! [`source`], [`problem`], [`units`] and `metrics` are leaves the stages lean on; `data` reads campaigns.
+
+pub mod source;
+pub mod problem;
+pub mod units;
+pub mod syntax;
+pub mod metrics;
+pub mod result;

@@ -1,0 +1,1 @@
+//! Numbers from signals: slices in, numbers out, no I/O.

@@ -1,0 +1,198 @@
+//! What is wrong with an input: code, place, fact, help; gathered, and rendered in one look.
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+
+use crate::source::Span;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    Error,
+    Warning,
+}
+
+/// One problem in a protocol or a data file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    pub severity: Severity,
+    /// Stable name such as `unit-mismatch`; what tests and scripts match on.
+    pub code: &'static str,
+    /// The fact, in words that never blame.
+    pub says: String,
+    /// The words to underline.
+    pub at: Option<Span>,
+    /// What stands beside the underline.
+    pub label: Option<String>,
+    /// Other places involved, each with what it has to do with it.
+    pub also: Vec<(Span, String)>,
+    /// The change that mends it.
+    pub help: Option<String>,
+}
+
+impl Problem {
+    pub fn error(code: &'static str, says: impl Into<String>) -> Self {
+        Self { severity: Severity::Error, code, says: says.into(), at: None, label: None, also: Vec::new(), help: None }
+    }
+
+    pub fn warning(code: &'static str, says: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(code, says) }
+    }
+
+    #[must_use]
+    pub fn at(mut self, span: &Span) -> Self {
+        self.at = Some(span.clone());
+        self
+    }
+
+    #[must_use]
+    pub fn label(mut self, text: impl Into<String>) -> Self {
+        self.label = Some(text.into());
+        self
+    }
+
+    #[must_use]
+    pub fn also(mut self, span: &Span, text: impl Into<String>) -> Self {
+        self.also.push((span.clone(), text.into()));
+        self
+    }
+
+    #[must_use]
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        self.help = Some(text.into());
+        self
+    }
+
+    /// Help "did you mean ...?" if a candidate is near, else the list of candidates if it is short.
+    #[must_use]
+    pub fn suggest<'a>(mut self, word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Self {
+        let all: Vec<&str> = candidates.into_iter().collect();
+        if let Some(near) = nearest(word, all.iter().copied()) {
+            self.help = Some(format!("did you mean `{near}`?"));
+        } else if !all.is_empty() && all.len() <= 16 {
+            self.help = Some(format!("known here: {}", all.join(", ")));
+        }
+        self
+    }
+
+    /// The message with its source lines underlined, ending in a line break.
+    pub fn render(&self, color: bool) -> String {
+        let level = match self.severity {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let mut group = level.primary_title(plain(&self.says)).id(self.code).elements(Vec::<Snippet<'_, annotate_snippets::Annotation<'_>>>::new());
+        if let Some(at) = &self.at {
+            let mut same = Snippet::source(at.source.text.as_str())
+                .path(at.source.name.as_str())
+                .line_start(at.source.first_line)
+                .annotation(AnnotationKind::Primary.span(range(at)).label(self.label.clone().map(|text| plain(&text))));
+            let mut others: Vec<Snippet<'_, _>> = Vec::new();
+            for (span, text) in &self.also {
+                let annotation = AnnotationKind::Context.span(range(span)).label(plain(text));
+                if span.source == at.source {
+                    same = same.annotation(annotation);
+                } else {
+                    others.push(
+                        Snippet::source(span.source.text.as_str())
+                            .path(span.source.name.as_str())
+                            .line_start(span.source.first_line)
+                            .annotation(annotation),
+                    );
+                }
+            }
+            group = group.element(same);
+            for other in others {
+                group = group.element(other);
+            }
+        }
+        if let Some(help) = &self.help {
+            group = group.element(Level::HELP.message(plain(help)));
+        }
+        let renderer = if color { Renderer::styled() } else { Renderer::plain() };
+        let mut text = renderer.render(&[group]).to_string();
+        text.push('\n');
+        text
+    }
+}
+
+/// Byte range inside the text, never empty at a place where a character can be underlined, on character boundaries.
+fn range(span: &Span) -> std::ops::Range<usize> {
+    let text = &span.source.text;
+    let mut start = span.start.min(text.len());
+    while !text.is_char_boundary(start) {
+        start -= 1;
+    }
+    let mut end = span.end.clamp(start, text.len());
+    if end == start {
+        end = text[start..].chars().next().filter(|c| *c != '\n').map_or(start, |c| start + c.len_utf8());
+    }
+    while !text.is_char_boundary(end) {
+        end += 1;
+    }
+    start..end
+}
+
+/// User text may hold control characters; a terminal must not act on them.
+fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect()
+}
+
+/// The problems of one stage or input, in the order found.
+#[derive(Clone, Debug, Default)]
+pub struct Problems(pub Vec<Problem>);
+
+impl Problems {
+    pub fn push(&mut self, problem: Problem) {
+        // The same fact at the same place is said once, however often a part is used.
+        if !self.0.contains(&problem) {
+            self.0.push(problem);
+        }
+    }
+
+    pub fn any_error(&self) -> bool {
+        self.0.iter().any(|problem| problem.severity == Severity::Error)
+    }
+
+    pub fn errors(&self) -> usize {
+        self.0.iter().filter(|problem| problem.severity == Severity::Error).count()
+    }
+
+    pub fn render(&self, color: bool) -> String {
+        self.0.iter().map(|problem| problem.render(color) + "\n").collect()
+    }
+}
+
+/// The candidate nearest to a word, if near enough to be what was meant.
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = word.to_lowercase();
+    candidates
+        .into_iter()
+        .filter(|candidate| *candidate != word)
+        .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
+        .filter(|(distance, candidate)| *distance <= 1 + word.chars().count().max(candidate.chars().count()) / 4)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+
+    #[test]
+    fn nearest_finds_a_slip_and_refuses_a_stranger() {
+        assert_eq!(nearest("SigmaY_mx", ["Y_max", "SigmaY_max"]), Some("SigmaY_max"));
+        assert_eq!(nearest("friction", ["Y_max", "SigmaY_max"]), None);
+    }
+
+    #[test]
+    fn both_places_are_underlined() {
+        let source = Source::new("p.fp", "of Y\nlimit std 2 m/s^2\n");
+        let text = Problem::error("unit-mismatch", "the values are forces, the limit is an acceleration")
+            .at(&source.span(15..22))
+            .also(&source.span(3..4), "kN")
+            .help("write the limit in kN")
+            .render(false);
+        assert!(text.contains("p.fp:2:11"), "{text}");
+        assert!(text.contains("1 | of Y") && text.contains("help: write the limit in kN"), "{text}");
+    }
+}

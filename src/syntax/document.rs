@@ -1,0 +1,86 @@
+//! A protocol as written: blocks with fields, positions and comments, the same tree for the text form and for YAML.
+//!
+//! What a field means is not known here; which blocks and fields exist stands in [`super::keys`].
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::source::{Source, Span};
+
+#[derive(Clone, Debug)]
+pub struct Document {
+    pub source: Arc<Source>,
+    pub blocks: Vec<Block>,
+    /// Comment lines after the last block, without the `#`.
+    pub trailing: Vec<String>,
+}
+
+/// `quantity Y_max "Guiding force, maximum"` and what is indented below it.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// The word of a [`super::keys::Kind`].
+    pub kind: Text,
+    /// Absent for blocks of which a protocol has one.
+    pub name: Option<Text>,
+    pub title: Option<Text>,
+    pub fields: Vec<Field>,
+    pub comments: Comments,
+}
+
+#[derive(Clone, Debug)]
+pub struct Field {
+    pub key: Text,
+    /// Text without its quotes for a text field; the phrase as written for a phrase field.
+    pub value: Text,
+    pub comments: Comments,
+}
+
+/// Comments that travel with a block or field when the text is formatted, each without its `#` and leading blank.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Comments {
+    pub before: Vec<String>,
+    pub beside: Option<String>,
+}
+
+/// A piece of text and where it stands.
+#[derive(Clone, Debug)]
+pub struct Text {
+    pub text: String,
+    pub span: Span,
+    /// Whether byte `n` of `text` stands at byte `n` of `span` (not so where YAML or quotes hold escapes or fold lines).
+    pub exact: bool,
+}
+
+impl Text {
+    /// The place of a part of the text, as narrow as is known.
+    pub fn place(&self, range: Range<usize>) -> Span {
+        if self.exact { self.span.part(range) } else { self.span.clone() }
+    }
+}
+
+/// Meaning of two documents is compared without places and comments.
+impl PartialEq for Text {
+    fn eq(&self, other: &Self) -> bool {
+        self.text.split_whitespace().eq(other.text.split_whitespace())
+    }
+}
+
+impl Block {
+    pub fn field(&self, key: &str) -> Option<&Field> {
+        self.fields.iter().find(|field| field.key.text == key)
+    }
+
+    pub fn fields_named<'a>(&'a self, key: &'a str) -> impl Iterator<Item = &'a Field> {
+        self.fields.iter().filter(move |field| field.key.text == key)
+    }
+
+    /// The name, or an empty text for a block without one.
+    pub fn name_text(&self) -> &str {
+        self.name.as_ref().map_or("", |name| name.text.as_str())
+    }
+
+    /// The place to point at when the block as a whole is meant.
+    pub fn span(&self) -> &Span {
+        self.name.as_ref().map_or(&self.kind.span, |name| &name.span)
+    }
+}

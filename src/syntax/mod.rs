@@ -1,0 +1,4 @@
+//! From text to [`document::Document`], and back.
+
+pub mod document;
+pub mod keys;

@@ -1,0 +1,62 @@
+//! Units as types: a [`Dimension`] is what an expression must agree in, a [`Unit`] how a number is read and printed.
+//!
+//! Inside the program every number is in SI base units; conversion happens where text becomes a number and back.
+
+mod dimension;
+mod parse;
+mod table;
+
+pub use dimension::Dimension;
+pub use table::{SYMBOLS, Symbol};
+
+use std::fmt;
+
+/// A unit of measurement: `value_in_SI = number * factor`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    /// As printed, for instance `m/s^2`; `-` for a plain number.
+    pub text: String,
+    pub factor: f64,
+    pub dimension: Dimension,
+}
+
+impl Unit {
+    /// Reads `kN`, `m/s^2`, `m/s²`, `N s/m`, `1/m`, `kN*m`, `-`, `%` and the like.
+    ///
+    /// # Errors
+    /// The part of the text that is no unit, with the nearest known symbol.
+    pub fn parse(text: &str) -> Result<Self, UnknownUnit> {
+        parse::unit(text)
+    }
+
+    /// The unit of a plain number.
+    pub fn one() -> Self {
+        Self { text: "-".into(), factor: 1.0, dimension: Dimension::ONE }
+    }
+
+    pub fn to_si(&self, number: f64) -> f64 {
+        number * self.factor
+    }
+
+    pub fn from_si(&self, value: f64) -> f64 {
+        value / self.factor
+    }
+
+    /// ` kN`, or nothing for a plain number: what follows a number in text.
+    pub fn suffix(&self) -> String {
+        if self.text == "-" { String::new() } else { format!(" {}", self.text) }
+    }
+}
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+/// A word in a unit text that is no known unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownUnit {
+    pub word: String,
+    pub near: Option<&'static str>,
+}

@@ -1,0 +1,108 @@
+//! Reads compound units: products by space, `*` or `·`, one or more `/`, powers as `^2`, `²`, `^-1` or `m2`.
+
+use super::{Dimension, SYMBOLS, Unit, UnknownUnit};
+
+pub(super) fn unit(text: &str) -> Result<Unit, UnknownUnit> {
+    let mut factor = 1.0;
+    let mut dimension = Dimension::ONE;
+    let mut below = false;
+    let mut expects_symbol = true;
+    let mut rest = text.trim();
+    let unknown = |word: &str| UnknownUnit { word: word.to_string(), near: crate_near(word) };
+    if rest.is_empty() {
+        return Err(unknown(text));
+    }
+    while !rest.is_empty() {
+        let first = rest.chars().next().unwrap_or(' ');
+        match first {
+            ' ' | '*' | '·' if !expects_symbol => {
+                rest = rest[first.len_utf8()..].trim_start();
+                expects_symbol = !rest.starts_with('/');
+                continue;
+            }
+            '/' if !expects_symbol => {
+                below = true;
+                rest = rest[1..].trim_start();
+                expects_symbol = true;
+                continue;
+            }
+            _ if !expects_symbol => return Err(unknown(rest)),
+            _ => {}
+        }
+        let end = rest.find([' ', '*', '·', '/']).unwrap_or(rest.len());
+        let word = &rest[..end];
+        let (symbol, exponent) = power(word).ok_or_else(|| unknown(word))?;
+        let known = SYMBOLS.iter().find(|known| known.symbol == symbol).ok_or_else(|| unknown(symbol))?;
+        let exponent = if below { -exponent } else { exponent };
+        factor *= known.factor.powi(i32::from(exponent));
+        dimension = dimension * known.dimension.power(exponent).ok_or_else(|| unknown(word))?;
+        rest = &rest[end..];
+        expects_symbol = false;
+    }
+    if expects_symbol {
+        return Err(unknown(text));
+    }
+    let text = if text.trim() == "1" { "-" } else { text.trim() };
+    Ok(Unit { text: text.to_string(), factor, dimension })
+}
+
+fn crate_near(word: &str) -> Option<&'static str> {
+    let same = SYMBOLS.iter().find(|known| known.symbol.eq_ignore_ascii_case(word)).map(|known| known.symbol);
+    same.or_else(|| SYMBOLS.iter().map(|known| known.symbol).find(|known| known.len() > 1 && strsim::levenshtein(known, word) == 1))
+}
+
+/// `s^2`, `s²`, `s2`, `m^-1` into symbol and exponent.
+fn power(word: &str) -> Option<(&str, i8)> {
+    if word == "1" {
+        return Some((word, 1));
+    }
+    if let Some((symbol, exponent)) = word.split_once('^') {
+        return Some((symbol, exponent.parse().ok().filter(|exponent: &i8| (-9..=9).contains(exponent))?));
+    }
+    for (mark, exponent) in [("⁻¹", -1), ("⁻²", -2), ("²", 2), ("³", 3)] {
+        if let Some(symbol) = word.strip_suffix(mark) {
+            return Some((symbol, exponent));
+        }
+    }
+    let digits = word.trim_end_matches(|c: char| c.is_ascii_digit());
+    if digits.len() < word.len() && !digits.is_empty() {
+        return Some((digits, word[digits.len()..].parse().ok().filter(|exponent: &i8| (1..=9).contains(exponent))?));
+    }
+    Some((word, 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_of_the_field() {
+        // (text, factor to SI, dimension); factors by definition of the units
+        for (text, factor, dimension) in [
+            ("kN", 1e3, [1, 1, -2, 0, 0]),
+            ("m/s^2", 1.0, [1, 0, -2, 0, 0]),
+            ("m/s²", 1.0, [1, 0, -2, 0, 0]),
+            ("m s^-2", 1.0, [1, 0, -2, 0, 0]),
+            ("km/h", 1.0 / 3.6, [1, 0, -1, 0, 0]),
+            ("N s/m", 1.0, [0, 1, -1, 0, 0]),
+            ("kN*m", 1e3, [2, 1, -2, 0, 0]),
+            ("1/m", 1.0, [-1, 0, 0, 0, 0]),
+            ("mm", 1e-3, [1, 0, 0, 0, 0]),
+            ("-", 1.0, [0; 5]),
+            ("mrad/mm", 1.0, [-1, 0, 0, 0, 0]),
+            ("t", 1e3, [0, 1, 0, 0, 0]),
+        ] {
+            let unit = unit(text).unwrap_or_else(|e| panic!("{text}: {e:?}"));
+            assert!((unit.factor / factor - 1.0).abs() < 1e-15, "{text}");
+            assert_eq!(unit.dimension, Dimension(dimension), "{text}");
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_the_nearest_symbol() {
+        assert_eq!(unit("kn").expect_err("no such unit").near, Some("kN"));
+        for text in ["", "m/", "/s", "m//s", "kN^x", "m^99", "m s/ "] {
+            assert!(unit(text).is_err(), "{text}");
+        }
+    }
+}
