@@ -16,5 +16,8 @@ pub mod source;
 pub mod problem;
 pub mod units;
 pub mod syntax;
+pub mod catalog;
+pub mod check;
+pub mod graph;
 pub mod metrics;
 pub mod result;

@@ -235,6 +235,7 @@ pub const KINDS: &[Kind] = &[
             phrase("where", "Only sections that satisfy this are used.", "speed >= 60 km/h"),
             phrase("faulty", "What a faulty record does: `not used` (its section, with the reason) or `stop`.", "not used"),
             phrase("minimum", "How many used sections the campaign needs in all.", "12"),
+            phrase("percentiles", "How percentiles are read between samples: a rule of Hyndman & Fan by name.", "linear"),
             NOTE,
         ],
     },
@@ -269,6 +270,9 @@ pub const KINDS: &[Kind] = &[
         about: "When a model is validated.",
         keys: &[
             phrase("validated", "`when every limit holds`, or `when at least N quantities hold`.", "when every limit holds"),
+            phrase("minimum signals", "How many signals a quantity needs unless it says so itself.", "2"),
+            phrase("minimum pairs", "How many section x signal pairs a quantity needs unless it says so itself.", "24"),
+            phrase("standard deviation", "Divisor of the variance: `n-1` or `n`.", "n-1"),
             NOTE,
         ],
     },

@@ -1,0 +1,350 @@
+# Rules in our own words; the text of the standard is not reproduced. Numbers: Table 1 of the paper named under `source`.
+
+protocol en14363-2016-annex-t "Validation of a simulation model by on-track tests, EN 14363:2016 Annex T"
+  edition  "EN 14363:2016, Annex T (method of the DynoTRAIN project)"
+  source   "Goetz & Polach, Verification and validation of simulations in a rail vehicle certification context, Table 1"
+  author   "Fishplate"
+  scope    "Simulation models of rail vehicles for the acceptance of running characteristics: differences between simulation and measurement over at least three sections in each of the four test zones."
+  axis     distance in m
+  time     time in s
+
+parameter lowpass_frequency "Cut-off of the low-pass filter"
+  default  20 Hz
+  range    5 Hz to 60 Hz
+  source   "Table 1"
+
+parameter lowpass_order "Order of the low-pass filter, one pass"
+  default  4
+  range    1 to 10
+
+parameter bandpass_order "Order of the band-pass filter at each edge, one pass"
+  default  4
+  range    1 to 10
+
+parameter filter_phase "Filtering forward and backward, or causal"
+  default  zero-phase
+  one of   zero-phase, causal, causal-from-rest
+  note     "The table does not say; zero phase keeps the place of a peak."
+
+parameter filter_edge "Whether the -3 dB points are those of the filter as applied or of each pass"
+  default  as-applied
+  one of   as-applied, per-pass
+
+parameter window_ends "Sliding mean as the mean of the samples in the window, or as the integral over it"
+  default  samples
+  one of   samples, integral
+
+parameter sliding_input "Signal that the sliding mean is taken of"
+  default  unfiltered
+  one of   unfiltered, lowpassed
+  note     "Table 1 names no other filter; common practice filters at 20 Hz before."
+
+parameter ratio_from "Y/Q formed from the records as they are, or from filtered Y and Q"
+  default  unfiltered
+  one of   unfiltered, lowpassed
+
+parameter percentile_rule "How a percentile is read between two samples (Hyndman & Fan)"
+  default  linear
+  one of   linear, hazen, weibull, median_unbiased, normal_unbiased, inverted_cdf, nearest, lower, higher
+
+parameter quasi_static_difference "Sign of the difference of quasi-static values"
+  default  oriented
+  one of   oriented, signed, magnitudes
+  note     "Oriented: positive where the simulation is larger in the direction of the measurement, in right and left curves alike, so that a wrong sign shows; magnitudes would hide it."
+
+parameter maximum_side "Side of the distribution that a maximum is read from"
+  default  larger
+  one of   larger, measured, curve
+  note     "Larger: of each side by itself. Measured: the side that is larger in the measurement, for both. Curve: 0.15 % in right-hand and 99.85 % in left-hand curves, the side of the outer wheel."
+
+parameter variance_divisor "Divisor of the variance"
+  default  n-1
+  one of   n-1, n
+
+parameter mean_limit_share "Limit of the mean as a share of the limit of the standard deviation"
+  default  2/3
+  range    0.01 to 10
+  source   "Section 3.2"
+
+parameter sections_per_zone "Sections needed in each test zone"
+  default  3
+  range    1 to 100
+  source   "Section 3.2"
+
+parameter admissible_speed "Admissible speed of the vehicle, which decides the length of sections"
+  default  140 km/h
+  range    20 km/h to 400 km/h
+  note     "On-track tests run up to 1.1 times this speed."
+
+place wheelset
+  members  1, 2, 3, 4
+
+place side
+  members  R, L
+  alias    outer is L when direction is right, R when direction is left
+  alias    inner is R when direction is right, L when direction is left
+
+place running_gear
+  members  I, II
+
+vehicle category "Vehicle category"
+  one of  passenger, locomotive, freight
+
+vehicle running_gear_type "Running gear"
+  one of  bogies, single_axles
+  key     running_gear
+
+vehicle secondary_suspension "Secondary suspension"
+  one of  true, false
+
+vehicle Q0 "Static vertical wheel force"
+  in   kN
+  key  static_wheel_load
+
+section zone "Test zone"
+  one of  1, 2, 3, 4
+
+section radius "Curve radius"
+  in  m
+
+section direction "Direction"
+  one of  right, left, straight
+
+section cant "Cant"
+  in  mm
+
+section cant_deficiency "Cant deficiency"
+  in  mm
+
+section speed "Speed"
+  in  km/h
+
+channel Y "Guiding force"
+  in      kN
+  at      each wheelset and side
+  column  "Y_{wheelset}{side}"
+  note    "Positive to the right of the running direction."
+
+channel Q "Vertical wheel force"
+  in      kN
+  at      each wheelset and side
+  column  "Q_{wheelset}{side}"
+
+channel ay "Car body lateral acceleration"
+  in      m/s^2
+  at      each running_gear
+  column  "ay_{running_gear}"
+
+channel az "Car body vertical acceleration"
+  in      m/s^2
+  at      each running_gear
+  column  "az_{running_gear}"
+
+channel curvature "Curvature of the track"
+  in      1/m
+  record  track
+
+signal YQ "Ratio Y/Q"
+  is     (Y through LP20) / (Q through LP20) when ratio_from is lowpassed, otherwise Y / Q
+  at     each wheelset and side
+  in     -
+  named  "YQ_{wheelset}{side}"
+  note   "Formed sample by sample."
+
+signal SigmaY "Sum of guiding forces"
+  is     Y at side R + Y at side L
+  at     each wheelset
+  in     kN
+  named  "SigmaY_{wheelset}"
+
+filter LP20 "Low-pass filter 20 Hz"
+  step    low-pass lowpass_frequency, order lowpass_order, filter_phase, filter_edge
+  source  "Table 1"
+
+filter BP "Band-pass filter 0.4 to 10 Hz"
+  step    band-pass 0.4 Hz to 10 Hz, order bandpass_order, filter_phase, filter_edge
+  source  "Table 1"
+
+filter WINDOW "Sliding mean 2 m, step 0.5 m"
+  step    LP20 when sliding_input is lowpassed
+  step    sliding mean 2 m every 0.5 m, window_ends
+  source  "Table 1"
+
+define extreme_value "The 0.15 % or 99.85 % value, as a magnitude"
+  is      larger of |p0.15|, |p99.85| when maximum_side is larger,
+          |p99.85| when maximum_side is measured and |measured(p99.85)| >= |measured(p0.15)|,
+          |p0.15| when maximum_side is measured or direction is right,
+          |p99.85| when direction is left,
+          otherwise larger of |p0.15|, |p99.85|
+  source  "Table 1 and its footnote *"
+
+define lighter_requirements "Vehicles whose acceleration limits are doubled"
+  is      vehicle.category is freight or vehicle.running_gear_type is single_axles or not vehicle.secondary_suspension
+  source  "Table 1, footnote **"
+
+zone 1 "Straight track and very large radius curves"
+  where             direction is straight or (radius > 600 m and cant_deficiency <= 40 mm)
+  minimum sections  sections_per_zone
+  minimum length    250 m when admissible_speed <= 220 km/h, otherwise 500 m
+  source            "Section 3.1; lengths and ranges: common statement of EN 14363, to be checked against the edition used"
+
+zone 2 "Large radius curves"
+  where             radius > 600 m
+  minimum sections  sections_per_zone
+  minimum length    100 m when admissible_speed <= 140 km/h, 250 m when admissible_speed <= 220 km/h, otherwise 500 m
+  source            "As zone 1"
+
+zone 3 "Small radius curves"
+  where             400 m <= radius <= 600 m
+  minimum sections  sections_per_zone
+  minimum length    100 m
+  source            "As zone 1"
+
+zone 4 "Very small radius curves"
+  where             250 m <= radius < 400 m
+  minimum sections  sections_per_zone
+  minimum length    70 m
+  source            "As zone 1"
+
+check full_curve "Section lies in full curve or on straight track"
+  require  range of curvature <= 2 % * |mean of curvature| + 0.00001 / m
+  source   "Section 3.2"
+  note     "Needs the track file; the tolerance is this protocol's own."
+
+sections
+  use          sections
+  zone         zone
+  faulty       not used
+  percentiles  percentile_rule
+
+quantity Y_qst "Quasi-static guiding force"
+  symbol      "Y_qst"
+  of          Y at wheelsets 1, 3
+  filter      LP20
+  value       median
+  difference  quasi_static_difference
+  limit       std 5 kN
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+
+quantity Q_qst "Quasi-static vertical wheel force"
+  symbol      "Q_qst"
+  of          Q at wheelsets 1, 3
+  filter      LP20
+  value       median
+  difference  quasi_static_difference
+  limit       std 4 kN * (1 + 0.01 * Q0/kN)
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+
+quantity YQ_qst "Quasi-static ratio Y/Q"
+  symbol      "(Y/Q)_qst"
+  of          YQ at wheelsets 1, 3
+  filter      LP20
+  value       median
+  difference  quasi_static_difference
+  limit       std 0.07
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+
+quantity SigmaY_qst "Quasi-static sum of guiding forces"
+  symbol      "ΣY_qst"
+  of          SigmaY at wheelsets 1, 3
+  filter      LP20
+  value       median
+  difference  quasi_static_difference
+  limit       std 6 kN
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+
+quantity Y_max "Guiding force, maximum"
+  symbol      "Y_max"
+  of          Y at wheelsets 1, 3
+  filter      LP20
+  value       extreme_value
+  difference  magnitudes
+  limit       std 9 kN
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+  note        "Absolute values of simulation and measurement."
+
+quantity Q_max "Vertical wheel force, maximum"
+  symbol      "Q_max"
+  of          Q at wheelsets 1, 3
+  filter      LP20
+  value       p99.85
+  difference  magnitudes
+  limit       std 6 kN * (1 + 0.01 * Q0/kN)
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+  note        "Absolute values of simulation and measurement."
+
+quantity YQ_max "Ratio Y/Q, maximum"
+  symbol      "(Y/Q)_max"
+  of          YQ at wheelsets 1, 3
+  filter      WINDOW
+  value       extreme_value
+  difference  magnitudes
+  limit       std 0.10
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+  note        "Absolute values of simulation and measurement."
+
+quantity SigmaY_max "Sum of guiding forces, maximum"
+  symbol      "ΣY_max"
+  of          SigmaY at wheelsets 1, 3
+  filter      WINDOW
+  value       extreme_value
+  difference  magnitudes
+  limit       std 9 kN
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+  note        "Absolute values of simulation and measurement."
+
+quantity ay_rms "Car body lateral acceleration, rms value"
+  symbol      "ÿ*_rms"
+  of          ay at running gears I, II
+  filter      BP
+  value       rms
+  difference  signed
+  limit       std 0.15 m/s^2, doubled when lighter_requirements
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+
+quantity az_rms "Car body vertical acceleration, rms value"
+  symbol      "z̈*_rms"
+  of          az at running gears I, II
+  filter      BP
+  value       rms
+  difference  signed
+  limit       std 0.15 m/s^2, doubled when lighter_requirements
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+
+quantity ay_max "Car body lateral acceleration, maximum"
+  symbol      "ÿ*_max"
+  of          ay at running gears I, II
+  filter      BP
+  value       extreme_value
+  difference  magnitudes
+  limit       std 0.40 m/s^2, doubled when lighter_requirements
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+  note        "Absolute values of simulation and measurement."
+
+quantity az_max "Car body vertical acceleration, maximum"
+  symbol      "z̈*_max"
+  of          az at running gears I, II
+  filter      BP
+  value       extreme_value
+  difference  magnitudes
+  limit       std 0.40 m/s^2, doubled when lighter_requirements
+  limit       mean mean_limit_share of std
+  source      "Table 1"
+  note        "Absolute values of simulation and measurement."
+
+verdict
+  validated           when every limit holds
+  minimum signals     2
+  minimum pairs       24
+  standard deviation  variance_divisor

@@ -1,0 +1,53 @@
+//! How a step or metric is worded: fixed words with slots, then options in any order.
+
+use crate::units::Dimension;
+
+/// A piece of a wording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Part {
+    /// A fixed word.
+    Word(&'static str),
+    /// A number of the given dimension.
+    Number(&'static str, Dimension),
+    /// A number that is a time or a length: the axis it runs over follows from it.
+    Extent(&'static str),
+    /// A frequency: in time, or in cycles per length after resampling over a length.
+    Frequency(&'static str),
+    /// Another signal.
+    Signal(&'static str),
+}
+
+/// An option with a few possible words, the first being the default.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice {
+    pub name: &'static str,
+    pub words: &'static [&'static str],
+    pub about: &'static str,
+}
+
+/// A wording.
+#[derive(Clone, Copy, Debug)]
+pub struct Form {
+    pub head: &'static [Part],
+    /// Options of a word and a number, with the number's default: `order 4`.
+    pub numbers: &'static [(&'static str, f64)],
+    pub choices: &'static [Choice],
+}
+
+impl Form {
+    /// `band-pass {low: frequency} to {high: frequency}`
+    pub fn in_words(&self) -> String {
+        let parts: Vec<String> = self
+            .head
+            .iter()
+            .map(|part| match part {
+                Part::Word(word) => (*word).to_string(),
+                Part::Number(name, dimension) => format!("<{name}: {}>", dimension.in_words()),
+                Part::Extent(name) => format!("<{name}: a length or a time>"),
+                Part::Frequency(name) => format!("<{name}: a frequency>"),
+                Part::Signal(name) => format!("<{name}: a signal>"),
+            })
+            .collect();
+        parts.join(" ")
+    }
+}

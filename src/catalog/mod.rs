@@ -1,0 +1,15 @@
+//! The registry of what the language can do with signals and numbers: reducers, statistics, functions, filter steps, metrics.
+//!
+//! Each entry has a name, a signature and a sentence; checker, engine, `explain`, and the language reference read the same tables.
+
+mod forms;
+mod functions;
+mod reducers;
+mod steps;
+mod two_signals;
+
+pub use forms::{Choice, Form, Part};
+pub use functions::{FUNCTIONS, Function, Signature};
+pub use reducers::{REDUCERS, Reducer, ReducerEntry, STATISTICS, Statistic, StatisticEntry};
+pub use steps::{STEPS, StepEntry, StepKind};
+pub use two_signals::{METRICS, Metric, MetricEntry, Pair};

@@ -1,0 +1,160 @@
+//! Numbers taken from one signal of one section, and statistics over all section x signal pairs.
+
+use crate::metrics::percentile::{Method, percentile};
+use crate::metrics::statistics;
+use crate::units::Dimension;
+
+/// What reduces a signal to a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reducer {
+    Percentile(f64),
+    Named(&'static ReducerEntry),
+}
+
+#[derive(Debug)]
+pub struct ReducerEntry {
+    pub name: &'static str,
+    pub about: &'static str,
+    /// Dimension of the result from that of the signal and of the axis.
+    pub gives: fn(Dimension, Dimension) -> Dimension,
+    /// From the axis and the samples, both SI; `None` where it is not defined.
+    pub run: fn(&[f64], &[f64]) -> Option<f64>,
+}
+
+impl PartialEq for ReducerEntry {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+const fn same(name: &'static str, about: &'static str, run: fn(&[f64], &[f64]) -> Option<f64>) -> ReducerEntry {
+    ReducerEntry { name, about, gives: |signal, _| signal, run }
+}
+
+/// Reducers by name; percentiles are written `p99.85` besides.
+pub const REDUCERS: &[ReducerEntry] = &[
+    same("median", "The 50 % value.", |_, x| statistics::median(x)),
+    same("mean", "Arithmetic mean of the samples.", |_, x| statistics::mean(x)),
+    same("rms", "Root of the mean square; the mean is not removed.", |_, x| statistics::rms(x)),
+    same("std", "Standard deviation of the samples (n-1).", |_, x| statistics::standard_deviation(x, 1)),
+    same("minimum", "Smallest sample.", |_, x| statistics::minimum(x)),
+    same("maximum", "Largest sample.", |_, x| statistics::maximum(x)),
+    same("peak", "Largest magnitude.", |_, x| statistics::peak(x)),
+    same("range", "Largest less smallest sample.", |_, x| statistics::range(x)),
+    same("first", "First sample of the section.", |_, x| x.first().copied()),
+    same("last", "Last sample of the section.", |_, x| x.last().copied()),
+    ReducerEntry {
+        name: "slope",
+        about: "Slope of the regression line over the axis.",
+        gives: |signal, axis| signal / axis,
+        run: |axis, x| statistics::regression(axis, x).map(|line| line.slope),
+    },
+];
+
+impl Reducer {
+    pub fn named(name: &str) -> Option<Self> {
+        REDUCERS.iter().find(|entry| entry.name == name).map(Self::Named)
+    }
+
+    pub fn gives(self, signal: Dimension, axis: Dimension) -> Dimension {
+        match self {
+            Self::Percentile(_) => signal,
+            Self::Named(entry) => (entry.gives)(signal, axis),
+        }
+    }
+
+    /// `None` where the value is not defined: no samples, a slope over one sample.
+    pub fn run(self, axis: &[f64], samples: &[f64], method: Method) -> Option<f64> {
+        match self {
+            Self::Percentile(percent) => percentile(samples, percent, method),
+            Self::Named(entry) => (entry.run)(axis, samples),
+        }
+    }
+
+    pub fn in_words(self) -> String {
+        match self {
+            Self::Percentile(percent) => format!("p{percent}"),
+            Self::Named(entry) => entry.name.to_string(),
+        }
+    }
+}
+
+/// A statistic over pairs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Statistic {
+    /// Every value by itself: the worst decides.
+    Each,
+    Percentile(f64),
+    Named(&'static StatisticEntry),
+}
+
+#[derive(Debug)]
+pub struct StatisticEntry {
+    pub name: &'static str,
+    pub title: &'static str,
+    /// From the differences and the divisor's n - `ddof`.
+    pub run: fn(&[f64], usize) -> Option<f64>,
+    /// 95 % confidence interval for independent normal values, where there is one.
+    pub interval: Option<fn(&[f64]) -> Option<(f64, f64)>>,
+}
+
+impl PartialEq for StatisticEntry {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+const fn plain(name: &'static str, title: &'static str, run: fn(&[f64], usize) -> Option<f64>) -> StatisticEntry {
+    StatisticEntry { name, title, run, interval: None }
+}
+
+pub const STATISTICS: &[StatisticEntry] = &[
+    StatisticEntry {
+        name: "mean",
+        title: "mean",
+        run: |x, _| statistics::mean(x),
+        interval: Some(|x| statistics::mean_interval(x, 0.95)),
+    },
+    StatisticEntry {
+        name: "std",
+        title: "standard deviation",
+        run: statistics::standard_deviation,
+        interval: Some(|x| statistics::std_interval(x, 0.95)),
+    },
+    plain("rms", "root mean square", |x, _| statistics::rms(x)),
+    plain("median", "median", |x, _| statistics::median(x)),
+    plain("minimum", "smallest value", |x, _| statistics::minimum(x)),
+    plain("maximum", "largest value", |x, _| statistics::maximum(x)),
+    plain("peak", "largest magnitude", |x, _| statistics::peak(x)),
+    plain("range", "range", |x, _| statistics::range(x)),
+];
+
+impl Statistic {
+    pub fn named(word: &str) -> Option<Self> {
+        if word == "each" {
+            return Some(Self::Each);
+        }
+        if let Some(percent) = word.strip_prefix('p').and_then(|percent| percent.parse().ok()) {
+            return (0.0..=100.0).contains(&percent).then_some(Self::Percentile(percent));
+        }
+        STATISTICS.iter().find(|entry| entry.name == word).map(Self::Named)
+    }
+
+    /// As in result files: `mean`, `std`, `p95`, `each`.
+    pub fn name(self) -> String {
+        match self {
+            Self::Each => "each".into(),
+            Self::Percentile(percent) => format!("p{percent}"),
+            Self::Named(entry) => entry.name.into(),
+        }
+    }
+
+    pub fn title(self, ddof: usize) -> String {
+        match self {
+            Self::Each => "each value".into(),
+            Self::Percentile(percent) => format!("{percent} % value"),
+            Self::Named(entry) if entry.name == "std" => format!("{} ({})", entry.title, if ddof == 1 { "n-1" } else { "n" }),
+            Self::Named(entry) => entry.title.into(),
+        }
+    }
+}

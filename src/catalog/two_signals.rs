@@ -1,0 +1,146 @@
+//! Metrics: one number from the simulated and the measured signal of a section, the measured one being the reference.
+
+use super::forms::{Form, Part};
+use crate::metrics::{hysteresis, pair};
+use crate::units::Dimension;
+
+/// The two signals, cut to the section and on common points unless the metric says otherwise; SI.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<'a> {
+    pub simulated: &'a [f64],
+    pub measured: &'a [f64],
+    /// The signal that the metric runs over, where its wording names one: simulated, measured.
+    pub over: Option<(&'a [f64], &'a [f64])>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Metric(pub &'static MetricEntry);
+
+impl PartialEq for Metric {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.form.head == other.0.form.head
+    }
+}
+
+#[derive(Debug)]
+pub struct MetricEntry {
+    pub form: Form,
+    /// Dimension of the result from that of the signals.
+    pub gives: fn(Dimension) -> Dimension,
+    /// Whether the simulated signal is brought onto the points of the measured one before.
+    pub common_points: bool,
+    pub about: &'static str,
+    pub source: &'static str,
+    /// The reason where it is not defined.
+    pub run: fn(&Pair<'_>) -> Result<f64, String>,
+}
+
+const fn form(head: &'static [Part]) -> Form {
+    Form { head, numbers: &[], choices: &[] }
+}
+
+macro_rules! ratio {
+    ($head:expr, $about:expr, $source:expr, $run:path) => {
+        MetricEntry {
+            form: form($head),
+            gives: |_| Dimension::ONE,
+            common_points: true,
+            about: $about,
+            source: $source,
+            run: |p| $run(p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
+        }
+    };
+}
+
+macro_rules! of_signal {
+    ($head:expr, $common:expr, $about:expr, $source:expr, $run:path) => {
+        MetricEntry { gives: |signal| signal, common_points: $common, ..ratio!($head, $about, $source, $run) }
+    };
+}
+
+const SG: &str = "Sprague & Geers 2004";
+const RUSSELL: &str = "Russell 1997";
+
+pub const METRICS: &[MetricEntry] = &[
+    ratio!(
+        &[Part::Word("sprague-geers"), Part::Word("magnitude")],
+        "Root of the ratio of the integrals of the squares, less 1; negative where the simulation is smaller.",
+        SG,
+        pair::sprague_geers_magnitude
+    ),
+    ratio!(
+        &[Part::Word("sprague-geers"), Part::Word("phase")],
+        "Angle between the two signals as vectors, over pi: 0 alike, 0.5 unrelated, 1 inverted.",
+        SG,
+        pair::sprague_geers_phase
+    ),
+    ratio!(
+        &[Part::Word("sprague-geers"), Part::Word("comprehensive")],
+        "Root of the sum of the squares of magnitude and phase.",
+        SG,
+        pair::sprague_geers_comprehensive
+    ),
+    ratio!(&[Part::Word("russell"), Part::Word("magnitude")], "Logarithmic magnitude error.", RUSSELL, pair::russell_magnitude),
+    ratio!(&[Part::Word("russell"), Part::Word("phase")], "As Sprague & Geers.", RUSSELL, pair::russell_phase),
+    ratio!(&[Part::Word("russell"), Part::Word("comprehensive")], "Magnitude and phase together.", RUSSELL, pair::russell_comprehensive),
+    ratio!(
+        &[Part::Word("theil"), Part::Word("inequality")],
+        "Root mean square difference over the sum of the root mean squares: 0 to 1.",
+        "Theil 1966",
+        pair::theil_u1
+    ),
+    ratio!(
+        &[Part::Word("weighted"), Part::Word("integrated"), Part::Word("factor")],
+        "WIFac: 1 where the signals are alike, 0 where they have nothing in common.",
+        "Ray et al., NCHRP 22-24",
+        pair::wifac
+    ),
+    ratio!(&[Part::Word("correlation")], "Pearson correlation of the samples.", "Pearson 1895", pair::correlation),
+    ratio!(
+        &[Part::Word("misfit")],
+        "Sum of the squared differences over the smaller of the sums of squares.",
+        "Kraft et al. 2013, as described by Goetz & Polach",
+        pair::misfit_squared
+    ),
+    ratio!(
+        &[Part::Word("matching"), Part::Word("probability")],
+        "Probability of equal variances (F test) times the agreement of the means.",
+        "Bogojevic & Lucanin 2014, as described by Goetz & Polach",
+        pair::bogojevic
+    ),
+    of_signal!(
+        &[Part::Word("root-mean-square"), Part::Word("difference")],
+        true,
+        "Root mean square of the differences of the samples.",
+        "definition",
+        pair::rmse
+    ),
+    of_signal!(
+        &[Part::Word("area"), Part::Word("between"), Part::Word("distributions")],
+        false,
+        "Area between the two cumulative distributions of the samples.",
+        "Ferson, Oberkampf & Ginzburg 2008",
+        pair::area
+    ),
+    MetricEntry {
+        form: form(&[Part::Word("hysteresis"), Part::Word("maximum"), Part::Word("over"), Part::Signal("axis")]),
+        gives: |signal| signal,
+        common_points: false,
+        about: "Largest matching error of the loop the signal draws over another: simulated against measured on the same branch.",
+        source: "EN 15273-2, stationary sway test",
+        run: |p| loop_error(p).map(|error| error.maximum),
+    },
+    MetricEntry {
+        form: form(&[Part::Word("hysteresis"), Part::Word("mean"), Part::Word("over"), Part::Signal("axis")]),
+        gives: |signal| signal,
+        common_points: false,
+        about: "Mean matching error of the loop the signal draws over another: simulated against measured on the same branch.",
+        source: "EN 15273-2, stationary sway test",
+        run: |p| loop_error(p).map(|error| error.mean),
+    },
+];
+
+fn loop_error(pair: &Pair<'_>) -> Result<hysteresis::MatchingError, String> {
+    let (x_simulated, x_measured) = pair.over.ok_or("the signal of the loop's axis is missing")?;
+    hysteresis::matching_error(x_simulated, pair.simulated, x_measured, pair.measured).map_err(|undefined| undefined.to_string())
+}

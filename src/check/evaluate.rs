@@ -1,0 +1,142 @@
+//! The value of a checked expression, given what its names stand for.
+
+use super::plan::{Expr, Kind, Operator, Scalar};
+
+/// What the names of an expression stand for. Each answer may be missing, with the reason.
+pub trait Values {
+    fn vehicle(&self, index: usize) -> Result<Scalar, String>;
+    fn column(&self, index: usize) -> Result<Scalar, String>;
+    /// Start and end of the section on the axis, SI.
+    fn extent(&self) -> Result<(f64, f64), String>;
+    fn input(&self, index: usize) -> Result<f64, String>;
+    /// Simulated and measured value of a pair.
+    fn sides(&self) -> Result<(f64, f64), String>;
+    fn limit_of(&self, statistic: &str) -> Result<f64, String>;
+}
+
+/// Nothing is known: what constants alone amount to.
+#[derive(Clone, Copy, Debug)]
+pub struct Nothing;
+
+impl Values for Nothing {
+    fn vehicle(&self, _: usize) -> Result<Scalar, String> {
+        Err("vehicle data are not known here".into())
+    }
+    fn column(&self, _: usize) -> Result<Scalar, String> {
+        Err("section data are not known here".into())
+    }
+    fn extent(&self) -> Result<(f64, f64), String> {
+        Err("there is no section here".into())
+    }
+    fn input(&self, _: usize) -> Result<f64, String> {
+        Err("there is no signal here".into())
+    }
+    fn sides(&self) -> Result<(f64, f64), String> {
+        Err("there is no pair of values here".into())
+    }
+    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
+        Err(format!("the limit of {statistic} is not known here"))
+    }
+}
+
+/// # Errors
+/// The name that has no value, or the operation that is not defined (a division by zero).
+pub fn evaluate(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
+    let result = match &expr.kind {
+        Kind::Constant(value) => value.clone(),
+        Kind::Vehicle(index) => values.vehicle(*index)?,
+        Kind::Column(index) => values.column(*index)?,
+        Kind::Start => Scalar::Number(values.extent()?.0),
+        Kind::End => Scalar::Number(values.extent()?.1),
+        Kind::Input(index) => Scalar::Number(values.input(*index)?),
+        Kind::Simulated => Scalar::Number(values.sides()?.0),
+        Kind::Measured => Scalar::Number(values.sides()?.1),
+        Kind::LimitOf(statistic) => Scalar::Number(values.limit_of(statistic)?),
+        Kind::Negative(inner) => Scalar::Number(-number(inner, values)?),
+        Kind::Not(inner) => Scalar::Flag(!flag(inner, values)?),
+        Kind::Power(inner, exponent) => Scalar::Number(number(inner, values)?.powi(i32::from(*exponent))),
+        Kind::Binary(operator, left, right) => binary(*operator, left, right, values)?,
+        Kind::Call(function, arguments) => {
+            let arguments = arguments.iter().map(|argument| number(argument, values)).collect::<Result<Vec<_>, _>>()?;
+            Scalar::Number((function.run)(&arguments))
+        }
+        Kind::Cases(arms, otherwise) => {
+            for (value, condition) in arms {
+                if condition.as_ref().map_or(Ok(true), |condition| flag(condition, values))? {
+                    return evaluate(value, values);
+                }
+            }
+            match otherwise {
+                Some(value) => evaluate(value, values)?,
+                None => return Err(format!("no case of `{}` applies", words(expr))),
+            }
+        }
+    };
+    match result {
+        Scalar::Number(value) if !value.is_finite() => Err(format!("`{}` is not a finite number", words(expr))),
+        value => Ok(value),
+    }
+}
+
+pub fn number(expr: &Expr, values: &dyn Values) -> Result<f64, String> {
+    match evaluate(expr, values)? {
+        Scalar::Number(value) => Ok(value),
+        other => Err(format!("`{}` is {other:?}, not a number", words(expr))),
+    }
+}
+
+pub fn flag(expr: &Expr, values: &dyn Values) -> Result<bool, String> {
+    match evaluate(expr, values)? {
+        Scalar::Flag(value) => Ok(value),
+        other => Err(format!("`{}` is {other:?}, not a condition", words(expr))),
+    }
+}
+
+fn binary(operator: Operator, left: &Expr, right: &Expr, values: &dyn Values) -> Result<Scalar, String> {
+    Ok(match operator {
+        // A side that decides alone spares the other, which may be missing: `direction is straight or radius > 600 m`.
+        Operator::And => Scalar::Flag(flag(left, values)? && flag(right, values)?),
+        Operator::Or => Scalar::Flag(flag(left, values)? || flag(right, values)?),
+        Operator::Is => Scalar::Flag(evaluate(left, values)? == evaluate(right, values)?),
+        Operator::IsNot => Scalar::Flag(evaluate(left, values)? != evaluate(right, values)?),
+        Operator::Add => Scalar::Number(number(left, values)? + number(right, values)?),
+        Operator::Subtract => Scalar::Number(number(left, values)? - number(right, values)?),
+        Operator::Multiply => Scalar::Number(number(left, values)? * number(right, values)?),
+        Operator::Divide => Scalar::Number(number(left, values)? / number(right, values)?),
+        Operator::Less => Scalar::Flag(number(left, values)? < number(right, values)?),
+        Operator::LessEqual => Scalar::Flag(number(left, values)? <= number(right, values)?),
+        Operator::Greater => Scalar::Flag(number(left, values)? > number(right, values)?),
+        Operator::GreaterEqual => Scalar::Flag(number(left, values)? >= number(right, values)?),
+    })
+}
+
+/// The source text of an expression, blanks normalised.
+pub fn words(expr: &Expr) -> String {
+    expr.span.text().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The structure of an expression without places: equal for two expressions that always have the same value.
+pub fn shape(expr: &Expr) -> String {
+    match &expr.kind {
+        Kind::Constant(Scalar::Number(value)) => format!("{value:e}"),
+        Kind::Constant(Scalar::Word(word)) => format!("'{word}'"),
+        Kind::Constant(Scalar::Flag(flag)) => flag.to_string(),
+        Kind::Vehicle(index) => format!("vehicle{index}"),
+        Kind::Column(index) => format!("column{index}"),
+        Kind::Start => "start".into(),
+        Kind::End => "end".into(),
+        Kind::Input(index) => format!("in{index}"),
+        Kind::Simulated => "simulated".into(),
+        Kind::Measured => "measured".into(),
+        Kind::LimitOf(name) => format!("limit of {name}"),
+        Kind::Negative(inner) => format!("-({})", shape(inner)),
+        Kind::Not(inner) => format!("not({})", shape(inner)),
+        Kind::Power(inner, exponent) => format!("({})^{exponent}", shape(inner)),
+        Kind::Binary(operator, left, right) => format!("{operator:?}({},{})", shape(left), shape(right)),
+        Kind::Call(function, arguments) => format!("{}({})", function.name, arguments.iter().map(shape).collect::<Vec<_>>().join(",")),
+        Kind::Cases(arms, otherwise) => {
+            let arms: Vec<String> = arms.iter().map(|(value, condition)| format!("{}?{}", shape(value), condition.as_ref().map_or(String::new(), shape))).collect();
+            format!("[{};{}]", arms.join(","), otherwise.as_ref().map_or(String::new(), |value| shape(value)))
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! Checks what stands beside quantities: axis, zones, section checks, treatment of sections, verdict.
+
+use super::names::normalised;
+use super::plan::{Axis, Check, DatumKind, OnFault, Rule, SectionRules, VerdictRule, Zone};
+use super::scalars::Scope;
+use super::{Checker, overlap};
+use crate::metrics::percentile::Method;
+use crate::problem::Problem;
+use crate::syntax::document::{Block, Field, Text};
+use crate::syntax::from_pest;
+use crate::syntax::phrase::Verdict as WrittenVerdict;
+use crate::units::Dimension;
+
+impl Checker<'_> {
+    pub(super) fn axis_field(&mut self, field: &Field, allowed: &[Dimension]) -> Option<Axis> {
+        let (name, unit) = from_pest::axis(&field.value, self.problems)?;
+        let text = Text { text: unit.node, span: field.value.place(unit.range), exact: field.value.exact };
+        let unit = self.unit(&text)?;
+        if !allowed.contains(&unit.dimension) {
+            self.problems.push(
+                Problem::error("unit-mismatch", format!("`{}` cannot be {}", field.key.text, unit.dimension.in_words()))
+                    .at(&text.span)
+                    .help("`axis distance in m` or `axis time in s`; `time time in s`"),
+            );
+            return None;
+        }
+        Some(Axis { column: name.node, unit })
+    }
+
+    pub(super) fn zone(&mut self, block: &Block) -> Option<Zone> {
+        let (condition, condition_words) = match block.field("where") {
+            Some(field) => (Some(self.section_condition(field)?), normalised(&field.value.text)),
+            None => (None, String::new()),
+        };
+        let minimum_length = match block.field("minimum length") {
+            None => None,
+            Some(field) => {
+                let phrase = from_pest::expression(&field.value, self.problems)?;
+                let expr = self.expr(&phrase, &field.value, &mut Scope::section())?;
+                let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+                if self.number_type(&expr)? != axis {
+                    self.problems.push(
+                        Problem::error("unit-mismatch", format!("sections are {} long, this is {}", axis.in_words(), super::scalars::in_words(&expr.ty)))
+                            .at(&field.value.span),
+                    );
+                    return None;
+                }
+                Some(expr)
+            }
+        };
+        let minimum_sections = self.count(block, "minimum sections", 0)?;
+        Some(Zone {
+            name: block.name_text().to_string(),
+            title: block.title.as_ref().map_or_else(String::new, |title| title.text.clone()),
+            condition,
+            condition_words,
+            minimum_sections,
+            minimum_length,
+            span: block.span().clone(),
+        })
+    }
+
+    pub(super) fn section_check(&mut self, block: &Block) -> Option<Check> {
+        let field = self.required(block, "require")?;
+        let phrase = from_pest::expression(&field.value, self.problems)?;
+        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+        let mut scope = Scope::reducing(None, axis);
+        let require = self.expr(&phrase, &field.value, &mut scope)?;
+        self.flag_type(&require)?;
+        let unless = match block.field("unless") {
+            Some(field) => Some(self.section_condition(field)?),
+            None => None,
+        };
+        let otherwise = self.on_fault(block, "otherwise")?;
+        Some(Check {
+            name: block.name_text().to_string(),
+            title: block.title.as_ref().map_or_else(|| block.name_text().replace('_', " "), |title| title.text.clone()),
+            require,
+            inputs: scope.inputs,
+            unless,
+            words: normalised(&field.value.text),
+            otherwise,
+            span: block.span().clone(),
+        })
+    }
+
+    fn on_fault(&mut self, block: &Block, key: &str) -> Option<OnFault> {
+        let Some(field) = block.field(key) else { return Some(OnFault::NotUsed) };
+        match normalised(&field.value.text).as_str() {
+            "not used" => Some(OnFault::NotUsed),
+            "stop" => Some(OnFault::Stop),
+            "note" => Some(OnFault::Note),
+            other => {
+                self.problems.push(Problem::error("unknown-choice", format!("`{other}` is no treatment")).at(&field.value.span).suggest(other, ["not used", "stop", "note"]));
+                None
+            }
+        }
+    }
+
+    pub(super) fn section_rules(&mut self, block: Option<&Block>) -> SectionRules {
+        let mut rules = SectionRules {
+            whole_records: false,
+            zone: None,
+            only: None,
+            only_words: String::new(),
+            faulty: OnFault::NotUsed,
+            minimum: 1,
+            percentiles: Method::Linear,
+        };
+        let Some(block) = block else { return rules };
+        if let Some(field) = block.field("use") {
+            match normalised(&field.value.text).as_str() {
+                "sections" => {}
+                "whole records" => rules.whole_records = true,
+                other => {
+                    let problem = Problem::error("unknown-choice", format!("`{other}` is not what can be used")).at(&field.value.span);
+                    self.problems.push(problem.suggest(other, ["sections", "whole records"]));
+                }
+            }
+        }
+        if let Some(field) = block.field("zone") {
+            let name = normalised(&field.value.text);
+            rules.zone = self.names.columns.iter().position(|datum| datum.name == name);
+            if rules.zone.is_none() {
+                let known: Vec<String> = self.names.columns.iter().map(|datum| datum.name.clone()).collect();
+                let problem = Problem::error("unknown-name", format!("no section column is called `{name}`")).at(&field.value.span);
+                self.problems.push(problem.suggest(&name, known.iter().map(String::as_str)));
+            }
+        }
+        if let Some(field) = block.field("where") {
+            rules.only = self.section_condition(field);
+            rules.only_words = normalised(&field.value.text);
+        }
+        if let Some(faulty) = self.on_fault(block, "faulty") {
+            rules.faulty = faulty;
+        }
+        if let Some(minimum) = self.count(block, "minimum", 1) {
+            rules.minimum = minimum;
+        }
+        if let Some(field) = block.field("percentiles") {
+            let word = self.choice_word(field);
+            match Method::from_name(&word) {
+                Some(method) => rules.percentiles = method,
+                None => {
+                    let problem = Problem::error("unknown-choice", format!("`{word}` is no percentile rule")).at(&field.value.span);
+                    self.problems.push(problem.suggest(&word, Method::names()));
+                }
+            }
+        }
+        rules
+    }
+
+    /// A word, or the value of the choice parameter it names.
+    fn choice_word(&self, field: &Field) -> String {
+        let word = normalised(&field.value.text);
+        match self.names.parameters.get(&word).map(|parameter| &parameter.value) {
+            Some(super::plan::Scalar::Word(choice)) => choice.clone(),
+            _ => word,
+        }
+    }
+
+    pub(super) fn divisor(&mut self, block: Option<&Block>) -> usize {
+        let Some(field) = block.and_then(|block| block.field("standard deviation")) else { return 1 };
+        match self.choice_word(field).as_str() {
+            "n-1" => 1,
+            "n" => 0,
+            other => {
+                let problem = Problem::error("unknown-choice", format!("`{other}` is no divisor of the variance")).at(&field.value.span);
+                self.problems.push(problem.help("`n-1` or `n`"));
+                1
+            }
+        }
+    }
+
+    pub(super) fn verdict_rule(&mut self, block: Option<&Block>) -> VerdictRule {
+        let every = VerdictRule { rule: Rule::EveryLimit, words: "validated when every limit holds".into() };
+        let Some(field) = block.and_then(|block| block.field("validated")) else { return every };
+        let words = format!("validated {}", normalised(&field.value.text));
+        let rule = match from_pest::verdict(&field.value, self.problems) {
+            Some(WrittenVerdict::AtLeast { count, of_limits }) => match self.constant_phrase(&count, &field.value) {
+                Some((count, Dimension::ONE)) if count >= 1.0 && count.fract() == 0.0 => {
+                    if of_limits {
+                        Rule::AtLeastLimits(count as usize)
+                    } else {
+                        Rule::AtLeastQuantities(count as usize)
+                    }
+                }
+                _ => {
+                    self.problems.push(Problem::error("not-a-count", "a whole number above zero is needed").at(&field.value.place(count.range)));
+                    Rule::EveryLimit
+                }
+            },
+            _ => Rule::EveryLimit,
+        };
+        VerdictRule { rule, words }
+    }
+
+    /// The zones of the protocol and the words of the zone column must be the same, or sections would fall between them.
+    pub(super) fn zones_match(&mut self, rules: &SectionRules) {
+        let Some(index) = rules.zone else {
+            if let Some(block) = self.blocks.iter().find(|block| block.kind.text == "zone") {
+                let problem = Problem::error("no-zone-column", "there are zones, but no section column says which section belongs to which").at(block.span());
+                self.problems.push(problem.help("add to `sections`: `zone zone`"));
+            }
+            return;
+        };
+        let datum = self.names.columns[index].clone();
+        let DatumKind::Words(_) = datum.kind else {
+            self.problems.push(Problem::error("zone-column", "the zone column holds words: `one of 1, 2, 3, 4`").at(&datum.span));
+            return;
+        };
+        for word in overlap::datum_words(&datum.kind) {
+            if !self.zone_names.contains(&word) {
+                let problem = Problem::error("unknown-zone", format!("sections may be of zone {word}, which is not described")).at(&datum.span);
+                self.problems.push(problem.help(format!("add a block `zone {word}`, or take {word} out of the column's words")));
+            }
+        }
+        let words = overlap::datum_words(&datum.kind);
+        let strangers: Vec<Block> =
+            self.blocks.iter().filter(|block| block.kind.text == "zone" && !words.iter().any(|word| word == block.name_text())).cloned().collect();
+        for block in strangers {
+            self.problems.push(
+                Problem::error("unknown-zone", format!("no section can be of zone {}", block.name_text()))
+                    .at(block.span())
+                    .also(&datum.span, "the words of the zone column")
+                    .help(format!("add {} to the words of the zone column", block.name_text())),
+            );
+        }
+    }
+}

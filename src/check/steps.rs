@@ -1,0 +1,372 @@
+//! Checks filter chains: wordings from the registry, numbers with the right dimension, an order of steps that makes sense.
+
+use super::Checker;
+use super::names::Written;
+use super::plan::{Kind, Scalar, Signal, Step, StepSpec, Type};
+use super::scalars::Scope;
+use crate::catalog::{Form, METRICS, Metric, Part, STEPS, StepEntry, StepKind};
+use crate::metrics::filter::{Band, Cutoff, Phase};
+use crate::metrics::window::Ends;
+use crate::problem::{Problem, nearest};
+use crate::source::Span;
+use crate::syntax::document::Text;
+use crate::syntax::from_pest;
+use crate::syntax::phrase::{At, Item, Node, Phrase, Step as Written_};
+use crate::units::Dimension;
+
+/// What the slots and options of a wording were filled with.
+#[derive(Debug, Default)]
+pub(super) struct Filled {
+    numbers: Vec<(f64, Dimension, Span)>,
+    signals: Vec<Signal>,
+    options: Vec<f64>,
+    choices: Vec<&'static str>,
+}
+
+impl StepSpec {
+    /// Whether every sample of the record has a value after the step.
+    pub fn keeps_samples(&self) -> bool {
+        matches!(self, Self::Butterworth { .. } | Self::Magnitude)
+    }
+}
+
+impl Checker<'_> {
+    /// The chain of a `filter` field or of all `step` fields of a filter, checked for the order of its steps.
+    pub(super) fn chain(&mut self, text: &Text) -> Option<Vec<Step>> {
+        let steps = from_pest::chain(text, self.problems)?;
+        let mut all = Vec::new();
+        let mut ok = true;
+        for step in &steps {
+            match self.step(step, text) {
+                Some(steps) => all.extend(steps),
+                None => ok = false,
+            }
+        }
+        if !ok {
+            return None;
+        }
+        self.step_order(&all)?;
+        Some(all)
+    }
+
+    pub(super) fn filter_named(&mut self, name: &str, span: &Span) -> Option<Vec<Step>> {
+        if let Some(steps) = self.filter_steps.get(name) {
+            return steps.clone();
+        }
+        let Some(block) = self.names.filters.get(name).cloned() else {
+            let names: Vec<String> = self.names.filters.keys().cloned().collect();
+            self.problems.push(Problem::error("unknown-filter", format!("no filter is called `{name}`")).at(span).suggest(name, names.iter().map(String::as_str)));
+            return None;
+        };
+        // Before the steps are read: a filter that uses itself then finds nothing instead of looping.
+        self.filter_steps.insert(name.to_string(), None);
+        let mut steps = Vec::new();
+        let mut ok = true;
+        for field in block.fields_named("step") {
+            match self.chain(&field.value) {
+                Some(found) => steps.extend(found),
+                None => ok = false,
+            }
+        }
+        if steps.is_empty() && block.field("step").is_none() {
+            self.required(&block, "step");
+            ok = false;
+        }
+        let result = (ok && self.step_order(&steps).is_some()).then_some(steps);
+        self.filter_steps.insert(name.to_string(), result.clone());
+        result
+    }
+
+    /// After a window there are no samples of the record left to filter; after resampling over a length, frequencies are cycles per length.
+    fn step_order(&mut self, steps: &[Step]) -> Option<()> {
+        let mut window: Option<&Step> = None;
+        let mut over_length: Option<&Step> = None;
+        for step in steps {
+            if let Some(before) = window {
+                if matches!(step.kind, StepSpec::Butterworth { .. } | StepSpec::Resample { .. }) {
+                    self.problems.push(
+                        Problem::error("step-order", "a filter over the whole record cannot follow a window inside the section")
+                            .at(&step.span)
+                            .also(&before.span, "the window")
+                            .help("put the filter before the window"),
+                    );
+                    return None;
+                }
+            }
+            match &step.kind {
+                StepSpec::Window { .. } | StepSpec::RemoveMean => window = Some(step),
+                StepSpec::Resample { over_time, .. } => over_length = (!over_time).then_some(step),
+                StepSpec::Butterworth { .. } => {
+                    let per_length = step.words.contains("1/m");
+                    if per_length != over_length.is_some() {
+                        let problem = Problem::error("step-order", if per_length { "cycles per length need a record with equal steps of length" } else { "a frequency in time after resampling over a length" }).at(&step.span);
+                        self.problems.push(match over_length {
+                            Some(before) => problem.also(&before.span, "resampled here").help("write the frequency as cycles per length: `(1 / (3 m))`"),
+                            None => problem.help("put `resample every 0.25 m` before, or write a frequency in Hz"),
+                        });
+                        return None;
+                    }
+                }
+                StepSpec::Magnitude => {}
+            }
+        }
+        Some(())
+    }
+
+    fn step(&mut self, step: &At<Written_>, text: &Text) -> Option<Vec<Step>> {
+        let span = text.place(step.range.clone());
+        let mut written = step.node.clone();
+        if let Some(condition) = written.when.take() {
+            let condition = self.expr(&condition, text, &mut Scope::constant())?;
+            self.flag_type(&condition)?;
+            match condition.kind {
+                Kind::Constant(Scalar::Flag(false)) => return Some(Vec::new()),
+                Kind::Constant(_) => {}
+                _ => {
+                    self.problems.push(Problem::error("not-constant", "a step can only depend on parameters").at(&condition.span));
+                    return None;
+                }
+            }
+        }
+        if let [part] = written.parts.as_slice() {
+            if let [At { node: Item::Word(word), range }] = part.as_slice() {
+                if !STEPS.iter().any(|entry| entry.form.head == [Part::Word("magnitude")] && word == "magnitude") {
+                    return self.filter_named(word, &text.place(range.clone()));
+                }
+            }
+        }
+        let entry = self.find_form(&written, &span, "step", STEPS.iter().map(|entry| &entry.form))?;
+        let entry = &STEPS[entry];
+        let filled = self.fill_form(&entry.form, &written, text, &span)?;
+        Some(vec![self.spec(entry, &filled, &span)?])
+    }
+
+    /// A metric and the signal its wording names, at given positions.
+    pub(super) fn metric(&mut self, text: &Text) -> Option<(Metric, Option<Written>)> {
+        let step = from_pest::step_alone(text, self.problems)?;
+        let span = text.place(step.range.clone());
+        let index = self.find_form(&step.node, &span, "metric", METRICS.iter().map(|entry| &entry.form))?;
+        let entry = &METRICS[index];
+        let slot = entry.form.head.iter().position(|part| matches!(part, Part::Signal(_)));
+        let over = match slot {
+            None => None,
+            Some(slot) => {
+                let item = step.node.parts.first()?.get(slot)?;
+                let phrase = item_phrase(item);
+                Some(Written { phrase, text: text.clone() })
+            }
+        };
+        Some((Metric(entry), over))
+    }
+
+    /// Which wording the words fit: as many fixed words in place as possible.
+    fn find_form<'f>(&mut self, step: &Written_, span: &Span, what: &'static str, forms: impl Iterator<Item = &'f Form> + Clone) -> Option<usize> {
+        let items: &[At<Item>] = step.parts.first().map_or(&[], Vec::as_slice);
+        let fits = |form: &Form| {
+            form.head.len() == items.len()
+                && form.head.iter().zip(items).all(|(part, item)| match (part, &item.node) {
+                    (Part::Word(word), Item::Word(found)) => word == found,
+                    (Part::Word(_), Item::Value(_)) => false,
+                    _ => true,
+                })
+        };
+        if let Some(index) = forms.clone().position(fits) {
+            return Some(index);
+        }
+        let said: Vec<&str> = items.iter().filter_map(|item| if let Item::Word(word) = &item.node { Some(word.as_str()) } else { None }).collect();
+        let heads: Vec<&str> = forms.clone().filter_map(|form| if let Some(Part::Word(word)) = form.head.first() { Some(*word) } else { None }).collect();
+        let first = said.first().copied().unwrap_or("");
+        let wordings: Vec<String> = forms
+            .filter(|form| matches!(form.head.first(), Some(Part::Word(word)) if *word == first || nearest(first, heads.iter().copied()) == Some(*word)))
+            .map(|form| format!("`{}`", form.in_words()))
+            .collect();
+        let filters: Vec<String> = self.names.filters.keys().cloned().collect();
+        let problem = Problem::error("unknown-step", format!("these words are no {what}")).at(span);
+        self.problems.push(if wordings.is_empty() {
+            let known: Vec<&str> = if what == "step" { heads.iter().copied().chain(filters.iter().map(String::as_str)).collect() } else { heads };
+            let mut known_once: Vec<&str> = Vec::new();
+            for word in known {
+                if !known_once.contains(&word) {
+                    known_once.push(word);
+                }
+            }
+            problem.suggest(first, known_once)
+        } else {
+            problem.help(format!("the wording is {}", wordings.join(" or ")))
+        });
+        None
+    }
+
+    fn fill_form(&mut self, form: &Form, step: &Written_, text: &Text, span: &Span) -> Option<Filled> {
+        let mut filled = Filled {
+            options: form.numbers.iter().map(|(_, default)| *default).collect(),
+            choices: form.choices.iter().map(|choice| choice.words[0]).collect(),
+            ..Filled::default()
+        };
+        let items = step.parts.first()?;
+        for (part, item) in form.head.iter().zip(items) {
+            let place = text.place(item.range.clone());
+            match part {
+                Part::Word(_) => {}
+                Part::Signal(_) => {}
+                Part::Number(name, dimension) => {
+                    let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
+                    self.suits(name, found == *dimension, &dimension.in_words(), found, &place)?;
+                    filled.numbers.push((value, found, place));
+                }
+                Part::Extent(name) => {
+                    let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
+                    self.suits(name, matches!(found, Dimension::LENGTH | Dimension::TIME), "a length or a time", found, &place)?;
+                    self.positive(name, value, &place)?;
+                    filled.numbers.push((value, found, place));
+                }
+                Part::Frequency(name) => {
+                    let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
+                    let per_length = Dimension::ONE / Dimension::LENGTH;
+                    self.suits(name, found == Dimension::FREQUENCY || found == per_length, "a frequency", found, &place)?;
+                    self.positive(name, value, &place)?;
+                    filled.numbers.push((value, found, place));
+                }
+            }
+        }
+        for part in &step.parts[1..] {
+            self.option(form, part, text, span, &mut filled)?;
+        }
+        Some(filled)
+    }
+
+    fn suits(&mut self, name: &str, ok: bool, needed: &str, found: Dimension, place: &Span) -> Option<()> {
+        if ok {
+            return Some(());
+        }
+        self.problems.push(Problem::error("unit-mismatch", format!("the {name} is {needed}, this is {}", found.in_words())).at(place));
+        None
+    }
+
+    fn positive(&mut self, name: &str, value: f64, place: &Span) -> Option<()> {
+        if value > 0.0 && value.is_finite() {
+            return Some(());
+        }
+        self.problems.push(Problem::error("out-of-range", format!("the {name} must be above zero")).at(place));
+        None
+    }
+
+    /// `order 4`, `zero-phase`, or the name of a choice parameter.
+    fn option(&mut self, form: &Form, part: &[At<Item>], text: &Text, span: &Span, filled: &mut Filled) -> Option<()> {
+        let place = part.first().map_or_else(|| span.clone(), |first| text.place(first.range.start..part[part.len() - 1].range.end));
+        match part {
+            [At { node: Item::Word(word), .. }, value] => {
+                if let Some(index) = form.numbers.iter().position(|(name, _)| name == word) {
+                    let (number, dimension) = self.constant_phrase(&item_phrase(value), text)?;
+                    self.suits(word, dimension == Dimension::ONE, "a plain number", dimension, &place)?;
+                    filled.options[index] = number;
+                    return Some(());
+                }
+            }
+            [At { node: Item::Word(word), .. }] => {
+                let word = match self.names.parameters.get(word) {
+                    Some(parameter) => match (&parameter.value, &parameter.ty) {
+                        (Scalar::Word(value), Type::Word(_)) => value.clone(),
+                        _ => word.clone(),
+                    },
+                    None => word.clone(),
+                };
+                for (index, choice) in form.choices.iter().enumerate() {
+                    if let Some(found) = choice.words.iter().find(|known| **known == word) {
+                        filled.choices[index] = found;
+                        return Some(());
+                    }
+                }
+            }
+            _ => {}
+        }
+        let mut known: Vec<String> = form.numbers.iter().map(|(name, _)| format!("{name} <number>")).collect();
+        known.extend(form.choices.iter().flat_map(|choice| choice.words.iter().map(|word| (*word).to_string())));
+        let said = part.first().map_or(String::new(), |item| if let Item::Word(word) = &item.node { word.clone() } else { String::new() });
+        let problem = Problem::error("unknown-option", "this is no option of the step").at(&place);
+        self.problems.push(match nearest(&said, known.iter().map(String::as_str)) {
+            Some(near) => problem.help(format!("did you mean `{near}`?")),
+            None if known.is_empty() => problem.help("it has no options"),
+            None => problem.help(format!("its options: {}", known.join(", "))),
+        });
+        None
+    }
+
+    fn spec(&mut self, entry: &StepEntry, filled: &Filled, span: &Span) -> Option<Step> {
+        let number = |index: usize| filled.numbers.get(index).map_or(0.0, |(value, _, _)| *value);
+        let mut words = Vec::new();
+        let mut next = 0;
+        for part in entry.form.head {
+            match part {
+                Part::Word(word) => words.push((*word).to_string()),
+                _ => {
+                    let (value, dimension, _) = filled.numbers.get(next)?;
+                    words.push(show_number(*value, *dimension));
+                    next += 1;
+                }
+            }
+        }
+        let kind = match entry.kind {
+            StepKind::LowPass | StepKind::HighPass | StepKind::BandPass | StepKind::BandStop => {
+                let band = match entry.kind {
+                    StepKind::LowPass => Band::LowPass(number(0)),
+                    StepKind::HighPass => Band::HighPass(number(0)),
+                    StepKind::BandPass => Band::BandPass(number(0), number(1)),
+                    _ => Band::BandStop(number(0), number(1)),
+                };
+                if let (Some((low, a, _)), Some((high, b, place))) = (filled.numbers.first(), filled.numbers.get(1)) {
+                    self.suits("upper frequency", a == b, &a.in_words(), *b, place)?;
+                    if low >= high {
+                        self.problems.push(Problem::error("out-of-range", "the lower frequency is not below the upper one").at(span));
+                        return None;
+                    }
+                }
+                let order = filled.options[0];
+                if order.fract() != 0.0 || !(1.0..=20.0).contains(&order) {
+                    self.problems.push(Problem::error("out-of-range", format!("the order is a whole number from 1 to 20, this is {order}")).at(span));
+                    return None;
+                }
+                words.push(format!(", order {order}, {}, {}", filled.choices[0], filled.choices[1]));
+                let phase = match filled.choices[0] {
+                    "causal" => Phase::Causal,
+                    "causal-from-rest" => Phase::CausalFromRest,
+                    _ => Phase::Zero,
+                };
+                let cutoff = if filled.choices[1] == "per-pass" { Cutoff::PerPass } else { Cutoff::AsApplied };
+                StepSpec::Butterworth { band, order: order as usize, phase, cutoff }
+            }
+            StepKind::SlidingMean | StepKind::SlidingRms => {
+                let (_, a, _) = filled.numbers.first()?;
+                let (_, b, place) = filled.numbers.get(1)?;
+                self.suits("step", a == b, &a.in_words(), *b, place)?;
+                words.push(format!(", {}", filled.choices[0]));
+                let ends = if filled.choices[0] == "integral" { Ends::Integral } else { Ends::Samples };
+                StepSpec::Window { rms: entry.kind == StepKind::SlidingRms, width: number(0), step: number(1), over_time: *a == Dimension::TIME, ends }
+            }
+            StepKind::Resample => StepSpec::Resample { step: number(0), over_time: filled.numbers.first()?.1 == Dimension::TIME },
+            StepKind::RemoveMean => StepSpec::RemoveMean,
+            StepKind::Magnitude => StepSpec::Magnitude,
+        };
+        Some(Step { kind, words: words.join(" ").replace(" ,", ","), span: span.clone() })
+    }
+}
+
+fn item_phrase(item: &At<Item>) -> Phrase {
+    match &item.node {
+        Item::Value(phrase) => phrase.clone(),
+        Item::Word(word) => At { node: Node::Path(word.clone()), range: item.range.clone() },
+    }
+}
+
+/// A number in the unit an engineer would write it in.
+fn show_number(value: f64, dimension: Dimension) -> String {
+    let unit = match dimension {
+        Dimension::FREQUENCY => " Hz",
+        Dimension::LENGTH => " m",
+        Dimension::TIME => " s",
+        Dimension::ONE => "",
+        _ if dimension == Dimension::ONE / Dimension::LENGTH => " 1/m",
+        _ => "",
+    };
+    format!("{value}{unit}")
+}

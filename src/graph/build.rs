@@ -1,0 +1,205 @@
+//! From plan to graph. It cannot fail: the plan holds nothing that has no operation.
+
+use indexmap::IndexMap;
+
+use super::{Graph, InputNode, Node, NodeId, Operation, QuantityNodes, SignalNodes};
+use crate::check::evaluate::{shape, words};
+use crate::check::plan::{Evaluation, Expr, Input, Operator, Plan, Quantity, Signal, SignalKind, Step, StepSpec};
+use crate::source::Span;
+use crate::units::Dimension;
+
+pub fn from_plan(plan: &Plan) -> Graph {
+    let mut builder = Builder { axis: plan.axis.unit.dimension, ..Builder::default() };
+    let checks = plan.checks.iter().map(|check| check.inputs.iter().map(|input| builder.input(input, None)).collect()).collect();
+    let quantities: Vec<QuantityNodes> = plan.quantities.iter().enumerate().map(|(index, quantity)| builder.quantity(index, quantity)).collect();
+    let mut limits = Vec::new();
+    for (index, quantity) in plan.quantities.iter().enumerate() {
+        let compares: Vec<NodeId> = quantities[index].signals.iter().map(|signal| signal.compare).collect();
+        for (number, limit) in quantity.limits.iter().enumerate() {
+            let aggregate = Operation::Aggregate { quantity: index, limit: number };
+            let label = format!("{}: {}", quantity.id, limit.statistic.title(limit.ddof));
+            let node = builder.add(aggregate, compares.clone(), quantity.unit.dimension, &limit.span, label, format!("aggregate {index}"));
+            let label = format!("{}: {} {}", quantity.id, limit.statistic.name(), limit.words);
+            let operation = Operation::Limit { quantity: index, limit: number };
+            limits.push(builder.add(operation, vec![node], Dimension::ONE, &limit.span, label, format!("limit {index}")));
+        }
+    }
+    let from = plan.quantities.first().map_or_else(|| crate::source::Source::new("", "").whole(), |quantity| quantity.span.clone());
+    let verdict = builder.add(Operation::Verdict, limits, Dimension::ONE, &from, plan.verdict.words.clone(), "verdict".into());
+    Graph { nodes: builder.nodes, quantities, checks, verdict }
+}
+
+struct Builder {
+    axis: Dimension,
+    nodes: Vec<Node>,
+    /// What was built before: operation and inputs in words.
+    known: IndexMap<String, NodeId>,
+    classes: IndexMap<String, usize>,
+}
+
+impl Default for Builder {
+    fn default() -> Self {
+        Self { axis: Dimension::LENGTH, nodes: Vec::new(), known: IndexMap::new(), classes: IndexMap::new() }
+    }
+}
+
+impl Builder {
+    /// The node that does this, made only if there is none yet.
+    fn add(&mut self, operation: Operation, inputs: Vec<NodeId>, dimension: Dimension, from: &Span, label: String, kind: String) -> NodeId {
+        let what = match &operation {
+            Operation::Read { column } => format!("read {column} {kind}"),
+            Operation::Constant(expr) => format!("constant {}", shape(expr)),
+            Operation::Select(conditions) => format!("select {}", conditions.iter().map(shape).collect::<Vec<_>>().join(";")),
+            Operation::Value { .. } | Operation::Compare { .. } | Operation::Aggregate { .. } | Operation::Limit { .. } => format!("{operation:?}"),
+            _ => kind.clone(),
+        };
+        let key = format!("{what} {inputs:?}");
+        if let Some(&node) = self.known.get(&key) {
+            return node;
+        }
+        let mut of: Vec<usize> = inputs.iter().map(|&input| self.nodes[input].class).collect();
+        if matches!(operation, Operation::Aggregate { .. } | Operation::Limit { .. } | Operation::Verdict) {
+            of.sort_unstable();
+            of.dedup();
+        }
+        let class_key = format!("{kind} {of:?}");
+        let next = self.classes.len();
+        let class = *self.classes.entry(class_key).or_insert(next);
+        let track = inputs.iter().any(|&input| self.nodes[input].track) || kind.starts_with("track ");
+        self.nodes.push(Node { operation, inputs, dimension, track, from: from.clone(), label, class });
+        self.known.insert(key, self.nodes.len() - 1);
+        self.nodes.len() - 1
+    }
+
+    fn signal(&mut self, signal: &Signal) -> NodeId {
+        let (dimension, from) = (signal.dimension, &signal.span);
+        match &signal.kind {
+            SignalKind::Column { column, channel } => {
+                let record = if signal.track { "track" } else { "record" };
+                self.add(Operation::Read { column: column.clone() }, Vec::new(), dimension, from, column.clone(), format!("{record} {channel}"))
+            }
+            SignalKind::Scalar(expr) => self.constant(expr, dimension),
+            SignalKind::Binary(operator, left, right) => {
+                let inputs = vec![self.signal(left), self.signal(right)];
+                let label = self.joined(&inputs, symbol(*operator));
+                self.add(Operation::Arithmetic(*operator), inputs, dimension, from, label, format!("{operator:?}"))
+            }
+            SignalKind::Negative(inner) => {
+                let inner = self.signal(inner);
+                let label = format!("-{}", self.nodes[inner].label);
+                self.add(Operation::Negative, vec![inner], dimension, from, label, "negative".into())
+            }
+            SignalKind::Power(inner, exponent) => {
+                let inner = self.signal(inner);
+                let label = format!("({})^{exponent}", self.nodes[inner].label);
+                self.add(Operation::Power(*exponent), vec![inner], dimension, from, label, format!("power {exponent}"))
+            }
+            SignalKind::Call(function, arguments) => {
+                let inputs: Vec<NodeId> = arguments.iter().map(|argument| self.signal(argument)).collect();
+                let label = format!("{}({})", function.name, self.joined(&inputs, ", "));
+                self.add(Operation::Apply(function), inputs, dimension, from, label, format!("apply {}", function.name))
+            }
+            SignalKind::Filtered(inner, steps) => {
+                let inner = self.signal(inner);
+                steps.iter().fold(inner, |node, step| self.step(node, step))
+            }
+            SignalKind::Select(arms, otherwise) => {
+                let mut inputs: Vec<NodeId> = arms.iter().map(|(_, signal)| self.signal(signal)).collect();
+                if let Some(otherwise) = otherwise {
+                    inputs.push(self.signal(otherwise));
+                }
+                let conditions: Vec<Expr> = arms.iter().map(|(condition, _)| condition.clone()).collect();
+                let kind = format!("select {}", conditions.iter().map(shape).collect::<Vec<_>>().join(";"));
+                let label = format!("one of {}", self.joined(&inputs, ", "));
+                self.add(Operation::Select(conditions), inputs, dimension, from, label, kind)
+            }
+        }
+    }
+
+    fn constant(&mut self, expr: &Expr, dimension: Dimension) -> NodeId {
+        let kind = format!("constant {}", shape(expr));
+        self.add(Operation::Constant(expr.clone()), Vec::new(), dimension, &expr.span, words(expr), kind)
+    }
+
+    fn joined(&self, nodes: &[NodeId], between: &str) -> String {
+        nodes.iter().map(|&node| self.nodes[node].label.as_str()).collect::<Vec<_>>().join(between)
+    }
+
+    fn step(&mut self, node: NodeId, step: &Step) -> NodeId {
+        let dimension = self.nodes[node].dimension;
+        let kind = format!("step {}", step.words);
+        self.add(Operation::Step(step.kind.clone()), vec![node], dimension, &step.span, step.words.clone(), kind)
+    }
+
+    /// The filtered signal of the record and the processed one of the section.
+    fn processed(&mut self, signal: &Signal, chain: &[Step], from: &Span) -> (NodeId, NodeId) {
+        let mut node = self.signal(signal);
+        let inside = chain.iter().position(|step| matches!(step.kind, StepSpec::Window { .. } | StepSpec::RemoveMean)).unwrap_or(chain.len());
+        for step in &chain[..inside] {
+            node = self.step(node, step);
+        }
+        let filtered = node;
+        // A window reaches for samples up to the ends of the section by itself; everything else works on the samples cut out.
+        if !matches!(chain.get(inside).map(|step| &step.kind), Some(StepSpec::Window { .. })) {
+            let dimension = self.nodes[node].dimension;
+            node = self.add(Operation::Cut, vec![node], dimension, from, "samples of the section".into(), "cut".into());
+        }
+        for step in &chain[inside..] {
+            let dimension = self.nodes[node].dimension;
+            let kind = format!("window {}", step.words);
+            node = self.add(Operation::Window(step.kind.clone()), vec![node], dimension, &step.span, step.words.clone(), kind);
+        }
+        (filtered, node)
+    }
+
+    fn input(&mut self, input: &Input, own: Option<NodeId>) -> InputNode {
+        let signal = match (&input.signal, own) {
+            (Some(signal), _) => self.processed(signal, &[], &input.span).1,
+            (None, Some(own)) => own,
+            // Never reached: the checker gives an input without signal only where there is an own one.
+            (None, None) => self.add(Operation::Cut, Vec::new(), Dimension::ONE, &input.span, String::new(), "nothing".into()),
+        };
+        let dimension = input.reducer.gives(self.nodes[signal].dimension, self.axis);
+        let label = input.reducer.in_words();
+        let kind = format!("reduce {label}");
+        let node = self.add(Operation::Reduce(input.reducer), vec![signal], dimension, &input.span, label, kind);
+        InputNode { node, side: input.side }
+    }
+
+    fn quantity(&mut self, index: usize, quantity: &Quantity) -> QuantityNodes {
+        let dimension = quantity.unit.dimension;
+        let mut signals = Vec::new();
+        for (number, (name, signal)) in quantity.signals.iter().enumerate() {
+            let (filtered, processed) = self.processed(signal, &quantity.chain, &quantity.span);
+            let (inputs, over, before, metric) = match &quantity.evaluation {
+                Evaluation::Sides { value, inputs, .. } => {
+                    let inputs: Vec<InputNode> = inputs.iter().map(|input| self.input(input, Some(processed))).collect();
+                    let of: Vec<NodeId> = inputs.iter().map(|input| input.node).collect();
+                    let label = format!("{} of {name}", words(value));
+                    let node = self.add(Operation::Value { quantity: index, signal: number }, of, dimension, &value.span, label, format!("value {index}"));
+                    (inputs, None, vec![node], None)
+                }
+                Evaluation::Metric { metric, over } => {
+                    let over = over.get(number).map(|signal| self.processed(signal, &quantity.chain, &quantity.span).1);
+                    let mut before = vec![processed];
+                    before.extend(over);
+                    (Vec::new(), over, before, Some(*metric))
+                }
+            };
+            let label = format!("{} {name}: {}", quantity.id, quantity.words.comparison);
+            let compare = Operation::Compare { quantity: index, signal: number, metric };
+            let compare = self.add(compare, before, dimension, &quantity.span, label, format!("compare {index}"));
+            signals.push(SignalNodes { processed, filtered, inputs, over, compare });
+        }
+        QuantityNodes { signals }
+    }
+}
+
+fn symbol(operator: Operator) -> &'static str {
+    match operator {
+        Operator::Add => " + ",
+        Operator::Subtract => " - ",
+        Operator::Multiply => " * ",
+        _ => " / ",
+    }
+}

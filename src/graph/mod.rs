@@ -1,0 +1,148 @@
+//! The processing graph: typed operations from channels to the verdict, common parts once, each knowing the line it came from.
+//!
+//! Nodes up to [`Operation::Reduce`] work on one record and run once for the simulated and once for the measured one;
+//! [`Operation::Value`] is a number of one side, [`Operation::Compare`] and what follows join both sides. Inputs always have
+//! a smaller number than the node, so the order of the nodes is an order to run them in, and there can be no cycle.
+
+mod build;
+mod draw;
+mod print;
+
+pub use build::from_plan;
+pub use draw::svg;
+pub use print::{dot, json, text};
+
+use crate::catalog::{Function, Metric, Reducer};
+use crate::check::plan::{Expr, InputSide, Operator, StepSpec};
+use crate::source::Span;
+use crate::units::Dimension;
+
+pub type NodeId = usize;
+
+#[derive(Clone, Debug)]
+pub struct Graph {
+    pub nodes: Vec<Node>,
+    pub quantities: Vec<QuantityNodes>,
+    /// One per section check of the plan.
+    pub checks: Vec<Vec<InputNode>>,
+    pub verdict: NodeId,
+}
+
+#[derive(Clone, Debug)]
+pub struct Node {
+    pub operation: Operation,
+    pub inputs: Vec<NodeId>,
+    pub dimension: Dimension,
+    /// Whether it works on the track record.
+    pub track: bool,
+    /// The rule it came from first.
+    pub from: Span,
+    /// In words: `low-pass 20 Hz, order 4, zero-phase, as-applied`.
+    pub label: String,
+    /// Nodes that do the same at different positions share this number: they are drawn as one box.
+    pub class: usize,
+}
+
+#[derive(Clone, Debug)]
+pub enum Operation {
+    Read { column: String },
+    /// A number along the record.
+    Constant(Expr),
+    Arithmetic(Operator),
+    Negative,
+    Power(i8),
+    Apply(&'static Function),
+    /// The first input whose condition on the section holds, else the last.
+    Select(Vec<Expr>),
+    /// A step over the whole record.
+    Step(StepSpec),
+    /// The samples of the section.
+    Cut,
+    /// A step inside the section.
+    Window(StepSpec),
+    Reduce(Reducer),
+    /// The value expression over reduced inputs.
+    Value { quantity: usize, signal: usize },
+    /// The difference or metric of a pair.
+    Compare { quantity: usize, signal: usize, metric: Option<Metric> },
+    /// A statistic over all pairs of a quantity.
+    Aggregate { quantity: usize, limit: usize },
+    /// The statistic against its limit.
+    Limit { quantity: usize, limit: usize },
+    Verdict,
+}
+
+impl Operation {
+    /// The stage it belongs to, in the order data passes them.
+    pub fn stage(&self) -> Stage {
+        match self {
+            Self::Read { .. } => Stage::Read,
+            Self::Constant(_) | Self::Arithmetic(_) | Self::Negative | Self::Power(_) | Self::Apply(_) | Self::Select(_) => Stage::Derive,
+            Self::Step(_) => Stage::Filter,
+            Self::Window(_) => Stage::Window,
+            Self::Cut => Stage::Cut,
+            Self::Reduce(_) | Self::Value { .. } => Stage::Process,
+            Self::Compare { .. } => Stage::Compare,
+            Self::Aggregate { .. } => Stage::Aggregate,
+            Self::Limit { .. } => Stage::Limit,
+            Self::Verdict => Stage::Verdict,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    Read,
+    Derive,
+    Filter,
+    Window,
+    Cut,
+    Process,
+    Compare,
+    Aggregate,
+    Limit,
+    Verdict,
+}
+
+impl Stage {
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Read => "read",
+            Self::Derive => "derive",
+            Self::Filter => "filter",
+            Self::Window => "window",
+            Self::Cut => "cut",
+            Self::Process => "process",
+            Self::Compare => "compare",
+            Self::Aggregate => "aggregate",
+            Self::Limit => "limit",
+            Self::Verdict => "verdict",
+        }
+    }
+}
+
+/// Where the numbers of one quantity come from.
+#[derive(Clone, Debug)]
+pub struct QuantityNodes {
+    /// One per signal of the quantity.
+    pub signals: Vec<SignalNodes>,
+}
+
+#[derive(Clone, Debug)]
+pub struct SignalNodes {
+    /// The processed signal of the section.
+    pub processed: NodeId,
+    /// The same signal through the filters but not cut: what plots show. `None` where the chain resamples.
+    pub filtered: NodeId,
+    /// Reduced inputs of the value expression.
+    pub inputs: Vec<InputNode>,
+    /// The signal a metric runs over, processed.
+    pub over: Option<NodeId>,
+    pub compare: NodeId,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct InputNode {
+    pub node: NodeId,
+    pub side: InputSide,
+}
