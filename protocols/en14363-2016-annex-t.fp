@@ -53,9 +53,9 @@ parameter quasi_static_difference "Sign of the difference of quasi-static values
   note     "Oriented: positive where the simulation is larger in the direction of the measurement, in right and left curves alike, so that a wrong sign shows; magnitudes would hide it."
 
 parameter maximum_side "Side of the distribution that a maximum is read from"
-  default  larger
-  one of   larger, measured, curve
-  note     "Larger: of each side by itself. Measured: the side that is larger in the measurement, for both. Curve: 0.15 % in right-hand and 99.85 % in left-hand curves, the side of the outer wheel."
+  default  own
+  one of   own, measurement, curve
+  note     "Own: the larger magnitude, for simulation and measurement each by itself. Measurement: the side that is larger in the measurement, for both. Curve: 0.15 % in right-hand and 99.85 % in left-hand curves, the side of the outer wheel."
 
 parameter variance_divisor "Divisor of the variance"
   default  n-1
@@ -171,9 +171,9 @@ filter WINDOW "Sliding mean 2 m, step 0.5 m"
   source  "Table 1"
 
 define extreme_value "The 0.15 % or 99.85 % value, as a magnitude"
-  is      larger of |p0.15|, |p99.85| when maximum_side is larger,
-          |p99.85| when maximum_side is measured and |measured(p99.85)| >= |measured(p0.15)|,
-          |p0.15| when maximum_side is measured or direction is right,
+  is      larger of |p0.15|, |p99.85| when maximum_side is own,
+          |p99.85| when maximum_side is measurement and |measured(p99.85)| >= |measured(p0.15)|,
+          |p0.15| when maximum_side is measurement or direction is right,
           |p99.85| when direction is left,
           otherwise larger of |p0.15|, |p99.85|
   source  "Table 1 and its footnote *"

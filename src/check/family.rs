@@ -66,7 +66,7 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
             }
         });
     }
-    let merged = merged.unwrap_or_else(|| Document { source: Arc::clone(source), blocks: Vec::new(), trailing: Vec::new() });
+    let merged = merged.unwrap_or_else(|| Document { source: Arc::clone(source), leading: Vec::new(), blocks: Vec::new(), trailing: Vec::new() });
     Family { merged, parent, sources }
 }
 
@@ -104,7 +104,7 @@ fn merge(parent: &Document, variant: &Document, problems: &mut Problems) -> Docu
             Some(other) => overlay(other, block),
         }
     }
-    Document { source: Arc::clone(&variant.source), blocks, trailing: Vec::new() }
+    Document { source: Arc::clone(&variant.source), leading: Vec::new(), blocks, trailing: Vec::new() }
 }
 
 /// Fields of the variant replace those of the parent with the same key; limits by statistic and scope.

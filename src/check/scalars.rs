@@ -140,6 +140,21 @@ impl Checker<'_> {
         Some(fold(Expr { kind, ty, span }))
     }
 
+    /// Whether the protocol has a block of this name: if it is not known all the same, its own problem was noted.
+    pub(super) fn is_block(&self, name: &str) -> bool {
+        const NAMED: [&str; 6] = ["parameter", "define", "channel", "signal", "section", "filter"];
+        self.blocks.iter().any(|block| block.name_text() == name && NAMED.contains(&block.kind.text.as_str()) && !self.defined(name))
+    }
+
+    fn defined(&self, name: &str) -> bool {
+        self.names.parameters.contains_key(name)
+            || self.names.defines.contains_key(name)
+            || self.names.channels.contains_key(name)
+            || self.names.signals.contains_key(name)
+            || self.names.filters.contains_key(name)
+            || self.names.columns.iter().any(|datum| datum.name == name)
+    }
+
     fn is_number_name(&self, word: &str) -> bool {
         Reducer::named(word).is_none()
             && (self.names.parameters.contains_key(word)
@@ -525,6 +540,9 @@ impl Checker<'_> {
     }
 
     fn unknown_name(&mut self, path: &str, span: &Span, scope: &Scope) {
+        if self.is_block(path) {
+            return;
+        }
         let mut known: Vec<String> = self.names.parameters.keys().chain(self.names.defines.keys()).cloned().collect();
         if scope.pair.is_some() {
             known.extend(["simulated".to_string(), "measured".to_string()]);

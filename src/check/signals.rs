@@ -191,6 +191,9 @@ impl Checker<'_> {
     }
 
     pub(super) fn unknown_signal(&mut self, name: &str, span: &Span) {
+        if self.is_block(name) {
+            return;
+        }
         let known: Vec<String> = self.names.channels.keys().chain(self.names.signals.keys()).cloned().collect();
         self.problems.push(
             Problem::error("unknown-signal", format!("no channel or signal is called `{name}`")).at(span).suggest(name, known.iter().map(String::as_str)),

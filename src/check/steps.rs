@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::names::Written;
-use super::plan::{Kind, Scalar, Signal, Step, StepSpec, Type};
+use super::plan::{Kind, Scalar, Step, StepSpec, Type};
 use super::scalars::Scope;
 use crate::catalog::{Form, METRICS, Metric, Part, STEPS, StepEntry, StepKind};
 use crate::metrics::filter::{Band, Cutoff, Phase};
@@ -18,7 +18,6 @@ use crate::units::Dimension;
 #[derive(Debug, Default)]
 pub(super) struct Filled {
     numbers: Vec<(f64, Dimension, Span)>,
-    signals: Vec<Signal>,
     options: Vec<f64>,
     choices: Vec<&'static str>,
 }

@@ -10,6 +10,8 @@ use crate::source::{Source, Span};
 #[derive(Clone, Debug)]
 pub struct Document {
     pub source: Arc<Source>,
+    /// Comment lines at the top of the file that a blank line sets off from what follows, without the `#`.
+    pub leading: Vec<String>,
     pub blocks: Vec<Block>,
     /// Comment lines after the last block, without the `#`.
     pub trailing: Vec<String>,
@@ -40,6 +42,8 @@ pub struct Field {
 pub struct Comments {
     pub before: Vec<String>,
     pub beside: Option<String>,
+    /// Of a block: comment lines below its last field.
+    pub after: Vec<String>,
 }
 
 /// A piece of text and where it stands.
@@ -62,6 +66,24 @@ impl Text {
 impl PartialEq for Text {
     fn eq(&self, other: &Self) -> bool {
         self.text.split_whitespace().eq(other.text.split_whitespace())
+    }
+}
+
+impl PartialEq for Field {
+    fn eq(&self, other: &Self) -> bool {
+        self.key == other.key && self.value == other.value
+    }
+}
+
+impl PartialEq for Block {
+    fn eq(&self, other: &Self) -> bool {
+        self.kind == other.kind && self.name == other.name && self.title == other.title && self.fields == other.fields
+    }
+}
+
+impl PartialEq for Document {
+    fn eq(&self, other: &Self) -> bool {
+        self.blocks == other.blocks
     }
 }
 

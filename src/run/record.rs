@@ -1,0 +1,357 @@
+//! One record through the signal part of the graph.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::facts::{Facts, Known};
+use super::sections::Unit;
+use super::signal::{Along, Extent, Rate, Samples, Signal, apply, arithmetic};
+use crate::catalog::Reducer;
+use crate::check::evaluate::{flag, number};
+use crate::check::plan::{Plan, StepSpec};
+use crate::data::campaign::Campaign;
+use crate::data::checks::check_axis;
+use crate::data::record::{Record, Wanted, read_record};
+use crate::graph::{Graph, NodeId, Operation};
+use crate::metrics::percentile::{Method, percentiles};
+use crate::problem::Problem;
+use crate::result::FileHash;
+
+/// What every record is worked on with.
+#[derive(Clone, Copy, Debug)]
+pub struct Work<'a> {
+    pub plan: &'a Plan,
+    pub graph: &'a Graph,
+    pub campaign: &'a Campaign,
+    pub facts: &'a Facts,
+    /// For each signal of each quantity, whether its channels were recorded at all.
+    pub present: &'a [Vec<bool>],
+}
+
+/// The kinds of record of a campaign.
+pub const MEASUREMENT: &str = "measurement";
+pub const SIMULATION: &str = "simulation";
+pub const TRACK: &str = "track";
+
+/// A reason why a record cannot be used, and the problems behind it.
+#[derive(Debug)]
+pub struct Fault {
+    pub says: String,
+    pub problems: Vec<Problem>,
+}
+
+impl Fault {
+    pub fn new(says: impl Into<String>) -> Self {
+        Self { says: says.into(), problems: Vec::new() }
+    }
+}
+
+/// A record read and found fit for the section.
+#[derive(Debug)]
+pub struct Opened {
+    record: Record,
+    along: Arc<Along>,
+    pub extent: Extent,
+    pub file: FileHash,
+    /// Time before and after the section [s], where there is a time.
+    pub margins: Option<(f64, f64)>,
+}
+
+/// Value of a wanted node.
+#[derive(Clone, Debug)]
+pub enum Found {
+    Number(f64),
+    Samples(Samples),
+}
+
+/// Columns that the wanted nodes of one section read.
+pub fn columns(graph: &Graph, wanted: &BTreeSet<NodeId>, known: &Known<'_>) -> Result<BTreeSet<NodeId>, String> {
+    let mut needed = BTreeSet::new();
+    let mut open: Vec<NodeId> = wanted.iter().copied().collect();
+    while let Some(id) = open.pop() {
+        if !needed.insert(id) {
+            continue;
+        }
+        let node = &graph.nodes[id];
+        match &node.operation {
+            Operation::Select(conditions) => open.push(node.inputs[chosen(conditions, &node.inputs, known)?]),
+            _ => open.extend(&node.inputs),
+        }
+    }
+    Ok(needed)
+}
+
+/// Which input of a `Select` applies in this section.
+fn chosen(conditions: &[crate::check::plan::Expr], inputs: &[NodeId], known: &Known<'_>) -> Result<usize, String> {
+    for (index, condition) in conditions.iter().enumerate() {
+        if flag(condition, known)? {
+            return Ok(index);
+        }
+    }
+    if inputs.len() > conditions.len() {
+        return Ok(inputs.len() - 1);
+    }
+    Err(format!("none of the cases of `{}` applies to this section", conditions.first().map_or(String::new(), crate::check::evaluate::words)))
+}
+
+/// Reads and checks a record of one kind for one section.
+pub fn open(work: &Work<'_>, unit: &Unit, kind: &str, needed: &BTreeSet<NodeId>) -> Result<Opened, Fault> {
+    let path = work.campaign.record(kind, &unit.name).ok_or_else(|| Fault::new(format!("the campaign has no {kind} records")))?;
+    let shown = work.campaign.shown(&path);
+    let axis_name = &work.plan.axis.column;
+    let mut wanted = vec![Wanted { name: axis_name.clone(), dimension: work.plan.axis.unit.dimension }];
+    let time = work.plan.time.as_ref().filter(|time| kind != TRACK && time.column != *axis_name);
+    if let Some(time) = time {
+        wanted.push(Wanted { name: time.column.clone(), dimension: time.unit.dimension });
+    }
+    for &id in needed {
+        if let Operation::Read { column } = &work.graph.nodes[id].operation {
+            wanted.push(Wanted { name: column.clone(), dimension: work.graph.nodes[id].dimension });
+        }
+    }
+    let mut record = read_record(&path, &shown, &wanted).map_err(|problems| Fault { says: said(&problems), problems })?;
+    let axis = record.take(axis_name).ok_or_else(|| Fault::new(format!("{shown} has no column `{axis_name}`")))?;
+    let time = time.and_then(|time| record.take(&time.column));
+    let file = FileHash { path: shown.clone(), sha256: record.sha256.clone(), bytes: record.bytes };
+    let extent = unit.extent.unwrap_or_else(|| {
+        let ends = (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
+        (ends.0.min(ends.1), ends.0.max(ends.1))
+    });
+    let checked = check_axis(&shown, &axis, time.as_deref(), work.plan.axis.unit.dimension, unit.extent, kind != TRACK)
+        .map_err(|problems| Fault { says: said(&problems), problems })?;
+    let rate = checked.sampling_rate.map_or(Rate::Unknown, Rate::PerTime);
+    let along = Arc::new(Along { axis, time, rate });
+    Ok(Opened { record, along, extent, file, margins: checked.margins })
+}
+
+/// The facts of several problems in one line.
+fn said(problems: &[Problem]) -> String {
+    let all: Vec<String> = problems
+        .iter()
+        .map(|problem| match &problem.at {
+            Some(at) => format!("{} ({}, row {})", problem.says, at.source.name, at.line()),
+            None => problem.says.clone(),
+        })
+        .collect();
+    all.join("; ")
+}
+
+impl Opened {
+    /// Values of the wanted nodes. Nodes run level by level, so that channels that pass the same filter pass it together.
+    pub fn evaluate(&self, graph: &Graph, needed: &BTreeSet<NodeId>, wanted: &BTreeSet<NodeId>, known: &Known<'_>, method: Method) -> Result<Vec<(NodeId, Found)>, String> {
+        let mut state = State { opened: self, graph, known, method, values: vec![None; graph.nodes.len()], uses: vec![0; graph.nodes.len()], found: Vec::new() };
+        let mut level = vec![0_usize; graph.nodes.len()];
+        let mut deepest = 0;
+        for &id in needed {
+            for &input in &graph.nodes[id].inputs {
+                if needed.contains(&input) {
+                    state.uses[input] += 1;
+                    level[id] = level[id].max(level[input] + 1);
+                }
+            }
+            deepest = deepest.max(level[id]);
+        }
+        for depth in 0..=deepest {
+            let here: Vec<NodeId> = needed.iter().copied().filter(|&id| level[id] == depth).collect();
+            state.filters(&here)?;
+            state.reducers(&here)?;
+            for &id in &here {
+                if state.values[id].is_none() && !matches!(graph.nodes[id].operation, Operation::Reduce(_)) {
+                    let value = state.one(id).map_err(|error| format!("{} ({})", error, graph.nodes[id].label))?;
+                    state.values[id] = Some(value);
+                }
+            }
+            for &id in &here {
+                if wanted.contains(&id) {
+                    if let Some(Signal::Samples(samples)) = &state.values[id] {
+                        state.found.push((id, Found::Samples(samples.clone())));
+                    }
+                }
+                state.release(id);
+            }
+        }
+        Ok(state.found)
+    }
+}
+
+struct State<'a> {
+    opened: &'a Opened,
+    graph: &'a Graph,
+    known: &'a Known<'a>,
+    method: Method,
+    values: Vec<Option<Signal>>,
+    /// How many nodes still need a value.
+    uses: Vec<usize>,
+    found: Vec<(NodeId, Found)>,
+}
+
+impl State<'_> {
+    /// Gives memory of inputs back that no later node needs.
+    fn release(&mut self, id: NodeId) {
+        for &input in &self.graph.nodes[id].inputs {
+            if self.uses[input] > 0 {
+                self.uses[input] -= 1;
+                if self.uses[input] == 0 {
+                    self.values[input] = None;
+                }
+            }
+        }
+    }
+
+    fn signal(&self, id: NodeId) -> Result<&Signal, String> {
+        self.values[id].as_ref().ok_or_else(|| "an input is missing".to_string())
+    }
+
+    fn samples(&self, id: NodeId) -> Result<Samples, String> {
+        match self.signal(id)? {
+            Signal::Samples(samples) => Ok(samples.clone()),
+            // A number that does not change still fills a signal where one is needed.
+            Signal::Constant(value) => Ok(Samples { along: Arc::clone(&self.opened.along), values: Arc::new(vec![*value; self.opened.along.axis.len()]) }),
+        }
+    }
+
+    /// Filters of one level: all channels of one design in one go.
+    fn filters(&mut self, here: &[NodeId]) -> Result<(), String> {
+        let mut groups: Vec<(StepSpec, Vec<(NodeId, Samples)>)> = Vec::new();
+        for &id in here {
+            let node = &self.graph.nodes[id];
+            let Operation::Step(spec @ StepSpec::Butterworth { .. }) = &node.operation else { continue };
+            let samples = self.samples(node.inputs[0])?;
+            let same = groups.iter_mut().find(|(known, members)| known == spec && members[0].1.along.rate == samples.along.rate && members[0].1.values.len() == samples.values.len());
+            match same {
+                Some((_, members)) => members.push((id, samples)),
+                None => groups.push((spec.clone(), vec![(id, samples)])),
+            }
+        }
+        for (spec, members) in groups {
+            let label = &self.graph.nodes[members[0].0].label;
+            let filter = members[0].1.designed(&spec).map_err(|error| format!("{error} ({label})"))?;
+            let signals: Vec<&[f64]> = members.iter().map(|(_, samples)| samples.values.as_slice()).collect();
+            let filtered = filter.apply_many(&signals).map_err(|error| format!("{error} ({label})"))?;
+            for ((id, samples), values) in members.iter().zip(filtered) {
+                self.values[*id] = Some(Signal::Samples(samples.with(values)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Reducers of one level: percentiles of one signal sort it once.
+    fn reducers(&mut self, here: &[NodeId]) -> Result<(), String> {
+        let mut sorted: Vec<(NodeId, Vec<(NodeId, f64)>)> = Vec::new();
+        for &id in here {
+            let node = &self.graph.nodes[id];
+            let Operation::Reduce(reducer) = &node.operation else { continue };
+            let percent = match reducer {
+                Reducer::Percentile(percent) => *percent,
+                Reducer::Named(_) => {
+                    let samples = self.samples(node.inputs[0])?;
+                    let value = reducer.run(&samples.along.axis, &samples.values, self.method).filter(|value| value.is_finite());
+                    let value = value.ok_or_else(|| format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len()))?;
+                    self.found.push((id, Found::Number(value)));
+                    continue;
+                }
+            };
+            match sorted.iter_mut().find(|(input, _)| *input == node.inputs[0]) {
+                Some((_, members)) => members.push((id, percent)),
+                None => sorted.push((node.inputs[0], vec![(id, percent)])),
+            }
+        }
+        for (input, members) in sorted {
+            let samples = self.samples(input)?;
+            let percents: Vec<f64> = members.iter().map(|(_, percent)| *percent).collect();
+            let values = percentiles(&samples.values, &percents, self.method).map_err(|error| error.to_string())?;
+            self.found.extend(members.iter().zip(values).map(|((id, _), value)| (*id, Found::Number(value))));
+        }
+        Ok(())
+    }
+
+    fn one(&mut self, id: NodeId) -> Result<Signal, String> {
+        let node = &self.graph.nodes[id];
+        let input = |index: usize| self.signal(node.inputs[index]);
+        match &node.operation {
+            Operation::Read { column } => {
+                let values = self.opened.record.values(column).ok_or_else(|| format!("no column `{column}`"))?;
+                Ok(Signal::Samples(Samples { along: Arc::clone(&self.opened.along), values: Arc::new(values.to_vec()) }))
+            }
+            Operation::Constant(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
+            Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?),
+            Operation::Negative => apply(&[input(0)?], &|of| -of[0]),
+            Operation::Power(exponent) => apply(&[input(0)?], &|of| of[0].powi(i32::from(*exponent))),
+            Operation::Apply(function) => {
+                let inputs = node.inputs.iter().map(|&input| self.signal(input)).collect::<Result<Vec<_>, _>>()?;
+                apply(&inputs, &function.run)
+            }
+            Operation::Select(conditions) => Ok(input(chosen(conditions, &node.inputs, self.known)?)?.clone()),
+            Operation::Step(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.stepped(spec)?)),
+            Operation::Cut => Ok(Signal::Samples(self.samples(node.inputs[0])?.cut(self.opened.extent)?)),
+            Operation::Window(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.opened.extent)?)),
+            _ => Err("this node joins records".into()),
+        }
+    }
+}
+
+/// Which signals of which quantities were recorded at all: a position missing from every record is left out, not a fault of each section.
+pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes: &mut Vec<String>) -> Vec<Vec<bool>> {
+    let mut seen: Vec<(&str, BTreeSet<String>)> = Vec::new();
+    for kind in [MEASUREMENT, SIMULATION] {
+        let mut columns = BTreeSet::new();
+        for unit in units {
+            if let Some(path) = campaign.record(kind, &unit.name) {
+                columns.extend(crate::data::record::header_names(&path));
+            }
+        }
+        seen.push((kind, columns));
+    }
+    graph
+        .quantities
+        .iter()
+        .map(|quantity| {
+            let all: Vec<Vec<(String, &str)>> = quantity
+                .signals
+                .iter()
+                .map(|signal| {
+                    let mut missing = Vec::new();
+                    for column in reads(graph, signal.compare) {
+                        for (kind, columns) in &seen {
+                            if !columns.contains(&column) {
+                                missing.push((column.clone(), *kind));
+                            }
+                        }
+                    }
+                    missing
+                })
+                .collect();
+            // Where no position is there, the channel's name is wrong: that is a fault to be told, not a position left out.
+            let none = all.iter().all(|missing| !missing.is_empty());
+            all.iter()
+                .map(|missing| {
+                    if !none {
+                        for (column, kind) in missing {
+                            let note = format!("`{column}` is in no record of {kind}: its position is left out");
+                            if !notes.contains(&note) {
+                                notes.push(note);
+                            }
+                        }
+                    }
+                    none || missing.is_empty()
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// Columns below a node.
+fn reads(graph: &Graph, node: NodeId) -> BTreeSet<String> {
+    let mut columns = BTreeSet::new();
+    let mut open = vec![node];
+    let mut seen = BTreeSet::new();
+    while let Some(id) = open.pop() {
+        if seen.insert(id) {
+            if let Operation::Read { column } = &graph.nodes[id].operation {
+                columns.insert(column.clone());
+            }
+            open.extend(&graph.nodes[id].inputs);
+        }
+    }
+    columns
+}

@@ -1,0 +1,160 @@
+//! What both printed forms share: the canonical order, blanks inside phrases, and where long values break.
+
+use super::document::{Block, Document, Field};
+use super::keys::{self, KINDS, Kind, Sort};
+
+/// Columns a printed line keeps within where it can.
+pub const WIDTH: usize = 110;
+
+/// The document with blocks in the order of [`KINDS`] and fields in the order of their kind's keys; what is equal in
+/// that stays as it was.
+pub fn in_order(document: &Document) -> Document {
+    let mut document = document.clone();
+    document.blocks.sort_by_key(|block| rank(KINDS.iter().map(|kind| kind.word), &block.kind.text));
+    for block in &mut document.blocks {
+        if let Some(kind) = keys::kind(&block.kind.text) {
+            block.fields.sort_by_key(|field| rank(kind.keys.iter().map(|key| key.word), &field.key.text));
+        }
+    }
+    document
+}
+
+/// Place of a word in a table; words that are not in it come last.
+fn rank<'a>(table: impl Iterator<Item = &'a str>, word: &str) -> usize {
+    table.into_iter().position(|known| known == word).unwrap_or(usize::MAX)
+}
+
+pub fn sort(kind: Option<&Kind>, field: &Field) -> Sort {
+    kind.and_then(|kind| kind.key(&field.key.text)).map_or(Sort::Phrase, |key| key.sort)
+}
+
+/// Whether nothing stands below the first line of a block.
+pub fn is_bare(block: &Block) -> bool {
+    block.fields.is_empty() && block.comments.after.is_empty()
+}
+
+/// A phrase on one line, with single blanks outside quotes.
+pub fn phrase(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut quoted = Quotes::default();
+    for c in text.trim().chars() {
+        let inside = quoted.inside;
+        quoted.pass(c);
+        if matches!(c, '\n' | '\r') || c.is_whitespace() && !inside {
+            // A line break inside quotes parts words as a blank does.
+            if !out.ends_with(' ') {
+                out.push(' ');
+            }
+        } else {
+            out.push(c);
+        }
+    }
+    out
+}
+
+/// Whether a place in a phrase is inside quotes.
+#[derive(Debug, Default)]
+pub struct Quotes {
+    pub inside: bool,
+    escaped: bool,
+}
+
+impl Quotes {
+    pub fn pass(&mut self, c: char) {
+        if self.escaped {
+            self.escaped = false;
+        } else if c == '"' {
+            self.inside = !self.inside;
+        } else if c == '\\' && self.inside {
+            self.escaped = true;
+        }
+    }
+}
+
+/// Breaks a phrase in which blanks are single, after commas and before joining words, into lines of at most `width`
+/// characters where that is possible. Joined by blanks the lines are the phrase again.
+pub fn wrap_phrase(phrase: &str, width: usize) -> Vec<String> {
+    let mut segments: Vec<String> = Vec::new();
+    let mut quotes = Quotes::default();
+    let mut open = false;
+    for word in phrase.split(' ') {
+        let joins = matches!(word, "and" | "or" | "when" | "otherwise" | "then");
+        match segments.last_mut() {
+            Some(last) if open || !(last.ends_with(',') || joins) => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => segments.push(word.to_owned()),
+        }
+        word.chars().for_each(|c| quotes.pass(c));
+        open = quotes.inside;
+    }
+    fill(segments, width)
+}
+
+/// Breaks prose at single blanks. Joined by blanks the lines are the prose again.
+pub fn wrap_prose(text: &str, width: usize) -> Vec<String> {
+    let mut segments: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match segments.last_mut() {
+            // Two blanks in a row, or a line break beside one, must not be torn.
+            Some(last) if word.is_empty() || word.starts_with(char::is_whitespace) || last.ends_with(char::is_whitespace) || last.is_empty() => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => segments.push(word.to_owned()),
+        }
+    }
+    fill(segments, width)
+}
+
+/// Puts as many segments on each line as fit.
+fn fill(segments: Vec<String>, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for segment in segments {
+        match lines.last_mut() {
+            Some(line) if columns(line) + 1 + columns(&segment) <= width => {
+                line.push(' ');
+                line.push_str(&segment);
+            }
+            _ => lines.push(segment),
+        }
+    }
+    lines
+}
+
+pub fn columns(text: &str) -> usize {
+    text.chars().count()
+}
+
+/// A comment line or the end of a line.
+pub fn comment(text: &str) -> String {
+    let text: String = text.chars().map(|c| if matches!(c, '\n' | '\r') { ' ' } else { c }).collect();
+    match text.chars().next() {
+        None | Some('#') => format!("#{text}"),
+        Some(_) => format!("# {text}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blanks_are_single_outside_quotes_only() {
+        assert_eq!(phrase("std  9\n   kN of \"a  b\" "), "std 9 kN of \"a  b\"");
+    }
+
+    #[test]
+    fn a_long_phrase_breaks_at_commas_and_joining_words() {
+        let lines = wrap_phrase("low-pass 20 Hz, order 4 when a is \"x, y\" and b, otherwise none", 24);
+        assert_eq!(lines, ["low-pass 20 Hz, order 4", "when a is \"x, y\" and b,", "otherwise none"]);
+    }
+
+    #[test]
+    fn prose_joins_again() {
+        for text in ["a b  c d", " a ", "", "a \n b", "one two three"] {
+            assert_eq!(wrap_prose(text, 1).join(" "), text);
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! The canonical text form.
+
+use super::document::{Block, Document, Field};
+use super::keys::{self, Sort};
+use super::layout::{self, WIDTH, columns, comment};
+use super::rules::quoted;
+
+const INDENT: &str = "  ";
+
+/// Writes the canonical text. Reading it gives the same document in canonical order, and printing that the same text.
+pub fn print_text(document: &Document) -> String {
+    let document = layout::in_order(document);
+    let mut out = String::new();
+    for text in &document.leading {
+        line(&mut out, "", &comment(text), None);
+    }
+    if !document.leading.is_empty() {
+        out.push('\n');
+    }
+    let mut above: Option<&Block> = None;
+    for block in &document.blocks {
+        let together = above.is_some_and(|above| {
+            above.kind == block.kind && layout::is_bare(above) && layout::is_bare(block) && block.comments.before.is_empty()
+        });
+        if above.is_some() && !together {
+            out.push('\n');
+        }
+        print_block(block, &mut out);
+        above = Some(block);
+    }
+    if above.is_some() && !document.trailing.is_empty() {
+        out.push('\n');
+    }
+    for text in &document.trailing {
+        line(&mut out, "", &comment(text), None);
+    }
+    out
+}
+
+fn print_block(block: &Block, out: &mut String) {
+    for text in &block.comments.before {
+        line(out, "", &comment(text), None);
+    }
+    let mut header = block.kind.text.clone();
+    if let Some(name) = &block.name {
+        header = format!("{header} {}", name.text);
+    }
+    if let Some(title) = &block.title {
+        header = format!("{header} {}", quoted(&title.text));
+    }
+    line(out, "", &header, block.comments.beside.as_deref());
+    let column = block.fields.iter().map(|field| columns(&field.key.text)).max().unwrap_or(0);
+    for field in &block.fields {
+        print_field(block, field, column, out);
+    }
+    for text in &block.comments.after {
+        line(out, INDENT, &comment(text), None);
+    }
+}
+
+fn print_field(block: &Block, field: &Field, column: usize, out: &mut String) {
+    for text in &field.comments.before {
+        line(out, INDENT, &comment(text), None);
+    }
+    let room = WIDTH.saturating_sub(2 * INDENT.len() + column);
+    let lines: Vec<String> = match layout::sort(keys::kind(&block.kind.text), field) {
+        Sort::Phrase => layout::wrap_phrase(&layout::phrase(&field.value.text), room),
+        // Quotes take two columns; escapes are rare enough to be let over the edge.
+        Sort::Text => layout::wrap_prose(&field.value.text, room.saturating_sub(2)).iter().map(|piece| quoted(piece)).collect(),
+    };
+    let mut head = format!("{:column$}", field.key.text);
+    let mut beside = field.comments.beside.as_deref();
+    for piece in lines {
+        line(out, INDENT, &format!("{head}{INDENT}{piece}"), beside.take());
+        head = " ".repeat(column);
+    }
+}
+
+fn line(out: &mut String, indent: &str, text: &str, beside: Option<&str>) {
+    out.push_str(indent);
+    out.push_str(text);
+    if let Some(beside) = beside {
+        out.push_str("  ");
+        out.push_str(&comment(beside));
+    }
+    out.push('\n');
+}

@@ -1,0 +1,209 @@
+//! What holds for blocks and fields in either form: they are known, named, filled and given once.
+
+use std::collections::BTreeMap;
+
+use super::document::{Block, Field, Text};
+use super::keys::{KINDS, Key, Kind};
+use super::lines;
+use crate::problem::{Problem, Problems, nearest};
+use crate::source::Span;
+
+/// No key has more words.
+const LONGEST: usize = 3;
+
+/// The form a document is read from: it decides which words messages propose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    Lines,
+    Yaml,
+}
+
+/// Takes in blocks as they are read and notes what is wrong with them.
+#[derive(Debug)]
+pub struct Reader<'a> {
+    pub problems: &'a mut Problems,
+    form: Form,
+    blocks: Vec<Block>,
+    /// Where each kind and name was first written.
+    seen: BTreeMap<(&'static str, String), Span>,
+}
+
+impl<'a> Reader<'a> {
+    pub fn new(form: Form, problems: &'a mut Problems) -> Self {
+        Self { problems, form, blocks: Vec::new(), seen: BTreeMap::new() }
+    }
+
+    pub fn finish(self) -> Vec<Block> {
+        self.blocks
+    }
+
+    /// The kind of block a word names, or the nearest one beside a problem.
+    pub fn kind(&mut self, word: &str, at: &Span) -> Option<&'static Kind> {
+        let spelt = |kind: &Kind| if self.form == Form::Lines { kind.word } else { kind.group };
+        let other = |kind: &Kind| if self.form == Form::Lines { kind.group } else { kind.word };
+        if let Some(kind) = KINDS.iter().find(|kind| spelt(kind) == word) {
+            return Some(kind);
+        }
+        let near = KINDS
+            .iter()
+            .find(|kind| other(kind) == word)
+            .or_else(|| nearest(word, KINDS.iter().map(spelt)).and_then(|near| KINDS.iter().find(|kind| spelt(kind) == near)));
+        let owners = owners(&[word]);
+        let problem = Problem::error("unknown-block", format!("`{word}` is no block of a protocol")).at(at);
+        self.problems.push(match (near, owners.is_empty()) {
+            (Some(near), _) => problem.help(format!("did you mean `{}`?", spelt(near))),
+            (None, false) if self.form == Form::Lines => {
+                problem.help(format!("`{word}` is a field of {}; fields are indented below their block", listed(&owners)))
+            }
+            (None, false) => problem.help(format!("`{word}` is a field of {}", listed(&owners))),
+            (None, true) => problem.help(format!("known here: {}", KINDS.iter().map(spelt).collect::<Vec<_>>().join(", "))),
+        });
+        near
+    }
+
+    /// A problem for words that begin no field of the kind, and the field most likely meant with its number of words.
+    pub fn unknown_field(&mut self, kind: &'static Kind, words: &[&str], at: &Span) -> Option<(&'static Key, usize)> {
+        let other = (1..=words.len().min(LONGEST)).rev().map(|count| (owners(&words[..count]), count)).find(|(owners, _)| !owners.is_empty());
+        // `minimum signal` is rather a slip for `minimum signals` than the `minimum` of another kind.
+        let near = near_key(kind, words).filter(|(_, count)| other.as_ref().is_none_or(|(_, other)| count > other));
+        let other = other.map(|(owners, _)| owners).unwrap_or_default();
+        let count = near.map_or(1, |(_, count)| count);
+        let written = if self.form == Form::Yaml { words.join(" ") } else { words[..count.min(words.len())].join(" ") };
+        let problem = Problem::error("unknown-field", format!("a `{}` has no field `{written}`", kind.word)).at(at);
+        self.problems.push(if written == "title" {
+            problem.help("a title stands in quotes on the first line of its block")
+        } else if let Some((near, _)) = near {
+            problem.help(format!("did you mean `{}`?", near.word))
+        } else if !other.is_empty() {
+            problem.help(format!("it is a field of {}", listed(&other)))
+        } else {
+            problem.help(format!("known here: {}", kind.keys.iter().map(|key| key.word).collect::<Vec<_>>().join(", ")))
+        });
+        near
+    }
+
+    /// Adds a field to its block unless it is empty or there already.
+    pub fn field(&mut self, kind: &Kind, key: &Key, block: &mut Block, field: Field) {
+        if field.value.text.trim().is_empty() {
+            let example = match (key.sort, self.form) {
+                (super::keys::Sort::Text, Form::Lines) => quoted(key.example),
+                _ => key.example.to_owned(),
+            };
+            self.problems.push(
+                Problem::error("missing-value", format!("`{}` has no value", key.word))
+                    .at(&field.key.span)
+                    .help(format!("for example: {}{} {example}", key.word, if self.form == Form::Yaml { ":" } else { "" })),
+            );
+            return;
+        }
+        if let Some(first) = block.field(key.word).filter(|_| !key.many) {
+            self.problems.push(
+                Problem::error("duplicate-field", format!("a `{}` has one `{}`, here is another", kind.word, key.word))
+                    .at(&field.key.span)
+                    .also(&first.key.span, "the first"),
+            );
+            return;
+        }
+        block.fields.push(field);
+    }
+
+    /// Adds a block unless one of its kind and name is there already.
+    pub fn block(&mut self, kind: &'static Kind, block: Block) {
+        match &block.name {
+            None if kind.named => self.problems.push(
+                Problem::error("missing-name", format!("this `{}` has no name", kind.word)).at(&block.kind.span).help(match self.form {
+                    Form::Lines => format!("a name follows the word: {} some_name", kind.word),
+                    Form::Yaml => "it needs an entry `name: ...`".to_owned(),
+                }),
+            ),
+            Some(name) if !kind.named => self.problems.push(
+                Problem::error("unexpected-name", format!("`{}` takes no name", kind.word))
+                    .at(&name.span)
+                    .help(format!("there is one `{}` block in a protocol", kind.word)),
+            ),
+            Some(name) if !lines::is_name(&name.text) => self.problems.push(bad_name(&name.text, &name.span)),
+            _ => {}
+        }
+        // A block that should have a name and has none is nobody's double.
+        if !kind.named || kind.single || block.name.is_some() {
+            let name = if kind.single { String::new() } else { block.name_text().to_owned() };
+            if let Some(first) = self.seen.get(&(kind.word, name.clone())) {
+                let says = if kind.single {
+                    format!("a protocol has one `{}` block, here is another", kind.word)
+                } else {
+                    format!("there are two blocks `{} {name}`", kind.word)
+                };
+                let code = if kind.single { "duplicate-block" } else { "duplicate-name" };
+                self.problems.push(Problem::error(code, says).at(block.span()).also(first, "the first"));
+                return;
+            }
+            self.seen.insert((kind.word, name), block.span().clone());
+        }
+        self.blocks.push(block);
+    }
+}
+
+pub fn bad_name(name: &str, at: &Span) -> Problem {
+    Problem::error("bad-name", format!("`{name}` cannot be a name")).at(at).help("names are made of letters, digits, `_`, `-` and `.`")
+}
+
+/// The key that the first of some words are, the longest if several fit, and its number of words.
+pub fn key(kind: &'static Kind, words: &[&str]) -> Option<(&'static Key, usize)> {
+    (1..=words.len().min(LONGEST)).rev().find_map(|count| kind.key(&words[..count].join(" ")).map(|key| (key, count)))
+}
+
+fn near_key(kind: &'static Kind, words: &[&str]) -> Option<(&'static Key, usize)> {
+    (1..=words.len().min(LONGEST)).rev().find_map(|count| {
+        let like = kind.keys.iter().map(|key| key.word).filter(|word| word.split(' ').count() == count);
+        nearest(&words[..count].join(" "), like).and_then(|near| kind.key(near)).map(|key| (key, count))
+    })
+}
+
+/// The kinds that have a field of these words.
+fn owners(words: &[&str]) -> Vec<&'static str> {
+    let word = words.join(" ");
+    KINDS.iter().filter(|kind| kind.key(&word).is_some()).map(|kind| kind.word).collect()
+}
+
+/// `a`, `b` and `c`
+fn listed(words: &[&str]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => format!("`{one}`"),
+        [first @ .., last] => format!("`{}` and `{last}`", first.join("`, `")),
+    }
+}
+
+/// Puts the problems from the given one on in the order of their places.
+pub fn in_reading_order(problems: &mut Problems, from: usize) {
+    if let Some(new) = problems.0.get_mut(from..) {
+        new.sort_by_key(|problem| problem.at.as_ref().map_or(0, |at| at.start));
+    }
+}
+
+/// Prose as the text form writes it.
+pub fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n"))
+}
+
+/// A text at a place where it stands as written.
+pub fn exact(span: Span) -> Text {
+    Text { text: span.text().to_owned(), span, exact: true }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_key_is_longer_than_is_looked_for() {
+        assert!(KINDS.iter().flat_map(|kind| kind.keys).all(|key| key.word.split(' ').count() <= LONGEST));
+    }
+
+    #[test]
+    fn the_longest_key_wins() {
+        let zone = super::super::keys::kind("zone").expect("a kind");
+        assert_eq!(key(zone, &["minimum", "sections", "of"]).map(|(key, count)| (key.word, count)), Some(("minimum sections", 2)));
+        assert_eq!(near_key(zone, &["minimun", "length"]).map(|(key, count)| (key.word, count)), Some(("minimum length", 2)));
+    }
+}
