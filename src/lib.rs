@@ -10,14 +10,16 @@
 //! | run | graph and campaign | [`result::Certification`] | `run` |
 //! | report | certification | PDF, HTML, JSON, CSV | `report` |
 //!
-//! [`source`], [`problem`], [`units`] and `metrics` are leaves the stages lean on; `data` reads campaigns.
+//! [`source`], [`problem`], [`units`], [`yaml`] and `metrics` are leaves the stages lean on; `data` reads campaigns.
 
-pub mod source;
-pub mod problem;
-pub mod units;
-pub mod syntax;
 pub mod catalog;
 pub mod check;
 pub mod graph;
 pub mod metrics;
+pub mod problem;
 pub mod result;
+pub mod run;
+pub mod source;
+pub mod syntax;
+pub mod units;
+pub mod yaml;

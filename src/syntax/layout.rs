@@ -98,7 +98,9 @@ pub fn wrap_prose(text: &str, width: usize) -> Vec<String> {
     for word in text.split(' ') {
         match segments.last_mut() {
             // Two blanks in a row, or a line break beside one, must not be torn.
-            Some(last) if word.is_empty() || word.starts_with(char::is_whitespace) || last.ends_with(char::is_whitespace) || last.is_empty() => {
+            Some(last)
+                if word.is_empty() || word.starts_with(char::is_whitespace) || last.ends_with(char::is_whitespace) || last.is_empty() =>
+            {
                 last.push(' ');
                 last.push_str(word);
             }

@@ -135,11 +135,15 @@ fn in_words(text: &str, error: &pest::error::Error<Rule>) -> Fault {
     Fault { at, says, help: slip(word) }
 }
 
-/// What an office program puts in place of plain characters.
-fn slip(word: &str) -> Option<String> {
+/// Help with what an office program puts in place of plain characters.
+pub fn slip(word: &str) -> Option<String> {
     word.chars().find_map(|c| match c {
-        '\u{201c}' | '\u{201d}' | '\u{201e}' | '\u{ab}' | '\u{bb}' => Some(format!("`{c}` is a typographic quote; quotes here are plain: \"")),
-        _ if !c.is_ascii() && c.is_whitespace() => Some("the blank is a special one (such as a no-break space); a plain one is needed".to_owned()),
+        '\u{201c}' | '\u{201d}' | '\u{201e}' | '\u{ab}' | '\u{bb}' => {
+            Some(format!("`{c}` is a typographic quote; quotes here are plain: \""))
+        }
+        _ if !c.is_ascii() && c.is_whitespace() => {
+            Some("the blank is a special one (such as a no-break space); a plain one is needed".to_owned())
+        }
         _ => None,
     })
 }

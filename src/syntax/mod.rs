@@ -1,4 +1,4 @@
-//! From text to [`document::Document`], and back.
+//! From text to [`document::Document`], and back: the text form and YAML are two surfaces of one language.
 
 pub mod document;
 pub mod from_pest;
@@ -9,14 +9,33 @@ mod lines;
 mod print_text;
 mod print_yaml;
 mod read_text;
+mod read_yaml;
+mod remarks;
 mod rules;
 pub mod schema;
 mod split;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::problem::Problems;
+use crate::source::Source;
+use document::Document;
 
 pub use layout::in_order;
 pub use print_text::print_text;
 pub use print_yaml::print_yaml;
 pub use read_text::read_text;
+pub use read_yaml::read_yaml;
 
-/// TEMP until YAML lands
-pub fn read(source: &std::sync::Arc<crate::source::Source>, problems: &mut crate::problem::Problems) -> document::Document { read_text(source, problems) }
+/// Whether a file name is that of a protocol in YAML.
+pub fn is_yaml(name: &str) -> bool {
+    let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
+    extension.is_some_and(|extension| extension.eq_ignore_ascii_case("yaml") || extension.eq_ignore_ascii_case("yml"))
+}
+
+/// Reads a protocol in the form its file name tells: `.yaml` and `.yml` are YAML, all else is the text form. Something
+/// always comes back; where it is not the whole protocol, problems say what is left out and why.
+pub fn read(source: &Arc<Source>, problems: &mut Problems) -> Document {
+    if is_yaml(&source.name) { read_yaml(source, problems) } else { read_text(source, problems) }
+}

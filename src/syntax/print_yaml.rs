@@ -103,9 +103,7 @@ impl Page {
             let room = WIDTH - indent - 2;
             let lines = if sort == Sort::Phrase { layout::wrap_phrase(&text, room) } else { layout::wrap_prose(&text, room) };
             if lines.len() > 1 {
-                // Beside a fold nothing can stand that a reader would take for this value's comment.
-                self.comments(indent, beside.as_slice());
-                self.line(indent, &format!("{head} >-"), None);
+                self.line(indent, &format!("{head} >-"), beside);
                 lines.iter().for_each(|line| self.line(indent + 2, line, None));
                 return;
             }
@@ -183,7 +181,8 @@ fn looks_typed(text: &str) -> bool {
     // Numbers in any base, dates and times; taken widely, since a quote too many does no harm.
     let number = || {
         let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
-        digits.starts_with(|c: char| c.is_ascii_digit() || c == '.') && text.chars().all(|c| c.is_ascii_hexdigit() || "xXoOinIN._+-:TtZz".contains(c))
+        digits.starts_with(|c: char| c.is_ascii_digit() || c == '.')
+            && text.chars().all(|c| c.is_ascii_hexdigit() || "xXoOinIN._+-:TtZz".contains(c))
     };
     matches!(text.to_ascii_lowercase().as_str(), "" | "~" | "null" | "true" | "false" | "<<" | "=") || number()
 }
@@ -228,9 +227,62 @@ mod tests {
     #[test]
     fn scalars_load_as_their_text() {
         let texts = [
-            "", " a", "a ", "a: b", "a:b", "a #b", "a#b", "- a", "-a", "-3 %", "|p| - |q|", "true", "No", "null", "~", "1", "1.50", "1e3", "0x1F", ".5",
-            ".inf", "2016-01-01", "[a]", "a, b", "{a}", "it's", "\"q\"", "'q'", "a\nb", "a\tb", "\u{7}", "\u{feff}", "\u{2028}", "---", "--- a", "%x", "@x",
-            "`x`", "*x", "&x", "!x", ">x", "x:", "?", "? x", "?x", ":x", "=", "<<", "Größe \u{1f682}", "\\n", "12:30:00", "1_000", "+1", "-.5", "...",
+            "",
+            " a",
+            "a ",
+            "a: b",
+            "a:b",
+            "a #b",
+            "a#b",
+            "- a",
+            "-a",
+            "-3 %",
+            "|p| - |q|",
+            "true",
+            "No",
+            "null",
+            "~",
+            "1",
+            "1.50",
+            "1e3",
+            "0x1F",
+            ".5",
+            ".inf",
+            "2016-01-01",
+            "[a]",
+            "a, b",
+            "{a}",
+            "it's",
+            "\"q\"",
+            "'q'",
+            "a\nb",
+            "a\tb",
+            "\u{7}",
+            "\u{feff}",
+            "\u{2028}",
+            "---",
+            "--- a",
+            "%x",
+            "@x",
+            "`x`",
+            "*x",
+            "&x",
+            "!x",
+            ">x",
+            "x:",
+            "?",
+            "? x",
+            "?x",
+            ":x",
+            "=",
+            "<<",
+            "Größe \u{1f682}",
+            "\\n",
+            "12:30:00",
+            "1_000",
+            "+1",
+            "-.5",
+            "...",
         ];
         for text in texts {
             let written = format!("key: {}\n", scalar(text, Sort::Text));

@@ -40,17 +40,14 @@ fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
     let word = rules::exact(place(&header.kind, &raw.header));
     let Some(kind) = reader.kind(&word.text, &word.span) else { return };
     match fault {
-        // Where a name ends in the middle of a word, the whole word was meant to be the name.
-        Some(fault) if header.name.as_ref().is_some_and(|name| name.end == fault.at.start) => {
-            header.name = header.name.map(|name| name.start..fault.at.end);
+        // A word that should be the name and goes on with what no name may hold: the whole word is judged as one.
+        Some(fault) if header.name.as_ref().map_or(kind.named && header.title.is_none(), |name| name.end == fault.at.start) => {
+            header.name = Some(header.name.map_or(fault.at.start, |name| name.start)..fault.at.end);
         }
         Some(fault) => report(reader, source, raw.header.range.start, fault),
         None => {}
     }
     let title = header.title.map(|range| unquote(&[range], &text, &raw.header, source, reader));
-    if let Some(title) = title.as_ref().filter(|title| title.text.trim().is_empty()) {
-        reader.problems.push(Problem::error("missing-value", "the title is empty").at(&title.span));
-    }
     let mut comments = raw.header.comments.clone();
     comments.after = raw.after;
     let mut block = Block {
@@ -88,24 +85,26 @@ fn read_field(source: &Arc<Source>, item: &Item, kind: &'static Kind, reader: &m
     };
     let head = places.first()?.start..places.get(count - 1)?.end;
     let mut value = head.end;
+    value += blanks(&text[value..]);
     if text[value..].starts_with([':', '=']) {
         reader.problems.push(
             Problem::error("unexpected-text", format!("`{}` is followed by its value, nothing between", &text[head.clone()]))
                 .at(&source.span(start + value..start + value + 1)),
         );
         value += 1;
+        value += blanks(&text[value..]);
     }
-    let key_text = Text {
-        text: key.word.to_owned(),
-        exact: key.word == &text[head.clone()],
-        span: source.span(start + head.start..start + head.end),
-    };
-    value += text[value..].len() - text[value..].trim_start().len();
+    let key_text =
+        Text { text: key.word.to_owned(), exact: key.word == &text[head.clone()], span: source.span(start + head.start..start + head.end) };
     let value = match key.sort {
         Sort::Phrase => Text { text: text[value..].to_owned(), span: source.span(start + value..item.range.end), exact: true },
         Sort::Text => read_prose(value, &text, item, source, key, reader),
     };
     Some((key, Field { key: key_text, value, comments: item.comments.clone() }))
+}
+
+fn blanks(text: &str) -> usize {
+    text.len() - text.trim_start().len()
 }
 
 /// The value of a text field: quoted pieces, one after the other.
@@ -117,10 +116,11 @@ fn read_prose(from: usize, text: &str, item: &Item, source: &Arc<Source>, key: &
         return bare("");
     }
     if !rest.starts_with('"') {
+        let help = || format!("{} {}", key.word, rules::quoted(&rest.split_whitespace().collect::<Vec<_>>().join(" ")));
         reader.problems.push(
             Problem::error("missing-quotes", format!("the text of `{}` has no quotes", key.word))
                 .at(&at)
-                .help(format!("{} {}", key.word, rules::quoted(&rest.split_whitespace().collect::<Vec<_>>().join(" ")))),
+                .help(lines::slip(rest).unwrap_or_else(help)),
         );
         return bare(rest);
     }

@@ -47,7 +47,7 @@ impl<'a> Reader<'a> {
         let near = KINDS
             .iter()
             .find(|kind| other(kind) == word)
-            .or_else(|| nearest(word, KINDS.iter().map(spelt)).and_then(|near| KINDS.iter().find(|kind| spelt(kind) == near)));
+            .or_else(|| near(word, KINDS.iter().map(spelt)).and_then(|near| KINDS.iter().find(|kind| spelt(kind) == near)));
         let owners = owners(&[word]);
         let problem = Problem::error("unknown-block", format!("`{word}` is no block of a protocol")).at(at);
         self.problems.push(match (near, owners.is_empty()) {
@@ -63,7 +63,8 @@ impl<'a> Reader<'a> {
 
     /// A problem for words that begin no field of the kind, and the field most likely meant with its number of words.
     pub fn unknown_field(&mut self, kind: &'static Kind, words: &[&str], at: &Span) -> Option<(&'static Key, usize)> {
-        let other = (1..=words.len().min(LONGEST)).rev().map(|count| (owners(&words[..count]), count)).find(|(owners, _)| !owners.is_empty());
+        let other =
+            (1..=words.len().min(LONGEST)).rev().map(|count| (owners(&words[..count]), count)).find(|(owners, _)| !owners.is_empty());
         // `minimum signal` is rather a slip for `minimum signals` than the `minimum` of another kind.
         let near = near_key(kind, words).filter(|(_, count)| other.as_ref().is_none_or(|(_, other)| count > other));
         let other = other.map(|(owners, _)| owners).unwrap_or_default();
@@ -89,11 +90,11 @@ impl<'a> Reader<'a> {
                 (super::keys::Sort::Text, Form::Lines) => quoted(key.example),
                 _ => key.example.to_owned(),
             };
-            self.problems.push(
-                Problem::error("missing-value", format!("`{}` has no value", key.word))
-                    .at(&field.key.span)
-                    .help(format!("for example: {}{} {example}", key.word, if self.form == Form::Yaml { ":" } else { "" })),
-            );
+            self.problems.push(Problem::error("missing-value", format!("`{}` has no value", key.word)).at(&field.key.span).help(format!(
+                "for example: {}{} {example}",
+                key.word,
+                if self.form == Form::Yaml { ":" } else { "" }
+            )));
             return;
         }
         if let Some(first) = block.field(key.word).filter(|_| !key.many) {
@@ -113,7 +114,8 @@ impl<'a> Reader<'a> {
             None if kind.named => self.problems.push(
                 Problem::error("missing-name", format!("this `{}` has no name", kind.word)).at(&block.kind.span).help(match self.form {
                     Form::Lines => format!("a name follows the word: {} some_name", kind.word),
-                    Form::Yaml => "it needs an entry `name: ...`".to_owned(),
+                    Form::Yaml if kind.single => "it needs an entry `name`".to_owned(),
+                    Form::Yaml => "the key above its fields is its name".to_owned(),
                 }),
             ),
             Some(name) if !kind.named => self.problems.push(
@@ -123,6 +125,9 @@ impl<'a> Reader<'a> {
             ),
             Some(name) if !lines::is_name(&name.text) => self.problems.push(bad_name(&name.text, &name.span)),
             _ => {}
+        }
+        if let Some(title) = block.title.as_ref().filter(|title| title.text.trim().is_empty()) {
+            self.problems.push(Problem::error("missing-value", "the title is empty").at(&title.span));
         }
         // A block that should have a name and has none is nobody's double.
         if !kind.named || kind.single || block.name.is_some() {
@@ -143,8 +148,15 @@ impl<'a> Reader<'a> {
     }
 }
 
+pub fn unterminated(at: &Span) -> Problem {
+    Problem::error("unterminated-quote", "a quote opens and does not close on its line")
+        .at(at)
+        .help("a quote inside a text is written \\\"")
+}
+
 pub fn bad_name(name: &str, at: &Span) -> Problem {
-    Problem::error("bad-name", format!("`{name}` cannot be a name")).at(at).help("names are made of letters, digits, `_`, `-` and `.`")
+    let help = lines::slip(name).unwrap_or_else(|| "names are made of letters a to z, digits, `_`, `-` and `.`".to_owned());
+    Problem::error("bad-name", format!("`{name}` cannot be a name")).at(at).help(help)
 }
 
 /// The key that the first of some words are, the longest if several fit, and its number of words.
@@ -155,8 +167,13 @@ pub fn key(kind: &'static Kind, words: &[&str]) -> Option<(&'static Key, usize)>
 fn near_key(kind: &'static Kind, words: &[&str]) -> Option<(&'static Key, usize)> {
     (1..=words.len().min(LONGEST)).rev().find_map(|count| {
         let like = kind.keys.iter().map(|key| key.word).filter(|word| word.split(' ').count() == count);
-        nearest(&words[..count].join(" "), like).and_then(|near| kind.key(near)).map(|key| (key, count))
+        near(&words[..count].join(" "), like).and_then(|near| kind.key(near)).map(|key| (key, count))
     })
+}
+
+/// The nearest candidate, if so near that the word can be read as it: at most a third of the letters differ.
+fn near<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    nearest(word, candidates).filter(|near| 3 * strsim::damerau_levenshtein(word, near) <= word.chars().count().max(near.chars().count()))
 }
 
 /// The kinds that have a field of these words.

@@ -9,7 +9,6 @@ pub fn json_schema() -> Value {
     let groups: Map<String, Value> = KINDS.iter().map(|kind| (kind.group.to_owned(), group(kind))).collect();
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "$id": "https://fishplate.org/protocol.schema.json",
         "title": "Fishplate protocol",
         "description": "A validation protocol in its YAML form.",
         "type": "object",
@@ -30,7 +29,11 @@ fn group(kind: &Kind) -> Value {
         block.insert("type".into(), json!("object"));
         if kind.named {
             if let Some(Value::Object(fields)) = block.get_mut("properties") {
-                fields.shift_insert(0, "name".into(), json!({ "$ref": "#/$defs/name", "description": "The name by which others refer to it." }));
+                fields.shift_insert(
+                    0,
+                    "name".into(),
+                    json!({ "$ref": "#/$defs/name", "description": "The name by which others refer to it." }),
+                );
             }
             block.insert("required".into(), json!(["name"]));
         }

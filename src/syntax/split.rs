@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::document::Comments;
 use super::keys::{self, Kind};
-use super::lines;
+use super::{lines, rules};
 use crate::problem::{Problem, Problems};
 use crate::source::Source;
 
@@ -91,7 +91,7 @@ impl Splitter<'_> {
             self.tabs.push(offset..offset + line.indent.end);
         }
         if let Some(at) = line.unclosed {
-            self.problem("unterminated-quote", "a quote opens and does not close on its line", offset + at..body.end, "a quote inside a text is written \\\"");
+            self.problems.push(rules::unterminated(&self.source.span(offset + at..body.end)));
         }
         let rest = Rest { body, beside: line.comment, unclosed: line.unclosed.is_some() };
         let word = text[line.body].split([' ', '\t', '"']).next().unwrap_or("");
@@ -99,7 +99,12 @@ impl Splitter<'_> {
         let kind = keys::kind(word);
         let above = self.blocks.last().and_then(|block| block.column);
         if indent == 0 && kind.is_none() && self.blocks.last().is_some_and(|block| block.may_hold(word)) {
-            self.problem("indentation", &format!("`{word}` is a field and is not indented"), word_at, "two blanks before the fields of a block");
+            self.problem(
+                "indentation",
+                &format!("`{word}` is a field and is not indented"),
+                word_at,
+                "two blanks before the fields of a block",
+            );
             self.add(above.unwrap_or(2), rest);
         } else if indent == 0 {
             self.begin(kind, rest);

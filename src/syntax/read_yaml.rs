@@ -1,0 +1,221 @@
+//! The YAML form: the same blocks and fields as maps.
+
+use std::sync::Arc;
+
+use super::document::{Block, Comments, Document, Field, Text};
+use super::keys::{Key, Kind, Sort};
+use super::layout::Quotes;
+use super::remarks::Remarks;
+use super::rules::{self, Form, Reader};
+use crate::problem::{Problem, Problems};
+use crate::source::{Source, Span};
+use crate::yaml::{self, Node, Value};
+
+/// Reads the YAML form, with the same problems as [`super::read_text`] finds in the text form.
+pub fn read_yaml(source: &Arc<Source>, problems: &mut Problems) -> Document {
+    let earlier = problems.0.len();
+    let mut document = Document { source: Arc::clone(source), leading: Vec::new(), blocks: Vec::new(), trailing: Vec::new() };
+    if let Some(root) = yaml::load_as_written(source, problems) {
+        let mut reader = YamlReader { remarks: Remarks::new(source), reader: Reader::new(Form::Yaml, problems) };
+        document.leading = reader.remarks.leading(root.entries().first().map_or(root.span.start, |(key, _)| key.span.start));
+        reader.read_root(&root);
+        document.trailing = reader.remarks.rest();
+        document.blocks = reader.reader.finish();
+    }
+    rules::in_reading_order(problems, earlier);
+    document
+}
+
+struct YamlReader<'a> {
+    remarks: Remarks,
+    reader: Reader<'a>,
+}
+
+impl YamlReader<'_> {
+    fn read_root(&mut self, root: &Node) {
+        if root.value == Value::Null || !self.is_map(root, "a protocol is a map with the keys `protocol`, `quantities` and so on") {
+            return;
+        }
+        let mut groups = root.entries().iter().peekable();
+        while let Some((key, node)) = groups.next() {
+            let end = groups.peek().map_or(usize::MAX, |(next, _)| next.span.start);
+            self.remarks.pass(key.span.start);
+            let Some(kind) = self.reader.kind(&key.text, &key.span) else {
+                self.remarks.pass(end);
+                continue;
+            };
+            let word = Text { text: kind.word.to_owned(), span: key.span.clone(), exact: key.text == kind.word };
+            if kind.single {
+                self.read_block(kind, word, None, node, end);
+            } else {
+                self.remarks.pass_beside(key.span.end);
+                self.read_group(kind, &word, node, end);
+            }
+        }
+    }
+
+    /// Blocks of one kind by their names.
+    fn read_group(&mut self, kind: &'static Kind, word: &Text, node: &Node, end: usize) {
+        if node.value == Value::Null {
+            self.wrong_shape(
+                &word.span,
+                format!("`{}` is empty", kind.group),
+                "it holds blocks by their names; without any, the line is left out",
+            );
+            return;
+        }
+        if !self.is_map(node, &format!("`{}` is a map from names to their fields", kind.group)) {
+            return;
+        }
+        let mut blocks = node.entries().iter().peekable();
+        while let Some((key, node)) = blocks.next() {
+            let end = blocks.peek().map_or(end, |(next, _)| next.span.start);
+            self.remarks.pass(key.span.start);
+            let name = Text { text: key.text.clone(), span: key.span.clone(), exact: key.exact };
+            self.read_block(kind, word.clone(), Some(name), node, end);
+        }
+    }
+
+    fn read_block(&mut self, kind: &'static Kind, word: Text, name: Option<Text>, node: &Node, end: usize) {
+        let head = name.as_ref().map_or(&word.span, |name| &name.span).clone();
+        let comments = Comments { before: self.remarks.above(), beside: self.remarks.beside(head.end), after: Vec::new() };
+        let nameless = name.as_ref().is_some_and(|name| name.text.trim().is_empty());
+        let kind_place = if nameless { Text { span: head.clone(), ..word } } else { word };
+        let mut block = Block { kind: kind_place, name: name.filter(|_| !nameless), title: None, fields: Vec::new(), comments };
+        let what =
+            if kind.single { format!("`{}` is a map of fields", kind.group) } else { format!("a `{}` is a map of fields", kind.word) };
+        if node.value != Value::Null && !self.is_map(node, &what) {
+            self.remarks.pass(end);
+            return;
+        }
+        if node.value == Value::Null && kind.single {
+            self.wrong_shape(&head, format!("`{}` is empty", kind.group), "it holds fields; without any, the line is left out");
+        }
+        for (key, node) in node.entries() {
+            self.remarks.pass(key.span.start);
+            let key_text = Text { text: key.text.clone(), span: key.span.clone(), exact: key.exact };
+            match key.text.as_str() {
+                "title" => {
+                    let title = self.plain(&key_text, node, block.title.as_ref(), &mut block.comments);
+                    block.title = block.title.or(title);
+                }
+                "name" if kind.single && kind.named => {
+                    let name = self.plain(&key_text, node, block.name.as_ref(), &mut block.comments);
+                    block.name = block.name.or(name);
+                }
+                _ => self.read_field(kind, key_text, node, &mut block),
+            }
+        }
+        block.comments.after = self.remarks.deeper(&head, end);
+        self.reader.block(kind, block);
+    }
+
+    /// A text that is no field: a name or title. Its comments are those of the block.
+    fn plain(&mut self, key: &Text, node: &Node, first: Option<&Text>, comments: &mut Comments) -> Option<Text> {
+        comments.before.extend(self.remarks.above());
+        if let Some(beside) = self.remarks.beside(node.span.end) {
+            comments.before.extend(comments.beside.replace(beside));
+        }
+        if let Some(first) = first {
+            let says = format!("a block has one `{}`, here is another", key.text);
+            self.reader.problems.push(Problem::error("duplicate-field", says).at(&key.span).also(&first.span, "the first"));
+        } else if node.is_scalar() {
+            return Some(text(node));
+        } else {
+            self.wrong_shape(&node.span, format!("the {} is {}", key.text, node.kind_in_words()), "one text is expected");
+        }
+        None
+    }
+
+    fn read_field(&mut self, kind: &'static Kind, key: Text, node: &Node, block: &mut Block) {
+        let words: Vec<&str> = key.text.split(' ').collect();
+        let known = rules::key(kind, &words).filter(|(_, count)| *count == words.len());
+        let Some((known, _)) = known.or_else(|| self.reader.unknown_field(kind, &words, &key.span)) else { return };
+        let key = Text { exact: key.exact && key.text == known.word, text: known.word.to_owned(), span: key.span };
+        let above = Comments { before: self.remarks.above(), beside: self.remarks.beside(key.span.end), after: Vec::new() };
+        match &node.value {
+            Value::List(items) if known.many && !items.is_empty() => {
+                let mut above = Some(above);
+                for item in items {
+                    let mut comments = above.take().unwrap_or_default();
+                    if let Some(beside) = self.remarks.pass_to_item(item.span.start) {
+                        comments.before.extend(comments.beside.replace(beside));
+                    }
+                    self.read_value(kind, known, &key, item, comments, block);
+                }
+            }
+            Value::List(_) if known.many => self.reader.field(kind, known, block, Field { key, value: nothing(node), comments: above }),
+            _ => self.read_value(kind, known, &key, node, above, block),
+        }
+    }
+
+    fn read_value(&mut self, kind: &'static Kind, known: &'static Key, key: &Text, node: &Node, above: Comments, block: &mut Block) {
+        if !node.is_scalar() {
+            let help = match known.sort {
+                Sort::Phrase => format!("for example: {}: {}", known.word, known.example),
+                Sort::Text => "one text is expected".to_owned(),
+            };
+            self.wrong_shape(&node.span, format!("`{}` is {}", known.word, node.kind_in_words()), &help);
+            return;
+        }
+        let value = text(node);
+        if known.sort == Sort::Phrase {
+            self.check_phrase(&value);
+        }
+        let mut comments = above;
+        comments.before.extend(self.remarks.above());
+        if let Some(beside) = self.remarks.beside(node.span.end) {
+            comments.before.extend(comments.beside.replace(beside));
+        }
+        self.reader.field(kind, known, block, Field { key: key.clone(), value, comments });
+    }
+
+    /// A phrase must be one in the text form too: quotes close, and `#` outside them would begin a comment.
+    fn check_phrase(&mut self, phrase: &Text) {
+        if phrase.text.starts_with([':', '=']) {
+            self.reader.problems.push(Problem::error("unexpected-text", "no phrase begins with this sign").at(&phrase.place(0..1)));
+        }
+        let mut quotes = Quotes::default();
+        let mut opened = 0;
+        for (at, c) in phrase.text.char_indices() {
+            let inside = quotes.inside;
+            quotes.pass(c);
+            if quotes.inside && !inside {
+                opened = at;
+            }
+            if c == '#' && !inside {
+                self.reader.problems.push(
+                    Problem::error("unexpected-text", "`#` has no meaning outside quotes")
+                        .at(&phrase.place(at..at + 1))
+                        .help("in the text form it begins a comment"),
+                );
+            }
+        }
+        if quotes.inside {
+            self.reader.problems.push(rules::unterminated(&phrase.place(opened..phrase.text.len())));
+        }
+    }
+
+    fn is_map(&mut self, node: &Node, expected: &str) -> bool {
+        let is = matches!(node.value, Value::Map(_));
+        if !is {
+            self.wrong_shape(&node.span, format!("{expected}, not {}", node.kind_in_words()), "");
+        }
+        is
+    }
+
+    fn wrong_shape(&mut self, at: &Span, says: String, help: &str) {
+        let mut problem = Problem::error("wrong-shape", says).at(at);
+        problem.help = Some(help.to_owned()).filter(|help| !help.is_empty());
+        self.reader.problems.push(problem);
+    }
+}
+
+/// A scalar as written; nothing where it is null.
+fn text(node: &Node) -> Text {
+    if node.value == Value::Null { nothing(node) } else { Text { text: node.raw.clone(), span: node.span.clone(), exact: node.exact } }
+}
+
+fn nothing(node: &Node) -> Text {
+    Text { text: String::new(), span: node.span.clone(), exact: false }
+}

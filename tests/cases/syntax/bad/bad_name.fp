@@ -1,0 +1,7 @@
+protocol p
+
+quantity Y/Q_max
+  of  Y
+
+quantity Größe "Size"
+  of  Q

@@ -1,0 +1,3 @@
+protocol p
+  axis: distance in m
+  edition = "1"

@@ -1,0 +1,4 @@
+protocol p
+
+quantities Y_max
+  of  Y

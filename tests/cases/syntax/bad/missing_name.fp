@@ -1,0 +1,4 @@
+protocol "Without a name"
+
+quantity "Guiding force"
+  of  Y

@@ -1,0 +1,7 @@
+protocol p ""
+  edition  ""
+  axis
+
+zone 1
+  where  # nothing yet
+  clause

@@ -1,0 +1,5 @@
+protocol p
+  "Wheel forces"
+  2 kN
+
+"quantity" Y

@@ -1,0 +1,4 @@
+protocol p
+  axis distance in m
+  edition "1"
+quantity Y

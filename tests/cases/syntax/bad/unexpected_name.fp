@@ -1,0 +1,4 @@
+protocol p
+
+sections all
+  minimum  12

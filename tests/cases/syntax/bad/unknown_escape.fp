@@ -1,0 +1,2 @@
+protocol p "C:\models"
+  note  "a \"quote\", a \\ and a break\n" "\t"

@@ -1,0 +1,3 @@
+protocol p
+  extends  "base
+  axis     distance in m
