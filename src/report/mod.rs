@@ -3,4 +3,5 @@
 //! [`view::view`] rounds, sorts and words; the templates only place what it gives.
 
 pub mod number;
+pub mod typst;
 pub mod view;

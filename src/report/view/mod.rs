@@ -18,6 +18,9 @@ pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair}
 pub use section::{CheckTable, ColumnHead, DomainView, SectionRow, SectionTable, ZoneView};
 pub use summary::{FurtherRow, SummaryRow};
 
+/// Reasons listed on the cover; all of them stand in the summary.
+const REASONS_ON_COVER: usize = 8;
+
 /// Everything a report prints.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReportData {
@@ -30,6 +33,10 @@ pub struct ReportData {
     pub verdict_sentence: String,
     /// Why the model is not validated or cannot be assessed.
     pub reasons: Vec<String>,
+    /// The first of them, as many as the cover holds.
+    pub cover_reasons: Vec<String>,
+    /// Where the others are, if there are others.
+    pub more_reasons: Option<String>,
     /// Short facts for the cover, name and value.
     pub key_facts: Vec<Fact>,
     pub campaign: CampaignView,
@@ -150,6 +157,8 @@ pub fn view(found: &Certification) -> ReportData {
         ),
         verdict_sentence: sentence(found.verdict).to_owned(),
         reasons: found.reasons.clone(),
+        cover_reasons: found.reasons.iter().take(REASONS_ON_COVER).cloned().collect(),
+        more_reasons: more_reasons(found.reasons.len()),
         key_facts: key_facts(found),
         campaign: campaign(found),
         protocol: protocol::view(&found.protocol),
@@ -183,6 +192,10 @@ fn sentence(verdict: Verdict) -> &'static str {
             "The campaign does not contain what the protocol needs: the simulation model can be called neither validated nor not validated."
         }
     }
+}
+
+fn more_reasons(count: usize) -> Option<String> {
+    (count > REASONS_ON_COVER).then(|| format!("All {count} reasons are listed in the summary."))
 }
 
 fn key_facts(found: &Certification) -> Vec<Fact> {
