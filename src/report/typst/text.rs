@@ -1,4 +1,4 @@
-//! Text that can be printed: signs without a glyph, or without a look, become visible as `⟨U+4E2D⟩`.
+//! Text that can be printed: signs without a glyph, or without a look, become visible as `⟨U+4E2D U+6587⟩`.
 //!
 //! PDF/A forbids text that no font shows, and an assessor must see what a name holds: a control character or a change of
 //! writing direction could make two names look alike.
@@ -54,12 +54,21 @@ impl<'a> Printable<'a> {
 
     fn visible_but(&self, text: &str, keep: impl Fn(char) -> bool) -> String {
         let mut shown = String::with_capacity(text.len());
+        let mut spelling = false;
         for c in text.chars() {
-            if keep(c) || self.has(c) {
+            let has = keep(c) || self.has(c);
+            if has && spelling {
+                shown.push('⟩');
+            }
+            if has {
                 shown.push(c);
             } else {
-                shown.push_str(&format!("⟨U+{:04X}⟩", u32::from(c)));
+                shown.push_str(&format!("{}U+{:04X}", if spelling { ' ' } else { '⟨' }, u32::from(c)));
             }
+            spelling = !has;
+        }
+        if spelling {
+            shown.push('⟩');
         }
         shown
     }
@@ -124,6 +133,8 @@ mod tests {
     fn what_no_font_shows_is_spelled_out() {
         assert_eq!(clean("Ære, Straße, Ψ, Ж, −1 ≤ x, ✓"), "Ære, Straße, Ψ, Ж, −1 ≤ x, ✓");
         assert_eq!(clean("中"), "⟨U+4E2D⟩");
+        assert_eq!(clean("中文 a"), "⟨U+4E2D U+6587⟩ a");
+        assert_eq!(clean(&clean("中")), "⟨U+4E2D⟩");
         assert_eq!(clean("🚆"), "⟨U+1F686⟩");
         assert_eq!(clean("a\u{202e}b\u{0}c\u{ad}d\u{feff}"), "a⟨U+202E⟩b⟨U+0000⟩c⟨U+00AD⟩d⟨U+FEFF⟩");
         assert_eq!(clean("two\nlines\r\nthree\tfour"), "two lines three four");

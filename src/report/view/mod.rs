@@ -223,6 +223,31 @@ fn key_facts(found: &Certification) -> Vec<Fact> {
     facts
 }
 
+/// The name of a section, signal or zone short enough for a table.
+fn name(text: &str) -> String {
+    cut(text, NAME)
+}
+
+/// The symbol of a quantity short enough for a table.
+fn symbol(text: &str) -> String {
+    cut(text, SYMBOL)
+}
+
+/// The middle of a longer text is left out, for the ends tell names apart.
+fn cut(name: &str, most: usize) -> String {
+    let letters: Vec<char> = name.chars().collect();
+    if letters.len() <= most {
+        return name.to_owned();
+    }
+    let half = most / 2;
+    letters[..half].iter().chain(&['…']).chain(&letters[letters.len() - half..]).collect()
+}
+
+/// Letters of a name of a section or signal that a report prints.
+const NAME: usize = 80;
+/// Letters of the symbol of a quantity that a report prints.
+const SYMBOL: usize = 40;
+
 fn fact(name: &str, value: String) -> Fact {
     Fact { name: name.to_owned(), value }
 }
@@ -279,7 +304,7 @@ fn traces(found: &Certification) -> Vec<TraceView> {
             TraceView {
                 figure: FigureView {
                     name: format!("trace-{at}"),
-                    caption: format!("{} in section {}{zone}: {}", trace.signal, trace.section, trace.why),
+                    caption: format!("{} in section {}{zone}: {}", name(&trace.signal), name(&trace.section), trace.why),
                     alt: format!(
                         "Simulated and measured {} [{}] over {} [{}], section {} from {} to {}.",
                         trace.signal,
@@ -292,10 +317,22 @@ fn traces(found: &Certification) -> Vec<TraceView> {
                     ),
                 },
                 quantity: quantity.map_or_else(|| trace.quantity.clone(), |quantity| quantity.title.clone()),
-                section: trace.section.clone(),
-                signal: trace.signal.clone(),
+                section: name(&trace.section),
+                signal: name(&trace.signal),
                 why: trace.why.clone(),
             }
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_keep_their_ends() {
+        assert_eq!(name("S01"), "S01");
+        assert_eq!(cut("abcdefghij", 4), "ab…ij");
+        assert_eq!(cut("äöüß", 4), "äöüß");
+    }
 }
