@@ -20,7 +20,7 @@ fn attached() -> Attachment<'static> {
 /// A report that compiled without a remark.
 #[track_caller]
 fn rendered(found: &Certification) -> Pdf {
-    match typeset(&view(found), &certification::placeholders(found), &[attached()]) {
+    match typeset(&view(found), &fishplate::report::figure::figures(found), &[attached()]) {
         Ok(pdf) => {
             assert!(pdf.warnings.0.is_empty(), "{}", pdf.warnings.render(false));
             pdf
