@@ -2,5 +2,6 @@
 //!
 //! [`view::view`] rounds, sorts and words; the templates only place what it gives.
 
+pub mod figure;
 pub mod number;
 pub mod view;
