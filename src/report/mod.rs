@@ -4,4 +4,5 @@
 
 pub mod figure;
 pub mod number;
+pub mod typst;
 pub mod view;

@@ -18,6 +18,9 @@ pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair}
 pub use section::{CheckTable, ColumnHead, DomainView, SectionRow, SectionTable, ZoneView};
 pub use summary::{FurtherRow, SummaryRow};
 
+/// Reasons listed on the cover; all of them stand in the summary.
+const REASONS_ON_COVER: usize = 8;
+
 /// Everything a report prints.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReportData {
@@ -30,6 +33,10 @@ pub struct ReportData {
     pub verdict_sentence: String,
     /// Why the model is not validated or cannot be assessed.
     pub reasons: Vec<String>,
+    /// The first of them, as many as the cover holds.
+    pub cover_reasons: Vec<String>,
+    /// Where the others are, if there are others.
+    pub more_reasons: Option<String>,
     /// Short facts for the cover, name and value.
     pub key_facts: Vec<Fact>,
     pub campaign: CampaignView,
@@ -150,6 +157,8 @@ pub fn view(found: &Certification) -> ReportData {
         ),
         verdict_sentence: sentence(found.verdict).to_owned(),
         reasons: found.reasons.clone(),
+        cover_reasons: found.reasons.iter().take(REASONS_ON_COVER).cloned().collect(),
+        more_reasons: more_reasons(found.reasons.len()),
         key_facts: key_facts(found),
         campaign: campaign(found),
         protocol: protocol::view(&found.protocol),
@@ -185,6 +194,10 @@ fn sentence(verdict: Verdict) -> &'static str {
     }
 }
 
+fn more_reasons(count: usize) -> Option<String> {
+    (count > REASONS_ON_COVER).then(|| format!("All {count} reasons are listed in the summary."))
+}
+
 fn key_facts(found: &Certification) -> Vec<Fact> {
     let used = found.sections.iter().filter(|section| section.used).count();
     let holding = found.quantities.iter().filter(|quantity| quantity.holds == Some(true)).count();
@@ -209,6 +222,31 @@ fn key_facts(found: &Certification) -> Vec<Fact> {
     }
     facts
 }
+
+/// The name of a section, signal or zone short enough for a table.
+fn name(text: &str) -> String {
+    cut(text, NAME)
+}
+
+/// The symbol of a quantity short enough for a table.
+fn symbol(text: &str) -> String {
+    cut(text, SYMBOL)
+}
+
+/// The middle of a longer text is left out, for the ends tell names apart.
+fn cut(name: &str, most: usize) -> String {
+    let letters: Vec<char> = name.chars().collect();
+    if letters.len() <= most {
+        return name.to_owned();
+    }
+    let half = most / 2;
+    letters[..half].iter().chain(&['…']).chain(&letters[letters.len() - half..]).collect()
+}
+
+/// Letters of a name of a section or signal that a report prints.
+const NAME: usize = 80;
+/// Letters of the symbol of a quantity that a report prints.
+const SYMBOL: usize = 40;
 
 fn fact(name: &str, value: String) -> Fact {
     Fact { name: name.to_owned(), value }
@@ -266,7 +304,7 @@ fn traces(found: &Certification) -> Vec<TraceView> {
             TraceView {
                 figure: FigureView {
                     name: format!("trace-{at}"),
-                    caption: format!("{} in section {}{zone}: {}", trace.signal, trace.section, trace.why),
+                    caption: format!("{} in section {}{zone}: {}", name(&trace.signal), name(&trace.section), trace.why),
                     alt: format!(
                         "Simulated and measured {} [{}] over {} [{}], section {} from {} to {}.",
                         trace.signal,
@@ -279,10 +317,22 @@ fn traces(found: &Certification) -> Vec<TraceView> {
                     ),
                 },
                 quantity: quantity.map_or_else(|| trace.quantity.clone(), |quantity| quantity.title.clone()),
-                section: trace.section.clone(),
-                signal: trace.signal.clone(),
+                section: name(&trace.section),
+                signal: name(&trace.signal),
                 why: trace.why.clone(),
             }
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_keep_their_ends() {
+        assert_eq!(name("S01"), "S01");
+        assert_eq!(cut("abcdefghij", 4), "ab…ij");
+        assert_eq!(cut("äöüß", 4), "äöüß");
+    }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{FigureView, Finding, summary};
+use super::{FigureView, Finding, name, summary};
 use crate::report::number;
 use crate::result::{PairValue, QuantityResult, StatisticResult};
 
@@ -98,7 +98,7 @@ pub(super) fn view(at: usize, quantity: &QuantityResult) -> QuantityView {
     QuantityView {
         id: quantity.id.clone(),
         title: quantity.title.clone(),
-        symbol: quantity.symbol.clone(),
+        symbol: super::symbol(&quantity.symbol),
         unit: number::unit(&quantity.unit),
         of: quantity.of.clone(),
         filter: quantity.filter.clone(),
@@ -120,7 +120,7 @@ pub(super) fn view(at: usize, quantity: &QuantityResult) -> QuantityView {
 }
 
 fn statistic(found: &StatisticResult) -> StatisticView {
-    let decimals = number::decimals(&found.unit, found.value.into_iter().chain(found.limit));
+    let decimals = summary::decimals(found);
     StatisticView {
         title: found.title.clone(),
         scope: found.scope.clone(),
@@ -152,9 +152,9 @@ fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<
         .into_iter()
         .take(WORST)
         .map(|pair| WorstPair {
-            section: pair.section.clone(),
+            section: name(&pair.section),
             zone: zone(pair),
-            signal: pair.signal.clone(),
+            signal: name(&pair.signal),
             simulated: number::optional(pair.simulated, decimals),
             measured: number::optional(pair.measured, decimals),
             difference: number::fixed(pair.difference, decimals),
@@ -176,12 +176,12 @@ fn blocks(quantity: &QuantityResult, decimals: usize) -> Vec<ValueBlock> {
     signals
         .chunks(width)
         .map(|signals| ValueBlock {
-            signals: signals.iter().map(|signal| (*signal).to_owned()).collect(),
+            signals: signals.iter().map(|signal| name(signal)).collect(),
             rows: sections
                 .iter()
                 .filter(|section| signals.iter().any(|signal| cells.contains_key(&(**section, *signal))))
                 .map(|section| ValueRow {
-                    section: (*section).to_owned(),
+                    section: name(section),
                     zone: zones.get(section).cloned().unwrap_or_default(),
                     cells: signals
                         .iter()
@@ -211,7 +211,7 @@ fn first_seen<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 }
 
 fn zone(pair: &PairValue) -> String {
-    pair.zone.clone().unwrap_or_default()
+    pair.zone.as_deref().map(name).unwrap_or_default()
 }
 
 fn figure(at: usize, quantity: &QuantityResult) -> FigureView {
@@ -223,7 +223,7 @@ fn figure(at: usize, quantity: &QuantityResult) -> FigureView {
     let what = if quantity.has_sides { "simulated against measured values, and their differences" } else { "values of the comparison" };
     FigureView {
         name: format!("pairs-{at}"),
-        caption: format!("{}: {what}, {} pairs", quantity.symbol, number::count(quantity.values.len() as u64)),
+        caption: format!("{}: {what}, {} pairs", super::symbol(&quantity.symbol), number::count(quantity.values.len() as u64)),
         alt: format!(
             "{}: {what} of {} pairs in {}. {}.",
             quantity.title,

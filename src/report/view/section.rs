@@ -3,7 +3,7 @@
 use indexmap::IndexSet;
 use serde::Serialize;
 
-use super::Finding;
+use super::{Finding, name};
 use crate::report::number;
 use crate::result::{Certification, DomainRange, SectionResult, ZoneResult};
 
@@ -94,7 +94,7 @@ pub(super) fn zones(found: &Certification) -> Vec<ZoneView> {
         .zones
         .iter()
         .map(|zone| ZoneView {
-            zone: zone.zone.clone(),
+            zone: name(&zone.zone),
             title: zone.title.clone(),
             condition: zone.condition.clone(),
             used: zone.used.to_string(),
@@ -157,7 +157,7 @@ fn table(zone: Option<&str>, known: Option<&ZoneResult>, sections: &[&SectionRes
         rows: sections
             .iter()
             .map(|section| SectionRow {
-                section: section.section.clone(),
+                section: name(&section.section),
                 start: number::fixed(section.start, decimals),
                 end: number::fixed(section.end, decimals),
                 length: number::fixed(section.length, decimals),
@@ -191,7 +191,7 @@ fn checks(sections: &[&SectionResult]) -> Vec<CheckTable> {
             rows: sections
                 .iter()
                 .map(|section| CheckRow {
-                    section: section.section.clone(),
+                    section: name(&section.section),
                     cells: names
                         .iter()
                         .map(|(name, _)| {

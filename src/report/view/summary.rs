@@ -79,7 +79,7 @@ fn summary_row(quantity: &QuantityResult, mean: Option<&StatisticResult>, std: O
     let either = mean.or(std);
     SummaryRow {
         id: quantity.id.clone(),
-        symbol: quantity.symbol.clone(),
+        symbol: super::symbol(&quantity.symbol),
         title: quantity.title.clone(),
         unit: number::unit(&quantity.unit),
         filter: quantity.filter.clone(),
@@ -102,7 +102,7 @@ fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> Furthe
     let one = Some(statistic);
     FurtherRow {
         id: quantity.id.clone(),
-        symbol: quantity.symbol.clone(),
+        symbol: super::symbol(&quantity.symbol),
         title: quantity.title.clone(),
         unit: number::unit(&statistic.unit),
         filter: quantity.filter.clone(),
@@ -119,19 +119,24 @@ fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> Furthe
     }
 }
 
-/// The limit with four significant digits.
+/// The limit with the decimals of the value it stands beside.
 pub(super) fn limit(statistic: Option<&StatisticResult>) -> String {
-    statistic.and_then(|statistic| statistic.limit).map_or_else(|| number::NONE.to_owned(), |limit| number::significant(limit, 4))
+    let Some(statistic) = statistic else { return number::NONE.to_owned() };
+    number::optional(statistic.limit, decimals(statistic))
+}
+
+/// Decimals of a statistic: those of its unit, more if the limit (or the value, without one) needs them to show two digits.
+pub(super) fn decimals(statistic: &StatisticResult) -> usize {
+    number::decimals(&statistic.unit, statistic.limit.or(statistic.value))
 }
 
 /// The value with the decimals of its unit, more where the comparison with the limit needs them.
 pub(super) fn value(statistic: Option<&StatisticResult>) -> String {
     let Some(statistic) = statistic else { return number::NONE.to_owned() };
     let Some(value) = statistic.value else { return number::NONE.to_owned() };
-    let decimals = number::decimals(&statistic.unit, [value].into_iter().chain(statistic.limit));
     match statistic.limit {
-        Some(limit) => number::beside(value, limit, decimals),
-        None => number::fixed(value, decimals),
+        Some(limit) => number::beside(value, limit, decimals(statistic)),
+        None => number::fixed(value, decimals(statistic)),
     }
 }
 
