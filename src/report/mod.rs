@@ -2,6 +2,7 @@
 //!
 //! [`view::view`] rounds, sorts and words; the templates only place what it gives.
 
+pub mod figure;
 pub mod number;
 pub mod typst;
 pub mod view;
