@@ -44,7 +44,7 @@ fn a_value_just_beyond_its_limit_is_printed_so() {
     let statistic = &mut found.quantities[0].statistics[0];
     (statistic.value, statistic.normalised, statistic.holds) = (Some(5.00004), Some(1.000_008), Some(false));
     let row = &view(&found).summary[0];
-    assert_eq!((row.std.as_str(), row.normalised_std.as_str()), ("5.00004", "1.000008"));
+    assert_eq!((row.std.as_str(), row.normalised_std.as_str()), ("5.00004", "1.00001"));
 }
 
 #[test]
