@@ -14,9 +14,11 @@
 
 pub mod catalog;
 pub mod check;
+pub mod data;
 pub mod graph;
 pub mod metrics;
 pub mod problem;
+pub mod report;
 pub mod result;
 pub mod run;
 pub mod source;

@@ -1,0 +1,121 @@
+//! Scales with round numbers at their ticks.
+
+use crate::report::number;
+
+/// A linear scale from values to points on the canvas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    pub low: f64,
+    pub high: f64,
+    /// Place of `low`, in points.
+    pub from: f64,
+    /// Place of `high`, in points.
+    pub to: f64,
+}
+
+impl Scale {
+    /// A scale over all values, with some room at both ends; over -1 to 1 where there are none.
+    pub fn over(values: impl IntoIterator<Item = f64>, from: f64, to: f64) -> Self {
+        let (low, high) = extent(values).unwrap_or((-1.0, 1.0));
+        let room = 0.06 * (high - low);
+        Self { low: low - room, high: high + room, from, to }
+    }
+
+    /// Place of a value, in points.
+    pub fn at(&self, value: f64) -> f64 {
+        // Halves, for a range near the largest number.
+        self.from + (value / 2.0 - self.low / 2.0) / (self.high / 2.0 - self.low / 2.0) * (self.to - self.from)
+    }
+
+    pub fn contains(&self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value)
+    }
+
+    /// Round values within the scale, at most so many.
+    pub fn ticks(&self, most: usize) -> Vec<Tick> {
+        let step = round_step((self.high / 2.0 - self.low / 2.0) * 2.0 / most.max(1) as f64);
+        if !(step.is_finite() && step > 0.0) {
+            return Vec::new();
+        }
+        let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
+        let first = (self.low / step - 1e-9).ceil();
+        (0..=most)
+            .map(|n| (first + n as f64) * step)
+            .take_while(|value| *value <= self.high + 1e-9 * step)
+            .map(|value| Tick { value, label: number::fixed(value, decimals) })
+            .collect()
+    }
+}
+
+/// A place on an axis with its number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tick {
+    pub value: f64,
+    pub label: String,
+}
+
+/// Least and largest of the finite values, widened where they are one value.
+pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+    let (low, high) = values
+        .into_iter()
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    if low > high {
+        return None;
+    }
+    let least = low.abs().max(high.abs()) * 1e-9;
+    if high - low > least {
+        return Some((low, high));
+    }
+    let around = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
+    Some((low - around, high + around))
+}
+
+/// The least of 1, 2, 5 times a power of ten that is not below a width.
+fn round_step(width: f64) -> f64 {
+    let power = 10_f64.powf(width.log10().floor());
+    let step = [1.0, 2.0, 5.0].into_iter().map(|digit| digit * power).find(|step| *step >= width * (1.0 - 1e-9));
+    step.unwrap_or(10.0 * power)
+}
+
+/// Title of an axis with its unit: `measured [kN]`.
+pub fn title(what: &str, unit: &str) -> String {
+    let unit = number::unit(unit);
+    if unit == number::NONE { what.to_owned() } else { format!("{what} [{unit}]") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(low: f64, high: f64, most: usize) -> Vec<String> {
+        Scale { low, high, from: 0.0, to: 1.0 }.ticks(most).into_iter().map(|tick| tick.label).collect()
+    }
+
+    #[test]
+    fn ticks_are_round() {
+        assert_eq!(labels(-1.25, 1.25, 6), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!(labels(0.0, 37.0, 5), ["0", "10", "20", "30"]);
+        assert_eq!(labels(0.0012, 0.0049, 5), ["0.002", "0.003", "0.004"]);
+        assert_eq!(labels(1000.0, 9000.0, 5), ["2000", "4000", "6000", "8000"]);
+        assert_eq!(labels(0.0, 0.0, 5), [""; 0]);
+        assert!(labels(f64::MIN, f64::MAX, 5).len() <= 6);
+    }
+
+    #[test]
+    fn scales_cover_their_values_and_survive_having_none() {
+        assert_eq!(extent([]), None);
+        assert_eq!(extent([f64::NAN, 2.0, 5.0]), Some((2.0, 5.0)));
+        assert_eq!(extent([0.0]), Some((-1.0, 1.0)));
+        assert_eq!(extent([-50.0, -50.0]), Some((-55.0, -45.0)));
+        let scale = Scale::over([1.0, 3.0], 100.0, 0.0);
+        assert!(scale.at(1.0) < 100.0 && scale.at(3.0) > 0.0 && (scale.at(2.0) - 50.0).abs() < 1e-12);
+        assert_eq!(Scale { low: f64::MIN, high: f64::MAX, from: 0.0, to: 8.0 }.at(0.0), 4.0);
+    }
+
+    #[test]
+    fn titles_name_units() {
+        assert_eq!(title("measured", "m/s^2"), "measured [m/s²]");
+        assert_eq!(title("measured", "-"), "measured");
+    }
+}

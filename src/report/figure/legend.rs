@@ -1,0 +1,87 @@
+//! A legend of marks, lines and grounds, broken into rows that fit the figure.
+
+use plotters::style::RGBColor;
+
+use super::canvas::{Canvas, Font, Group, Point};
+use super::style::{Dash, Mark, TEXT, cut, text_width};
+
+/// Height of a row, in points.
+const ROW: f64 = 11.5;
+const KEY: f64 = 15.0;
+const GAP: f64 = 12.0;
+
+/// One entry: a sign and what it stands for.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    pub sign: Sign,
+    pub text: String,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub enum Sign {
+    Mark(Mark, RGBColor),
+    Line { color: RGBColor, width: f64, dash: Dash },
+    Ground(RGBColor),
+}
+
+impl Entry {
+    pub fn mark(mark: Mark, color: RGBColor, text: impl Into<String>) -> Self {
+        Self { sign: Sign::Mark(mark, color), text: text.into() }
+    }
+
+    pub fn line(color: RGBColor, width: f64, dash: Dash, text: impl Into<String>) -> Self {
+        Self { sign: Sign::Line { color, width, dash }, text: text.into() }
+    }
+
+    pub fn ground(color: RGBColor, text: impl Into<String>) -> Self {
+        Self { sign: Sign::Ground(color), text: text.into() }
+    }
+
+    fn key(&self) -> f64 {
+        if matches!(self.sign, Sign::Mark(..)) { 9.0 } else { KEY + 4.0 }
+    }
+}
+
+/// Entries with their places.
+#[derive(Debug)]
+pub struct Legend {
+    placed: Vec<(Point, Entry)>,
+    rows: usize,
+}
+
+impl Legend {
+    /// Sets the entries in rows of a width, in points.
+    pub fn new(entries: Vec<Entry>, width: f64) -> Self {
+        let mut placed = Vec::with_capacity(entries.len());
+        let (mut x, mut row) = (0.0, 0);
+        for entry in entries {
+            let text = cut(&entry.text, TEXT, width - entry.key());
+            let wide = entry.key() + text_width(&text, TEXT);
+            if x > 0.0 && x + wide > width {
+                (x, row) = (0.0, row + 1);
+            }
+            placed.push(((x, (row as f64 + 0.5) * ROW), Entry { text, ..entry }));
+            x += wide + GAP;
+        }
+        Self { rows: if placed.is_empty() { 0 } else { row + 1 }, placed }
+    }
+
+    /// Height in points; 0 without entries.
+    pub fn height(&self) -> f64 {
+        self.rows as f64 * ROW
+    }
+
+    /// Draws with the upper left corner at a point.
+    pub fn draw(&self, canvas: &mut Canvas, (left, top): Point) {
+        for ((x, y), entry) in &self.placed {
+            let (x, y) = (left + x, top + y);
+            let dash = if let Sign::Line { dash, .. } = entry.sign { dash } else { None };
+            canvas.group(&Group { class: "key", dash, ..Group::default() }, |layer| match entry.sign {
+                Sign::Mark(mark, color) => layer.mark(mark, (x + 3.5, y), 2.6, color),
+                Sign::Line { color, width, .. } => layer.line((x, y), (x + KEY, y), color, width),
+                Sign::Ground(color) => layer.rect((x, y - 3.5), (x + KEY, y + 3.5), color),
+            });
+            canvas.draw(|layer| layer.text(&entry.text, (x + entry.key(), y), &Font::left(TEXT)));
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! What a diagram of differences is read against: mean, standard deviation and their limits as levels over sections.
+
+use plotters::style::RGBColor;
+
+use super::legend::Entry;
+use super::style::{self, BLUE, DASH_DOT, DASHED, DOTTED, Dash, INK, SHADE, SOLID, VERMILION};
+use crate::report::number;
+use crate::result::{QuantityResult, StatisticResult};
+
+/// A horizontal line over some of the sections.
+#[derive(Clone, Debug)]
+pub struct Level {
+    pub value: f64,
+    pub color: RGBColor,
+    pub width: f64,
+    pub dash: Dash,
+    /// `all`, or the zone it speaks of.
+    pub scope: String,
+}
+
+/// A ground between two values over some of the sections.
+#[derive(Clone, Debug)]
+pub struct Band {
+    pub low: f64,
+    pub high: f64,
+    pub scope: String,
+}
+
+/// Lines and grounds with the legend that explains them.
+#[derive(Clone, Debug, Default)]
+pub struct Levels {
+    pub lines: Vec<Level>,
+    pub bands: Vec<Band>,
+    pub legend: Vec<Entry>,
+}
+
+impl Levels {
+    /// Of the statistics that are in the unit of the values.
+    ///
+    /// The limit of a standard deviation stands around the mean, where its band can be compared with it.
+    pub fn of(quantity: &QuantityResult) -> Self {
+        let mut levels = Self::default();
+        let two_sided = quantity.has_sides || quantity.values.iter().any(|pair| pair.difference < 0.0);
+        for statistic in quantity.statistics.iter().filter(|statistic| statistic.unit == quantity.unit) {
+            match statistic.name.as_str() {
+                "mean" => levels.mean(statistic, two_sided),
+                "std" => levels.deviation(statistic, center(quantity, &statistic.scope)),
+                _ => levels.other(statistic, two_sided),
+            }
+        }
+        levels
+    }
+
+    /// Every value a line or ground reaches.
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        self.lines.iter().map(|line| line.value).chain(self.bands.iter().flat_map(|band| [band.low, band.high]))
+    }
+
+    fn line(&mut self, statistic: &StatisticResult, values: &[f64], (color, width, dash): (RGBColor, f64, Dash), text: String) {
+        let scope = statistic.scope.clone();
+        self.lines.extend(values.iter().map(|value| Level { value: *value, color, width, dash, scope: scope.clone() }));
+        self.explain(Entry::line(color, width, dash, text));
+    }
+
+    /// One entry stands for the same level of all zones.
+    fn explain(&mut self, entry: Entry) {
+        if !self.legend.iter().any(|known| known.text == entry.text) {
+            self.legend.push(entry);
+        }
+    }
+
+    fn mean(&mut self, statistic: &StatisticResult, two_sided: bool) {
+        if let Some(value) = statistic.value {
+            self.line(statistic, &[value], (BLUE, 1.3, SOLID), says(statistic, &shown(statistic, value)));
+        }
+        if let Some(limit) = statistic.limit {
+            let text = says_of_limit(statistic, &format!("{}{}", sign(two_sided), number::significant(limit, 4)));
+            self.line(statistic, &both(0.0, limit, two_sided), (BLUE, 0.9, DASHED), text);
+        }
+    }
+
+    fn deviation(&mut self, statistic: &StatisticResult, center: f64) {
+        if let Some(value) = statistic.value {
+            self.bands.push(Band { low: center - value, high: center + value, scope: statistic.scope.clone() });
+            self.explain(Entry::ground(SHADE, format!("mean ± {}", says(statistic, &shown(statistic, value)))));
+        }
+        if let Some(limit) = statistic.limit {
+            let text = format!("mean ± {}", says_of_limit(statistic, &number::significant(limit, 4)));
+            self.line(statistic, &both(center, limit, true), (VERMILION, 0.9, DOTTED), text);
+        }
+    }
+
+    fn other(&mut self, statistic: &StatisticResult, two_sided: bool) {
+        let color = style::color(2);
+        if let Some(value) = statistic.value.filter(|_| statistic.name != "each") {
+            self.line(statistic, &[value], (color, 1.1, DASH_DOT), says(statistic, &shown(statistic, value)));
+        }
+        if let Some(limit) = statistic.limit {
+            let text = says_of_limit(statistic, &format!("{}{}", sign(two_sided), number::significant(limit, 4)));
+            self.line(statistic, &both(0.0, limit, two_sided), (INK, 0.9, DASHED), text);
+        }
+    }
+}
+
+/// What a standard deviation is taken around: the mean of the same scope, stated or not.
+fn center(quantity: &QuantityResult, scope: &str) -> f64 {
+    let stated = quantity.statistics.iter().find(|one| one.name == "mean" && one.scope == scope).and_then(|one| one.value);
+    stated.unwrap_or_else(|| {
+        let within = quantity.values.iter().filter(|pair| speaks_of(scope, pair.zone.as_deref()));
+        let (sum, count) = within.fold((0.0, 0_u32), |(sum, count), pair| (sum + pair.difference, count + 1));
+        if count == 0 { 0.0 } else { sum / f64::from(count) }
+    })
+}
+
+/// Whether a scope (`all`, `zone 3`) contains a zone.
+pub fn speaks_of(scope: &str, zone: Option<&str>) -> bool {
+    scope == "all" || zone.is_some_and(|zone| scope.strip_prefix("zone ").unwrap_or(scope) == zone)
+}
+
+fn both(center: f64, limit: f64, two_sided: bool) -> Vec<f64> {
+    if two_sided { vec![center - limit, center + limit] } else { vec![center + limit] }
+}
+
+fn sign(two_sided: bool) -> &'static str {
+    if two_sided { "±" } else { "" }
+}
+
+fn shown(statistic: &StatisticResult, value: f64) -> String {
+    let decimals = number::decimals(&statistic.unit, [value].into_iter().chain(statistic.limit));
+    statistic.limit.map_or_else(|| number::fixed(value, decimals), |limit| number::beside(value, limit, decimals))
+}
+
+/// A statistic and its value; by zone, where values differ, without.
+fn says(statistic: &StatisticResult, value: &str) -> String {
+    if statistic.scope == "all" { format!("{} {value}", statistic.title) } else { format!("{} by zone", statistic.title) }
+}
+
+fn says_of_limit(statistic: &StatisticResult, limit: &str) -> String {
+    if statistic.scope == "all" { format!("limit of {} {limit}", statistic.title) } else { format!("limit of {} by zone", statistic.title) }
+}

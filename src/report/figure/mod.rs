@@ -1,0 +1,49 @@
+//! The figures of a report as SVG texts: 17 cm wide, in one style, the same bytes for the same result.
+//!
+//! plotters draws. Names of sections, signals and quantities are users' texts and arrive escaped. Marks carry a `<title>` for
+//! the pointer and `data-section`, `data-zone` for the scripts of the HTML report.
+
+pub mod axis;
+pub mod canvas;
+mod differences;
+mod domain;
+mod frame;
+mod legend;
+mod levels;
+mod overview;
+mod pairs;
+pub mod style;
+mod trace;
+mod zones;
+
+pub use domain::domain;
+pub use overview::overview;
+pub use pairs::pairs;
+pub use trace::trace;
+pub use zones::Zones;
+
+use crate::result::Certification;
+
+/// All figures of a report by the names the view gives them ([`super::view::FigureView::name`]).
+///
+/// What has nothing to show is left out: a quantity without values, a domain without conditions, a graph not drawn.
+pub fn figures(found: &Certification) -> Vec<(String, String)> {
+    let zones = Zones::of(found);
+    let mut drawn = Vec::new();
+    if !found.quantities.is_empty() {
+        drawn.push(("overview".to_owned(), overview(&found.quantities)));
+    }
+    for (at, quantity) in found.quantities.iter().enumerate().filter(|(_, quantity)| !quantity.values.is_empty()) {
+        drawn.push((format!("pairs-{at}"), pairs(quantity, &zones)));
+    }
+    for (at, one) in found.traces.iter().enumerate() {
+        drawn.push((format!("trace-{at}"), trace(one)));
+    }
+    if !found.domain.is_empty() {
+        drawn.push(("domain".to_owned(), domain(&found.domain, &found.sections, &zones)));
+    }
+    if !found.protocol.graph_svg.trim().is_empty() {
+        drawn.push(("graph".to_owned(), found.protocol.graph_svg.clone()));
+    }
+    drawn
+}

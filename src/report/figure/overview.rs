@@ -1,0 +1,241 @@
+//! All quantities at a glance: every statistic divided by its limit, with its sign.
+
+use indexmap::IndexSet;
+
+use super::axis::Scale;
+use super::canvas::{Canvas, Font, Group, Layer};
+use super::frame::Frame;
+use super::legend::{Entry, Legend};
+use super::style::{self, BEYOND, GRID, INK, MUTED, Mark, SHADE, TEXT, WIDTH, cut, text_width};
+use crate::report::number;
+use crate::result::{QuantityResult, StatisticResult};
+
+/// Statistics of a quantity on lines of their own; more share one line.
+const LINES: usize = 3;
+/// The axis ends here at the latest; what lies beyond becomes an arrow with its number.
+const FARTHEST: f64 = 2.0;
+/// Room for the findings at the right, in points.
+const FINDINGS: f64 = 66.0;
+/// Heights of a line at its best and where many must fit a page, in points.
+const LINE: (f64, f64) = (7.5, 5.0);
+/// Distance between quantities likewise.
+const GAP: (f64, f64) = (6.0, 3.0);
+/// Lines from which on they are set close.
+const CLOSE: usize = 50;
+
+/// Normalised statistics of the quantities, one row each, with the limit at 1 (and -1 where statistics have a sign).
+///
+/// A statistic beyond its limit has its number beside it and the word at the end of the row, so that it shows without colour.
+pub fn overview(quantities: &[QuantityResult]) -> String {
+    let series = Series::of(quantities);
+    let lines: Vec<usize> = quantities.iter().map(line_count).collect();
+    let total: usize = lines.iter().sum();
+    let (line, gap) = if total > CLOSE { (LINE.1, GAP.1) } else { (LINE.0, GAP.0) };
+    let labels = quantities.iter().map(|one| text_width(&one.symbol, TEXT)).fold(20.0, f64::max).min(120.0);
+    let left = labels + 10.0;
+    let right = WIDTH - FINDINGS;
+    let mut entries = series.legend();
+    if entries.is_empty() {
+        entries.push(Entry::ground(SHADE, "within the limit"));
+    }
+    let legend = Legend::new(entries, right - left);
+    let top = legend.height() + 14.0;
+    let height = total as f64 * line + quantities.len() as f64 * gap + gap;
+    let mut canvas = Canvas::new(WIDTH, top + height + 26.0);
+    let frame = Frame { x: scale(quantities, left, right), y: Scale { low: 0.0, high: 1.0, from: top + height, to: top } };
+    legend.draw(&mut canvas, (left, 0.0));
+    ground(&mut canvas, &frame);
+    let mut y = top + gap;
+    for (quantity, lines) in quantities.iter().zip(&lines) {
+        let tall = *lines as f64 * line;
+        row(&mut canvas, &frame, quantity, &series, (y, line, *lines), labels);
+        y += tall + gap;
+    }
+    frame.spine(&mut canvas);
+    canvas.finish()
+}
+
+/// The statistics that are shown: those with a limit.
+fn shown(quantity: &QuantityResult) -> impl Iterator<Item = &StatisticResult> {
+    quantity.statistics.iter().filter(|statistic| statistic.limit.is_some() || statistic.normalised.is_some())
+}
+
+fn line_count(quantity: &QuantityResult) -> usize {
+    match shown(quantity).count() {
+        0 => 1,
+        n if n > LINES => 1,
+        n => n,
+    }
+}
+
+/// The normalised value with the sign of the statistic.
+fn signed(statistic: &StatisticResult) -> Option<f64> {
+    let size = statistic.normalised.filter(|value| value.is_finite())?;
+    Some(if statistic.value.is_some_and(|value| value < 0.0) { -size } else { size })
+}
+
+/// The distinct statistics of all quantities, each with its mark.
+struct Series(IndexSet<(String, String)>);
+
+impl Series {
+    fn of(quantities: &[QuantityResult]) -> Self {
+        Self(quantities.iter().flat_map(shown).map(Self::key).collect())
+    }
+
+    fn key(statistic: &StatisticResult) -> (String, String) {
+        (statistic.title.clone(), statistic.scope.clone())
+    }
+
+    fn nth(&self, statistic: &StatisticResult) -> usize {
+        self.0.get_index_of(&Self::key(statistic)).unwrap_or(0)
+    }
+
+    fn legend(&self) -> Vec<Entry> {
+        let one_scope = self.0.iter().all(|(_, scope)| scope == "all");
+        let text = |(title, scope): &(String, String)| if one_scope { title.clone() } else { format!("{title}, {scope}") };
+        self.0.iter().enumerate().map(|(n, key)| Entry::mark(Mark::nth(n), style::color(n), text(key))).collect()
+    }
+}
+
+fn scale(quantities: &[QuantityResult], from: f64, to: f64) -> Scale {
+    let values: Vec<f64> = quantities.iter().flat_map(shown).filter_map(signed).collect();
+    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let high = if largest <= 1.15 { 1.25 } else { ((largest + 0.15) * 4.0).ceil() / 4.0 }.min(FARTHEST);
+    let has_sign = values.iter().any(|value| *value < 0.0) || quantities.iter().flat_map(shown).any(|one| one.name == "mean");
+    Scale { low: if has_sign { -high } else { 0.0 }, high, from, to }
+}
+
+fn ground(canvas: &mut Canvas, frame: &Frame) {
+    let (top, bottom) = (frame.top(), frame.bottom());
+    let limits: Vec<f64> = [-1.0, 1.0].into_iter().filter(|limit| frame.x.contains(*limit)).collect();
+    canvas.draw(|layer| {
+        layer.rect((frame.x.at(1.0), top), (frame.right(), bottom), BEYOND);
+        if limits.len() == 2 {
+            layer.rect((frame.left(), top), (frame.x.at(-1.0), bottom), BEYOND);
+        }
+    });
+    frame.x_axis(canvas, &frame.x.ticks(9), "statistic divided by its limit");
+    canvas.draw(|layer| {
+        for limit in &limits {
+            let x = frame.x.at(*limit);
+            layer.line((x, top), (x, bottom), INK, 1.0);
+            layer.text("limit", (x, top - 6.0), &Font::middle(TEXT));
+        }
+        let zero = frame.x.at(0.0);
+        layer.line((zero, top), (zero, bottom), MUTED, 0.6);
+    });
+}
+
+fn row(canvas: &mut Canvas, frame: &Frame, quantity: &QuantityResult, series: &Series, (top, line, lines): (f64, f64, usize), labels: f64) {
+    let middle = top + lines as f64 * line / 2.0;
+    let fails = quantity.holds == Some(false);
+    let label = cut(&quantity.symbol, TEXT, labels);
+    canvas.group(&Group { class: "row", title: Some(&quantity.title), ..Group::default() }, |layer| {
+        layer.text(&label, (frame.left() - 6.0, middle), &Font::right(TEXT).bold(fails));
+    });
+    finding(canvas, quantity.holds, (frame.right() + 8.0, middle));
+    let statistics: Vec<&StatisticResult> = shown(quantity).collect();
+    if statistics.is_empty() {
+        let says = if quantity.statistics.is_empty() { "no values" } else { "no limit" };
+        nothing(canvas, frame, middle, if quantity.holds.is_none() { "not assessable" } else { says });
+        return;
+    }
+    let shared = statistics.len() > LINES;
+    let farthest = statistics.iter().filter_map(|one| signed(one)).fold(0.0_f64, |most, value| most.max(value.abs()));
+    if shared && statistics.iter().all(|one| signed(one).is_none()) {
+        nothing(canvas, frame, middle, "not assessable");
+    }
+    for (at, statistic) in statistics.iter().enumerate() {
+        let y = top + line * (0.5 + if lines == 1 { 0.0 } else { at as f64 });
+        match signed(statistic) {
+            Some(value) => {
+                // On a shared line numbers would stand on each other: the largest is named.
+                let named = !shared || value.abs() == farthest;
+                let look = Look { n: series.nth(statistic), stem: !shared, named, size: TEXT.min(line + 0.5) };
+                value_mark(canvas, frame, (&quantity.symbol, statistic), (value, y), &look);
+            }
+            None if !shared => nothing(canvas, frame, y, &format!("{}: not assessable", statistic.title)),
+            None => {}
+        }
+    }
+}
+
+/// The word of a finding with its sign, drawn so that it needs no font.
+fn finding(canvas: &mut Canvas, holds: Option<bool>, (x, y): (f64, f64)) {
+    canvas.draw(|layer| {
+        let word = match holds {
+            Some(true) => {
+                layer.path(&[(x, y + 0.3), (x + 2.2, y + 2.6), (x + 6.2, y - 2.8)], INK, 1.1);
+                "holds"
+            }
+            Some(false) => {
+                layer.line((x + 0.5, y - 2.6), (x + 5.7, y + 2.6), INK, 1.4);
+                layer.line((x + 0.5, y + 2.6), (x + 5.7, y - 2.6), INK, 1.4);
+                "fails"
+            }
+            None => {
+                layer.line((x, y), (x + 6.0, y), MUTED, 1.1);
+                "not assessed"
+            }
+        };
+        layer.text(word, (x + 9.5, y), &Font::left(TEXT).bold(holds == Some(false)));
+    });
+}
+
+fn nothing(canvas: &mut Canvas, frame: &Frame, y: f64, says: &str) {
+    canvas.group(&Group { class: "none", ..Group::default() }, |layer| {
+        layer.text(says, (frame.x.at(0.0) + 4.0, y), &Font::left(style::SMALL + 0.5).color(MUTED));
+    });
+}
+
+/// How a statistic is drawn.
+struct Look {
+    /// Which of the series it is.
+    n: usize,
+    /// With a line from zero.
+    stem: bool,
+    /// With its number if it fails.
+    named: bool,
+    /// Size of the number, in points.
+    size: f64,
+}
+
+fn value_mark(canvas: &mut Canvas, frame: &Frame, (symbol, statistic): (&str, &StatisticResult), (value, y): (f64, f64), look: &Look) {
+    let says = if value.abs() < 10.0 { number::beside(value, 1.0, 2) } else { number::significant(value, 3) };
+    let title = format!("{symbol}, {} ({}): {says} of the limit", statistic.title, statistic.scope);
+    let color = style::color(look.n);
+    let clipped = !frame.x.contains(value);
+    let x = frame.x.at(value.clamp(frame.x.low, frame.x.high));
+    canvas.group(&Group { class: "mark", title: Some(&title), edge: 0.5, ..Group::default() }, |layer| {
+        if look.stem {
+            layer.line((frame.x.at(0.0), y), (x, y), color, 2.2);
+        }
+        if clipped {
+            arrow(layer, (x, y), value.signum(), color);
+        } else {
+            layer.mark(Mark::nth(look.n), (x, y), 2.7, color);
+        }
+    });
+    let fails = statistic.holds == Some(false);
+    if !look.named || !(fails || clipped) {
+        return;
+    }
+    // Outside the mark where there is room, else on the stem's side, on a ground of its own.
+    let outward = value.signum();
+    let wide = text_width(&says, look.size) + 6.0;
+    let room = if outward > 0.0 { frame.right() - x } else { x - frame.left() };
+    let (direction, start) = if !clipped && room > wide { (outward, 4.5) } else { (-outward, 7.5) };
+    let at = x + direction * start;
+    let font = if direction > 0.0 { Font::left(look.size) } else { Font::right(look.size) }.bold(true);
+    canvas.draw(|layer| {
+        if clipped || room <= wide {
+            let half = look.size / 2.0 - 0.4;
+            layer.rect((at - direction * 1.5, y - half), (at + direction * (wide - 4.0), y + half), GRID);
+        }
+        layer.text(&says, (at, y), &font);
+    });
+}
+
+fn arrow(layer: &mut Layer<'_>, (x, y): (f64, f64), direction: f64, color: plotters::style::RGBColor) {
+    layer.fill(&[(x, y), (x - direction * 5.5, y - 3.4), (x - direction * 5.5, y + 3.4)], color);
+}

@@ -1,0 +1,92 @@
+//! The values of one quantity: simulated over measured, and their differences section by section.
+
+use super::axis::{self, Scale};
+use super::canvas::{Canvas, Font, Group};
+use super::differences;
+use super::frame::Frame;
+use super::legend::Legend;
+use super::levels::Levels;
+use super::style::{MUTED, TICK, WIDTH};
+use super::zones::Zones;
+use crate::report::number;
+use crate::result::{PairValue, QuantityResult};
+
+/// Height of the plotting areas, in points: with sides, that of a square.
+const HEIGHT: f64 = 158.0;
+/// Room of y axes, numbers and title, in points.
+const AXIS: f64 = 38.0;
+
+/// Left the simulated over the measured values, right their differences in the order of the sections with mean, standard
+/// deviation and limits. Where a metric gives one number for both signals, only the right diagram, over the full width.
+pub fn pairs(quantity: &QuantityResult, zones: &Zones) -> String {
+    let levels = Levels::of(quantity);
+    let marks = Legend::new(zones.legend(quantity.values.iter().map(|pair| pair.zone.as_deref())), WIDTH - AXIS);
+    let lines = Legend::new(levels.legend.clone(), WIDTH - AXIS);
+    let top = marks.height() + lines.height() + 16.0;
+    let bottom = top + HEIGHT;
+    let with_sides: Vec<(&PairValue, f64, f64)> =
+        quantity.values.iter().filter_map(|pair| Some((pair, pair.simulated?, pair.measured?))).collect();
+    let both = quantity.has_sides && !with_sides.is_empty();
+    let left = if both { AXIS + HEIGHT + AXIS + 12.0 } else { AXIS };
+    let slots = differences::Slots::of(quantity);
+    let mut canvas = Canvas::new(WIDTH, bottom + slots.room().max(24.0));
+    marks.draw(&mut canvas, (AXIS, 0.0));
+    lines.draw(&mut canvas, (AXIS, marks.height()));
+    if both {
+        scatter(&mut canvas, quantity, zones, &with_sides, bottom);
+    }
+    differences::draw(&mut canvas, quantity, &differences::Against { zones, levels: &levels, slots: &slots }, (left, top, bottom));
+    canvas.finish()
+}
+
+fn scatter(canvas: &mut Canvas, quantity: &QuantityResult, zones: &Zones, values: &[(&PairValue, f64, f64)], bottom: f64) {
+    let of = |side: &str| axis::title(side, &quantity.unit);
+    let ends = || values.iter().flat_map(|(_, simulated, measured)| [*simulated, *measured]);
+    let frame = Frame { x: Scale::over(ends(), AXIS, AXIS + HEIGHT), y: Scale::over(ends(), bottom, bottom - HEIGHT) };
+    let ticks = frame.x.ticks(5);
+    frame.x_axis(canvas, &ticks, &of("measured"));
+    frame.y_axis(canvas, &ticks, &of("simulated"));
+    canvas.draw(|layer| layer.line((frame.left(), bottom), (frame.right(), frame.top()), MUTED, 0.8));
+    canvas.draw(|layer| layer.text("simulated = measured", (frame.right(), frame.top() - 5.0), &Font::right(TICK).color(MUTED)));
+    frame.spine(canvas);
+    let decimals = number::decimals(&quantity.unit, ends());
+    for (pair, simulated, measured) in values {
+        let (mark, color) = zones.mark(pair.zone.as_deref());
+        let title = tooltip(pair, &quantity.unit, decimals);
+        canvas.group(&pair_group(pair, &title), |layer| {
+            layer.mark(mark, (frame.x.at(*measured), frame.y.at(*simulated)), 2.1, color);
+        });
+    }
+}
+
+/// The group of one pair's mark: what scripts find it by.
+pub(super) fn pair_group<'a>(pair: &'a PairValue, title: &'a str) -> Group<'a> {
+    Group {
+        class: "mark pair",
+        edge: 0.35,
+        title: Some(title),
+        section: Some(&pair.section),
+        zone: pair.zone.as_deref(),
+        ..Group::default()
+    }
+}
+
+/// What is shown while the pointer rests on a pair.
+pub(super) fn tooltip(pair: &PairValue, unit: &str, decimals: usize) -> String {
+    let shown = |value: f64| {
+        let unit = number::unit(unit);
+        let value = number::fixed(value, decimals);
+        if unit == number::NONE { value } else { format!("{value} {unit}") }
+    };
+    let mut text = format!("{}, {}", pair.section, pair.signal);
+    if let Some(zone) = &pair.zone {
+        text.push_str(&format!(", zone {zone}"));
+    }
+    match (pair.simulated, pair.measured) {
+        (Some(simulated), Some(measured)) => {
+            text.push_str(&format!(": simulated {}, measured {}, difference {}", shown(simulated), shown(measured), shown(pair.difference)))
+        }
+        _ => text.push_str(&format!(": {}", shown(pair.difference))),
+    }
+    text
+}

@@ -1,0 +1,125 @@
+//! One look for all figures: colours, type, marks. Every distinction made by colour is also made by shape or line, so that
+//! a figure reads in grey and for colour-blind readers.
+
+use plotters::style::RGBColor;
+
+/// Type of all text; the families after the first stand in where it is not installed.
+pub const FAMILY: &str = "IBM Plex Sans, DejaVu Sans, Arial, sans-serif";
+
+/// Width of every figure in points: 17 cm, the text width of an A4 page.
+pub const WIDTH: f64 = 482.0;
+
+/// Text of axes, legends and labels, in points.
+pub const TEXT: f64 = 7.5;
+/// Numbers at ticks.
+pub const TICK: f64 = 7.0;
+/// Names of sections where many stand side by side: the smallest type in any figure.
+pub const SMALL: f64 = 6.0;
+
+pub const INK: RGBColor = RGBColor(0x1f, 0x24, 0x2b);
+pub const MUTED: RGBColor = RGBColor(0x55, 0x5e, 0x6a);
+pub const GRID: RGBColor = RGBColor(0xdd, 0xe1, 0xe6);
+/// Ground of what lies beyond a limit.
+pub const BEYOND: RGBColor = RGBColor(0xf1, 0xee, 0xea);
+/// Ground of what is singled out: the evaluated section, the band of a standard deviation.
+pub const SHADE: RGBColor = RGBColor(0xe4, 0xec, 0xf3);
+/// Broad, light line of a measured signal under the thin, dark one of the simulated.
+pub const MEASURED: RGBColor = RGBColor(0xa3, 0xa9, 0xb1);
+
+/// Okabe and Ito, "Color Universal Design" (2008): blue, vermilion, bluish green, reddish purple, orange, sky blue, black.
+/// The yellow of the set is left out: it does not show on white paper.
+pub const PALETTE: [RGBColor; 7] = [
+    RGBColor(0x00, 0x72, 0xb2),
+    RGBColor(0xd5, 0x5e, 0x00),
+    RGBColor(0x00, 0x9e, 0x73),
+    RGBColor(0xcc, 0x79, 0xa7),
+    RGBColor(0xe6, 0x9f, 0x00),
+    RGBColor(0x56, 0xb4, 0xe9),
+    RGBColor(0x00, 0x00, 0x00),
+];
+
+pub const BLUE: RGBColor = PALETTE[0];
+pub const VERMILION: RGBColor = PALETTE[1];
+
+/// The colour of the n-th of several series.
+pub fn color(n: usize) -> RGBColor {
+    PALETTE[n % PALETTE.len()]
+}
+
+/// Shape of a mark; the n-th series has the n-th shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    Circle,
+    Triangle,
+    Square,
+    Diamond,
+    TriangleDown,
+    Pentagon,
+    Hexagon,
+    Bar,
+}
+
+impl Mark {
+    pub const ALL: [Self; 8] =
+        [Self::Circle, Self::Triangle, Self::Square, Self::Diamond, Self::TriangleDown, Self::Pentagon, Self::Hexagon, Self::Bar];
+
+    pub fn nth(n: usize) -> Self {
+        Self::ALL[n % Self::ALL.len()]
+    }
+}
+
+/// Dashes of a line, in points; `None` is a solid line.
+pub type Dash = Option<&'static [f64]>;
+
+pub const SOLID: Dash = None;
+pub const DASHED: Dash = Some(&[5.0, 2.5]);
+pub const DOTTED: Dash = Some(&[1.2, 2.0]);
+pub const DASH_DOT: Dash = Some(&[6.0, 2.0, 1.2, 2.0]);
+
+/// Approximate width of a text in points, to lay out without a font at hand: advance widths of a humanist sans by kind
+/// of character, a little on the wide side.
+pub fn text_width(text: &str, size: f64) -> f64 {
+    let em: f64 = text
+        .chars()
+        .map(|c| match c {
+            'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '|' | '\'' | '!' => 0.30,
+            ' ' | 'f' | 't' | 'r' | '(' | ')' | '[' | ']' | '/' | '-' => 0.40,
+            'm' | 'w' | 'M' | 'W' | '@' | '%' => 0.90,
+            'A'..='Z' | '±' | '\u{2212}' => 0.66,
+            c if (c as u32) >= 0x1100 => 1.0,
+            _ => 0.58,
+        })
+        .sum();
+    em * size
+}
+
+/// A text cut to a width, with an ellipsis.
+pub fn cut(text: &str, size: f64, width: f64) -> String {
+    if text_width(text, size) <= width {
+        return text.to_owned();
+    }
+    let mut kept = String::new();
+    for c in text.chars() {
+        kept.push(c);
+        if text_width(&kept, size) + 0.9 * size > width {
+            kept.pop();
+            break;
+        }
+    }
+    kept.truncate(kept.trim_end().len());
+    kept.push('…');
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cut_texts_fit_and_short_ones_stay() {
+        assert_eq!(cut("Y_max", TEXT, 100.0), "Y_max");
+        let short = cut(&"wide ".repeat(40), TEXT, 60.0);
+        assert!(short.ends_with('…') && text_width(&short, TEXT) <= 66.0, "{short}");
+        assert_eq!(cut("abc", TEXT, 0.0), "…");
+    }
+}

@@ -1,0 +1,63 @@
+//! Simulated and measured signal over distance or time.
+
+use super::axis::{self, Scale};
+use super::canvas::{Canvas, Font, Group};
+use super::frame::Frame;
+use super::legend::{Entry, Legend};
+use super::style::{BLUE, INK, MEASURED, SHADE, SOLID, TEXT, WIDTH};
+use crate::result::{Curve, Trace};
+
+const HEIGHT: f64 = 128.0;
+
+/// The measured signal broad and light, the simulated thin and dark over it, the evaluated section shaded.
+pub fn trace(trace: &Trace) -> String {
+    let legend = Legend::new(
+        vec![
+            Entry::line(MEASURED, 1.8, SOLID, "measured"),
+            Entry::line(BLUE, 0.8, SOLID, "simulated"),
+            Entry::ground(SHADE, "evaluated section"),
+        ],
+        WIDTH - 50.0,
+    );
+    let top = legend.height() + 5.0;
+    let bottom = top + HEIGHT;
+    let curves = [&trace.measured, &trace.simulated];
+    let y = Scale::over(curves.iter().flat_map(|curve| curve.y.iter().copied()), bottom, top);
+    let ticks = y.ticks(6);
+    let left = Frame::room_for(&ticks) + 10.0;
+    let along = curves.iter().flat_map(|curve| curve.x.iter().copied()).chain([trace.start, trace.end]);
+    let (low, high) = axis::extent(along).unwrap_or((0.0, 1.0));
+    let frame = Frame { x: Scale { low, high, from: left, to: WIDTH - 6.0 }, y };
+    let mut canvas = Canvas::new(WIDTH, bottom + 25.0);
+    legend.draw(&mut canvas, (left, 0.0));
+    canvas.group(&Group { class: "band", ..Group::default() }, |layer| {
+        layer.rect((frame.x.at(trace.start), top), (frame.x.at(trace.end), bottom), SHADE);
+    });
+    frame.x_axis(&mut canvas, &frame.x.ticks(8), &axis::title(&trace.axis, &trace.axis_unit));
+    frame.y_axis(&mut canvas, &ticks, &axis::title(&trace.signal, &trace.unit));
+    for (class, drawn, color, width) in
+        [("curve measured", &trace.measured, MEASURED, 1.8), ("curve simulated", &trace.simulated, BLUE, 0.8)]
+    {
+        canvas.group(&Group { class, ..Group::default() }, |layer| {
+            for piece in pieces(drawn, &frame) {
+                layer.path(&piece, color, width);
+            }
+        });
+    }
+    if curves.iter().all(|curve| curve.y.is_empty()) {
+        let middle = (f64::midpoint(frame.left(), frame.right()), f64::midpoint(top, bottom));
+        canvas.draw(|layer| layer.text("no samples", middle, &Font::middle(TEXT).color(INK)));
+    }
+    frame.spine(&mut canvas);
+    canvas.finish()
+}
+
+/// The curve on the canvas, broken where a value is missing.
+fn pieces(curve: &Curve, frame: &Frame) -> Vec<Vec<(f64, f64)>> {
+    let samples: Vec<(f64, f64)> = curve.x.iter().copied().zip(curve.y.iter().copied()).collect();
+    samples
+        .split(|(x, y)| !(x.is_finite() && y.is_finite()))
+        .filter(|piece| !piece.is_empty())
+        .map(|piece| piece.iter().map(|(x, y)| (frame.x.at(*x), frame.y.at(*y))).collect())
+        .collect()
+}

@@ -1,0 +1,8 @@
+//! A certification as a document: one view of the result, printed as PDF and as HTML.
+//!
+//! [`view::view`] rounds, sorts and words; the templates only place what it gives.
+
+pub mod figure;
+pub mod number;
+pub mod typst;
+pub mod view;

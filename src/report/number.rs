@@ -1,0 +1,218 @@
+//! Numbers as a report prints them: one formatter for every table, figure and page.
+//!
+//! A printed number never says less than what was decided on it: [`beside`] adds decimals until value and limit
+//! compare in print as they did in full precision.
+
+/// Printed where there is no value: an en dash.
+pub const NONE: &str = "–";
+const MINUS: char = '\u{2212}';
+
+/// More decimals than this are no longer read; such numbers are printed with a power of ten.
+const MOST_DECIMALS: usize = 6;
+
+/// Decimals for a column of values in one unit.
+///
+/// The unit gives the usual number; a column of small values gets more, so that the largest shows two significant digits.
+pub fn decimals(unit: &str, values: impl IntoIterator<Item = f64>) -> usize {
+    let usual = match unit {
+        "m/s^2" | "m/s²" | "rad" => 4,
+        "-" | "" | "g" => 4,
+        "kN" | "kN.m" | "kNm" | "m/s" | "mm/s" | "deg" | "°" | "s" | "Hz" => 2,
+        "m" | "mm" | "km/h" | "%" | "N.m" | "Nm" | "K" | "°C" => 1,
+        "N" | "kg" | "Pa" => 0,
+        _ => 3,
+    };
+    let largest = values.into_iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    if largest == 0.0 {
+        return usual;
+    }
+    let needed = (1.0 - largest.log10().floor()).max(0.0);
+    if needed > MOST_DECIMALS as f64 { usual } else { usual.max(needed as usize) }
+}
+
+/// A number with a fixed count of decimals and a true minus sign; never `−0.00`.
+///
+/// Numbers too long or too small for fixed decimals come with a power of ten; what is not finite is [`NONE`].
+pub fn fixed(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return NONE.to_owned();
+    }
+    if value.abs() >= 1e9 || (value != 0.0 && value.abs() < 0.5 * 10_f64.powi(-(MOST_DECIMALS as i32)) && decimals >= MOST_DECIMALS) {
+        return scientific(value);
+    }
+    signed(&format!("{value:.decimals$}"))
+}
+
+/// [`fixed`], or [`NONE`].
+pub fn optional(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(|| NONE.to_owned(), |value| fixed(value, decimals))
+}
+
+/// A number with so many significant digits, no trailing zeros after the point: limits, settings, extents.
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return NONE.to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let size = value.abs().log10().floor();
+    if !(-5.0..9.0).contains(&size) {
+        return scientific(value);
+    }
+    let decimals = (digits as f64 - 1.0 - size).max(0.0) as usize;
+    signed(trimmed(&format!("{value:.decimals$}")))
+}
+
+/// A value that is compared with a limit, with as many more decimals as it takes for the printed pair to compare as the
+/// exact pair does: 10.0004 against 10 is not printed as `10.00`.
+pub fn beside(value: f64, limit: f64, decimals: usize) -> String {
+    let shown = |places: usize| format!("{:.places$}", value.abs()).parse::<f64>().unwrap_or(f64::NAN);
+    let beyond = value.abs() > limit;
+    let places = (decimals..decimals + 12).find(|places| (shown(*places) > limit) == beyond);
+    fixed(value, places.unwrap_or(decimals))
+}
+
+/// A count with a narrow no-break space between groups of three digits, from five digits on.
+pub fn count(value: u64) -> String {
+    let digits = value.to_string();
+    if digits.len() < 5 {
+        return digits;
+    }
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A unit as printed: `m/s^2` becomes `m/s²`, the plain number's `-` an en dash.
+pub fn unit(text: &str) -> String {
+    if text.is_empty() || text == "-" {
+        return NONE.to_owned();
+    }
+    let mut printed = String::with_capacity(text.len());
+    let mut raised = false;
+    for c in text.chars() {
+        match c {
+            '^' => raised = true,
+            '-' if raised => printed.push('⁻'),
+            '0'..='9' if raised => printed.push(superscript(c)),
+            _ => {
+                raised = false;
+                printed.push(if c == '*' { '·' } else { c });
+            }
+        }
+    }
+    printed
+}
+
+/// Text that is a number gets a true minus sign; other text stays as it is.
+pub fn in_text(text: &str) -> String {
+    if is_number(text) { text.replace('-', "\u{2212}") } else { text.to_owned() }
+}
+
+/// Whether a text reads as a finite number.
+pub fn is_number(text: &str) -> bool {
+    text.trim().replace(MINUS, "-").parse::<f64>().is_ok_and(f64::is_finite)
+}
+
+fn scientific(value: f64) -> String {
+    let text = format!("{value:.2e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let raised: String = exponent.chars().map(|c| if c == '-' { '⁻' } else { superscript(c) }).collect();
+    format!("{}·10{raised}", signed(trimmed(mantissa)))
+}
+
+fn superscript(digit: char) -> char {
+    match digit {
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '0' => '⁰',
+        '4'..='9' => char::from_u32(0x2070 + u32::from(digit) - u32::from('0')).unwrap_or(digit),
+        other => other,
+    }
+}
+
+/// Without zeros after the last digit that says something.
+fn trimmed(text: &str) -> &str {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
+/// With a true minus sign, which a number that rounds to zero does not get.
+fn signed(text: &str) -> String {
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|byte| matches!(byte, b'0' | b'.')) => rest.to_owned(),
+        Some(rest) => format!("{MINUS}{rest}"),
+        None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fixed_numbers_have_a_true_minus_and_no_minus_zero() {
+        assert_eq!(fixed(1.005, 1), "1.0");
+        assert_eq!(fixed(-1.5, 1), "−1.5");
+        assert_eq!(fixed(-1.5, 2), "−1.50");
+        assert_eq!(fixed(-0.0, 2), "0.00");
+        assert_eq!(fixed(-0.004, 2), "0.00");
+        assert_eq!(fixed(-0.006, 2), "−0.01");
+        assert_eq!(fixed(12_345.678, 0), "12346");
+        assert_eq!(fixed(1e12, 2), "1·10¹²");
+        assert_eq!(fixed(-2.5e-9, 6), "−2.5·10⁻⁹");
+        assert_eq!(fixed(f64::NAN, 2), "–");
+        assert_eq!(fixed(f64::INFINITY, 2), "–");
+        assert_eq!(fixed(f64::MIN_POSITIVE, 2), "0.00");
+        assert_eq!(optional(None, 2), "–");
+    }
+
+    #[test]
+    fn decimals_follow_the_unit_and_grow_for_small_columns() {
+        assert_eq!(decimals("kN", [1.0, 20.0]), 2);
+        assert_eq!(decimals("kN", [0.0031, -0.002]), 4);
+        assert_eq!(decimals("kN", []), 2);
+        assert_eq!(decimals("kN", [f64::NAN, 0.0]), 2);
+        assert_eq!(decimals("kN", [1e-30]), 2);
+        assert_eq!(decimals("furlong", [1e300]), 3);
+    }
+
+    #[test]
+    fn significant_digits_drop_empty_zeros_only() {
+        assert_eq!(significant(3.333_333, 4), "3.333");
+        assert_eq!(significant(10.0, 4), "10");
+        assert_eq!(significant(1200.0, 2), "1200");
+        assert_eq!(significant(-0.07, 4), "−0.07");
+        assert_eq!(significant(0.0, 4), "0");
+        assert_eq!(significant(1.5e-7, 3), "1.5·10⁻⁷");
+    }
+
+    #[test]
+    fn a_value_beside_its_limit_never_seems_to_hold_when_it_does_not() {
+        assert_eq!(beside(10.0004, 10.0, 2), "10.0004");
+        assert_eq!(beside(-10.0004, 10.0, 2), "−10.0004");
+        assert_eq!(beside(10.0, 10.0, 2), "10.00");
+        assert_eq!(beside(9.9999, 10.0, 2), "10.00");
+        assert_eq!(beside(3.334, 10.0 / 3.0, 2), "3.334");
+        assert_eq!(beside(0.066_66, 0.2 / 3.0, 4), "0.06666");
+        assert_eq!(beside(f64::NAN, 1.0, 2), "–");
+    }
+
+    #[test]
+    fn counts_and_units() {
+        assert_eq!(count(9_999), "9999");
+        assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
+        assert_eq!(unit("m/s^2"), "m/s²");
+        assert_eq!(unit("kg*m^-1"), "kg·m⁻¹");
+        assert_eq!(unit("-"), "–");
+        assert_eq!(in_text("-12.5"), "−12.5");
+        assert_eq!(in_text("a-b"), "a-b");
+        assert!(!is_number("inf") && !is_number("") && !is_number("right"));
+    }
+}

@@ -1,0 +1,155 @@
+//! The PDF report, typeset by Typst from `templates/`.
+//!
+//! What comes from users reaches the templates as data (`/data.json`), never as markup, so that no name can act as code.
+//! Nothing outside the program is read: fonts and templates are embedded, there is no clock and no network.
+
+mod text;
+mod world;
+
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+use typst::diag::SourceDiagnostic;
+use typst::foundations::{Datetime, Smart};
+use typst_layout::PagedDocument;
+use typst_pdf::{PdfOptions, PdfStandard, PdfStandards, Timestamp};
+
+use crate::problem::{Problem, Problems};
+use crate::report::view::ReportData;
+use text::Printable;
+use world::Files;
+
+/// A file carried inside the PDF.
+#[derive(Clone, Copy, Debug)]
+pub struct Attachment<'a> {
+    /// File name as readers list it: `results.json`.
+    pub name: &'a str,
+    /// Media type: `application/json`.
+    pub mime: &'a str,
+    pub bytes: &'a [u8],
+    pub description: &'a str,
+}
+
+/// A typeset report.
+#[derive(Debug)]
+pub struct Pdf {
+    pub bytes: Vec<u8>,
+    pub pages: usize,
+    /// What Typst remarked without giving up; empty unless a template is at fault.
+    pub warnings: Problems,
+}
+
+/// Typesets a report as PDF/A-3a and PDF/UA-1.
+///
+/// `figures` are SVG texts by the names the view gives them ([`super::view::FigureView::name`]); a figure not handed over is left out.
+/// The same arguments give the same bytes.
+///
+/// # Errors
+///
+/// `report-template`: a template cannot be filled, or Typst refuses it or a figure. `report-attachment`: a name is no file name.
+pub fn typeset(data: &ReportData, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> Result<Pdf, Problems> {
+    let printable = Printable::of(world::fonts());
+    let mut files = Files::new(filled(data)?);
+    let mut value = serde_json::to_value(data).map_err(|error| one(Problem::error("report-template", error.to_string())))?;
+    printable.clean(&mut value);
+    let mut drawn = serde_json::Map::new();
+    for (at, (name, svg)) in figures.iter().enumerate() {
+        let path = format!("/figures/{at}.svg");
+        files.add(&path, printable.svg(svg).into_bytes())?;
+        drawn.insert(name.clone(), Value::String(path));
+    }
+    let mut attached = Vec::new();
+    for attachment in attachments {
+        if attachment.name.is_empty() || attachment.name.contains(['/', '\\']) {
+            return Err(one(Problem::error("report-attachment", format!("`{}` is no file name", attachment.name))));
+        }
+        let path = format!("/attached/{}", attachment.name);
+        files.add(&path, attachment.bytes.to_vec())?;
+        attached.push(json!({"path": path, "name": attachment.name, "mime": attachment.mime, "description": attachment.description}));
+    }
+    if let Value::Object(map) = &mut value {
+        map.insert("figures".into(), Value::Object(drawn));
+        map.insert("attachments".into(), Value::Array(attached));
+    }
+    files.add("/data.json", value.to_string().into_bytes())?;
+    let ident = ident(&value, figures, attachments);
+    let pdf = compile(&files, ident);
+    // Typst's caches are global and would keep every report of a batch alive.
+    typst::comemo::evict(0);
+    pdf
+}
+
+fn compile(files: &Files, ident: String) -> Result<Pdf, Problems> {
+    let compiled = typst::compile::<PagedDocument>(files);
+    let warnings = Problems(compiled.warnings.iter().map(|found| problem(found, files)).collect());
+    let refuse = |errors: &[SourceDiagnostic]| Problems(errors.iter().map(|found| problem(found, files)).collect());
+    let document = compiled.output.map_err(|errors| refuse(&errors))?;
+    let standards = PdfStandards::new(&[PdfStandard::A_3a, PdfStandard::Ua_1])
+        .map_err(|error| one(Problem::error("report-template", error.message().to_string())))?;
+    let options = PdfOptions {
+        ident: Smart::Custom(ident),
+        creator: Smart::Custom(Some(concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned())),
+        timestamp: fixed_date(),
+        standards,
+        ..PdfOptions::default()
+    };
+    let bytes = typst_pdf::pdf(&document, &options).map_err(|errors| refuse(&errors))?;
+    Ok(Pdf { bytes, pages: document.pages().len(), warnings })
+}
+
+/// PDF/A-3 asks for a date where files are attached. A clock would make every run another document, so it is a constant, and
+/// the report says so.
+fn fixed_date() -> Option<Timestamp> {
+    Datetime::from_ymd_hms(2000, 1, 1, 0, 0, 0).map(Timestamp::new_utc)
+}
+
+/// `report.typ` with the parts that this report has.
+fn filled(data: &ReportData) -> Result<String, Problems> {
+    let mut environment = minijinja::Environment::new();
+    environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
+    let context = minijinja::context! {
+        sections => !data.section_tables.is_empty() || !data.zones.is_empty(),
+        quantities => !data.quantities.is_empty(),
+        traces => !data.traces.is_empty(),
+        domain => !data.domain.is_empty(),
+    };
+    environment.render_str(world::REPORT, context).map_err(|error| one(Problem::error("report-template", error.to_string())))
+}
+
+/// What the document is known by: the hash of all that went into it.
+fn ident(value: &Value, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> String {
+    let mut hash = Sha256::new();
+    let mut part = |bytes: &[u8]| {
+        hash.update((bytes.len() as u64).to_le_bytes());
+        hash.update(bytes);
+    };
+    part(value.to_string().as_bytes());
+    for (name, svg) in figures {
+        part(name.as_bytes());
+        part(svg.as_bytes());
+    }
+    for attachment in attachments {
+        part(attachment.name.as_bytes());
+        part(attachment.bytes);
+    }
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// What Typst says, with the place in the template: templates are ours, so there is no user's text to underline.
+fn problem(found: &SourceDiagnostic, files: &Files) -> Problem {
+    let mut says = found.message.to_string();
+    if let Some(place) = files.place(found.span) {
+        says.push_str(&format!(" ({place})"));
+    }
+    let made = match found.severity {
+        typst::diag::Severity::Error => Problem::error("report-template", says),
+        typst::diag::Severity::Warning => Problem::warning("report-template", says),
+    };
+    match found.hints.first() {
+        Some(hint) => made.help(hint.v.to_string()),
+        None => made,
+    }
+}
+
+fn one(problem: Problem) -> Problems {
+    Problems(vec![problem])
+}

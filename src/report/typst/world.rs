@@ -1,0 +1,128 @@
+//! What Typst may see: embedded fonts, embedded templates, and the files of one report. Nothing else exists.
+
+use std::sync::LazyLock;
+
+use indexmap::IndexMap;
+use typst::diag::{FileError, FileResult};
+use typst::foundations::{Bytes, Datetime, Duration};
+use typst::syntax::{DiagSpan, FileId, RootedPath, Source, VirtualPath, VirtualRoot};
+use typst::text::{Font, FontBook};
+use typst::utils::LazyHash;
+use typst::{Library, LibraryExt, World, WorldExt};
+
+use crate::problem::{Problem, Problems};
+
+/// The frame of the report: which parts, in which order; filled by minijinja.
+pub(super) const REPORT: &str = include_str!("../../../templates/report.typ");
+
+/// Templates that stay as they are.
+const TEMPLATES: &[(&str, &str)] = &[
+    ("/theme.typ", include_str!("../../../templates/theme.typ")),
+    ("/data.typ", "#let data = json(\"/data.json\")\n"),
+    ("/parts/cover.typ", include_str!("../../../templates/parts/cover.typ")),
+    ("/parts/summary.typ", include_str!("../../../templates/parts/summary.typ")),
+    ("/parts/vehicle.typ", include_str!("../../../templates/parts/vehicle.typ")),
+    ("/parts/sections.typ", include_str!("../../../templates/parts/sections.typ")),
+    ("/parts/quantities.typ", include_str!("../../../templates/parts/quantities.typ")),
+    ("/parts/traces.typ", include_str!("../../../templates/parts/traces.typ")),
+    ("/parts/domain.typ", include_str!("../../../templates/parts/domain.typ")),
+    ("/parts/protocol.typ", include_str!("../../../templates/parts/protocol.typ")),
+    ("/parts/provenance.typ", include_str!("../../../templates/parts/provenance.typ")),
+    ("/parts/statements.typ", include_str!("../../../templates/parts/statements.typ")),
+];
+
+const FONTS: &[&[u8]] = &[
+    include_bytes!("../../../templates/fonts/IBMPlexSans-Regular.ttf"),
+    include_bytes!("../../../templates/fonts/IBMPlexSans-Italic.ttf"),
+    include_bytes!("../../../templates/fonts/IBMPlexSans-SemiBold.ttf"),
+    include_bytes!("../../../templates/fonts/IBMPlexMono-Regular.ttf"),
+    include_bytes!("../../../templates/fonts/DejaVuSans.ttf"),
+];
+
+static EMBEDDED_FONTS: LazyLock<Vec<Font>> = LazyLock::new(|| FONTS.iter().flat_map(|data| Font::iter(Bytes::new(*data))).collect());
+
+/// The embedded fonts.
+pub(super) fn fonts() -> &'static [Font] {
+    &EMBEDDED_FONTS
+}
+
+/// The files of one report.
+pub(super) struct Files {
+    library: LazyHash<Library>,
+    book: LazyHash<FontBook>,
+    main: Source,
+    templates: IndexMap<FileId, Source>,
+    files: IndexMap<FileId, Bytes>,
+}
+
+impl Files {
+    pub(super) fn new(report: String) -> Self {
+        let source = |(path, text): &(&str, &str)| Some(Source::new(id(path)?, (*text).to_owned()));
+        let templates = TEMPLATES.iter().filter_map(source).map(|source| (source.id(), source)).collect();
+        Self {
+            library: LazyHash::new(Library::default()),
+            book: LazyHash::new(FontBook::from_fonts(fonts())),
+            main: id("/report.typ").map_or_else(|| Source::detached(report.clone()), |main| Source::new(main, report.clone())),
+            templates,
+            files: IndexMap::new(),
+        }
+    }
+
+    /// A file that templates can read under `path`.
+    pub(super) fn add(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), Problems> {
+        let id = id(path).ok_or_else(|| Problems(vec![Problem::error("report-attachment", format!("`{path}` is no path"))]))?;
+        self.files.insert(id, Bytes::new(bytes));
+        Ok(())
+    }
+
+    /// `templates/theme.typ:12`, if the span is in a template.
+    pub(super) fn place(&self, span: DiagSpan) -> Option<String> {
+        let id = span.id()?;
+        let source = self.source(id).ok()?;
+        let line = source.lines().byte_to_line(self.range(span)?.start)?;
+        Some(format!("templates/{}:{}", id.get().vpath().get_without_slash(), line + 1))
+    }
+}
+
+/// Ids are interned for the life of the process; the paths of reports are the same few every time.
+fn id(path: &str) -> Option<FileId> {
+    Some(RootedPath::new(VirtualRoot::Project, VirtualPath::new(path).ok()?).intern())
+}
+
+impl World for Files {
+    fn library(&self) -> &LazyHash<Library> {
+        &self.library
+    }
+
+    fn book(&self) -> &LazyHash<FontBook> {
+        &self.book
+    }
+
+    fn main(&self) -> FileId {
+        self.main.id()
+    }
+
+    fn source(&self, id: FileId) -> FileResult<Source> {
+        if id == self.main.id() {
+            return Ok(self.main.clone());
+        }
+        self.templates.get(&id).cloned().ok_or_else(|| missing(id))
+    }
+
+    fn file(&self, id: FileId) -> FileResult<Bytes> {
+        self.files.get(&id).cloned().ok_or_else(|| missing(id))
+    }
+
+    fn font(&self, index: usize) -> Option<Font> {
+        fonts().get(index).cloned()
+    }
+
+    /// A report has no clock: a template that asks for the date fails at once.
+    fn today(&self, _: Option<Duration>) -> Option<Datetime> {
+        None
+    }
+}
+
+fn missing(id: FileId) -> FileError {
+    FileError::NotFound(id.get().vpath().get_without_slash().into())
+}

@@ -1,0 +1,338 @@
+//! The result of a certification, ready to print: every number rounded, every list sorted, every sentence worded.
+//!
+//! PDF and HTML are filled from the same [`ReportData`]; neither template calculates. Names and texts of users are passed
+//! on as they are: escaping is the template's task.
+
+mod protocol;
+mod quantity;
+mod section;
+mod summary;
+
+use serde::Serialize;
+
+use crate::report::number;
+use crate::result::{Certification, DataItem, Verdict};
+
+pub use protocol::{ProtocolView, SourceFile};
+pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair};
+pub use section::{CheckTable, ColumnHead, DomainView, SectionRow, SectionTable, ZoneView};
+pub use summary::{FurtherRow, SummaryRow};
+
+/// Reasons listed on the cover; all of them stand in the summary.
+const REASONS_ON_COVER: usize = 8;
+
+/// Everything a report prints.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReportData {
+    /// Title of the document: `Validation report: <campaign>`.
+    pub title: String,
+    /// Program and version that made it.
+    pub program: String,
+    pub verdict: Finding,
+    /// The verdict as a sentence.
+    pub verdict_sentence: String,
+    /// Why the model is not validated or cannot be assessed.
+    pub reasons: Vec<String>,
+    /// The first of them, as many as the cover holds.
+    pub cover_reasons: Vec<String>,
+    /// Where the others are, if there are others.
+    pub more_reasons: Option<String>,
+    /// Short facts for the cover, name and value.
+    pub key_facts: Vec<Fact>,
+    pub campaign: CampaignView,
+    pub protocol: ProtocolView,
+    /// Quantities judged by mean and standard deviation over all pairs, a row each, in the manner of EN 14363.
+    pub summary: Vec<SummaryRow>,
+    /// Every other statistic, a row each.
+    pub further: Vec<FurtherRow>,
+    /// Figure of normalised values of all quantities: `None` if no quantity has any.
+    pub overview: Option<FigureView>,
+    pub quantities: Vec<QuantityView>,
+    pub zones: Vec<ZoneView>,
+    /// Sections by zone, in the order of the zones; sections without a zone last.
+    pub section_tables: Vec<SectionTable>,
+    pub traces: Vec<TraceView>,
+    pub domain: Vec<DomainView>,
+    pub domain_figure: Option<FigureView>,
+    /// Remarks that do not change the verdict.
+    pub notes: Vec<String>,
+}
+
+/// What a check or verdict came to, in words, as a sign, and as a class for styling: never by colour alone.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Finding {
+    /// `good`, `bad` or `open`.
+    pub class: &'static str,
+    /// `✓`, `✗` or `?`.
+    pub sign: &'static str,
+    pub word: String,
+}
+
+impl Finding {
+    fn new(holds: Option<bool>, good: &str, bad: &str, open: &str) -> Self {
+        let (class, sign, word) = match holds {
+            Some(true) => ("good", "✓", good),
+            Some(false) => ("bad", "✗", bad),
+            None => ("open", "?", open),
+        };
+        Self { class, sign, word: word.to_owned() }
+    }
+
+    /// Of a limit or a requirement: `holds`, `fails`, `not assessed`.
+    pub(crate) fn of(holds: Option<bool>) -> Self {
+        Self::new(holds, "holds", "fails", "not assessed")
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Fact {
+    pub name: String,
+    pub value: String,
+}
+
+/// A figure by the name it is handed over under, what stands below it, and what it shows for those who cannot see it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct FigureView {
+    /// `overview`, `domain`, `graph`, `pairs-<index of the quantity>`, `trace-<index of the trace>`; indices from 0.
+    pub name: String,
+    pub caption: String,
+    pub alt: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CampaignView {
+    pub name: String,
+    pub facts: Vec<DataRow>,
+    /// Data of the vehicle that a rule reads.
+    pub vehicle_used: Vec<DataRow>,
+    /// All other data of the vehicle.
+    pub vehicle_other: Vec<DataRow>,
+    pub files: Vec<FileView>,
+    /// Sum of the files' sizes, in bytes, as printed.
+    pub bytes: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct DataRow {
+    pub name: String,
+    pub value: String,
+    pub unit: String,
+    /// The value is a number: to be aligned as such.
+    pub numeric: bool,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct FileView {
+    pub path: String,
+    pub sha256: String,
+    pub bytes: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct TraceView {
+    pub figure: FigureView,
+    pub quantity: String,
+    pub section: String,
+    pub signal: String,
+    pub why: String,
+}
+
+/// The certification as both reports print it.
+pub fn view(found: &Certification) -> ReportData {
+    let verdict_holds = match found.verdict {
+        Verdict::Validated => Some(true),
+        Verdict::NotValidated => Some(false),
+        Verdict::NotAssessable => None,
+    };
+    let quantities: Vec<QuantityView> = found.quantities.iter().enumerate().map(|(at, quantity)| quantity::view(at, quantity)).collect();
+    let (summary, further) = summary::tables(&found.quantities);
+    ReportData {
+        title: format!("Validation report: {}", found.campaign.name),
+        program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned(),
+        verdict: Finding::new(
+            verdict_holds,
+            Verdict::Validated.in_words(),
+            Verdict::NotValidated.in_words(),
+            Verdict::NotAssessable.in_words(),
+        ),
+        verdict_sentence: sentence(found.verdict).to_owned(),
+        reasons: found.reasons.clone(),
+        cover_reasons: found.reasons.iter().take(REASONS_ON_COVER).cloned().collect(),
+        more_reasons: more_reasons(found.reasons.len()),
+        key_facts: key_facts(found),
+        campaign: campaign(found),
+        protocol: protocol::view(&found.protocol),
+        summary,
+        further,
+        overview: overview(found),
+        quantities,
+        zones: section::zones(found),
+        section_tables: section::tables(found),
+        traces: traces(found),
+        domain: section::domain(found),
+        domain_figure: (!found.domain.is_empty()).then(|| FigureView {
+            name: "domain".into(),
+            caption: "Validity domain: range of the conditions over the sections used".into(),
+            alt: format!(
+                "Range of {} conditions over the sections used; the numbers are in the table of this chapter.",
+                found.domain.len()
+            ),
+        }),
+        notes: found.notes.clone(),
+    }
+}
+
+fn sentence(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Validated => {
+            "All requirements of the protocol hold: the simulation model is validated for the domain stated in this report."
+        }
+        Verdict::NotValidated => "At least one requirement of the protocol does not hold: the simulation model is not validated.",
+        Verdict::NotAssessable => {
+            "The campaign does not contain what the protocol needs: the simulation model can be called neither validated nor not validated."
+        }
+    }
+}
+
+fn more_reasons(count: usize) -> Option<String> {
+    (count > REASONS_ON_COVER).then(|| format!("All {count} reasons are listed in the summary."))
+}
+
+fn key_facts(found: &Certification) -> Vec<Fact> {
+    let used = found.sections.iter().filter(|section| section.used).count();
+    let holding = found.quantities.iter().filter(|quantity| quantity.holds == Some(true)).count();
+    let failing = found.quantities.iter().filter(|quantity| quantity.holds == Some(false)).count();
+    let open = found.quantities.len() - holding - failing;
+    let mut quantities = format!("{holding} of {} hold", found.quantities.len());
+    if failing > 0 {
+        quantities.push_str(&format!(", {failing} {}", if failing == 1 { "fails" } else { "fail" }));
+    }
+    if open > 0 {
+        quantities.push_str(&format!(", {open} not assessed"));
+    }
+    let pairs: usize = found.quantities.iter().map(|quantity| quantity.values.len()).sum();
+    let mut facts = vec![
+        fact("Quantities", quantities),
+        fact("Sections", format!("{used} of {} used", found.sections.len())),
+        fact("Compared pairs", number::count(pairs as u64)),
+    ];
+    if !found.zones.is_empty() {
+        let filled = found.zones.iter().filter(|zone| zone.holds).count();
+        facts.push(fact("Test zones", format!("{filled} of {} with enough sections", found.zones.len())));
+    }
+    facts
+}
+
+/// The name of a section, signal or zone short enough for a table.
+fn name(text: &str) -> String {
+    cut(text, NAME)
+}
+
+/// The symbol of a quantity short enough for a table.
+fn symbol(text: &str) -> String {
+    cut(text, SYMBOL)
+}
+
+/// The middle of a longer text is left out, for the ends tell names apart.
+fn cut(name: &str, most: usize) -> String {
+    let letters: Vec<char> = name.chars().collect();
+    if letters.len() <= most {
+        return name.to_owned();
+    }
+    let half = most / 2;
+    letters[..half].iter().chain(&['…']).chain(&letters[letters.len() - half..]).collect()
+}
+
+/// Letters of a name of a section or signal that a report prints.
+const NAME: usize = 80;
+/// Letters of the symbol of a quantity that a report prints.
+const SYMBOL: usize = 32;
+
+fn fact(name: &str, value: String) -> Fact {
+    Fact { name: name.to_owned(), value }
+}
+
+fn campaign(found: &Certification) -> CampaignView {
+    let campaign = &found.campaign;
+    let of = |used: bool| campaign.vehicle.iter().filter(|item| item.used == used).map(data_row).collect();
+    CampaignView {
+        name: campaign.name.clone(),
+        facts: campaign.facts.iter().map(data_row).collect(),
+        vehicle_used: of(true),
+        vehicle_other: of(false),
+        files: campaign
+            .files
+            .iter()
+            .map(|file| FileView { path: file.path.clone(), sha256: file.sha256.clone(), bytes: number::count(file.bytes) })
+            .collect(),
+        bytes: number::count(campaign.files.iter().map(|file| file.bytes).sum()),
+    }
+}
+
+fn data_row(item: &DataItem) -> DataRow {
+    DataRow {
+        name: item.name.clone(),
+        value: number::in_text(&item.value),
+        unit: item.unit.as_deref().map(number::unit).unwrap_or_default(),
+        numeric: number::is_number(&item.value),
+    }
+}
+
+fn overview(found: &Certification) -> Option<FigureView> {
+    let normalised: Vec<f64> =
+        found.quantities.iter().flat_map(|quantity| &quantity.statistics).filter_map(|statistic| statistic.normalised).collect();
+    let beyond = normalised.iter().filter(|value| **value > 1.0).count();
+    (!normalised.is_empty()).then(|| FigureView {
+        name: "overview".into(),
+        caption: "Statistics of all quantities divided by their limits; the requirement holds up to 1".into(),
+        alt: format!(
+            "Chart of {} normalised statistics of {} quantities against the limit 1: {beyond} beyond the limit. The numbers are in the summary table.",
+            normalised.len(),
+            found.quantities.len()
+        ),
+    })
+}
+
+fn traces(found: &Certification) -> Vec<TraceView> {
+    found
+        .traces
+        .iter()
+        .enumerate()
+        .map(|(at, trace)| {
+            let quantity = found.quantities.iter().find(|quantity| quantity.id == trace.quantity);
+            let zone = trace.zone.as_ref().map(|zone| format!(", zone {zone}")).unwrap_or_default();
+            TraceView {
+                figure: FigureView {
+                    name: format!("trace-{at}"),
+                    caption: format!("{} in section {}{zone}: {}", name(&trace.signal), name(&trace.section), trace.why),
+                    alt: format!(
+                        "Simulated and measured {} [{}] over {} [{}], section {} from {} to {}.",
+                        trace.signal,
+                        number::unit(&trace.unit),
+                        trace.axis,
+                        number::unit(&trace.axis_unit),
+                        trace.section,
+                        number::significant(trace.start, 6),
+                        number::significant(trace.end, 6)
+                    ),
+                },
+                quantity: quantity.map_or_else(|| trace.quantity.clone(), |quantity| quantity.title.clone()),
+                section: name(&trace.section),
+                signal: name(&trace.signal),
+                why: trace.why.clone(),
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_keep_their_ends() {
+        assert_eq!(name("S01"), "S01");
+        assert_eq!(cut("abcdefghij", 4), "ab…ij");
+        assert_eq!(cut("äöüß", 4), "äöüß");
+    }
+}

@@ -1,0 +1,146 @@
+//! The summary: one row per quantity where mean and standard deviation are judged, one row per statistic otherwise.
+
+use serde::Serialize;
+
+use super::Finding;
+use crate::report::number;
+use crate::result::{QuantityResult, StatisticResult};
+
+/// The scope of a statistic over all pairs of a quantity.
+const ALL: &str = "all";
+
+/// A quantity in the manner of EN 14363: limits, mean and standard deviation, and both divided by their limits.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SummaryRow {
+    pub id: String,
+    pub symbol: String,
+    pub title: String,
+    pub unit: String,
+    pub filter: String,
+    pub processing: String,
+    pub limit_std: String,
+    pub limit_mean: String,
+    pub count: String,
+    pub mean: String,
+    pub std: String,
+    pub normalised_mean: String,
+    pub normalised_std: String,
+    pub mean_finding: Finding,
+    pub std_finding: Finding,
+    pub holds: Finding,
+    pub reason: Option<String>,
+}
+
+/// A statistic other than mean and standard deviation over all pairs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FurtherRow {
+    pub id: String,
+    pub symbol: String,
+    pub title: String,
+    pub unit: String,
+    pub filter: String,
+    pub processing: String,
+    pub comparison: String,
+    pub statistic: String,
+    pub scope: String,
+    pub count: String,
+    pub value: String,
+    pub limit: String,
+    pub normalised: String,
+    pub holds: Finding,
+    pub reason: Option<String>,
+}
+
+pub(super) fn tables(quantities: &[QuantityResult]) -> (Vec<SummaryRow>, Vec<FurtherRow>) {
+    let mut summary = Vec::new();
+    let mut further = Vec::new();
+    for quantity in quantities {
+        let mean = overall(quantity, "mean");
+        let std = overall(quantity, "std");
+        // A quantity that could not be computed at all still stands in the summary, with its reason.
+        if mean.is_some() || std.is_some() || quantity.statistics.is_empty() {
+            summary.push(summary_row(quantity, mean, std));
+        }
+        let others = quantity.statistics.iter().filter(|one| !is_overall(one, "mean") && !is_overall(one, "std"));
+        further.extend(others.map(|statistic| further_row(quantity, statistic)));
+    }
+    (summary, further)
+}
+
+fn is_overall(statistic: &StatisticResult, name: &str) -> bool {
+    statistic.name == name && statistic.scope == ALL
+}
+
+fn overall<'a>(quantity: &'a QuantityResult, name: &str) -> Option<&'a StatisticResult> {
+    quantity.statistics.iter().find(|statistic| is_overall(statistic, name))
+}
+
+fn summary_row(quantity: &QuantityResult, mean: Option<&StatisticResult>, std: Option<&StatisticResult>) -> SummaryRow {
+    let either = mean.or(std);
+    SummaryRow {
+        id: quantity.id.clone(),
+        symbol: super::symbol(&quantity.symbol),
+        title: quantity.title.clone(),
+        unit: number::unit(&quantity.unit),
+        filter: quantity.filter.clone(),
+        processing: quantity.processing.clone(),
+        limit_std: limit(std),
+        limit_mean: limit(mean),
+        count: number::count(either.map_or(quantity.values.len(), |statistic| statistic.count) as u64),
+        mean: value(mean),
+        std: value(std),
+        normalised_mean: normalised(mean),
+        normalised_std: normalised(std),
+        mean_finding: Finding::of(mean.and_then(|statistic| statistic.holds)),
+        std_finding: Finding::of(std.and_then(|statistic| statistic.holds)),
+        holds: Finding::of(quantity.holds),
+        reason: quantity.reason.clone(),
+    }
+}
+
+fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> FurtherRow {
+    let one = Some(statistic);
+    FurtherRow {
+        id: quantity.id.clone(),
+        symbol: super::symbol(&quantity.symbol),
+        title: quantity.title.clone(),
+        unit: number::unit(&statistic.unit),
+        filter: quantity.filter.clone(),
+        processing: quantity.processing.clone(),
+        comparison: quantity.comparison.clone(),
+        statistic: statistic.title.clone(),
+        scope: statistic.scope.clone(),
+        count: number::count(statistic.count as u64),
+        value: value(one),
+        limit: limit(one),
+        normalised: normalised(one),
+        holds: Finding::of(statistic.holds),
+        reason: statistic.reason.clone(),
+    }
+}
+
+/// The limit with the decimals of the value it stands beside.
+pub(super) fn limit(statistic: Option<&StatisticResult>) -> String {
+    let Some(statistic) = statistic else { return number::NONE.to_owned() };
+    number::optional(statistic.limit, decimals(statistic))
+}
+
+/// Decimals of a statistic: those of its unit, more if the limit (or the value, without one) needs them to show two digits.
+pub(super) fn decimals(statistic: &StatisticResult) -> usize {
+    number::decimals(&statistic.unit, statistic.limit.or(statistic.value))
+}
+
+/// The value with the decimals of its unit, more where the comparison with the limit needs them.
+pub(super) fn value(statistic: Option<&StatisticResult>) -> String {
+    let Some(statistic) = statistic else { return number::NONE.to_owned() };
+    let Some(value) = statistic.value else { return number::NONE.to_owned() };
+    match statistic.limit {
+        Some(limit) => number::beside(value, limit, decimals(statistic)),
+        None => number::fixed(value, decimals(statistic)),
+    }
+}
+
+/// |value| / limit, two decimals, more where it is close to 1.
+pub(super) fn normalised(statistic: Option<&StatisticResult>) -> String {
+    statistic.and_then(|statistic| statistic.normalised).map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 2))
+}

@@ -1,0 +1,188 @@
+//! The PDF report: it compiles, says what it should, and is the same every time.
+
+#[path = "common/certification.rs"]
+mod certification;
+
+use std::io::Write;
+use std::process::{Command, Stdio};
+use std::sync::OnceLock;
+
+use certification::{HOSTILE, LONG};
+use fishplate::report::typst::{Attachment, Pdf, typeset};
+use fishplate::report::view::view;
+use fishplate::result::{Certification, Verdict};
+
+const RESULTS: &[u8] = b"{\"verdict\": \"not validated\"}\n";
+
+fn attached() -> Attachment<'static> {
+    Attachment { name: "results.json", mime: "application/json", bytes: RESULTS, description: "Results in full precision" }
+}
+
+/// A report that compiled without a remark.
+#[track_caller]
+fn rendered(found: &Certification) -> Pdf {
+    match typeset(&view(found), &fishplate::report::figure::figures(found), &[attached()]) {
+        Ok(pdf) => {
+            assert!(pdf.warnings.0.is_empty(), "{}", pdf.warnings.render(false));
+            pdf
+        }
+        Err(problems) => panic!("{}", problems.render(false)),
+    }
+}
+
+/// The full report, typeset once for all tests that only look at it.
+fn full() -> &'static Pdf {
+    static FULL: OnceLock<Pdf> = OnceLock::new();
+    FULL.get_or_init(|| rendered(&certification::certification()))
+}
+
+/// What a tool of poppler prints about a PDF; `None` where the tool is not installed.
+fn poppler(tool: &str, arguments: &[&str], pdf: &Pdf) -> Option<Vec<u8>> {
+    let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
+    file.write_all(&pdf.bytes).expect("the temporary file can be written");
+    let (before, after): (Vec<&str>, Vec<&str>) = arguments.iter().partition(|argument| **argument != "-");
+    match Command::new(tool).args(before).arg(file.path()).args(after).stderr(Stdio::null()).output() {
+        Ok(output) => Some(output.stdout),
+        Err(_) => {
+            println!("skipped: {tool} is not installed");
+            None
+        }
+    }
+}
+
+fn text(pdf: &Pdf) -> Option<String> {
+    let text = poppler("pdftotext", &["-layout", "-"], pdf)?;
+    Some(String::from_utf8(text).expect("pdftotext writes UTF-8").replace('\u{200b}', ""))
+}
+
+/// Without white space, for texts that wrap.
+fn dense(text: &str) -> String {
+    text.split_whitespace().collect()
+}
+
+fn holds(bytes: &[u8], word: &str) -> bool {
+    bytes.windows(word.len()).any(|window| window == word.as_bytes())
+}
+
+#[test]
+fn a_full_report_compiles_and_has_its_parts() {
+    let found = certification::certification();
+    let pdf = full();
+    if let Ok(path) = std::env::var("REPORT_PDF") {
+        std::fs::write(path, &pdf.bytes).expect("REPORT_PDF can be written");
+    }
+    assert!((30..=60).contains(&pdf.pages), "{} pages", pdf.pages);
+    let Some(text) = text(pdf) else { return };
+    for word in [
+        "NOT VALIDATED",
+        "Contents",
+        "Summary",
+        "Sections",
+        "Validity domain",
+        "Processing graph",
+        "Provenance",
+        "Signature",
+        "not assessed",
+    ] {
+        assert!(text.contains(word), "{word} is missing");
+    }
+    for quantity in &found.quantities[..12] {
+        assert!(text.contains(&quantity.title), "{} is missing", quantity.title);
+    }
+    assert!(text.contains(&format!("{0} / {0}", pdf.pages)), "the last page has its number");
+    assert!(!text.contains("NaN") && !text.contains("-0.0"), "numbers are worded");
+}
+
+#[test]
+fn the_same_input_gives_the_same_bytes() {
+    let found = certification::certification();
+    assert!(rendered(&found).bytes == full().bytes);
+    let mut other = found;
+    other.campaign.name.push('!');
+    assert!(rendered(&other).bytes != full().bytes);
+}
+
+#[test]
+fn text_of_users_is_printed_as_it_is() {
+    let mut found = certification::certification();
+    found.campaign.name = HOSTILE.into();
+    found.protocol.title = format!("{HOSTILE} {HOSTILE}");
+    found.reasons = vec![HOSTILE.into(); 40];
+    let Some(text) = text(&rendered(&found)) else { return };
+    let text = dense(&text);
+    let times = text.matches(&dense(HOSTILE)).count();
+    assert!(times >= 40, "printed {times} times");
+    assert!(text.contains(&dense(LONG)), "a long name is wrapped, not lost");
+    assert!(text.contains("⟨U+4E2DU+6587⟩"), "a sign without glyph is spelled out");
+    assert!(text.contains("⟨U+202E⟩gnp.exe⟨U+0007⟩"), "a change of direction is shown");
+}
+
+#[test]
+fn an_archive_can_keep_it() {
+    let pdf = full();
+    assert!(pdf.bytes.starts_with(b"%PDF-1.7"));
+    for word in ["pdfaid:part", "pdfaid:conformance", "pdfuaid:part", "/StructTreeRoot", "/Lang", "/Outlines"] {
+        assert!(holds(&pdf.bytes, word), "{word} is missing");
+    }
+    assert!(holds(&pdf.bytes, "2000-01-01T00:00:00"), "the date is the constant");
+}
+
+#[test]
+fn results_are_attached() {
+    let pdf = full();
+    assert!(holds(&pdf.bytes, "results.json") && holds(&pdf.bytes, "AFRelationship"));
+    let Some(found) = poppler("pdfdetach", &["-save", "1", "-o", "/dev/stdout"], pdf) else { return };
+    assert_eq!(found, RESULTS);
+}
+
+#[test]
+fn a_report_about_nothing_compiles() {
+    let pdf = rendered(&certification::empty());
+    assert!((3..=8).contains(&pdf.pages), "{} pages", pdf.pages);
+}
+
+#[test]
+fn missing_parts_leave_no_trace() {
+    let full = certification::certification;
+    let without_quantities = Certification { quantities: Vec::new(), ..full() };
+    let without_sections = Certification { sections: Vec::new(), zones: Vec::new(), ..full() };
+    let mut without_zones = Certification { zones: Vec::new(), ..full() };
+    without_zones.sections.iter_mut().for_each(|section| section.zone = None);
+    let mut without_values = full();
+    for quantity in &mut without_values.quantities {
+        quantity.values.clear();
+        quantity.holds = None;
+        for statistic in &mut quantity.statistics {
+            (statistic.value, statistic.limit, statistic.normalised, statistic.interval, statistic.holds) = (None, None, None, None, None);
+        }
+    }
+    let mut bare = full();
+    bare.protocol.graph_svg.clear();
+    bare.quantities.iter_mut().for_each(|quantity| quantity.statistics.clear());
+    for found in [without_quantities, without_sections, without_zones, without_values, bare] {
+        rendered(&found);
+    }
+}
+
+#[test]
+fn numbers_that_are_none_do_not_stop_it() {
+    let mut found = certification::certification();
+    for (at, pair) in found.quantities.iter_mut().flat_map(|quantity| &mut quantity.values).enumerate() {
+        pair.difference = [f64::NAN, f64::INFINITY, -0.0, 1e300, 1e-300][at % 5];
+        pair.simulated = None;
+    }
+    found.sections.iter_mut().for_each(|section| section.length = f64::NAN);
+    let Some(text) = text(&rendered(&found)) else { return };
+    assert!(!text.contains("NaN") && !text.contains("inf"));
+}
+
+#[test]
+fn a_figure_that_is_none_is_refused_with_a_reason() {
+    let found = Certification { verdict: Verdict::Validated, ..certification::certification() };
+    let figures = [("overview".to_owned(), "no drawing".to_owned())];
+    let problems = typeset(&view(&found), &figures, &[]).expect_err("this is no SVG");
+    assert_eq!(problems.0.first().map(|problem| problem.code), Some("report-template"));
+    let attachment = Attachment { name: "../results.json", ..attached() };
+    let problems = typeset(&view(&found), &[], &[attachment]).expect_err("this is no file name");
+    assert_eq!(problems.0.first().map(|problem| problem.code), Some("report-attachment"));
+}
