@@ -5,7 +5,8 @@
 //! ```
 //!
 //! - `FISHPLATE_PEER`: a Python script with `run(folder, jobs=N)` and `--make-test-campaign DIR`. Its process start and imports
-//!   are not counted (see `peer.py`); those of `fishplate` are. Its synthetic campaign of 33 sections is timed too.
+//!   are not counted (see `peer.py`); those of `fishplate` are. Its synthetic campaign of 33 sections is timed too. A library
+//!   below it may use more threads than `jobs` asks for (polars reads with all; `POLARS_MAX_THREADS=1` holds it to one).
 //! - `FISHPLATE_PYTHON`: the interpreter, `python3` by default.
 //! - `FISHPLATE_ROUNDS`: rounds that count, 7 by default. One more goes before them, to warm up caches.
 //!
@@ -77,7 +78,8 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
 }
 
 fn time_protocols(rounds: usize) -> Outcome<()> {
-    let mut protocols: Vec<PathBuf> = fs::read_dir(Path::new(ROOT).join("protocols"))?.map(|entry| Ok(entry?.path())).collect::<Outcome<_>>()?;
+    let mut protocols: Vec<PathBuf> =
+        fs::read_dir(Path::new(ROOT).join("protocols"))?.map(|entry| Ok(entry?.path())).collect::<Outcome<_>>()?;
     protocols.sort();
     println!("\ncheck");
     for protocol in protocols {
@@ -180,7 +182,8 @@ fn print_row(what: &str, here: Vec<f64>, there: Vec<f64>) {
 fn minimum_and_median(mut values: Vec<f64>) -> Option<(f64, f64)> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
-    let median = if values.len() % 2 == 1 { *values.get(middle)? } else { (values.get(middle.checked_sub(1)?)? + values.get(middle)?) / 2.0 };
+    let median =
+        if values.len() % 2 == 1 { *values.get(middle)? } else { (values.get(middle.checked_sub(1)?)? + values.get(middle)?) / 2.0 };
     Some((*values.first()?, median))
 }
 
@@ -199,5 +202,8 @@ fn threads() -> usize {
 }
 
 fn load() -> String {
-    fs::read_to_string("/proc/loadavg").ok().and_then(|text| text.split(' ').next().map(str::to_string)).unwrap_or_else(|| "unknown".to_string())
+    fs::read_to_string("/proc/loadavg")
+        .ok()
+        .and_then(|text| text.split(' ').next().map(str::to_string))
+        .unwrap_or_else(|| "unknown".to_string())
 }
