@@ -1,0 +1,209 @@
+//! Wall time and peak memory of the program, beside an independent Python evaluation of the same job where one is given.
+//!
+//! ```text
+//! cargo bench --bench certify -- [CAMPAIGN...]
+//! ```
+//!
+//! - `FISHPLATE_PEER`: a Python script with `run(folder, jobs=N)` and `--make-test-campaign DIR`. Its process start and imports
+//!   are not counted (see `peer.py`); those of `fishplate` are. Its synthetic campaign of 33 sections is timed too. A library
+//!   below it may use more threads than `jobs` asks for (polars reads with all; `POLARS_MAX_THREADS=1` holds it to one).
+//! - `FISHPLATE_PYTHON`: the interpreter, `python3` by default.
+//! - `FISHPLATE_ROUNDS`: rounds that count, 7 by default. One more goes before them, to warm up caches.
+//!
+//! Both take turns in each round, so that a change in the load of the machine meets both.
+
+#![expect(clippy::print_stdout, reason = "a benchmark speaks to the terminal")]
+
+use std::error::Error;
+use std::ffi::OsStr;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::Instant;
+use std::{env, fs, thread};
+
+type Outcome<T> = Result<T, Box<dyn Error>>;
+
+const FISHPLATE: &str = env!("CARGO_BIN_EXE_fishplate");
+const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+fn main() -> Outcome<()> {
+    let rounds = env::var("FISHPLATE_ROUNDS").ok().map_or(Ok(7), |text| text.parse())?;
+    let mut campaigns: Vec<PathBuf> = env::args().skip(1).filter(|word| !word.starts_with("--")).map(PathBuf::from).collect();
+    if campaigns.is_empty() {
+        campaigns.push(Path::new(ROOT).join("examples/coach"));
+    }
+    let mut peer = env::var_os("FISHPLATE_PEER").map(|script| Peer::start(&script)).transpose()?;
+    if let Some(peer) = &peer {
+        campaigns.push(peer.synthetic_campaign()?);
+    }
+    println!("{} processors, load {}, {rounds} rounds; seconds: minimum, median", threads(), load());
+    println!("\n{:<40} {:>8} {:>8}   {:>8} {:>8}   {:>7}", "", "here", "", "peer", "", "peer/here");
+    for campaign in &campaigns {
+        time_campaign(campaign, rounds, peer.as_mut())?;
+    }
+    time_protocols(rounds)?;
+    println!("\nload {}", load());
+    Ok(())
+}
+
+fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) -> Outcome<()> {
+    let out = Path::new(SCRATCH).join("out");
+    let results = ["certify".as_ref(), campaign.as_os_str(), "--only".as_ref(), "results".as_ref(), "--out".as_ref(), out.as_os_str()];
+    println!("\n{}, {:.1} MB", campaign.display(), folder_size(campaign)? as f64 / 1e6);
+    let mut counts = vec![1, threads()];
+    counts.dedup();
+    for jobs in counts {
+        let (mut here, mut there) = (Vec::new(), Vec::new());
+        for round in 0..=rounds {
+            let ours = seconds(&results, jobs)?;
+            let theirs = peer.as_mut().map(|peer| peer.run(campaign, jobs)).transpose()?;
+            if round > 0 {
+                here.push(ours);
+                there.extend(theirs.map(|(seconds, _)| seconds));
+            }
+        }
+        print_row(&format!("results, {jobs} thread{}", if jobs == 1 { "" } else { "s" }), here, there);
+    }
+    let whole = ["certify".as_ref(), campaign.as_os_str(), "--out".as_ref(), out.as_os_str()];
+    print_row("results and report (PDF, HTML)", repeat(rounds, || seconds(&whole, threads()))?, Vec::new());
+    let memory = [peak_memory(&results, 1)?, peak_memory(&results, threads())?, peak_memory(&whole, threads())?];
+    let [one, all, whole] = memory.map(|peak| peak.map_or("unknown".to_string(), |megabytes| format!("{megabytes:.0} MB")));
+    println!("  peak memory: results {one} with 1 thread, {all} with all; with report {whole}");
+    if let Some(peer) = peer {
+        println!("  peak memory of the peer so far: {:.0} MB", peer.run(campaign, threads())?.1);
+    }
+    Ok(())
+}
+
+fn time_protocols(rounds: usize) -> Outcome<()> {
+    let mut protocols: Vec<PathBuf> =
+        fs::read_dir(Path::new(ROOT).join("protocols"))?.map(|entry| Ok(entry?.path())).collect::<Outcome<_>>()?;
+    protocols.sort();
+    println!("\ncheck");
+    for protocol in protocols {
+        let name = protocol.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let check = ["check".as_ref(), protocol.as_os_str()];
+        print_row(&name, repeat(rounds, || seconds(&check, threads()))?, Vec::new());
+    }
+    Ok(())
+}
+
+/// One run of the program from its start to its end [s]. A verdict that does not hold (exit code 1) is a result as well.
+fn seconds(words: &[&OsStr], jobs: usize) -> Outcome<f64> {
+    let mut command = Command::new(FISHPLATE);
+    command.args(words).arg("--quiet").env("RAYON_NUM_THREADS", jobs.to_string()).stdout(Stdio::null());
+    let start = Instant::now();
+    let done = command.output()?;
+    let seconds = start.elapsed().as_secs_f64();
+    match done.status.code() {
+        Some(0 | 1) => Ok(seconds),
+        _ => Err(format!("{command:?}: {}\n{}", done.status, String::from_utf8_lossy(&done.stderr)).into()),
+    }
+}
+
+/// Peak resident memory of one run [MB], from `/usr/bin/time` where there is one: the standard library does not tell.
+fn peak_memory(words: &[&OsStr], jobs: usize) -> Outcome<Option<f64>> {
+    let timer = Path::new("/usr/bin/time");
+    if !timer.exists() {
+        return Ok(None);
+    }
+    let mut command = Command::new(timer);
+    command.args(["-f", "%M", FISHPLATE]).args(words).arg("--quiet").env("RAYON_NUM_THREADS", jobs.to_string());
+    let said = String::from_utf8(command.output()?.stderr)?;
+    Ok(said.lines().last().and_then(|line| line.trim().parse::<f64>().ok()).map(|kilobytes| kilobytes / 1024.0))
+}
+
+fn repeat(rounds: usize, mut run: impl FnMut() -> Outcome<f64>) -> Outcome<Vec<f64>> {
+    run()?;
+    (0..rounds).map(|_| run()).collect()
+}
+
+/// An evaluation in Python that stays up between requests.
+struct Peer {
+    script: PathBuf,
+    process: Child,
+    requests: ChildStdin,
+    answers: BufReader<ChildStdout>,
+}
+
+impl Peer {
+    fn start(script: &OsStr) -> Outcome<Self> {
+        let driver = Path::new(ROOT).join("benches/peer.py");
+        let mut process = python().arg(driver).arg(script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
+        let requests = process.stdin.take().ok_or("no pipe to the peer")?;
+        let answers = BufReader::new(process.stdout.take().ok_or("no pipe from the peer")?);
+        Ok(Self { script: script.into(), process, requests, answers })
+    }
+
+    /// Seconds of one evaluation and peak memory of the process so far [MB].
+    fn run(&mut self, campaign: &Path, jobs: usize) -> Outcome<(f64, f64)> {
+        writeln!(self.requests, "{jobs} {}", campaign.display())?;
+        let mut answer = String::new();
+        self.answers.read_line(&mut answer)?;
+        let (seconds, memory) = answer.trim().split_once(' ').ok_or_else(|| format!("the peer failed on {}", campaign.display()))?;
+        Ok((seconds.parse()?, memory.parse()?))
+    }
+
+    fn synthetic_campaign(&self) -> Outcome<PathBuf> {
+        let folder = Path::new(SCRATCH).join("synthetic-33-sections");
+        if !folder.join("sections.csv").exists() {
+            let status = python().arg(&self.script).arg("--make-test-campaign").arg(&folder).status()?;
+            if !status.success() {
+                return Err(format!("the peer made no test campaign: {status}").into());
+            }
+        }
+        Ok(folder)
+    }
+}
+
+impl Drop for Peer {
+    fn drop(&mut self) {
+        // The driver ends with its input, which closes only after this; what it would still say is of no use.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn python() -> Command {
+    Command::new(env::var_os("FISHPLATE_PYTHON").unwrap_or_else(|| "python3".into()))
+}
+
+fn print_row(what: &str, here: Vec<f64>, there: Vec<f64>) {
+    let Some((minimum, median)) = minimum_and_median(here) else { return };
+    print!("  {what:<38} {minimum:>8.4} {median:>8.4}");
+    if let Some((peer_minimum, peer_median)) = minimum_and_median(there) {
+        print!("   {peer_minimum:>8.4} {peer_median:>8.4}   {:>5.1} {:>5.1}", peer_minimum / minimum, peer_median / median);
+    }
+    println!();
+}
+
+fn minimum_and_median(mut values: Vec<f64>) -> Option<(f64, f64)> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    let median =
+        if values.len() % 2 == 1 { *values.get(middle)? } else { (values.get(middle.checked_sub(1)?)? + values.get(middle)?) / 2.0 };
+    Some((*values.first()?, median))
+}
+
+fn folder_size(folder: &Path) -> Outcome<u64> {
+    let mut bytes = 0;
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let about = entry.metadata()?;
+        bytes += if about.is_dir() { folder_size(&entry.path())? } else { about.len() };
+    }
+    Ok(bytes)
+}
+
+fn threads() -> usize {
+    thread::available_parallelism().map_or(1, usize::from)
+}
+
+fn load() -> String {
+    fs::read_to_string("/proc/loadavg")
+        .ok()
+        .and_then(|text| text.split(' ').next().map(str::to_string))
+        .unwrap_or_else(|| "unknown".to_string())
+}
