@@ -1,0 +1,157 @@
+//! The main job, from a protocol and a campaign to everything a report says.
+
+use sha2::{Digest, Sha256};
+
+use crate::check::plan::{Parameter, Plan, SetBy};
+use crate::check::{self, Overrides, diff, family::Family};
+use crate::data::campaign::Campaign;
+use crate::graph::{self, Graph};
+use crate::problem::Problems;
+use crate::result::{
+    CampaignInfo, Certification, DataItem, FileHash, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo,
+};
+use crate::run::{self, Progress, Settings};
+use crate::yaml::{Node, Value};
+
+/// A protocol checked and compiled, ready to run.
+#[derive(Debug)]
+pub struct Compiled {
+    pub family: Family,
+    pub plan: Plan,
+    pub graph: Graph,
+}
+
+/// Checks and compiles a protocol with parameters set from outside.
+pub fn compile(family: Family, overrides: &Overrides, problems: &mut Problems) -> Option<Compiled> {
+    let plan = check::check(&family, overrides, problems)?;
+    let graph = graph::from_plan(&plan);
+    Some(Compiled { family, plan, graph })
+}
+
+/// Runs a compiled protocol over a campaign.
+///
+/// # Errors
+/// What makes the campaign unusable as a whole; see [`run::run`].
+pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Certification, Problems> {
+    let outcome = run::run(&compiled.plan, &compiled.graph, campaign, settings, progress)?;
+    let mut files: Vec<FileHash> = campaign.files.clone();
+    files.extend(outcome.files);
+    Ok(Certification {
+        protocol: protocol_info(compiled),
+        campaign: CampaignInfo {
+            name: campaign.name.clone(),
+            files,
+            vehicle: vehicle_items(&compiled.plan, campaign),
+            facts: campaign.facts.clone(),
+        },
+        verdict: outcome.verdict,
+        reasons: outcome.reasons,
+        quantities: outcome.quantities,
+        sections: outcome.sections,
+        zones: outcome.zones,
+        domain: outcome.domain,
+        traces: outcome.traces,
+        notes: outcome.notes,
+    })
+}
+
+fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
+    let Compiled { family, plan, graph } = compiled;
+    let files: Vec<ProtocolFile> = family
+        .sources
+        .iter()
+        .map(|source| ProtocolFile { name: file_name(&source.name), sha256: sha256(source.text.as_bytes()), text: source.text.clone() })
+        .collect();
+    let mut all = Sha256::new();
+    for source in &family.sources {
+        all.update(source.text.as_bytes());
+    }
+    ProtocolInfo {
+        name: plan.name.clone(),
+        title: plan.title.clone(),
+        edition: plan.edition.clone(),
+        source: plan.source.clone(),
+        scope: plan.scope.clone(),
+        notes: plan.notes.clone(),
+        sha256: hex(&all.finalize()),
+        files,
+        deviations: family.parent.as_ref().map_or_else(Vec::new, |parent| diff::diff(parent, &family.merged)),
+        parameters: plan.parameters.iter().map(parameter_info).collect(),
+        filters: plan
+            .filters
+            .iter()
+            .map(|filter| FilterInfo {
+                name: filter.name.clone(),
+                title: filter.title.clone(),
+                steps: filter.steps.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then "),
+                source: filter.source.clone(),
+            })
+            .collect(),
+        graph_nodes: graph.nodes.len(),
+        graph_svg: graph::svg(graph),
+        verdict_rule: plan.verdict.words.clone(),
+    }
+}
+
+fn parameter_info(parameter: &Parameter) -> ParameterInfo {
+    let set_by = match parameter.set_by {
+        SetBy::Default => "default",
+        SetBy::Campaign => "campaign",
+        SetBy::CommandLine => "command line",
+    };
+    ParameterInfo {
+        name: parameter.name.clone(),
+        title: parameter.title.clone(),
+        value: parameter.value.clone(),
+        default: parameter.default.clone(),
+        set_by: set_by.into(),
+    }
+}
+
+/// Values the protocol reads first, with their units, then all others of the file.
+fn vehicle_items(plan: &Plan, campaign: &Campaign) -> Vec<DataItem> {
+    let mut items: Vec<DataItem> = Vec::new();
+    let mut read: Vec<&str> = Vec::new();
+    for datum in &plan.vehicle {
+        let value = campaign.vehicle.lookup(&datum.key).and_then(Node::scalar_text).unwrap_or("").to_string();
+        let unit = if let crate::check::plan::DatumKind::Number(unit) = &datum.kind { Some(unit.text.clone()) } else { None };
+        items.push(DataItem { name: datum.title.clone(), value, unit, used: true });
+        read.push(&datum.key);
+    }
+    let mut rest = Vec::new();
+    flatten("", &campaign.vehicle, &mut rest);
+    items.extend(rest.into_iter().filter(|item| !read.contains(&item.name.as_str())));
+    items
+}
+
+fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {
+    match &node.value {
+        Value::Map(entries) => {
+            for (key, value) in entries {
+                let name = if prefix.is_empty() { key.text.clone() } else { format!("{prefix}.{}", key.text) };
+                flatten(&name, value, items);
+            }
+        }
+        Value::List(list) => {
+            let value = list.iter().map(|item| item.raw.as_str()).collect::<Vec<_>>().join(", ");
+            items.push(DataItem { name: prefix.to_string(), value, unit: None, used: false });
+        }
+        _ => items.push(DataItem { name: prefix.to_string(), value: node.raw.clone(), unit: None, used: false }),
+    }
+}
+
+/// Reports name files without the folders of the machine they were made on.
+fn file_name(path: &str) -> String {
+    if path.starts_with("protocols/") {
+        return path.to_string();
+    }
+    std::path::Path::new(path).file_name().map_or_else(|| path.to_string(), |name| name.to_string_lossy().into_owned())
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,222 @@
+//! `certify`: the main job.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::output::{Console, Exit};
+use super::protocols::load;
+use crate::certify::{Compiled, certify, compile};
+use crate::check::{Override, Overrides, plan::SetBy};
+use crate::data::campaign::Campaign;
+use crate::data::write::write_all;
+use crate::library;
+use crate::problem::{Problem, Problems};
+use crate::report::{figure, html, json, number, tables, typst, view};
+use crate::result::{Certification, Verdict};
+use crate::run::Settings;
+use crate::source::Source;
+use crate::syntax::document::Text;
+
+#[derive(Debug, Args)]
+pub struct Certify {
+    /// Folder of the campaign.
+    campaign: PathBuf,
+    /// Path of a protocol, or the name of a shipped one [default: what campaign.yaml names, else en14363-2016-annex-t]
+    #[arg(long, short)]
+    protocol: Option<String>,
+    /// Folder to write to; made if missing.
+    #[arg(long, short)]
+    out: PathBuf,
+    /// Set a parameter of the protocol.
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// What to write beside results.json and the tables.
+    #[arg(long, value_enum, default_value_t = Only::All)]
+    only: Only,
+    /// How many distance plots to show.
+    #[arg(long, default_value_t = 8)]
+    plots: usize,
+    /// Records worked on at a time [default: one per core]
+    #[arg(long, short)]
+    jobs: Option<usize>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Only {
+    /// results.json, tables, report.pdf, report.html.
+    All,
+    /// results.json and tables.
+    Results,
+    /// results.json, tables, report.html.
+    Html,
+    /// results.json, tables, report.pdf.
+    Pdf,
+}
+
+impl Certify {
+    pub fn run(self, console: &Console) -> Exit {
+        if let Some(jobs) = self.jobs {
+            // Fails only if the pool was made before, which nothing does before here.
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global();
+        }
+        let mut problems = Problems::default();
+        let prepared = self.prepare(&mut problems);
+        console.problems(&problems);
+        let Some((compiled, campaign)) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let bar = progress_bar(console, campaign.record_names().len());
+        let settings = Settings { traces: if self.only == Only::Results { 0 } else { self.plots } };
+        let found = certify(&compiled, &campaign, settings, &|section| {
+            bar.set_message(section.to_string());
+            bar.inc(1);
+        });
+        bar.finish_and_clear();
+        let found = match found {
+            Ok(found) => found,
+            Err(problems) => {
+                console.problems(&problems);
+                return Exit::Wrong;
+            }
+        };
+        let files = match self.files(&found) {
+            Ok(files) => files,
+            Err(problems) => {
+                console.problems(&problems);
+                return Exit::Unfinished;
+            }
+        };
+        if let Err(error) = write_all(&self.out, &files) {
+            return console.fail(Problem::error("cannot-write", format!("{} cannot be written: {error}", self.out.display())), Exit::Unfinished);
+        }
+        if !console.quiet {
+            console.print(&summary(&found, console.color));
+            console.say(&format!("written: {}", self.out.display()));
+        }
+        if found.verdict == Verdict::Validated { Exit::Done } else { Exit::DoesNotHold }
+    }
+
+    fn prepare(&self, problems: &mut Problems) -> Option<(Compiled, Campaign)> {
+        let campaign = Campaign::open(&self.campaign, problems)?;
+        let family = match (&self.protocol, &campaign.protocol) {
+            (Some(name), _) => load(name, problems),
+            (None, Some((name, span))) => match library::find(name, Some(&campaign.folder)) {
+                Ok(source) => Some(crate::check::family::read(&source, &library::parent, problems)),
+                Err(problem) => {
+                    problems.push(problem.at(span));
+                    None
+                }
+            },
+            (None, None) => load(library::SHIPPED[0].name, problems),
+        }?;
+        let overrides = self.overrides(&campaign, problems)?;
+        let compiled = compile(family, &overrides, problems)?;
+        Some((compiled, campaign))
+    }
+
+    /// Parameters of the campaign, and over them those of the command line.
+    fn overrides(&self, campaign: &Campaign, problems: &mut Problems) -> Option<Overrides> {
+        let mut overrides = Overrides::new();
+        for (name, text) in &campaign.parameters {
+            overrides.insert(name.clone(), Override { text: text.clone(), set_by: SetBy::Campaign });
+        }
+        for set in &self.set {
+            let Some((name, value)) = set.split_once('=') else {
+                problems.push(Problem::error("set", format!("`--set {set}` has no `=`")).help("write `--set name=value`"));
+                return None;
+            };
+            let source = Source::new("--set", set.clone());
+            let span = source.span(name.len() + 1..set.len());
+            overrides.insert(name.trim().to_string(), Override { text: Text { text: value.to_string(), span, exact: true }, set_by: SetBy::CommandLine });
+        }
+        Some(overrides)
+    }
+
+    /// All files of the report, by path below the output folder.
+    fn files(&self, found: &Certification) -> Result<Vec<(PathBuf, Vec<u8>)>, Problems> {
+        let results = json::results(found);
+        let mut files = Vec::new();
+        let tables = tables::tables(found).map_err(|error| Problems(vec![Problem::error("table", error.to_string())]))?;
+        for (name, bytes) in tables {
+            files.push((Path::new("tables").join(name), bytes));
+        }
+        if self.only != Only::Results {
+            let data = view::view(found);
+            let figures = figure::figures(found);
+            if self.only != Only::Html {
+                let attachment =
+                    typst::Attachment { name: "results.json", mime: "application/json", bytes: results.as_bytes(), description: "Every number of this report" };
+                files.push(("report.pdf".into(), typst::typeset(&data, &figures, &[attachment])?.bytes));
+            }
+            if self.only != Only::Pdf {
+                files.push(("report.html".into(), html::html(&data, &figures, found)?.into_bytes()));
+            }
+        }
+        files.push(("results.json".into(), results.into_bytes()));
+        Ok(files)
+    }
+}
+
+fn progress_bar(console: &Console, sections: usize) -> Arc<ProgressBar> {
+    let bar = ProgressBar::new(sections as u64);
+    if console.quiet {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+        bar.set_style(style);
+    }
+    Arc::new(bar)
+}
+
+/// The table of verdicts on the terminal.
+fn summary(found: &Certification, color: bool) -> String {
+    let paint = |text: String, holds: Option<bool>| match (color, holds) {
+        (true, Some(true)) => format!("\u{1b}[32m{text}\u{1b}[0m"),
+        (true, Some(false)) => format!("\u{1b}[31;1m{text}\u{1b}[0m"),
+        _ => text,
+    };
+    let width = found.quantities.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);
+    let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
+    out += &format!("{:width$}  {:>8}  {:<26} {:>5}  {:>12}  {:>12}  {:>8}\n", "quantity", "unit", "statistic", "n", "value", "limit", "share");
+    for quantity in &found.quantities {
+        for (index, statistic) in quantity.statistics.iter().enumerate() {
+            let name = if index == 0 { quantity.id.as_str() } else { "" };
+            let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
+            let show = |value: Option<f64>| value.map_or("-".to_string(), |value| number::significant(value, 4));
+            let verdict = match statistic.holds {
+                Some(true) => "holds",
+                Some(false) => "EXCEEDS",
+                None => "not assessable",
+            };
+            let unit = if index == 0 { quantity.unit.as_str() } else { "" };
+            let share = statistic.normalised.map_or("-".to_string(), |share| format!("{share:.3}"));
+            out += &format!(
+                "{name:width$}  {unit:>8}  {:<26} {:>5}  {:>12}  {:>12}  {share:>8}  {}\n",
+                format!("{}{scope}", statistic.title),
+                statistic.count,
+                show(statistic.value),
+                show(statistic.limit),
+                paint(verdict.to_string(), statistic.holds)
+            );
+        }
+        if let (Some(reason), true) = (&quantity.reason, quantity.statistics.is_empty()) {
+            out += &format!("{:width$}  {reason}\n", quantity.id);
+        }
+    }
+    out.push('\n');
+    let used = found.sections.iter().filter(|section| section.used).count();
+    out += &format!("{used} of {} sections used\n", found.sections.len());
+    for section in found.sections.iter().filter(|section| !section.used) {
+        out += &format!("  {} not used: {}\n", section.section, section.reason.clone().unwrap_or_default());
+    }
+    for note in &found.notes {
+        out += &format!("note: {note}\n");
+    }
+    let holds = found.verdict == Verdict::Validated;
+    out += &format!("\n{}\n", paint(format!("Verdict: {}", found.verdict.in_words()), Some(holds)));
+    for reason in &found.reasons {
+        out += &format!("  {reason}\n");
+    }
+    out
+}

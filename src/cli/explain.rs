@@ -1,0 +1,236 @@
+//! `explain`: a protocol at any stage, or the registry.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+
+use super::output::{Console, Exit};
+use super::protocols::load;
+use crate::catalog::{FUNCTIONS, METRICS, REDUCERS, STATISTICS, STEPS, Signature};
+use crate::check::{self, DIFFERENCES, Overrides, plan::Plan};
+use crate::graph;
+use crate::problem::{Problem, Problems};
+use crate::syntax::document::Document;
+use crate::units::SYMBOLS;
+
+#[derive(Debug, Args)]
+pub struct Explain {
+    /// Path of a protocol, or the name of a shipped one; without it the registry is listed.
+    #[arg(value_name = "PROTOCOL")]
+    protocol: Option<String>,
+    #[arg(long, value_enum, default_value_t = Stage::Plan)]
+    stage: Stage,
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// File to write; the terminal otherwise.
+    #[arg(long, short)]
+    output: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Stage {
+    /// Blocks and fields as written, merged with what is extended.
+    Ast,
+    /// The checked rules, parameters put in.
+    Plan,
+    /// The processing graph.
+    Graph,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+    Dot,
+    Svg,
+}
+
+impl Explain {
+    pub fn run(self, console: &Console) -> Exit {
+        let text = match &self.protocol {
+            None if matches!(self.format, Format::Text | Format::Json) => registry(self.format == Format::Json),
+            None => return console.fail(Problem::error("format", "the registry is printed as text or json"), Exit::Wrong),
+            Some(name) => match self.stage_text(name, console) {
+                Ok(text) => text,
+                Err(exit) => return exit,
+            },
+        };
+        match &self.output {
+            Some(path) => console.write(path, text.as_bytes()),
+            None => console.print(&text),
+        }
+    }
+
+    fn stage_text(&self, name: &str, console: &Console) -> Result<String, Exit> {
+        if self.stage != Stage::Graph && matches!(self.format, Format::Dot | Format::Svg) {
+            return Err(console.fail(Problem::error("format", "only the graph is drawn: `--stage graph`"), Exit::Wrong));
+        }
+        let mut problems = Problems::default();
+        let family = load(name, &mut problems);
+        let plan = family.as_ref().and_then(|family| check::check(family, &Overrides::new(), &mut problems));
+        console.problems(&problems);
+        let Some(family) = family else { return Err(Exit::Wrong) };
+        if self.stage == Stage::Ast {
+            return Ok(if self.format == Format::Json { pretty(&document_json(&family.merged)) } else { document_text(&family.merged) });
+        }
+        let Some(plan) = plan else { return Err(Exit::Wrong) };
+        Ok(match (self.stage, self.format) {
+            (Stage::Graph, format) => {
+                let graph = graph::from_plan(&plan);
+                match format {
+                    Format::Text => graph::text(&graph),
+                    Format::Json => pretty(&graph::json(&graph)),
+                    Format::Dot => graph::dot(&graph),
+                    Format::Svg => graph::svg(&graph),
+                }
+            }
+            (_, Format::Json) => pretty(&plan_json(&plan)),
+            _ => plan_text(&plan),
+        })
+    }
+}
+
+fn pretty(value: &Value) -> String {
+    serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
+}
+
+fn document_text(document: &Document) -> String {
+    let mut out = String::new();
+    for block in &document.blocks {
+        let title = block.title.as_ref().map_or(String::new(), |title| format!(" \"{}\"", title.text));
+        let _ = writeln!(out, "{} {}{title}  ({})", block.kind.text, block.name_text(), block.span());
+        for field in &block.fields {
+            let _ = writeln!(out, "  {}: {}  ({})", field.key.text, check::normalised(&field.value.text), field.value.span);
+        }
+    }
+    out
+}
+
+fn document_json(document: &Document) -> Value {
+    let blocks: Vec<Value> = document
+        .blocks
+        .iter()
+        .map(|block| {
+            let fields: Vec<Value> =
+                block.fields.iter().map(|field| json!({"key": field.key.text, "value": check::normalised(&field.value.text), "at": field.value.span.to_string()})).collect();
+            json!({"kind": block.kind.text, "name": block.name_text(), "title": block.title.as_ref().map(|title| title.text.as_str()), "at": block.span().to_string(), "fields": fields})
+        })
+        .collect();
+    json!({ "blocks": blocks })
+}
+
+fn plan_text(plan: &Plan) -> String {
+    let mut out = format!("{}: {}\naxis {} [{}]\n", plan.name, plan.title, plan.axis.column, plan.axis.unit);
+    for parameter in &plan.parameters {
+        let _ = writeln!(out, "parameter {} = {}", parameter.name, parameter.value);
+    }
+    for zone in &plan.zones {
+        let _ = writeln!(out, "zone {}: {}; at least {} sections", zone.name, zone.condition_words, zone.minimum_sections);
+    }
+    for check in &plan.checks {
+        let _ = writeln!(out, "check {}: {}", check.name, check.words);
+    }
+    for quantity in &plan.quantities {
+        let names: Vec<&str> = quantity.signals.iter().map(|(name, _)| name.as_str()).collect();
+        let _ = writeln!(out, "quantity {} [{}]: {}", quantity.id, quantity.unit, quantity.title);
+        let _ = writeln!(out, "  of          {}\n  filter      {}\n  value       {}\n  comparison  {}", names.join(", "), quantity.words.filter, quantity.words.processing, quantity.words.comparison);
+        for limit in &quantity.limits {
+            let _ = writeln!(out, "  limit       {} {}", limit.statistic.title(limit.ddof), limit.words);
+        }
+    }
+    let _ = writeln!(out, "{}", plan.verdict.words);
+    out
+}
+
+fn plan_json(plan: &Plan) -> Value {
+    let quantities: Vec<Value> = plan
+        .quantities
+        .iter()
+        .map(|quantity| {
+            let limits: Vec<Value> = quantity.limits.iter().map(|limit| json!({"statistic": limit.statistic.name(), "limit": limit.words})).collect();
+            json!({
+                "id": quantity.id, "title": quantity.title, "unit": quantity.unit.text,
+                "signals": quantity.signals.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+                "filter": quantity.words.filter, "value": quantity.words.processing, "comparison": quantity.words.comparison,
+                "limits": limits, "minimum_signals": quantity.minimum_signals, "minimum_pairs": quantity.minimum_pairs,
+            })
+        })
+        .collect();
+    let zones: Vec<Value> = plan
+        .zones
+        .iter()
+        .map(|zone| json!({"zone": zone.name, "title": zone.title, "where": zone.condition_words, "minimum_sections": zone.minimum_sections}))
+        .collect();
+    let parameters: Vec<Value> = plan.parameters.iter().map(|parameter| json!({"name": parameter.name, "value": parameter.value})).collect();
+    json!({"name": plan.name, "title": plan.title, "parameters": parameters, "zones": zones, "quantities": quantities, "verdict": plan.verdict.words})
+}
+
+fn signature(signature: Signature) -> &'static str {
+    match signature {
+        Signature::Same => "(D) -> D",
+        Signature::ToPlain => "(D) -> plain number",
+        Signature::Plain => "(plain number) -> plain number",
+        Signature::Root => "(D) -> square root of D",
+        Signature::PairSame => "(D, D) -> D",
+    }
+}
+
+/// Entries of the registry: what, wording, signature, about.
+pub fn entries() -> Vec<(&'static str, String, String, String)> {
+    let mut all = Vec::new();
+    for entry in STEPS {
+        let mut about = entry.about.to_string();
+        for (name, default) in entry.form.numbers {
+            let _ = write!(about, " Option `{name}` (default {default}).");
+        }
+        for choice in entry.form.choices {
+            let _ = write!(about, " Option {}.", choice.words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(" | "));
+        }
+        all.push(("step", entry.form.in_words(), "signal<D> -> signal<D>".into(), about));
+    }
+    all.push(("reducer", "p<number>".into(), "signal<D> -> D".into(), "The value below which so many per cent of the samples lie.".into()));
+    for entry in REDUCERS {
+        let gives = if entry.name == "slope" { "signal<D> -> D per axis" } else { "signal<D> -> D" };
+        all.push(("reducer", entry.name.into(), gives.into(), entry.about.into()));
+    }
+    for entry in METRICS {
+        let probe = crate::units::Dimension::TIME;
+        let gives = if (entry.gives)(probe) == probe { "(signal<D>, signal<D>) -> D" } else { "(signal<D>, signal<D>) -> plain number" };
+        all.push(("metric", entry.form.in_words(), gives.into(), format!("{} {}", entry.about, entry.source)));
+    }
+    for (name, expression) in DIFFERENCES {
+        all.push(("difference", name.into(), "(D, D) -> D".into(), format!("`{expression}`")));
+    }
+    for entry in STATISTICS {
+        all.push(("statistic", entry.name.into(), "pairs of D -> D".into(), format!("The {} of all pairs.", entry.title)));
+    }
+    all.push(("statistic", "p<number>".into(), "pairs of D -> D".into(), "A percentile of all pairs.".into()));
+    all.push(("statistic", "each".into(), "each pair of D".into(), "Every pair by itself; the worst decides.".into()));
+    for function in FUNCTIONS {
+        all.push(("function", function.name.into(), signature(function.signature).into(), function.about.into()));
+    }
+    all
+}
+
+fn registry(as_json: bool) -> String {
+    let entries = entries();
+    if as_json {
+        let list: Vec<Value> = entries.iter().map(|(kind, name, signature, about)| json!({"kind": kind, "wording": name, "signature": signature, "about": about})).collect();
+        let units: Vec<Value> = SYMBOLS.iter().map(|unit| json!({"symbol": unit.symbol, "name": unit.name, "dimension": unit.dimension.to_string()})).collect();
+        return pretty(&json!({"registry": list, "units": units}));
+    }
+    let mut out = String::new();
+    let mut last = "";
+    for (kind, name, signature, about) in &entries {
+        if *kind != last {
+            let _ = writeln!(out, "{}{kind}s", if last.is_empty() { "" } else { "\n" });
+            last = kind;
+        }
+        let _ = writeln!(out, "  {name}\n      {signature}. {about}");
+    }
+    let symbols: Vec<&str> = SYMBOLS.iter().map(|unit| unit.symbol).collect();
+    let _ = writeln!(out, "\nunits\n  {}", symbols.join("  "));
+    out
+}

@@ -1,0 +1,136 @@
+//! The command line: arguments to stages to an exit code.
+
+mod certify;
+mod explain;
+mod output;
+mod protocols;
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+
+pub use output::Exit;
+use output::Console;
+
+/// Validation of rail vehicle simulation models: from a protocol text and a campaign folder to a certification report.
+#[derive(Debug, Parser)]
+#[command(name = "fishplate", version, about, arg_required_else_help = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// Print errors only.
+    #[arg(long, short, global = true)]
+    quiet: bool,
+    /// Colours and underlines on the terminal.
+    #[arg(long, global = true, value_enum, default_value_t = Color::Auto)]
+    color: Color,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a protocol over a campaign and write the report.
+    #[command(after_help = "Example:\n  fishplate certify examples/coach --out target/coach-report")]
+    Certify(certify::Certify),
+    /// Check protocols: every problem with its place.
+    #[command(after_help = "Example:\n  fishplate check protocols/en14363-2016-annex-t.fp my-variant.yaml")]
+    Check {
+        /// Paths of protocols, or names of shipped ones.
+        #[arg(required = true, value_name = "PROTOCOL")]
+        protocols: Vec<String>,
+    },
+    /// Write protocols in canonical form.
+    #[command(after_help = "Example:\n  fishplate fmt my-variant.fp\n  fishplate fmt --check protocols/*.fp")]
+    Fmt {
+        #[arg(required = true, value_name = "PROTOCOL")]
+        protocols: Vec<PathBuf>,
+        /// Change nothing; exit with 1 if a file is not in canonical form.
+        #[arg(long)]
+        check: bool,
+    },
+    /// Turn a protocol into the other form, without loss.
+    #[command(after_help = "Example:\n  fishplate convert en14363-2016-annex-t --to yaml -o annex-t.yaml")]
+    Convert {
+        #[arg(value_name = "PROTOCOL")]
+        protocol: String,
+        #[arg(long, value_enum)]
+        to: Form,
+        /// File to write; the terminal otherwise.
+        #[arg(long, short)]
+        output: Option<PathBuf>,
+    },
+    /// Show a protocol at any stage; without a protocol, everything the language can do with signals and numbers.
+    #[command(after_help = "Example:\n  fishplate explain en14363-2016-annex-t --stage graph --format svg -o graph.svg\n  fishplate explain")]
+    Explain(explain::Explain),
+    /// What differs in meaning between two protocols, rule by rule.
+    #[command(after_help = "Example:\n  fishplate diff en14363-2016-annex-t my-variant.fp")]
+    Diff {
+        #[arg(value_name = "PROTOCOL")]
+        before: String,
+        #[arg(value_name = "PROTOCOL")]
+        after: String,
+    },
+    /// List the shipped protocols, or print one.
+    #[command(after_help = "Example:\n  fishplate protocols\n  fishplate protocols sprague-geers > mine.fp")]
+    Protocols {
+        #[arg(value_name = "NAME")]
+        name: Option<String>,
+    },
+    /// Print the JSON Schema of the YAML form, for editors.
+    #[command(after_help = "Example:\n  fishplate schema > protocol.schema.json")]
+    Schema,
+    /// Print shell completions.
+    #[command(after_help = "Example:\n  fishplate completions bash > /etc/bash_completion.d/fishplate")]
+    Completions {
+        #[arg(value_enum)]
+        shell: clap_complete::Shell,
+    },
+    /// Write the manual pages.
+    #[command(after_help = "Example:\n  fishplate man --out target/man")]
+    Man {
+        #[arg(long)]
+        out: PathBuf,
+    },
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Form {
+    Yaml,
+    Fp,
+}
+
+/// Runs the program as called.
+pub fn run() -> Exit {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // clap prints help and versions this way too, which are no errors.
+            let failed = error.use_stderr();
+            let _ = error.print();
+            return if failed { Exit::Wrong } else { Exit::Done };
+        }
+    };
+    let console = Console::new(arguments.quiet, arguments.color);
+    match arguments.command {
+        Command::Certify(certify) => certify.run(&console),
+        Command::Check { protocols } => protocols::check(&protocols, &console),
+        Command::Fmt { protocols, check } => protocols::fmt(&protocols, check, &console),
+        Command::Convert { protocol, to, output } => protocols::convert(&protocol, matches!(to, Form::Yaml), output.as_deref(), &console),
+        Command::Explain(explain) => explain.run(&console),
+        Command::Diff { before, after } => protocols::diff(&before, &after, &console),
+        Command::Protocols { name } => protocols::list(name.as_deref(), &console),
+        Command::Schema => console.print(&(serde_json::to_string_pretty(&crate::syntax::schema::json_schema()).unwrap_or_default() + "\n")),
+        Command::Completions { shell } => {
+            let mut bytes = Vec::new();
+            clap_complete::generate(shell, &mut <Arguments as clap::CommandFactory>::command(), "fishplate", &mut bytes);
+            console.print(&String::from_utf8_lossy(&bytes))
+        }
+        Command::Man { out } => protocols::man(&out, &console),
+    }
+}

@@ -1,0 +1,169 @@
+//! Subcommands about protocol texts.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::output::{Console, Exit};
+use crate::check::family::{self, Family};
+use crate::check::{self, Overrides};
+use crate::library;
+use crate::problem::{Problem, Problems};
+use crate::source::Source;
+use crate::syntax;
+
+/// A protocol and its ancestors, by name or path.
+pub fn load(name: &str, problems: &mut Problems) -> Option<Family> {
+    match library::find(name, None) {
+        Ok(source) => Some(family::read(&source, &library::parent, problems)),
+        Err(problem) => {
+            problems.push(*problem);
+            None
+        }
+    }
+}
+
+pub fn check(names: &[String], console: &Console) -> Exit {
+    let mut exit = Exit::Done;
+    for name in names {
+        let mut problems = Problems::default();
+        let plan = load(name, &mut problems).and_then(|family| check::check(&family, &Overrides::new(), &mut problems));
+        console.problems(&problems);
+        match plan {
+            Some(plan) => console.say(&format!(
+                "{name}: {} quantities, {} limits, {} zones: no errors",
+                plan.quantities.len(),
+                plan.quantities.iter().map(|quantity| quantity.limits.len()).sum::<usize>(),
+                plan.zones.len()
+            )),
+            None => exit = Exit::Wrong,
+        }
+    }
+    exit
+}
+
+pub fn fmt(paths: &[PathBuf], only_check: bool, console: &Console) -> Exit {
+    let mut exit = Exit::Done;
+    for path in paths {
+        let source = match library::read(path) {
+            Ok(source) => source,
+            Err(problem) => {
+                exit = console.fail(*problem, Exit::Wrong);
+                continue;
+            }
+        };
+        let mut problems = Problems::default();
+        let text = canonical(&source, &mut problems, syntax::is_yaml(&source.name));
+        // A text with a broken line is left as it is: what could not be read would be lost.
+        if problems.any_error() {
+            console.problems(&problems);
+            exit = Exit::Wrong;
+            continue;
+        }
+        if text == source.text {
+            continue;
+        }
+        if only_check {
+            console.say(&format!("{}: not in canonical form", path.display()));
+            if exit == Exit::Done {
+                exit = Exit::DoesNotHold;
+            }
+        } else if console.write(path, text.as_bytes()) != Exit::Done {
+            exit = Exit::Unfinished;
+        }
+    }
+    exit
+}
+
+fn canonical(source: &Arc<Source>, problems: &mut Problems, yaml: bool) -> String {
+    let document = syntax::read(source, problems);
+    if yaml { syntax::print_yaml(&document) } else { syntax::print_text(&document) }
+}
+
+pub fn convert(name: &str, yaml: bool, output: Option<&Path>, console: &Console) -> Exit {
+    let source = match library::find(name, None) {
+        Ok(source) => source,
+        Err(problem) => return console.fail(*problem, Exit::Wrong),
+    };
+    let mut problems = Problems::default();
+    let text = canonical(&source, &mut problems, yaml);
+    console.problems(&problems);
+    if problems.any_error() {
+        return Exit::Wrong;
+    }
+    match output {
+        Some(path) => console.write(path, text.as_bytes()),
+        None => console.print(&text),
+    }
+}
+
+pub fn diff(before: &str, after: &str, console: &Console) -> Exit {
+    let mut problems = Problems::default();
+    let (before, after) = (load(before, &mut problems), load(after, &mut problems));
+    console.problems(&problems);
+    let (Some(before), Some(after)) = (before, after) else { return Exit::Wrong };
+    if problems.any_error() {
+        return Exit::Wrong;
+    }
+    let found = check::diff::diff(&before.merged, &after.merged);
+    if found.is_empty() {
+        return console.print("no rule differs\n");
+    }
+    let mut text = String::new();
+    for deviation in found {
+        text += &format!("{}\n", deviation.rule);
+        if let Some(before) = deviation.before {
+            text += &format!("  - {before}\n");
+        }
+        if let Some(after) = deviation.after {
+            text += &format!("  + {after}\n");
+        }
+    }
+    console.print(&text)
+}
+
+pub fn list(name: Option<&str>, console: &Console) -> Exit {
+    match name {
+        Some(name) => match library::shipped(name) {
+            Some(source) => console.print(&source.text),
+            None => {
+                let problem = Problem::error("no-such-protocol", format!("no shipped protocol is called `{name}`"));
+                console.fail(problem.suggest(name, library::SHIPPED.iter().map(|shipped| shipped.name)), Exit::Wrong)
+            }
+        },
+        None => {
+            let width = library::SHIPPED.iter().map(|shipped| shipped.name.len()).max().unwrap_or(0);
+            let text: String = library::SHIPPED
+                .iter()
+                .map(|shipped| {
+                    let source = Source::new(shipped.name, shipped.text);
+                    let document = syntax::read_text(&source, &mut Problems::default());
+                    let title = document.blocks.iter().find(|block| block.kind.text == "protocol").and_then(|block| block.title.clone());
+                    format!("{:width$}  {}\n", shipped.name, title.map_or(String::new(), |title| title.text))
+                })
+                .collect();
+            console.print(&text)
+        }
+    }
+}
+
+/// One page for the program and one for each subcommand.
+pub fn man(out: &Path, console: &Console) -> Exit {
+    let command = <super::Arguments as clap::CommandFactory>::command();
+    let mut pages = vec![("fishplate.1".to_string(), clap_mangen::Man::new(command.clone()))];
+    for sub in command.get_subcommands() {
+        let name = format!("fishplate-{}", sub.get_name());
+        // clap_mangen titles a page by the command's name, which lives as long as the program.
+        let named = sub.clone().name(String::leak(name.clone()) as &'static str);
+        pages.push((format!("{name}.1"), clap_mangen::Man::new(named)));
+    }
+    for (name, page) in pages {
+        let mut bytes = Vec::new();
+        if page.render(&mut bytes).is_err() {
+            return Exit::Unfinished;
+        }
+        if console.write(&out.join(name), &bytes) != Exit::Done {
+            return Exit::Unfinished;
+        }
+    }
+    Exit::Done
+}

@@ -1,0 +1,78 @@
+//! The shipped protocols, embedded, and how a protocol is found by name or path.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::problem::Problem;
+use crate::source::Source;
+
+/// A protocol that comes with the program.
+#[derive(Debug)]
+pub struct Shipped {
+    pub name: &'static str,
+    pub text: &'static str,
+}
+
+macro_rules! shipped {
+    ($($name:literal),* $(,)?) => {
+        &[$(Shipped { name: $name, text: include_str!(concat!("../protocols/", $name, ".fp")) }),*]
+    };
+}
+
+/// In the order they are listed; the first is the one `certify` takes unless told otherwise.
+pub const SHIPPED: &[Shipped] = shipped![
+    "en14363-2016-annex-t",
+    "en14363-2016-annex-t-strict-acceleration",
+    "en14363-2016-annex-t-six-sections",
+    "en14363-2016-annex-t-population-deviation",
+    "sprague-geers",
+    "stationary-sway",
+];
+
+/// The text of a shipped protocol.
+pub fn shipped(name: &str) -> Option<Arc<Source>> {
+    SHIPPED.iter().find(|shipped| shipped.name == name).map(|shipped| Source::new(format!("protocols/{name}.fp"), shipped.text))
+}
+
+/// A protocol named on the command line or in a campaign: a path if there is such a file, else a shipped name.
+///
+/// # Errors
+/// `no-such-protocol`, or `unreadable` with what the system says.
+pub fn find(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Box<Problem>> {
+    let path = beside.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
+    if path.is_file() {
+        return read(&path);
+    }
+    shipped(name).ok_or_else(|| {
+        let problem = Problem::error("no-such-protocol", format!("there is no file and no shipped protocol `{name}`"));
+        Box::new(problem.suggest(name, SHIPPED.iter().map(|shipped| shipped.name)))
+    })
+}
+
+/// What `extends` names, seen from the text that says it: a shipped name, or a path beside that text.
+///
+/// # Errors
+/// As [`find`].
+pub fn parent(name: &str, from: &Source) -> Result<Arc<Source>, Box<Problem>> {
+    if let Some(found) = shipped(name) {
+        return Ok(found);
+    }
+    find(name, Path::new(&from.name).parent())
+}
+
+/// Reads a protocol file.
+///
+/// # Errors
+/// `unreadable`, `not-utf8`.
+pub fn read(path: &Path) -> Result<Arc<Source>, Box<Problem>> {
+    let shown = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|error| Box::new(Problem::error("unreadable", format!("{shown} cannot be read: {error}"))))?;
+    match String::from_utf8(bytes) {
+        Ok(text) => Ok(Source::new(shown, text)),
+        Err(error) => {
+            let at = error.utf8_error().valid_up_to();
+            let row = error.as_bytes()[..at].iter().filter(|byte| **byte == b'\n').count() + 1;
+            Err(Box::new(Problem::error("not-utf8", format!("{shown} is not UTF-8: byte {at}, in row {row}")).help("save it as UTF-8")))
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! `results.json`: the result for machines, keys in a fixed order, numbers in full precision, `null` with a reason.
+
+use serde_json::{Map, Value, json};
+
+use crate::result::{Certification, QuantityResult, StatisticResult};
+
+/// The whole result, ending in a line break.
+pub fn results(found: &Certification) -> String {
+    let mut root = Map::new();
+    root.insert("fishplate".into(), json!(env!("CARGO_PKG_VERSION")));
+    let protocol = &found.protocol;
+    root.insert(
+        "protocol".into(),
+        json!({
+            "name": protocol.name,
+            "title": protocol.title,
+            "sha256": protocol.sha256,
+            "parameters": protocol.parameters,
+            "deviations": protocol.deviations,
+            "files": protocol.files.iter().map(|file| json!({"name": file.name, "sha256": file.sha256})).collect::<Vec<_>>(),
+        }),
+    );
+    root.insert("campaign".into(), json!({"name": found.campaign.name, "files": found.campaign.files, "vehicle": found.campaign.vehicle}));
+    root.insert("verdict".into(), json!(found.verdict));
+    root.insert("reasons".into(), json!(found.reasons));
+    root.insert("quantities".into(), Value::Array(found.quantities.iter().map(quantity).collect()));
+    root.insert("sections".into(), json!(found.sections));
+    root.insert("zones".into(), json!(found.zones));
+    root.insert("domain".into(), json!(found.domain));
+    root.insert("notes".into(), json!(found.notes));
+    // A tree of plain values always serialises.
+    serde_json::to_string_pretty(&Value::Object(root)).unwrap_or_default() + "\n"
+}
+
+fn quantity(quantity: &QuantityResult) -> Value {
+    let mut entry = Map::new();
+    entry.insert("id".into(), json!(quantity.id));
+    entry.insert("title".into(), json!(quantity.title));
+    entry.insert("unit".into(), json!(quantity.unit));
+    entry.insert("pairs".into(), json!(quantity.values.len()));
+    let named = |name: &str| quantity.statistics.iter().find(|statistic| statistic.name == name && statistic.scope == "all");
+    let (mean, std) = (named("mean"), named("std"));
+    if quantity.has_sides && (mean.is_some() || std.is_some()) {
+        let value = |of: Option<&StatisticResult>| json!(of.and_then(|statistic| statistic.value));
+        let limit = |of: Option<&StatisticResult>| json!(of.and_then(|statistic| statistic.limit));
+        let share = |of: Option<&StatisticResult>| json!(of.and_then(|statistic| statistic.normalised));
+        entry.insert("mean".into(), value(mean));
+        entry.insert("std".into(), value(std));
+        entry.insert("limit_mean".into(), limit(mean));
+        entry.insert("limit_std".into(), limit(std));
+        entry.insert("normalised_mean".into(), share(mean));
+        entry.insert("normalised_std".into(), share(std));
+    } else {
+        // The statistic nearest to its limit stands for the quantity; all of them follow.
+        let worst = quantity.statistics.iter().max_by(|a, b| a.normalised.unwrap_or(-1.0).total_cmp(&b.normalised.unwrap_or(-1.0)));
+        entry.insert("metric".into(), json!(quantity.comparison));
+        entry.insert("statistic".into(), json!(worst.map(|statistic| statistic.name.as_str())));
+        entry.insert("value".into(), json!(worst.and_then(|statistic| statistic.value)));
+        entry.insert("limit".into(), json!(worst.and_then(|statistic| statistic.limit)));
+    }
+    entry.insert("holds".into(), json!(quantity.holds));
+    entry.insert("reason".into(), json!(quantity.reason));
+    entry.insert("statistics".into(), json!(quantity.statistics));
+    let values = quantity.values.iter().map(|pair| {
+        let mut row = Map::new();
+        row.insert("section".into(), json!(pair.section));
+        row.insert("zone".into(), zone(pair.zone.as_deref()));
+        row.insert("signal".into(), json!(pair.signal));
+        if quantity.has_sides {
+            row.insert("simulated".into(), json!(pair.simulated));
+            row.insert("measured".into(), json!(pair.measured));
+            row.insert("difference".into(), json!(pair.difference));
+        } else {
+            row.insert("value".into(), json!(pair.difference));
+        }
+        Value::Object(row)
+    });
+    entry.insert("values".into(), Value::Array(values.collect()));
+    Value::Object(entry)
+}
+
+/// Zones that are numbers are written as numbers.
+fn zone(zone: Option<&str>) -> Value {
+    match zone.map(|zone| (zone, zone.parse::<i64>())) {
+        None => Value::Null,
+        Some((_, Ok(number))) => json!(number),
+        Some((name, Err(_))) => json!(name),
+    }
+}

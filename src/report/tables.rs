@@ -1,0 +1,111 @@
+//! Every table of the report as CSV.
+
+use crate::result::Certification;
+
+/// File names and contents, to be put into `tables/`.
+///
+/// # Errors
+/// What the CSV writer says; it writes to memory.
+pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Error> {
+    let mut all = Vec::new();
+    let mut add = |name: &str, header: &[&str], rows: Vec<Vec<String>>| -> Result<(), csv::Error> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(header)?;
+        for row in rows {
+            writer.write_record(row)?;
+        }
+        let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+        all.push((format!("{name}.csv"), bytes));
+        Ok(())
+    };
+    let statistics = found.quantities.iter().flat_map(|quantity| {
+        quantity.statistics.iter().map(|s| {
+            vec![
+                quantity.id.clone(),
+                quantity.title.clone(),
+                quantity.filter.clone(),
+                quantity.processing.clone(),
+                s.name.clone(),
+                s.scope.clone(),
+                s.count.to_string(),
+                s.unit.clone(),
+                number(s.value),
+                number(s.interval.map(|(low, _)| low)),
+                number(s.interval.map(|(_, high)| high)),
+                number(s.limit),
+                number(s.normalised),
+                s.holds.map_or(String::new(), |holds| holds.to_string()),
+                s.reason.clone().unwrap_or_default(),
+            ]
+        })
+    });
+    add(
+        "summary",
+        &["quantity", "title", "filter", "processing", "statistic", "scope", "n", "unit", "value", "low 95 %", "high 95 %", "limit", "normalised", "holds", "reason"],
+        statistics.collect(),
+    )?;
+    let pairs = found.quantities.iter().flat_map(|quantity| {
+        quantity.values.iter().map(|pair| {
+            vec![
+                quantity.id.clone(),
+                quantity.unit.clone(),
+                pair.section.clone(),
+                pair.zone.clone().unwrap_or_default(),
+                pair.signal.clone(),
+                number(pair.simulated),
+                number(pair.measured),
+                number(Some(pair.difference)),
+            ]
+        })
+    });
+    add("values", &["quantity", "unit", "section", "zone", "signal", "simulated", "measured", "difference"], pairs.collect())?;
+    add("sections", &section_header(found), section_rows(found))?;
+    let checks = found.sections.iter().flat_map(|section| {
+        section.checks.iter().map(|check| vec![section.section.clone(), check.title.clone(), check.holds.map_or(String::new(), |holds| holds.to_string()), check.says.clone()])
+    });
+    add("checks", &["section", "requirement", "holds", "found"], checks.collect())?;
+    let zones = found.zones.iter().map(|z| vec![z.zone.clone(), z.title.clone(), z.condition.clone(), z.given.to_string(), z.used.to_string(), z.minimum.to_string(), z.holds.to_string()]);
+    add("zones", &["zone", "title", "condition", "given", "used", "minimum", "holds"], zones.collect())?;
+    let domain = found.domain.iter().map(|d| vec![d.name.clone(), d.unit.clone(), d.scope.clone(), number(Some(d.low)), number(Some(d.high)), d.count.to_string()]);
+    add("domain", &["quantity", "unit", "scope", "low", "high", "sections"], domain.collect())?;
+    let vehicle = found.campaign.vehicle.iter().chain(&found.campaign.facts).map(|item| vec![item.name.clone(), item.value.clone(), item.unit.clone().unwrap_or_default(), item.used.to_string()]);
+    add("vehicle", &["name", "value", "unit", "used by the protocol"], vehicle.collect())?;
+    let parameters = found.protocol.parameters.iter().map(|p| vec![p.name.clone(), p.title.clone(), p.value.clone(), p.default.clone(), p.set_by.clone()]);
+    add("parameters", &["parameter", "title", "value", "default", "set by"], parameters.collect())?;
+    let deviations = found.protocol.deviations.iter().map(|d| vec![d.rule.clone(), d.before.clone().unwrap_or_default(), d.after.clone().unwrap_or_default()]);
+    add("deviations", &["rule", "parent", "this protocol"], deviations.collect())?;
+    let files = found.campaign.files.iter().map(|file| vec![file.path.clone(), file.bytes.to_string(), file.sha256.clone()]);
+    add("files", &["file", "bytes", "sha256"], files.collect())?;
+    Ok(all)
+}
+
+fn section_header(found: &Certification) -> Vec<&str> {
+    let mut header = vec!["section", "zone", "start", "end", "length", "unit"];
+    if let Some(first) = found.sections.first() {
+        header.extend(first.columns.iter().map(|column| column.name.as_str()));
+    }
+    header.extend(["used", "reason"]);
+    header
+}
+
+fn section_rows(found: &Certification) -> Vec<Vec<String>> {
+    let row = |section: &crate::result::SectionResult| {
+        let mut row = vec![
+            section.section.clone(),
+            section.zone.clone().unwrap_or_default(),
+            number(Some(section.start)),
+            number(Some(section.end)),
+            number(Some(section.length)),
+            section.axis_unit.clone(),
+        ];
+        row.extend(section.columns.iter().map(|column| column.value.clone()));
+        row.extend([section.used.to_string(), section.reason.clone().unwrap_or_default()]);
+        row
+    };
+    found.sections.iter().map(row).collect()
+}
+
+/// Full precision; an empty cell where there is no number.
+fn number(value: Option<f64>) -> String {
+    value.map_or(String::new(), |value| value.to_string())
+}
