@@ -1,1 +1,26 @@
 //! Numbers from signals: slices in, numbers out, no I/O.
+//!
+//! Values are in SI and carry no quantity: what a signal is and which limit holds is a protocol's business. Where a number
+//! is not defined (nothing to average, a division by zero, a sample that is not finite) there is none: `None` or an error
+//! with the reason, never a stand-in.
+//!
+//! | module | from | to |
+//! |---|---|---|
+//! | [`filter`] | signal at a constant rate | filtered signal |
+//! | [`window`] | signal over an axis | one mean or rms per sliding window |
+//! | [`resample`] | signal over an axis | the signal at other points |
+//! | [`percentile`] | values | order statistics, interpolated |
+//! | [`statistics`], [`interval`] | values | mean, scatter, extremes, regression; confidence intervals |
+//! | [`pair`] | simulated and measured signal | how well they agree |
+//! | [`hysteresis`] | two loops of output over input | how well they agree, branch by branch |
+
+pub mod filter;
+pub mod hysteresis;
+mod incomplete_beta;
+pub mod interval;
+pub mod pair;
+pub mod percentile;
+pub mod resample;
+pub mod statistics;
+mod sum;
+pub mod window;
