@@ -1,13 +1,15 @@
 //! Two hysteresis loops, output over an input that runs up and down: how far the simulated lies from the measured.
 //!
 //! Each record is split at the turning points of its input into rising and falling branches, and branches are compared with
-//! branches of the same direction at the inputs of the measurement. A record may hold several cycles: the branches of one
-//! direction are averaged at each input, those that merely lead into or out of the loop being left out.
+//! branches of the same direction at the inputs of the measurement. A record may hold several cycles: at each input the outputs
+//! of the long branches of one direction are averaged. A short branch, such as a first loading or the rest of a cycle in which
+//! the record ends, counts only where no long one reaches. What is left of a record after its last turning point, if less than
+//! the threshold, is not used.
 
-use super::{pair::Undefined, sum::sum};
+use super::pair::Undefined;
 
-/// A branch that covers less than this share of another, and lies within it, leads into or out of the loop.
-const LEADS_IN: f64 = 0.9;
+/// A branch is long if it covers this share of the longest of its direction.
+const LONG: f64 = 0.9;
 
 /// A record of output `y` over input `x`, in the order of time; same length.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +25,7 @@ pub struct Matching {
     pub maximum: f64,
     /// Mean magnitude of the difference over the input, both directions together: resting at an input does not count.
     pub mean: f64,
-    /// Largest less smallest measured output on the branches compared.
+    /// Largest less smallest measured output at the inputs compared.
     pub range: f64,
 }
 
@@ -48,66 +50,66 @@ impl Matching {
 /// A record without samples, of unequal lengths, with a value that is not finite or an input that does not run up and down; a
 /// threshold not between 0 and 1; loops without a common input in either direction.
 pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Matching, Undefined> {
-    let simulated = Branches::of(simulated, threshold, "simulated")?;
-    let measured = Branches::of(measured, threshold, "measured")?;
+    let simulated = Sides::of(simulated, threshold, "simulated")?;
+    let measured = Sides::of(measured, threshold, "measured")?;
     let mut maximum = 0.0_f64;
-    let (mut area, mut length) = (0.0, 0.0);
+    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+    let (mut integral, mut length) = (0.0, 0.0);
     for direction in [Direction::Rising, Direction::Falling] {
-        let ours = simulated.curves(direction);
-        let theirs = measured.curves(direction);
-        let mut inputs: Vec<f64> = theirs.iter().flat_map(|curve| curve.x.iter().copied()).collect();
-        inputs.sort_unstable_by(f64::total_cmp);
-        inputs.dedup();
-        let mut before: Option<(f64, f64)> = None;
-        let mut compared = false;
-        for x in inputs {
-            let error = average(&ours, x).zip(average(&theirs, x)).map(|(s, m)| (s - m).abs());
-            if let (Some(error), Some((x_before, error_before))) = (error, before) {
-                area += 0.5 * (error + error_before) * (x - x_before);
-                length += x - x_before;
+        let (ours, theirs) = (simulated.side(direction), measured.side(direction));
+        let mut errors = Vec::new();
+        for x in theirs.inputs() {
+            let both = ours.at(x).zip(theirs.at(x));
+            if let Some((s, m)) = both {
+                maximum = maximum.max((s - m).abs());
+                (lowest, highest) = (lowest.min(m), highest.max(m));
             }
-            if let Some(error) = error {
-                maximum = maximum.max(error);
-                compared = true;
-            }
-            // Trapezia do not reach across inputs that only one of the loops has.
-            before = error.map(|error| (x, error));
+            errors.push((x, both.map(|(s, m)| (s - m).abs())));
         }
-        if !compared {
+        let part = trapezia(&errors);
+        if part.length <= 0.0 {
             return Err(Undefined::because(format!("the loops have no input in common while it is {}", direction.word())));
         }
+        integral += part.integral;
+        length += part.length;
     }
-    if length <= 0.0 {
-        return Err(Undefined::because("the loops have a single input in common"));
-    }
-    Ok(Matching { maximum, mean: area / length, range: measured.output_range() })
+    Ok(Matching { maximum, mean: integral / length, range: highest - lowest })
 }
 
-/// Area of a loop: the integral of the output over one cycle of the input, in the product of their units.
+/// Area of a loop: the integral over the input of rising less falling output, in the product of their units.
 ///
 /// Positive where the output is larger while the input rises, that is for energy dissipated by a force over a displacement. Of
-/// several cycles the mean.
+/// several cycles the mean; over the inputs that both directions reach.
 ///
 /// # Errors
 /// As [`matching`], for one record.
 pub fn area(of: Loop, threshold: f64) -> Result<f64, Undefined> {
-    let branches = Branches::of(of, threshold, "given")?;
-    let kept: Vec<&Branch> = branches.kept.iter().collect();
-    let (low, high) = kept.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), b| (low.min(b.low), high.max(b.high)));
-    let one_way = |direction: Direction| {
-        let ways: Vec<&Branch> = kept.iter().copied().filter(|branch| branch.direction == direction).collect();
-        let travel: f64 = ways.iter().map(|branch| branch.high - branch.low).sum();
-        let integral: f64 = ways.iter().map(|branch| integral(&of.x[branch.samples()], &of.y[branch.samples()])).sum();
-        // Branches that only together make one way count by the way they make.
-        integral * (high - low) / travel
-    };
-    Ok(one_way(Direction::Rising) + one_way(Direction::Falling))
+    let sides = Sides::of(of, threshold, "given")?;
+    let mut inputs = sides.rising.inputs();
+    inputs.extend(sides.falling.inputs());
+    inputs.sort_unstable_by(f64::total_cmp);
+    inputs.dedup();
+    let heights: Vec<(f64, Option<f64>)> =
+        inputs.into_iter().map(|x| (x, sides.rising.at(x).zip(sides.falling.at(x)).map(|(rising, falling)| rising - falling))).collect();
+    Ok(trapezia(&heights).integral)
 }
 
-/// Integral of y over x along the record: what noise on x goes back and forth cancels.
-fn integral(x: &[f64], y: &[f64]) -> f64 {
-    let strips: Vec<f64> = x.array_windows().zip(y.array_windows()).map(|([a, b], [p, q])| 0.5 * (b - a) * (p + q)).collect();
-    sum(&strips)
+/// What trapezia between points add up to.
+struct Trapezia {
+    integral: f64,
+    length: f64,
+}
+
+/// Integral over points in order; none reaches across points without a value.
+fn trapezia(points: &[(f64, Option<f64>)]) -> Trapezia {
+    let mut total = Trapezia { integral: 0.0, length: 0.0 };
+    for [(x, left), (x_next, right)] in points.array_windows() {
+        if let (Some(left), Some(right)) = (left, right) {
+            total.integral += 0.5 * (left + right) * (x_next - x);
+            total.length += x_next - x;
+        }
+    }
+    total
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,18 +138,23 @@ struct Branch {
 }
 
 impl Branch {
+    fn span(&self) -> f64 {
+        self.high - self.low
+    }
+
     fn samples(&self) -> std::ops::RangeInclusive<usize> {
         self.first..=self.last
     }
 }
 
-struct Branches<'a> {
-    of: Loop<'a>,
-    kept: Vec<Branch>,
+/// A loop taken apart.
+struct Sides {
+    rising: Side,
+    falling: Side,
 }
 
-impl<'a> Branches<'a> {
-    fn of(of: Loop<'a>, threshold: f64, which: &str) -> Result<Self, Undefined> {
+impl Sides {
+    fn of(of: Loop, threshold: f64, which: &str) -> Result<Self, Undefined> {
         let undefined = |what: &str| Undefined::because(format!("the {which} loop {what}"));
         if !(threshold > 0.0 && threshold < 1.0) {
             return Err(Undefined::because(format!("a turning threshold lies between 0 and 1 of the range, not at {threshold}")));
@@ -159,33 +166,48 @@ impl<'a> Branches<'a> {
             return Err(undefined("holds a value that is not finite"));
         }
         let (low, high) = of.x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
-        let turn_back = threshold * (high - low);
-        let all = branches(of.x, turn_back);
-        for direction in [Direction::Rising, Direction::Falling] {
-            if !all.iter().any(|branch| branch.direction == direction) {
-                return Err(undefined(&format!("has no {} branch", direction.word())));
-            }
-        }
-        let leads_in = |branch: &Branch| {
-            all.iter().any(|other| {
-                other.direction == branch.direction
-                    && branch.high - branch.low < LEADS_IN * (other.high - other.low)
-                    && branch.low >= other.low - turn_back
-                    && branch.high <= other.high + turn_back
-            })
+        let branches = branches(of.x, threshold * (high - low));
+        let side = |direction: Direction| {
+            Side::of(of, &branches, direction).ok_or_else(|| undefined(&format!("has no {} branch", direction.word())))
         };
-        let kept = all.iter().copied().filter(|branch| !leads_in(branch)).collect();
-        Ok(Self { of, kept })
+        Ok(Self { rising: side(Direction::Rising)?, falling: side(Direction::Falling)? })
     }
 
-    fn curves(&self, direction: Direction) -> Vec<Curve> {
-        self.kept.iter().filter(|branch| branch.direction == direction).map(|branch| Curve::of(self.of, branch)).collect()
+    fn side(&self, direction: Direction) -> &Side {
+        match direction {
+            Direction::Rising => &self.rising,
+            Direction::Falling => &self.falling,
+        }
+    }
+}
+
+/// All branches of one direction as one function of the input.
+struct Side {
+    long: Vec<Curve>,
+    short: Vec<Curve>,
+}
+
+impl Side {
+    /// None if there is no branch of the direction.
+    fn of(of: Loop, branches: &[Branch], direction: Direction) -> Option<Self> {
+        let ours = branches.iter().filter(|branch| branch.direction == direction);
+        let longest = ours.clone().map(Branch::span).max_by(f64::total_cmp)?;
+        let (long, short): (Vec<&Branch>, Vec<&Branch>) = ours.partition(|branch| branch.span() >= LONG * longest);
+        let curves = |branches: Vec<&Branch>| branches.into_iter().map(|branch| Curve::of(of, branch)).collect();
+        Some(Self { long: curves(long), short: curves(short) })
     }
 
-    fn output_range(&self) -> f64 {
-        let outputs = self.kept.iter().flat_map(|branch| self.of.y[branch.samples()].iter());
-        let (low, high) = outputs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &y| (low.min(y), high.max(y)));
-        high - low
+    /// Mean output of the long branches at an input, or of the short where there is none.
+    fn at(&self, x: f64) -> Option<f64> {
+        average(&self.long, x).or_else(|| average(&self.short, x))
+    }
+
+    /// All inputs, in order, each once.
+    fn inputs(&self) -> Vec<f64> {
+        let mut inputs: Vec<f64> = self.long.iter().chain(&self.short).flat_map(|curve| curve.x.iter().copied()).collect();
+        inputs.sort_unstable_by(f64::total_cmp);
+        inputs.dedup();
+        inputs
     }
 }
 

@@ -21,17 +21,29 @@ pub(super) fn incomplete_beta(a: f64, b: f64, x: f64, complement: f64) -> f64 {
 }
 
 /// ln of x^a (1 - x)^b / B(a, b)
+///
+/// By Stirling where it holds: the large logarithms of the plain form then cancel on paper instead of in digits.
 fn ln_front(a: f64, b: f64, x: f64, complement: f64) -> f64 {
-    if a < 20.0 || b < 20.0 {
-        return ln_gamma(a + b) - ln_gamma(a) - ln_gamma(b) + a * x.ln() + b * complement.ln();
+    let (small, large) = (a.min(b), a.max(b));
+    if small >= STIRLING {
+        // About the peak at a / (a + b).
+        let off = x * b - complement * a;
+        let deviance = a * (off / a).ln_1p() + b * (-off / b).ln_1p();
+        return deviance + 0.5 * (a * b / (TAU * (a + b))).ln() + stirling(a + b) - stirling(a) - stirling(b);
     }
-    // About the peak at a / (a + b), by Stirling: the large logarithms of the plain form cancel on paper instead of in digits.
-    let off = x * b - complement * a;
-    let deviance = a * (off / a).ln_1p() + b * (-off / b).ln_1p();
-    deviance + 0.5 * (a * b / (TAU * (a + b))).ln() + stirling(a + b) - stirling(a) - stirling(b)
+    let ratio = if large >= STIRLING {
+        (large - 0.5) * (small / large).ln_1p() + small * (a + b).ln() - small + stirling(a + b) - stirling(large)
+    } else {
+        ln_gamma(a + b) - ln_gamma(large)
+    };
+    let ln = |part: f64, other: f64| if part > 0.5 { (-other).ln_1p() } else { part.ln() };
+    ratio - ln_gamma(small) + a * ln(x, complement) + b * ln(complement, x)
 }
 
-/// ln Gamma(z) less Stirling's formula, z of 20 or more.
+/// From here on five terms of Stirling's series are exact to the last digit.
+const STIRLING: f64 = 20.0;
+
+/// ln Gamma(z) less Stirling's formula.
 fn stirling(z: f64) -> f64 {
     let square = 1.0 / (z * z);
     (1.0 / 12.0 - square * (1.0 / 360.0 - square * (1.0 / 1260.0 - square * (1.0 / 1680.0 - square / 1188.0)))) / z

@@ -49,7 +49,7 @@ fn parallelograms() {
 /// straight line's between samples near the ends, where an ellipse is steep.
 #[test]
 fn ellipses_wherever_the_record_begins() {
-    for begin in [0.0, 0.5 * PI, 2.0] {
+    for begin in [0.0, 0.5 * PI, 2.5] {
         for cycles in 1..4 {
             let simulated = ellipse(cycles, begin, 1.0, 2.0, 3000 * cycles);
             let measured = ellipse(2, 1.0, 1.0, 1.5, 7000);
@@ -69,13 +69,13 @@ fn direction_of_the_loop_gives_the_sign_of_the_area() {
     close(area(Loop { x: &x, y: &backwards }, THRESHOLD).expect("a loop"), -2.0, 1e-12);
 }
 
-/// A first loading from rest is not on the loop and is left out, as is the way back to rest.
+/// A first loading from rest is not on the loop and counts nowhere, as the loop reaches everywhere.
 #[test]
 fn the_way_in_does_not_count() {
     let (x, y) = parallelogram(2, 0.3, 100);
     let way_in: Vec<f64> = (0..50).map(|k| f64::from(k) / 50.0 - 1e-9).collect();
-    let x: Vec<f64> = way_in.iter().copied().chain((0..100).map(|k| 1.0 - f64::from(k) / 50.0)).chain(x).collect();
-    let y: Vec<f64> = vec![9.0; 50].into_iter().chain((0..100).map(|k| 2.0 - f64::from(k) / 25.0 - 0.3)).chain(y).collect();
+    let x: Vec<f64> = way_in.iter().copied().chain((0..=100).map(|k| 1.0 - f64::from(k) / 50.0)).chain(x).collect();
+    let y: Vec<f64> = vec![9.0; 50].into_iter().chain((0..=100).map(|k| 2.0 - f64::from(k) / 25.0 - 0.3)).chain(y).collect();
     let reference = parallelogram(1, 0.3, 80);
     let result = matching(Loop { x: &x, y: &y }, of(&reference), THRESHOLD).expect("comparable");
     assert!(result.maximum < 1e-8, "{}", result.maximum);

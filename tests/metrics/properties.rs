@@ -37,7 +37,7 @@ proptest! {
 
     #[test]
     fn filter_is_linear(
-        x in vec(-1.0..1.0, 150..250), y in vec(-1.0..1.0, 250), band in bands(), order in 1..6_usize, phase in phases(), factor in -5.0..5.0
+        x in vec(-1.0..1.0, 150..250), y in vec(-1.0..1.0, 250), band in bands(), order in 1..6_usize, phase in phases(), factor in -5.0..5.0_f64
     ) {
         let filter = Filter::design(band, order, 200.0, phase, Cutoff::AsApplied).expect("a good design");
         let mixed: Vec<f64> = x.iter().zip(&y).map(|(x, y)| factor * x + y).collect();
@@ -49,7 +49,7 @@ proptest! {
     }
 
     #[test]
-    fn constant_passes_a_low_pass_and_not_a_high_pass(level in -1e5..1e5, edge in 0.5..95.0, order in 1..9_usize, length in 60..400_usize) {
+    fn constant_passes_a_low_pass_and_not_a_high_pass(level in -1e5..1e5_f64, edge in 0.5..95.0, order in 1..9_usize, length in 60..400_usize) {
         let signal = vec![level; length];
         for phase in [Phase::Zero, Phase::Causal] {
             let through = |band| Filter::design(band, order, 200.0, phase, Cutoff::AsApplied).expect("a good design").apply(&signal).expect("long enough");
@@ -59,7 +59,7 @@ proptest! {
     }
 
     #[test]
-    fn sliding_mean_of_a_constant(level in -1e6..1e6, distances in vec(0.01..0.4, 40..300), width in 0.5..3.0, step in 0.1..2.0) {
+    fn sliding_mean_of_a_constant(level in -1e6..1e6_f64, distances in vec(0.01..0.4, 40..300), width in 0.5..3.0, step in 0.1..2.0) {
         let axis: Vec<f64> = distances.iter().scan(0.0, |at, d| { *at += d; Some(*at) }).collect();
         let signal = vec![level; axis.len()];
         let (start, end) = (axis[0], axis[axis.len() - 1]);
