@@ -1,7 +1,1 @@
-//! The `fishplate` program.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    fishplate::cli::run().into()
-}
+fn main() {}

@@ -1,0 +1,37 @@
+//! One second-order section of a filter.
+
+/// `(1 + b1 z^-1 + b2 z^-2) / (1 + a1 z^-1 + a2 z^-2)`; the gain stands apart, once for all sections.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Section {
+    pub b1: f64,
+    pub b2: f64,
+    pub a1: f64,
+    pub a2: f64,
+}
+
+/// The state of a section on which a step of height 1 has stood for ever, and what it gives then.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Steady {
+    pub state: [f64; 2],
+    pub output: f64,
+}
+
+impl Section {
+    pub(super) fn steady(&self) -> Steady {
+        let output = (1.0 + self.b1 + self.b2) / (1.0 + self.a1 + self.a2);
+        Steady { state: [output - 1.0, self.b2 - self.a2 * output], output }
+    }
+
+    /// Amplitude ratio at an angle [rad per sample].
+    pub(super) fn magnitude(&self, angle: f64) -> f64 {
+        let (sine, cosine) = angle.sin_cos();
+        let (sine_2, cosine_2) = (2.0 * angle).sin_cos();
+        let along = |c1: f64, c2: f64| (1.0 + c1 * cosine + c2 * cosine_2).hypot(c1 * sine + c2 * sine_2);
+        along(self.b1, self.b2) / along(self.a1, self.a2)
+    }
+
+    /// Whether both poles lie inside the unit circle (Jury), to the last digit of the coefficients.
+    pub(super) fn is_stable(&self) -> bool {
+        self.a2.abs() < 1.0 && 1.0 + self.a1 + self.a2 > 0.0 && 1.0 - self.a1 + self.a2 > 0.0
+    }
+}

@@ -1,0 +1,318 @@
+//! Two hysteresis loops, output over an input that runs up and down: how far the simulated lies from the measured.
+//!
+//! Each record is split at the turning points of its input into rising and falling branches, and branches are compared with
+//! branches of the same direction at the inputs of the measurement. A record may hold several cycles: at each input the outputs
+//! of the long branches of one direction are averaged. A short branch, such as a first loading or the rest of a cycle in which
+//! the record ends, counts only where no long one reaches. What is left of a record after its last turning point, if less than
+//! the threshold, is not used.
+
+use super::pair::Undefined;
+
+/// A branch is long if it covers this share of the longest of its direction.
+const LONG: f64 = 0.9;
+
+/// A record of output `y` over input `x`, in the order of time; same length.
+#[derive(Clone, Copy, Debug)]
+pub struct Loop<'a> {
+    pub x: &'a [f64],
+    pub y: &'a [f64],
+}
+
+/// How far the simulated loop lies from the measured, in the unit of the output.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Matching {
+    /// Largest magnitude of the difference.
+    pub maximum: f64,
+    /// Mean magnitude of the difference over the input, both directions together: resting at an input does not count.
+    pub mean: f64,
+    /// Largest less smallest measured output at the inputs compared.
+    pub range: f64,
+}
+
+impl Matching {
+    /// [`Self::maximum`] as a fraction of the range; None for a measured output that does not move.
+    pub fn relative_maximum(&self) -> Option<f64> {
+        (self.range > 0.0).then(|| self.maximum / self.range)
+    }
+
+    /// [`Self::mean`] as a fraction of the range; None for a measured output that does not move.
+    pub fn relative_mean(&self) -> Option<f64> {
+        (self.range > 0.0).then(|| self.mean / self.range)
+    }
+}
+
+/// Compares two loops.
+///
+/// `threshold` is the fraction of the input's range by which it must turn back for a turning point: more than its noise, less
+/// than its swing; 0.05 suits most records.
+///
+/// # Errors
+/// A record without samples, of unequal lengths, with a value that is not finite or an input that does not run up and down; a
+/// threshold not between 0 and 1; loops without a common input in either direction.
+pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Matching, Undefined> {
+    let simulated = Sides::of(simulated, threshold, "simulated")?;
+    let measured = Sides::of(measured, threshold, "measured")?;
+    let mut maximum = 0.0_f64;
+    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+    let (mut integral, mut length) = (0.0, 0.0);
+    for direction in [Direction::Rising, Direction::Falling] {
+        let (ours, theirs) = (simulated.side(direction), measured.side(direction));
+        let mut errors = Vec::new();
+        for x in theirs.inputs() {
+            let both = ours.at(x).zip(theirs.at(x));
+            if let Some((s, m)) = both {
+                maximum = maximum.max((s - m).abs());
+                (lowest, highest) = (lowest.min(m), highest.max(m));
+            }
+            errors.push((x, both.map(|(s, m)| (s - m).abs())));
+        }
+        let part = trapezia(&errors);
+        if part.length <= 0.0 {
+            return Err(Undefined::because(format!("the loops have no input in common while it is {}", direction.word())));
+        }
+        integral += part.integral;
+        length += part.length;
+    }
+    Ok(Matching { maximum, mean: integral / length, range: highest - lowest })
+}
+
+/// Area of a loop: the integral over the input of rising less falling output, in the product of their units.
+///
+/// Positive where the output is larger while the input rises, that is for energy dissipated by a force over a displacement. Of
+/// several cycles the mean; over the inputs that both directions reach.
+///
+/// # Errors
+/// As [`matching`], for one record.
+pub fn area(of: Loop, threshold: f64) -> Result<f64, Undefined> {
+    let sides = Sides::of(of, threshold, "given")?;
+    let mut inputs = sides.rising.inputs();
+    inputs.extend(sides.falling.inputs());
+    inputs.sort_unstable_by(f64::total_cmp);
+    inputs.dedup();
+    let heights: Vec<(f64, Option<f64>)> =
+        inputs.into_iter().map(|x| (x, sides.rising.at(x).zip(sides.falling.at(x)).map(|(rising, falling)| rising - falling))).collect();
+    Ok(trapezia(&heights).integral)
+}
+
+/// What trapezia between points add up to.
+struct Trapezia {
+    integral: f64,
+    length: f64,
+}
+
+/// Integral over points in order; none reaches across points without a value.
+fn trapezia(points: &[(f64, Option<f64>)]) -> Trapezia {
+    let mut total = Trapezia { integral: 0.0, length: 0.0 };
+    for [(x, left), (x_next, right)] in points.array_windows() {
+        if let (Some(left), Some(right)) = (left, right) {
+            total.integral += 0.5 * (left + right) * (x_next - x);
+            total.length += x_next - x;
+        }
+    }
+    total
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Direction {
+    Rising,
+    Falling,
+}
+
+impl Direction {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Rising => "rising",
+            Self::Falling => "falling",
+        }
+    }
+}
+
+/// A run of samples between two turning points.
+#[derive(Clone, Copy, Debug)]
+struct Branch {
+    direction: Direction,
+    first: usize,
+    last: usize,
+    low: f64,
+    high: f64,
+}
+
+impl Branch {
+    fn span(&self) -> f64 {
+        self.high - self.low
+    }
+
+    fn samples(&self) -> std::ops::RangeInclusive<usize> {
+        self.first..=self.last
+    }
+}
+
+/// A loop taken apart.
+struct Sides {
+    rising: Side,
+    falling: Side,
+}
+
+impl Sides {
+    fn of(of: Loop, threshold: f64, which: &str) -> Result<Self, Undefined> {
+        let undefined = |what: &str| Undefined::because(format!("the {which} loop {what}"));
+        if !(threshold > 0.0 && threshold < 1.0) {
+            return Err(Undefined::because(format!("a turning threshold lies between 0 and 1 of the range, not at {threshold}")));
+        }
+        if of.x.len() != of.y.len() {
+            return Err(undefined(&format!("has {} inputs and {} outputs", of.x.len(), of.y.len())));
+        }
+        if of.x.iter().chain(of.y).any(|value| !value.is_finite()) {
+            return Err(undefined("holds a value that is not finite"));
+        }
+        let (low, high) = of.x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+        let branches = branches(of.x, threshold * (high - low));
+        let side = |direction: Direction| {
+            Side::of(of, &branches, direction).ok_or_else(|| undefined(&format!("has no {} branch", direction.word())))
+        };
+        Ok(Self { rising: side(Direction::Rising)?, falling: side(Direction::Falling)? })
+    }
+
+    fn side(&self, direction: Direction) -> &Side {
+        match direction {
+            Direction::Rising => &self.rising,
+            Direction::Falling => &self.falling,
+        }
+    }
+}
+
+/// All branches of one direction as one function of the input.
+struct Side {
+    long: Vec<Curve>,
+    short: Vec<Curve>,
+}
+
+impl Side {
+    /// None if there is no branch of the direction.
+    fn of(of: Loop, branches: &[Branch], direction: Direction) -> Option<Self> {
+        let ours = branches.iter().filter(|branch| branch.direction == direction);
+        let longest = ours.clone().map(Branch::span).max_by(f64::total_cmp)?;
+        let (long, short): (Vec<&Branch>, Vec<&Branch>) = ours.partition(|branch| branch.span() >= LONG * longest);
+        let curves = |branches: Vec<&Branch>| branches.into_iter().map(|branch| Curve::of(of, branch)).collect();
+        Some(Self { long: curves(long), short: curves(short) })
+    }
+
+    /// Mean output of the long branches at an input, or of the short where there is none.
+    fn at(&self, x: f64) -> Option<f64> {
+        average(&self.long, x).or_else(|| average(&self.short, x))
+    }
+
+    /// All inputs, in order, each once.
+    fn inputs(&self) -> Vec<f64> {
+        let mut inputs: Vec<f64> = self.long.iter().chain(&self.short).flat_map(|curve| curve.x.iter().copied()).collect();
+        inputs.sort_unstable_by(f64::total_cmp);
+        inputs.dedup();
+        inputs
+    }
+}
+
+/// The branches of an input that turns where it goes back by more than `turn_back`.
+///
+/// A rising branch ends at the first sample of the highest input and the falling one begins at the last: an output that changes
+/// while the input rests belongs to neither.
+fn branches(x: &[f64], turn_back: f64) -> Vec<Branch> {
+    let mut found = Vec::new();
+    let Some(&start) = x.first() else { return found };
+    let mut highest = Extreme::at(0, start);
+    let mut lowest = highest;
+    let mut direction = None;
+    let mut began = 0;
+    for (index, &value) in x.iter().enumerate() {
+        let rising = direction != Some(Direction::Falling);
+        let falling = direction != Some(Direction::Rising);
+        if rising && value >= highest.value {
+            highest.reach(index, value);
+        }
+        if falling && value <= lowest.value {
+            lowest.reach(index, value);
+        }
+        let turns_down = rising && highest.value - value > turn_back;
+        let turns_up = falling && value - lowest.value > turn_back;
+        match direction {
+            None if turns_down => (direction, began, lowest) = (Some(Direction::Falling), highest.last, Extreme::at(index, value)),
+            None if turns_up => (direction, began, highest) = (Some(Direction::Rising), lowest.last, Extreme::at(index, value)),
+            Some(Direction::Rising) if turns_down => {
+                found.push(Branch { direction: Direction::Rising, first: began, last: highest.first, low: x[began], high: highest.value });
+                (direction, began, lowest) = (Some(Direction::Falling), highest.last, Extreme::at(index, value));
+            }
+            Some(Direction::Falling) if turns_up => {
+                found.push(Branch { direction: Direction::Falling, first: began, last: lowest.first, low: lowest.value, high: x[began] });
+                (direction, began, highest) = (Some(Direction::Rising), lowest.last, Extreme::at(index, value));
+            }
+            _ => {}
+        }
+    }
+    match direction {
+        Some(direction @ Direction::Rising) => {
+            found.push(Branch { direction, first: began, last: highest.first, low: x[began], high: highest.value });
+        }
+        Some(direction @ Direction::Falling) => {
+            found.push(Branch { direction, first: began, last: lowest.first, low: lowest.value, high: x[began] });
+        }
+        None => {}
+    }
+    found
+}
+
+/// A highest or lowest input, and the first and last sample that have it.
+#[derive(Clone, Copy)]
+struct Extreme {
+    value: f64,
+    first: usize,
+    last: usize,
+}
+
+impl Extreme {
+    fn at(index: usize, value: f64) -> Self {
+        Self { value, first: index, last: index }
+    }
+
+    fn reach(&mut self, index: usize, value: f64) {
+        if value != self.value {
+            *self = Self::at(index, value);
+        }
+        self.last = index;
+    }
+}
+
+/// The output of one branch as a function of the input: in order of the input, outputs at equal inputs averaged.
+struct Curve {
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+impl Curve {
+    fn of(of: Loop, branch: &Branch) -> Self {
+        let mut points: Vec<(f64, f64)> = branch.samples().map(|index| (of.x[index], of.y[index])).collect();
+        points.sort_by(|left, right| left.0.total_cmp(&right.0));
+        let mut curve = Self { x: Vec::with_capacity(points.len()), y: Vec::with_capacity(points.len()) };
+        for equal in points.chunk_by(|left, right| left.0 == right.0) {
+            curve.x.push(equal[0].0);
+            curve.y.push(equal.iter().map(|point| point.1).sum::<f64>() / equal.len() as f64);
+        }
+        curve
+    }
+
+    /// The output at an input, linear between points; None outside.
+    fn at(&self, x: f64) -> Option<f64> {
+        let after = self.x.partition_point(|&at| at < x);
+        let (&x_after, &y_after) = (self.x.get(after)?, self.y.get(after)?);
+        if x_after == x {
+            return Some(y_after);
+        }
+        let before = after.checked_sub(1)?;
+        let along = (x - self.x[before]) / (x_after - self.x[before]);
+        Some(self.y[before] + along * (y_after - self.y[before]))
+    }
+}
+
+/// Mean output of the curves that have this input.
+fn average(curves: &[Curve], x: f64) -> Option<f64> {
+    let (total, count) = curves.iter().filter_map(|curve| curve.at(x)).fold((0.0, 0), |(total, count), y| (total + y, count + 1));
+    (count > 0).then(|| total / f64::from(count))
+}

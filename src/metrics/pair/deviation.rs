@@ -1,0 +1,104 @@
+//! Metrics of the difference of the signals, sample by sample.
+
+use super::{Energies, Undefined, check};
+use crate::metrics::{
+    statistics::{self, Divisor},
+    sum::sum_of_pairs,
+};
+
+/// Root mean square of simulation less measurement, in the unit of the signals.
+///
+/// # Errors
+/// Signals of different length, without samples, or with a sample that is not finite; so for every metric here.
+pub fn root_mean_square_error(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    let energies = Energies::of(simulated, measured)?;
+    Ok((energies.difference / simulated.len() as f64).sqrt())
+}
+
+/// Pearson's correlation, in [-1, 1].
+///
+/// # Errors
+/// A signal is constant.
+pub fn correlation(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    check(simulated, measured)?;
+    statistics::correlation(simulated, measured).ok_or_else(|| Undefined::because("one of the signals is constant"))
+}
+
+/// Misfit of Kraft et al.: `sum (s - m)^2 / min(sum s^2, sum m^2)`.
+///
+/// The form as other papers describe it; the original gives the idea of the smaller energy as reference.
+///
+/// # Errors
+/// A signal is zero throughout.
+pub fn kraft_misfit(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    let energies = Energies::of(simulated, measured)?;
+    let lower = energies.simulated.min(energies.measured);
+    if lower == 0.0 {
+        return Err(Undefined::because("one of the signals is zero throughout"));
+    }
+    Ok(energies.difference / lower)
+}
+
+/// Square root of [`kraft_misfit`].
+///
+/// # Errors
+/// A signal is zero throughout.
+pub fn kraft_misfit_root(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    kraft_misfit(simulated, measured).map(f64::sqrt)
+}
+
+/// Weighted integrated factor: 1 for equal signals, 0 for signals of opposite sign throughout; symmetric.
+///
+/// `1 - sqrt(sum max(m^2, s^2) (1 - max(0, m s) / max(m^2, s^2))^2 / sum max(m^2, s^2))`
+///
+/// # Errors
+/// Both signals are zero throughout.
+pub fn weighted_integrated_factor(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    check(simulated, measured)?;
+    let larger = |s: f64, m: f64| (s * s).max(m * m);
+    let whole = sum_of_pairs(simulated, measured, larger);
+    if whole == 0.0 {
+        return Err(Undefined::because("both signals are zero throughout"));
+    }
+    let missing = sum_of_pairs(simulated, measured, |s, m| {
+        let larger = larger(s, m);
+        if larger == 0.0 { 0.0 } else { larger * (1.0 - (s * m).max(0.0) / larger).powi(2) }
+    });
+    let factor = 1.0 - (missing / whole).sqrt();
+    if factor.is_finite() { Ok(factor) } else { Err(Undefined::because("the squares of the samples exceed the range of numbers")) }
+}
+
+/// Mean residual of the analysis of variance, relative to the largest magnitude of the measurement.
+///
+/// As in the crash-test software RSVVP, whose limit is 5 % either way.
+///
+/// # Errors
+/// The measurement is zero throughout.
+pub fn anova_mean(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    let residuals = residuals(simulated, measured)?;
+    statistics::mean(&residuals).ok_or_else(too_large)
+}
+
+/// Standard deviation (n - 1) of the residuals of [`anova_mean`]; the limit of RSVVP is 35 %.
+///
+/// # Errors
+/// The measurement is zero throughout, or there is one sample only.
+pub fn anova_standard_deviation(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    let residuals = residuals(simulated, measured)?;
+    if residuals.len() < 2 {
+        return Err(Undefined::because("one sample has no scatter"));
+    }
+    statistics::standard_deviation(&residuals, Divisor::Sample).ok_or_else(too_large)
+}
+
+fn residuals(simulated: &[f64], measured: &[f64]) -> Result<Vec<f64>, Undefined> {
+    check(simulated, measured)?;
+    match statistics::peak_magnitude(measured) {
+        Some(peak) if peak > 0.0 => Ok(simulated.iter().zip(measured).map(|(s, m)| (s - m) / peak).collect()),
+        _ => Err(Undefined::because("the measured signal is zero throughout")),
+    }
+}
+
+fn too_large() -> Undefined {
+    Undefined::because("the residuals exceed the range of numbers")
+}

@@ -1,0 +1,120 @@
+//! Metrics of the values of the signals regardless of their order.
+
+use super::{Undefined, check, check_finite};
+use crate::metrics::{
+    incomplete_beta::incomplete_beta,
+    statistics::{Divisor, mean, peak_magnitude, variance},
+    sum::{sum, sum_of_pairs},
+};
+
+/// A mean this small beside the signal's largest magnitude is rounding.
+const ZERO_MEAN: f64 = 1e-12;
+
+/// Area between the distribution functions of the values (Ferson, Oberkampf and Ginzburg 2008), in the unit of the signals.
+///
+/// Of equal counts the mean distance of the sorted values, which is the 1-Wasserstein distance.
+///
+/// # Errors
+/// Signals of different length, without samples, or with a sample that is not finite.
+pub fn area_metric(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    check(simulated, measured)?;
+    let area = sum_of_pairs(&sorted(simulated), &sorted(measured), |s, m| (s - m).abs()) / simulated.len() as f64;
+    in_range(area)
+}
+
+/// [`area_metric`] of two sets of values whose counts may differ: the integral of the distance of the distribution functions.
+///
+/// # Errors
+/// No values on either side, or a value that is not finite.
+pub fn area_between(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    if simulated.is_empty() || measured.is_empty() {
+        return Err(Undefined::because("there are no values to compare"));
+    }
+    check_finite(simulated, "simulated")?;
+    check_finite(measured, "measured")?;
+    let (simulated, measured) = (sorted(simulated), sorted(measured));
+    let (mut below_s, mut below_m) = (0, 0);
+    let mut strips = Vec::with_capacity(simulated.len() + measured.len());
+    let mut from = simulated[0].min(measured[0]);
+    while below_s < simulated.len() || below_m < measured.len() {
+        let next = |values: &[f64], below: usize| values.get(below).copied().unwrap_or(f64::INFINITY);
+        let to = next(&simulated, below_s).min(next(&measured, below_m));
+        let height = below_s as f64 / simulated.len() as f64 - below_m as f64 / measured.len() as f64;
+        strips.push(height.abs() * (to - from));
+        below_s += usize::from(next(&simulated, below_s) == to);
+        below_m += usize::from(next(&measured, below_m) == to);
+        from = to;
+    }
+    in_range(sum(&strips))
+}
+
+/// Ratio of the variances (n - 1), simulation over measurement.
+///
+/// # Errors
+/// The measurement is constant, or there is one sample only.
+pub fn bogojevic_variance_ratio(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    check(simulated, measured)?;
+    let of = |signal: &[f64]| variance(signal, Divisor::Sample).ok_or_else(|| Undefined::because("one sample has no scatter"));
+    let (of_simulated, of_measured) = (of(simulated)?, of(measured)?);
+    if of_measured == 0.0 {
+        return Err(Undefined::because("the measured signal is constant"));
+    }
+    Ok(of_simulated / of_measured)
+}
+
+/// Two-sided probability of that ratio, or one farther from 1, if the variances were equal and all samples independent.
+///
+/// Samples of a record are not independent: with their full number the probability is far too small. It is meant for values
+/// taken so far apart that they are.
+///
+/// # Errors
+/// As [`bogojevic_variance_ratio`].
+pub fn bogojevic_variance_probability(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    let degrees = simulated.len() as f64 - 1.0;
+    Ok(f_two_sided(bogojevic_variance_ratio(simulated, measured)?, degrees, degrees))
+}
+
+/// Agreement of the means: `1 - |mean s - mean m| / max(|mean s|, |mean m|)`, not below 0; 1 where both are zero.
+///
+/// # Errors
+/// Signals of different length, without samples, or with a sample that is not finite.
+pub fn bogojevic_mean_term(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    check(simulated, measured)?;
+    let too_large = || Undefined::because("the sums of the samples exceed the range of numbers");
+    let (Some(of_simulated), Some(of_measured)) = (mean(simulated), mean(measured)) else { return Err(too_large()) };
+    let larger = of_simulated.abs().max(of_measured.abs());
+    let magnitude = peak_magnitude(simulated).zip(peak_magnitude(measured)).map(|(s, m)| s.max(m)).ok_or_else(too_large)?;
+    if larger <= ZERO_MEAN * magnitude {
+        return Ok(1.0);
+    }
+    Ok((1.0 - (of_simulated - of_measured).abs() / larger).max(0.0))
+}
+
+/// Metric of Bogojevic and Lucanin: probability of the variance ratio times the agreement of the means; 1 is perfect.
+///
+/// # Errors
+/// As [`bogojevic_variance_ratio`].
+pub fn bogojevic(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    Ok(bogojevic_variance_probability(simulated, measured)? * bogojevic_mean_term(simulated, measured)?)
+}
+
+/// Two-sided probability of a variance ratio under the F distribution: twice the smaller tail, at most 1.
+///
+/// Each tail by itself from the incomplete beta function: one less the other would lose a small one.
+pub fn f_two_sided(ratio: f64, numerator_degrees: f64, denominator_degrees: f64) -> f64 {
+    let whole = numerator_degrees * ratio + denominator_degrees;
+    let (of_numerator, of_denominator) = (numerator_degrees * ratio / whole, denominator_degrees / whole);
+    let lower = incomplete_beta(numerator_degrees / 2.0, denominator_degrees / 2.0, of_numerator, of_denominator);
+    let upper = incomplete_beta(denominator_degrees / 2.0, numerator_degrees / 2.0, of_denominator, of_numerator);
+    (2.0 * lower.min(upper)).min(1.0)
+}
+
+fn in_range(area: f64) -> Result<f64, Undefined> {
+    if area.is_finite() { Ok(area) } else { Err(Undefined::because("the differences exceed the range of numbers")) }
+}
+
+fn sorted(values: &[f64]) -> Vec<f64> {
+    let mut values = values.to_vec();
+    values.sort_unstable_by(f64::total_cmp);
+    values
+}

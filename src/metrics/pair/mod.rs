@@ -1,0 +1,88 @@
+//! How well a simulated signal agrees with a measured one: equal length, one common grid, the measurement the reference.
+//!
+//! Every metric is `fn(simulated, measured) -> Result<f64, Undefined>`. The mean is never removed beforehand. Sums stand for
+//! integrals over a uniform grid: the sampling distance cancels.
+
+mod deviation;
+mod distribution;
+mod geers;
+mod theil;
+
+pub use deviation::{
+    anova_mean, anova_standard_deviation, correlation, kraft_misfit, kraft_misfit_root, root_mean_square_error, weighted_integrated_factor,
+};
+pub use distribution::{
+    area_between, area_metric, bogojevic, bogojevic_mean_term, bogojevic_variance_probability, bogojevic_variance_ratio, f_two_sided,
+};
+pub use geers::{
+    geers_comprehensive, geers_phase, russell_comprehensive, russell_magnitude, russell_phase, sprague_geers_comprehensive,
+    sprague_geers_magnitude, sprague_geers_phase,
+};
+pub use theil::{theil_bias, theil_covariance, theil_u1, theil_u2, theil_variance};
+
+use std::fmt;
+
+use super::sum::{sum_of, sum_of_pairs};
+
+/// Why a metric has no value for these signals.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Undefined {
+    pub reason: String,
+}
+
+impl Undefined {
+    pub(super) fn because(reason: impl Into<String>) -> Self {
+        Self { reason: reason.into() }
+    }
+}
+
+impl fmt::Display for Undefined {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.reason)
+    }
+}
+
+impl std::error::Error for Undefined {}
+
+/// Equal length, not empty, all samples finite.
+fn check(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
+    if simulated.len() != measured.len() {
+        return Err(Undefined::because(format!("the simulated signal has {} samples, the measured {}", simulated.len(), measured.len())));
+    }
+    if simulated.is_empty() {
+        return Err(Undefined::because("the signals have no samples"));
+    }
+    check_finite(simulated, "simulated")?;
+    check_finite(measured, "measured")
+}
+
+fn check_finite(signal: &[f64], which: &str) -> Result<(), Undefined> {
+    match signal.iter().position(|value| !value.is_finite()) {
+        Some(at) => Err(Undefined::because(format!("sample {} of the {which} signal is not finite", at + 1))),
+        None => Ok(()),
+    }
+}
+
+/// Sums of squares of the simulation, the measurement and their difference.
+#[derive(Clone, Copy)]
+struct Energies {
+    simulated: f64,
+    measured: f64,
+    difference: f64,
+}
+
+impl Energies {
+    fn of(simulated: &[f64], measured: &[f64]) -> Result<Self, Undefined> {
+        check(simulated, measured)?;
+        let energies = Self {
+            simulated: sum_of(simulated, |value| value * value),
+            measured: sum_of(measured, |value| value * value),
+            difference: sum_of_pairs(simulated, measured, |s, m| (s - m) * (s - m)),
+        };
+        if energies.simulated.is_finite() && energies.measured.is_finite() && energies.difference.is_finite() {
+            Ok(energies)
+        } else {
+            Err(Undefined::because("the squares of the samples exceed the range of numbers"))
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! A signal at other points of its axis, by linear interpolation.
+
+use std::fmt;
+
+/// Most points of a grid: a step mistyped by orders of magnitude is refused before it fills the memory.
+const MOST_POINTS: f64 = 1e8;
+
+/// Points `start, start + step, ...` up to and including `end`, to a billionth of a step.
+///
+/// # Errors
+/// A step that is not positive, an end before the start, more points than can be meant.
+pub fn uniform_grid(start: f64, end: f64, step: f64) -> Result<Vec<f64>, ResampleError> {
+    let steps = ((end - start) / step + 1e-9).floor();
+    if !(step > 0.0 && (0.0..MOST_POINTS).contains(&steps)) {
+        return Err(ResampleError::Grid { start, end, step });
+    }
+    Ok((0..=steps as usize).map(|k| (start + k as f64 * step).min(end)).collect())
+}
+
+/// The signal on a uniform grid over the whole of its axis: the grid, and the values on it.
+///
+/// # Errors
+/// As [`uniform_grid`] and [`interpolate`].
+pub fn resample(axis: &[f64], signal: &[f64], step: f64) -> Result<(Vec<f64>, Vec<f64>), ResampleError> {
+    check(axis, signal)?;
+    let (Some(&start), Some(&end)) = (axis.first(), axis.last()) else { return Err(ResampleError::Empty) };
+    let grid = uniform_grid(start, end, step)?;
+    let values = interpolate(axis, signal, &grid)?;
+    Ok((grid, values))
+}
+
+/// The signal at given points, in any order; fastest when they increase.
+///
+/// # Errors
+/// An axis that does not increase strictly or is not as long as the signal; a point outside the axis: nothing is extrapolated.
+pub fn interpolate(axis: &[f64], signal: &[f64], points: &[f64]) -> Result<Vec<f64>, ResampleError> {
+    check(axis, signal)?;
+    let (Some(&first), Some(&last)) = (axis.first(), axis.last()) else {
+        return if points.is_empty() { Ok(Vec::new()) } else { Err(ResampleError::Empty) };
+    };
+    // The sample at or before the last point.
+    let mut before = 0;
+    points
+        .iter()
+        .map(|&point| {
+            if !(first <= point && point <= last) {
+                return Err(ResampleError::Outside { point, first, last });
+            }
+            let in_reach = before + 8 < axis.len() && axis[before] <= point && point < axis[before + 8];
+            before = if in_reach {
+                before + axis[before + 1..before + 8].iter().take_while(|&&at| at <= point).count()
+            } else {
+                axis.partition_point(|&at| at <= point) - 1
+            };
+            if axis[before] == point {
+                return Ok(signal[before]);
+            }
+            let slope = (signal[before + 1] - signal[before]) / (axis[before + 1] - axis[before]);
+            Ok(signal[before] + slope * (point - axis[before]))
+        })
+        .collect()
+}
+
+/// Index of the first sample that does not lie beyond the one before it, or is no number.
+pub(super) fn not_increasing(axis: &[f64]) -> Option<usize> {
+    if axis.first().is_some_and(|first| !first.is_finite()) {
+        return Some(0);
+    }
+    axis.array_windows().position(|[before, after]| !(before < after && after.is_finite())).map(|index| index + 1)
+}
+
+fn check(axis: &[f64], signal: &[f64]) -> Result<(), ResampleError> {
+    if axis.len() != signal.len() {
+        return Err(ResampleError::Lengths { axis: axis.len(), signal: signal.len() });
+    }
+    match not_increasing(axis) {
+        Some(sample) => Err(ResampleError::Axis { sample }),
+        None => Ok(()),
+    }
+}
+
+/// Why a signal cannot be had at other points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ResampleError {
+    Empty,
+    Lengths {
+        axis: usize,
+        signal: usize,
+    },
+    /// The axis does not increase at this sample, counted from 0.
+    Axis {
+        sample: usize,
+    },
+    Outside {
+        point: f64,
+        first: f64,
+        last: f64,
+    },
+    Grid {
+        start: f64,
+        end: f64,
+        step: f64,
+    },
+}
+
+impl fmt::Display for ResampleError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Empty => f.write_str("the signal has no samples"),
+            Self::Lengths { axis, signal } => write!(f, "the axis has {axis} samples, the signal {signal}"),
+            Self::Axis { sample } => write!(f, "the axis does not increase at sample {}", sample + 1),
+            Self::Outside { point, first, last } => write!(f, "the point {point} lies outside the record, {first} to {last}"),
+            Self::Grid { start, end, step } => write!(f, "no grid leads from {start} to {end} in steps of {step}"),
+        }
+    }
+}
+
+impl std::error::Error for ResampleError {}

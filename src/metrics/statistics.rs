@@ -1,0 +1,159 @@
+//! Statistics of values, and of one signal against another.
+//!
+//! `None` where the number is not defined: too few values, a value that is not finite, a division by zero.
+
+use super::{
+    percentile::{Method, percentiles},
+    sum::{sum, sum_of, sum_of_pairs},
+};
+
+/// By what a sum of squares is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Divisor {
+    /// n - 1: the values are a sample.
+    Sample,
+    /// n: the values are all there are.
+    Population,
+}
+
+/// Arithmetic mean.
+pub fn mean(values: &[f64]) -> Option<f64> {
+    finite(sum(values) / count(values)?)
+}
+
+/// Variance, about the mean in two passes.
+pub fn variance(values: &[f64], divisor: Divisor) -> Option<f64> {
+    let n = count(values)?;
+    let degrees = match divisor {
+        Divisor::Sample => n - 1.0,
+        Divisor::Population => n,
+    };
+    if degrees < 1.0 {
+        return None;
+    }
+    if is_constant(values) {
+        return Some(0.0);
+    }
+    let mean = mean(values)?;
+    let squares = sum_of(values, |value| (value - mean) * (value - mean));
+    // What the rounded mean is off by, taken out again.
+    let off = sum_of(values, |value| value - mean);
+    finite((squares - off * off / n).max(0.0) / degrees)
+}
+
+/// Standard deviation.
+pub fn standard_deviation(values: &[f64], divisor: Divisor) -> Option<f64> {
+    variance(values, divisor).map(f64::sqrt)
+}
+
+/// Root mean square; the mean is not removed.
+pub fn rms(values: &[f64]) -> Option<f64> {
+    finite((sum_of(values, |value| value * value) / count(values)?).sqrt())
+}
+
+/// Median: the middle value, or the mean of the two middle ones.
+pub fn median(values: &[f64]) -> Option<f64> {
+    percentiles(values, &[50.0], Method::Linear).ok()?.first().copied()
+}
+
+/// Least value.
+pub fn minimum(values: &[f64]) -> Option<f64> {
+    extremes(values).map(|(least, _)| least)
+}
+
+/// Greatest value.
+pub fn maximum(values: &[f64]) -> Option<f64> {
+    extremes(values).map(|(_, greatest)| greatest)
+}
+
+/// Greatest magnitude.
+pub fn peak_magnitude(values: &[f64]) -> Option<f64> {
+    extremes(values).map(|(least, greatest)| greatest.abs().max(least.abs()))
+}
+
+/// Greatest less least value.
+pub fn range(values: &[f64]) -> Option<f64> {
+    finite(extremes(values).map(|(least, greatest)| greatest - least)?)
+}
+
+/// Quartiles: 25, 50 and 75 %, linear between order statistics.
+pub fn quartiles(values: &[f64]) -> Option<[f64; 3]> {
+    percentiles(values, &[25.0, 50.0, 75.0], Method::Linear).ok()?.try_into().ok()
+}
+
+/// Interquartile range.
+pub fn interquartile_range(values: &[f64]) -> Option<f64> {
+    quartiles(values).and_then(|[lower, _, upper]| finite(upper - lower))
+}
+
+/// A straight line through points, least squares in y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    pub slope: f64,
+    pub intercept: f64,
+}
+
+/// Regression of y on x. None for fewer than two points, signals of different length, or x without scatter.
+pub fn regression(x: &[f64], y: &[f64]) -> Option<Line> {
+    let moments = Moments::of(x, y)?;
+    if moments.xx == 0.0 {
+        return None;
+    }
+    let slope = finite(moments.xy / moments.xx)?;
+    Some(Line { slope, intercept: finite(moments.mean_y - slope * moments.mean_x)? })
+}
+
+/// Pearson's correlation, in [-1, 1]. None for fewer than two points, signals of different length, or either without scatter.
+pub fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
+    let moments = Moments::of(x, y)?;
+    if moments.xx == 0.0 || moments.yy == 0.0 {
+        return None;
+    }
+    // Root by root: the product of two sums of squares may leave the range of numbers.
+    finite((moments.xy / moments.xx.sqrt() / moments.yy.sqrt()).clamp(-1.0, 1.0))
+}
+
+/// Sums of squares and products about the means.
+struct Moments {
+    mean_x: f64,
+    mean_y: f64,
+    xx: f64,
+    yy: f64,
+    xy: f64,
+}
+
+impl Moments {
+    fn of(x: &[f64], y: &[f64]) -> Option<Self> {
+        if x.len() != y.len() || x.len() < 2 {
+            return None;
+        }
+        let (mean_x, mean_y) = (mean(x)?, mean(y)?);
+        // A constant signal differs from its rounded mean; it has no scatter for all that.
+        let squares = |values: &[f64], mean: f64| {
+            if is_constant(values) { 0.0 } else { sum_of(values, |value| (value - mean) * (value - mean)) }
+        };
+        let xy = sum_of_pairs(x, y, |x, y| (x - mean_x) * (y - mean_y));
+        Some(Self { mean_x, mean_y, xx: squares(x, mean_x), yy: squares(y, mean_y), xy })
+    }
+}
+
+pub(super) fn is_constant(values: &[f64]) -> bool {
+    values.first().is_some_and(|first| values.iter().all(|value| value == first))
+}
+
+fn extremes(values: &[f64]) -> Option<(f64, f64)> {
+    let first = *values.first()?;
+    // Comparisons with what is not a number are false and would pass it over.
+    if !values.iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    Some(values.iter().fold((first, first), |(least, greatest), &value| (least.min(value), greatest.max(value))))
+}
+
+fn count(values: &[f64]) -> Option<f64> {
+    if values.is_empty() { None } else { Some(values.len() as f64) }
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

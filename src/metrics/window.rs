@@ -1,0 +1,241 @@
+//! Mean and rms over a window that slides along an axis, in length or time.
+
+use std::fmt;
+
+use super::{resample::not_increasing, sum::RunningSums};
+
+/// A sample this near to the edge of a window, in units of the axis, lies on it.
+const ON_THE_EDGE: f64 = 1e-6;
+/// A last window that would end this fraction of a step beyond the section still counts.
+const LAST_STEP: f64 = 1e-9;
+/// Most windows: a step mistyped by orders of magnitude is refused before it fills the memory.
+const MOST_WINDOWS: f64 = 1e8;
+
+/// What is taken of each window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Mean,
+    Rms,
+}
+
+/// What a window holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ends {
+    /// The samples with `a <= x < a + width`, each with the same weight.
+    Samples,
+    /// The integral of the signal, linear between samples, from `a` to `a + width`.
+    Integral,
+}
+
+/// A sliding window: `width` and `step` in units of the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sliding {
+    pub width: f64,
+    pub step: f64,
+    pub kind: Kind,
+    pub ends: Ends,
+}
+
+impl Sliding {
+    /// Where the windows begin: `start, start + step, ...` while the window lies inside the section `start..=end`.
+    ///
+    /// # Errors
+    /// A width or step that is not positive, a section shorter than one window, more windows than can be meant.
+    pub fn starts(&self, start: f64, end: f64) -> Result<Vec<f64>, SlidingError> {
+        let Self { width, step, .. } = *self;
+        if !(width > 0.0 && step > 0.0 && width.is_finite() && step.is_finite()) {
+            return Err(SlidingError::Window { width, step });
+        }
+        if !(start.is_finite() && end.is_finite()) {
+            return Err(SlidingError::Section { start, end });
+        }
+        let steps = ((end - start - width) / step + LAST_STEP).floor();
+        if steps < 0.0 {
+            return Err(SlidingError::SectionTooShort { length: end - start, width });
+        }
+        if steps >= MOST_WINDOWS {
+            return Err(SlidingError::Window { width, step });
+        }
+        Ok((0..=steps as usize).map(|k| start + step * k as f64).collect())
+    }
+
+    /// One value per window, in the order of [`Self::starts`].
+    ///
+    /// The record must reach both ends of the section, for [`Ends::Samples`] to within one sampling distance, so that a
+    /// record already cut to the section will do.
+    ///
+    /// # Errors
+    /// As [`Self::starts`]; an axis that does not increase strictly or is not as long as the signal; a record that does not
+    /// reach the ends of the section; a window without samples; a value that is not finite.
+    pub fn over(&self, axis: &[f64], signal: &[f64], start: f64, end: f64) -> Result<Vec<f64>, SlidingError> {
+        let starts = self.starts(start, end)?;
+        if axis.len() != signal.len() {
+            return Err(SlidingError::Lengths { axis: axis.len(), signal: signal.len() });
+        }
+        if let Some(sample) = not_increasing(axis) {
+            return Err(SlidingError::Axis { sample });
+        }
+        let [first, second, ..] = *axis else { return Err(SlidingError::TooFewSamples { samples: axis.len() }) };
+        let (before_last, last) = (axis[axis.len() - 2], axis[axis.len() - 1]);
+        let (ahead, behind) = match self.ends {
+            Ends::Samples => (second - first, last - before_last),
+            Ends::Integral => (0.0, 0.0),
+        };
+        if first > start + ahead + ON_THE_EDGE || last < end - behind - ON_THE_EDGE {
+            return Err(SlidingError::Record { first, last, start, end });
+        }
+        let averages = match self.ends {
+            Ends::Samples => self.of_samples(axis, signal, &starts)?,
+            Ends::Integral => self.of_integral(axis, signal, &starts),
+        };
+        match averages.iter().zip(&starts).find(|(value, _)| !value.is_finite()) {
+            Some((_, &from)) => Err(SlidingError::NotFinite { from }),
+            None => Ok(averages),
+        }
+    }
+
+    fn of_samples(&self, axis: &[f64], signal: &[f64], starts: &[f64]) -> Result<Vec<f64>, SlidingError> {
+        let sums = RunningSums::new(signal.iter().map(|&value| self.power(value)));
+        let mut from_sample = Cursor::default();
+        let mut to_sample = Cursor::default();
+        starts
+            .iter()
+            .map(|&from| {
+                let first = from_sample.first_at(axis, from - ON_THE_EDGE);
+                let beyond = to_sample.first_at(axis, from + self.width - ON_THE_EDGE);
+                if beyond == first {
+                    return Err(SlidingError::Empty { from, width: self.width });
+                }
+                Ok(self.root(sums.between(first, beyond) / (beyond - first) as f64))
+            })
+            .collect()
+    }
+
+    fn of_integral(&self, axis: &[f64], signal: &[f64], starts: &[f64]) -> Vec<f64> {
+        let pieces = axis.array_windows().zip(signal.array_windows());
+        let sums = RunningSums::new(pieces.map(|([a, b], &[x, y])| self.integral(b - a, x, y)));
+        let mut from_sample = Cursor::default();
+        let mut to_sample = Cursor::default();
+        // The sample that opens the piece in which a point lies, and the integral from there to the point.
+        let within = |cursor: &mut Cursor, point: f64| {
+            let piece = cursor.first_beyond(axis, point).saturating_sub(1).min(axis.len() - 2);
+            let along = point - axis[piece];
+            let slope = (signal[piece + 1] - signal[piece]) / (axis[piece + 1] - axis[piece]);
+            (piece, self.integral(along, signal[piece], signal[piece] + slope * along))
+        };
+        starts
+            .iter()
+            .map(|&from| {
+                let (first, before) = within(&mut from_sample, from);
+                let (last, after) = within(&mut to_sample, from + self.width);
+                self.root((sums.between(first, last) + (after - before)) / self.width)
+            })
+            .collect()
+    }
+
+    /// Integral over a piece of some length on which the signal goes straight from `x` to `y`.
+    fn integral(&self, length: f64, x: f64, y: f64) -> f64 {
+        match self.kind {
+            Kind::Mean => 0.5 * length * (x + y),
+            Kind::Rms => length / 3.0 * (x * x + x * y + y * y),
+        }
+    }
+
+    fn power(&self, value: f64) -> f64 {
+        match self.kind {
+            Kind::Mean => value,
+            Kind::Rms => value * value,
+        }
+    }
+
+    fn root(&self, average: f64) -> f64 {
+        match self.kind {
+            Kind::Mean => average,
+            // A window of zeros may come out as minus a rounding unit.
+            Kind::Rms => average.max(0.0).sqrt(),
+        }
+    }
+}
+
+/// A place on an axis that only moves forward.
+#[derive(Default)]
+struct Cursor(usize);
+
+impl Cursor {
+    /// The first sample at or beyond a point.
+    fn first_at(&mut self, axis: &[f64], point: f64) -> usize {
+        self.advance(axis, |at| at < point)
+    }
+
+    /// The first sample beyond a point.
+    fn first_beyond(&mut self, axis: &[f64], point: f64) -> usize {
+        self.advance(axis, |at| at <= point)
+    }
+
+    fn advance(&mut self, axis: &[f64], passed: impl Fn(f64) -> bool) -> usize {
+        self.0 += axis[self.0..].iter().take_while(|&&at| passed(at)).count();
+        self.0
+    }
+}
+
+/// Why there are no sliding values. Places are in units of the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SlidingError {
+    Window {
+        width: f64,
+        step: f64,
+    },
+    Section {
+        start: f64,
+        end: f64,
+    },
+    SectionTooShort {
+        length: f64,
+        width: f64,
+    },
+    Lengths {
+        axis: usize,
+        signal: usize,
+    },
+    /// The axis does not increase at this sample, counted from 0.
+    Axis {
+        sample: usize,
+    },
+    TooFewSamples {
+        samples: usize,
+    },
+    /// The record does not reach the ends of the section.
+    Record {
+        first: f64,
+        last: f64,
+        start: f64,
+        end: f64,
+    },
+    Empty {
+        from: f64,
+        width: f64,
+    },
+    NotFinite {
+        from: f64,
+    },
+}
+
+impl fmt::Display for SlidingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Window { width, step } => write!(f, "no window slides with a width of {width} in steps of {step}"),
+            Self::Section { start, end } => write!(f, "a section from {start} to {end} has no length"),
+            Self::SectionTooShort { length, width } => write!(f, "the section of length {length} is shorter than one window of {width}"),
+            Self::Lengths { axis, signal } => write!(f, "the axis has {axis} samples, the signal {signal}"),
+            Self::Axis { sample } => write!(f, "the axis does not increase at sample {}", sample + 1),
+            Self::TooFewSamples { samples } => write!(f, "the record has {samples} samples, fewer than two"),
+            Self::Record { first, last, start, end } => {
+                write!(f, "the record from {first} to {last} does not cover the section from {start} to {end}")
+            }
+            Self::Empty { from, width } => write!(f, "the window from {from} to {} holds no sample", from + width),
+            Self::NotFinite { from } => write!(f, "the window from {from} holds a value that is not finite"),
+        }
+    }
+}
+
+impl std::error::Error for SlidingError {}

@@ -1,0 +1,88 @@
+use fishplate::metrics::{
+    interval::{CONFIDENCE, mean_interval, standard_deviation_interval},
+    statistics::*,
+};
+
+use crate::{close, json, number, numbers, record};
+
+/// scipy.stats t and chi2, 2 to 100001 values.
+#[test]
+fn intervals_agree_with_scipy() {
+    let expected = json("scipy/statistics.json");
+    for case in expected["intervals"].as_array().expect("a list") {
+        let values = record(number(&case["n"]) as i64, 3.0);
+        close(mean(&values).expect("defined"), number(&case["mean"]), 1e-14);
+        close(standard_deviation(&values, Divisor::Sample).expect("defined"), number(&case["std"]), 1e-13);
+        let of_mean = mean_interval(&values, CONFIDENCE).expect("defined");
+        let of_deviation = standard_deviation_interval(&values, CONFIDENCE).expect("defined");
+        for (interval, key) in [(of_mean, "mean_interval"), (of_deviation, "std_interval")] {
+            let ends = numbers(&case[key]);
+            close(interval.low, ends[0], 1e-9);
+            close(interval.high, ends[1], 1e-9);
+        }
+    }
+}
+
+/// scipy.stats.linregress.
+#[test]
+fn regression_agrees_with_scipy() {
+    let expected = &json("scipy/statistics.json")["regression"];
+    let (x, y) = (record(50, 1.0), record(90, -2.0)[40..].to_vec());
+    let line = regression(&x, &y).expect("defined");
+    close(line.slope, number(&expected["slope"]), 1e-12);
+    close(line.intercept, number(&expected["intercept"]), 1e-12);
+    close(correlation(&x, &y).expect("defined"), number(&expected["correlation"]), 1e-12);
+}
+
+/// Closed forms.
+#[test]
+fn of_a_few_values() {
+    let values = [3.0, -7.0, 1.0, 4.0, -1.0];
+    assert_eq!(mean(&values), Some(0.0));
+    assert_eq!(median(&values), Some(1.0));
+    assert_eq!(median(&values[..4]), Some(2.0));
+    assert_eq!(minimum(&values), Some(-7.0));
+    assert_eq!(maximum(&values), Some(4.0));
+    assert_eq!(peak_magnitude(&values), Some(7.0));
+    assert_eq!(range(&values), Some(11.0));
+    assert_eq!(quartiles(&values), Some([-1.0, 1.0, 3.0]));
+    assert_eq!(interquartile_range(&values), Some(4.0));
+    close(rms(&values).expect("defined"), 15.2_f64.sqrt(), 1e-15);
+    close(variance(&values, Divisor::Sample).expect("defined"), 19.0, 1e-15);
+    close(variance(&values, Divisor::Population).expect("defined"), 15.2, 1e-15);
+    let line = regression(&[0.0, 1.0, 2.0], &[5.0, 3.0, 1.0]).expect("defined");
+    assert_eq!(line, Line { slope: -2.0, intercept: 5.0 });
+    close(correlation(&[0.0, 1.0, 2.0], &[5.0, 3.0, 1.0]).expect("defined"), -1.0, 1e-15);
+}
+
+/// Shifting by a large number shifts the mean and leaves the scatter.
+#[test]
+fn a_large_offset_costs_no_digits() {
+    let values: Vec<f64> = (0..10_000).map(|k| 1e9 + f64::from(k % 2)).collect();
+    close(standard_deviation(&values, Divisor::Population).expect("defined"), 0.5, 1e-12);
+    assert_eq!(mean(&values), Some(1e9 + 0.5));
+}
+
+#[test]
+fn none_where_not_defined() {
+    assert_eq!(mean(&[]), None);
+    assert_eq!(rms(&[]), None);
+    assert_eq!(median(&[]), None);
+    assert_eq!(minimum(&[]), None);
+    assert_eq!(standard_deviation(&[1.0], Divisor::Sample), None);
+    assert_eq!(standard_deviation(&[1.0], Divisor::Population), Some(0.0));
+    assert_eq!(standard_deviation(&[0.1; 10], Divisor::Sample), Some(0.0));
+    assert_eq!(regression(&[0.1; 3], &[1.0, 2.0, 3.0]), None);
+    assert_eq!(correlation(&[1.0, 2.0, 3.0], &[0.1; 3]), None);
+    assert_eq!(correlation(&[1.0, 2.0, 3.0], &[0.1; 2]), None);
+    assert_eq!(mean_interval(&[1.0], CONFIDENCE), None);
+    assert_eq!(mean_interval(&[1.0, 2.0], 1.0), None);
+    assert_eq!(standard_deviation_interval(&[1.0, 2.0], f64::NAN), None);
+    for broken in [[1.0, f64::NAN], [f64::NAN, 1.0], [f64::INFINITY, 1.0]] {
+        for statistic in [mean, rms, median, minimum, maximum, peak_magnitude, range, interquartile_range] {
+            assert_eq!(statistic(&broken), None);
+        }
+        assert_eq!(standard_deviation(&broken, Divisor::Sample), None);
+        assert_eq!(correlation(&broken, &[1.0, 2.0]), None);
+    }
+}
