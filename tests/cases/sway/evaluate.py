@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Matching error on the hysteresis loops of examples/sway, in plain Python: writes expected.json beside itself.
 
-The records are split where the cant turns. Each measured sample is compared with the simulation on the branch of the same
-number, interpolated linearly over the cant; error = |simulated - measured|.
+The records are split where the cant turns; the sample at a turn belongs to both branches. Each measured sample is compared
+with the simulation on the branch of the same number, interpolated linearly over the cant: error = |simulated - measured|.
+maximum: the largest error. mean: over the cant, not over time: the branches of one direction put together in the order of the cant,
+the error integrated by trapezia; both directions together.
 """
 import bisect
 import csv
@@ -36,17 +38,19 @@ def interpolate(x, y, at):
 
 def compare(simulated, measured, signal):
     xs, xm = simulated["cant"], measured["cant"]
-    parts = list(zip(branches(xs), branches(xm)))
-    errors = []
-    for number, ((i, j), (k, n)) in enumerate(parts):
-        # The sample at a turn is counted once, on the branch that it begins.
-        last = n + 1 if number == len(parts) - 1 else n
-        for m in range(k, last):
+    errors = {True: [], False: []}
+    for (i, j), (k, n) in zip(branches(xs), branches(xm), strict=True):
+        for m in range(k, n + 1):
             at = interpolate(xs[i : j + 1], simulated[signal][i : j + 1], xm[m])
-            errors.append((abs(at - measured[signal][m]), number, xm[m]))
-    worst = max(errors)
-    return {"maximum": worst[0], "mean": sum(e for e, *_ in errors) / len(errors), "at_cant_mm": worst[2], "on_branch": worst[1] + 1,
-            "samples": len(errors)}
+            errors[xm[n] > xm[k]].append((xm[m], abs(at - measured[signal][m])))
+    area = length = 0.0
+    for way in errors.values():
+        way.sort()
+        for (x, e), (x_next, e_next) in zip(way, way[1:]):
+            area += 0.5 * (e + e_next) * (x_next - x)
+            length += x_next - x
+    worst = max((e, x, "rising" if rising else "falling") for rising, way in errors.items() for x, e in way)
+    return {"maximum": worst[0], "mean": area / length, "at_cant_mm": worst[1], "while": worst[2]}
 
 
 if __name__ == "__main__":
