@@ -44,7 +44,7 @@ fn poppler(tool: &str, arguments: &[&str], pdf: &Pdf) -> Option<Vec<u8>> {
     match Command::new(tool).args(before).arg(file.path()).args(after).stderr(Stdio::null()).output() {
         Ok(output) => Some(output.stdout),
         Err(_) => {
-            println!("skipped: {tool} is not installed");
+            eprintln!("skipped: {tool} is not installed");
             None
         }
     }

@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(clean("中文 a"), "⟨U+4E2D U+6587⟩ a");
         assert_eq!(clean(&clean("中")), "⟨U+4E2D⟩");
         assert_eq!(clean("🚆"), "⟨U+1F686⟩");
-        assert_eq!(clean("a\u{202e}b\u{0}c\u{ad}d\u{feff}"), "a⟨U+202E⟩b⟨U+0000⟩c⟨U+00AD⟩d⟨U+FEFF⟩");
+        assert_eq!(clean("a\u{202e}b\u{0} c\u{ad}d\u{feff}"), "a⟨U+202E⟩b⟨U+0000⟩ c⟨U+00AD⟩d⟨U+FEFF⟩");
         assert_eq!(clean("two\nlines\r\nthree\tfour"), "two lines three four");
     }
 
