@@ -4,7 +4,7 @@ mod common {
 }
 
 use common::coach::certification;
-use fishplate::report::figure;
+use fishplate::report::{figure, html, view};
 use fishplate::result::{Certification, QuantityResult, StatisticResult};
 
 /// Writes figures to the folder named by FISHPLATE_FIGURES, to be looked at.
@@ -18,8 +18,10 @@ fn figures_can_be_looked_at() {
     let zones = figure::Zones::of(&found);
     drawn.push(("pairs-metric".into(), figure::pairs(&metric(&found), &zones)));
     drawn.push(("pairs-one".into(), figure::pairs(&first(&found, 1), &zones)));
+    let page = html::html(&view::view(&found), &figure::figures(&found)).expect("the templates can be filled");
+    std::fs::write(std::path::Path::new(&folder).join("report.html"), page).expect("the folder can be written");
     for (name, svg) in &drawn {
-        std::fs::write(std::path::Path::new(&folder).join(format!("{name}.svg")), svg).unwrap();
+        std::fs::write(std::path::Path::new(&folder).join(format!("{name}.svg")), svg).expect("the folder can be written");
     }
 }
 

@@ -8,6 +8,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle};
 
 use super::style::{Dash, FAMILY, INK, Mark};
+use crate::report::visible::visible;
 
 /// Steps of the grid per point: plotters places by whole steps, 1/20 pt is finer than print resolves.
 const STEPS: f64 = 20.0;
@@ -215,7 +216,7 @@ impl Layer<'_> {
             Held::End => HPos::Right,
         };
         let style = TextStyle::from(described).color(&font.color).pos(Pos::new(held, VPos::Center));
-        let _ = self.backend.draw_text(&printable(text), &style, at(point));
+        let _ = self.backend.draw_text(&visible(text), &style, at(point));
     }
 }
 
@@ -264,7 +265,7 @@ fn attribute(body: &mut String, name: &str, value: Option<&str>) {
 /// Text for XML content and attribute values.
 pub fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
-    for c in printable(text).chars() {
+    for c in visible(text).chars() {
         match c {
             '<' => safe.push_str("&lt;"),
             '>' => safe.push_str("&gt;"),
@@ -275,18 +276,6 @@ pub fn escaped(text: &str) -> String {
         }
     }
     safe
-}
-
-/// Text without what XML forbids (control characters, non-characters) and without marks that turn the reading direction
-/// of what follows: white space becomes a space, the rest the replacement character.
-pub fn printable(text: &str) -> String {
-    text.chars()
-        .map(|c| match c {
-            '\t' | '\n' | '\r' | '\u{2028}' | '\u{2029}' => ' ',
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}') => '\u{fffd}',
-            c => c,
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -24,6 +24,7 @@ pub struct ZoneView {
 /// The sections of one zone.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct SectionTable {
+    pub zone: Option<String>,
     /// `Zone 1: Straight track`; `Sections` where there are no zones.
     pub title: String,
     pub condition: String,
@@ -146,6 +147,7 @@ fn table(zone: Option<&str>, known: Option<&ZoneResult>, sections: &[&SectionRes
     let axis_unit = sections.first().map(|section| section.axis_unit.as_str()).unwrap_or_default();
     let decimals = number::decimals(axis_unit, []);
     SectionTable {
+        zone: zone.map(name),
         title: match (zone, known) {
             (Some(zone), Some(known)) if !known.title.is_empty() && known.title != zone => format!("Zone {zone}: {}", known.title),
             (Some(zone), _) => format!("Zone {zone}"),

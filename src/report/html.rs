@@ -1,0 +1,138 @@
+//! The HTML report: one file that needs nothing else, filled by minijinja from `templates/`.
+//!
+//! What comes from users is data: escaped by the engine, invisible signs spelled out. The page's policy admits its own style
+//! and script by their hashes and nothing from elsewhere, so that even an escaping fault could neither run nor call out.
+
+use std::collections::BTreeMap;
+
+use minijinja::syntax::SyntaxConfig;
+use minijinja::{Environment, UndefinedBehavior, Value, context};
+use serde_json::Value as Json;
+use sha2::{Digest, Sha256};
+
+use crate::problem::{Problem, Problems};
+use crate::report::view::ReportData;
+use crate::report::visible::visible;
+
+const CSS: &str = include_str!("../../templates/html/report.css");
+const SCRIPT: &str = include_str!("../../templates/html/report.js");
+
+const TEMPLATES: [(&str, &str); 13] = [
+    ("report.html", include_str!("../../templates/report.html")),
+    ("html/macros.html", include_str!("../../templates/html/macros.html")),
+    ("html/navigation.html", include_str!("../../templates/html/navigation.html")),
+    ("html/cover.html", include_str!("../../templates/html/cover.html")),
+    ("html/summary.html", include_str!("../../templates/html/summary.html")),
+    ("html/vehicle.html", include_str!("../../templates/html/vehicle.html")),
+    ("html/sections.html", include_str!("../../templates/html/sections.html")),
+    ("html/quantities.html", include_str!("../../templates/html/quantities.html")),
+    ("html/traces.html", include_str!("../../templates/html/traces.html")),
+    ("html/domain.html", include_str!("../../templates/html/domain.html")),
+    ("html/protocol.html", include_str!("../../templates/html/protocol.html")),
+    ("html/provenance.html", include_str!("../../templates/html/provenance.html")),
+    ("html/statements.html", include_str!("../../templates/html/statements.html")),
+];
+
+/// Name of the figure of the processing graph.
+const GRAPH: &str = "graph";
+
+/// The report as one HTML page.
+///
+/// `figures` are SVG texts made by this program, by the names the view gives them ([`super::view::FigureView::name`]); a figure
+/// not handed over is left out. The same arguments give the same bytes.
+///
+/// # Errors
+///
+/// `report-template`: a template cannot be filled.
+pub fn html(data: &ReportData, figures: &[(String, String)]) -> Result<String, Problems> {
+    filled(data, figures).map_err(|error| Problems(vec![Problem::error("report-template", error)]))
+}
+
+fn filled(data: &ReportData, figures: &[(String, String)]) -> Result<String, String> {
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build().map_err(said)?);
+    for (name, text) in TEMPLATES {
+        environment.add_template(name, text).map_err(said)?;
+    }
+    let data = serde_json::to_value(data).map_err(|error| error.to_string())?;
+    let drawn: BTreeMap<&str, Value> = figures
+        .iter()
+        .filter(|(name, _)| name != GRAPH)
+        .map(|(name, svg)| (name.as_str(), Value::from_safe_string(svg.trim_end().to_owned())))
+        .collect();
+    // The graph is wide and has styles of its own: an image keeps both to itself.
+    let graph =
+        figures.iter().find(|(name, _)| name == GRAPH).map(|(_, svg)| format!("data:image/svg+xml;base64,{}", base64(svg.as_bytes())));
+    let page = environment.get_template("report.html").map_err(said)?;
+    page.render(context! {
+        data => shown(&data),
+        figures => drawn,
+        graph,
+        css => Value::from_safe_string(CSS.to_owned()),
+        script => Value::from_safe_string(SCRIPT.to_owned()),
+        policy => policy(),
+    })
+    .map_err(said)
+}
+
+/// The message with the template and line it comes from.
+fn said(error: minijinja::Error) -> String {
+    match (error.name(), error.line()) {
+        (Some(name), Some(line)) => format!("{error} ({name}:{line})"),
+        _ => error.to_string(),
+    }
+}
+
+/// Nothing may be loaded or run but this page's own style and script, known by their hashes, and images inside the page.
+fn policy() -> String {
+    let known = |text: &str| format!("'sha256-{}'", base64(&Sha256::digest(text.as_bytes())));
+    format!(
+        "default-src 'none'; style-src {}; script-src {}; img-src data:; base-uri 'none'; form-action 'none'",
+        known(CSS),
+        known(SCRIPT)
+    )
+}
+
+/// The data as the engine takes them, with every text made visible.
+fn shown(value: &Json) -> Value {
+    match value {
+        Json::Null => Value::from(()),
+        Json::Bool(truth) => Value::from(*truth),
+        Json::Number(number) => number.as_i64().map_or_else(|| Value::from(number.as_f64()), Value::from),
+        Json::String(text) => Value::from(visible(text)),
+        Json::Array(items) => Value::from(items.iter().map(shown).collect::<Vec<_>>()),
+        Json::Object(map) => Value::from_pairs(map.iter().map(|(key, item)| (key.clone(), shown(item)))),
+    }
+}
+
+/// RFC 4648, with padding.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for part in bytes.chunks(3) {
+        let mut group = [0; 3];
+        group[..part.len()].copy_from_slice(part);
+        let bits = u32::from_be_bytes([0, group[0], group[1], group[2]]);
+        for at in 0..4 {
+            let letter = LETTERS[(bits >> (18 - 6 * at)) as usize & 63];
+            text.push(if at <= part.len() { char::from(letter) } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::base64;
+
+    /// RFC 4648, section 10.
+    #[test]
+    fn base64_vectors_of_the_rfc() {
+        let vectors =
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("fooba", "Zm9vYmE="), ("foobar", "Zm9vYmFy")];
+        for (plain, coded) in vectors {
+            assert_eq!(base64(plain.as_bytes()), coded);
+        }
+    }
+}
