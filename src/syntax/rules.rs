@@ -81,6 +81,8 @@ impl<'a> Reader<'a> {
             (1..=words.len().min(LONGEST)).rev().map(|count| (owners(&words[..count]), count)).find(|(owners, _)| !owners.is_empty());
         // `minimum signal` is rather a slip for `minimum signals` than the `minimum` of another kind.
         let near = near_key(kind, words).filter(|(_, count)| other.as_ref().is_none_or(|(_, other)| count > other));
+        // A key of YAML is one as a whole.
+        let near = near.filter(|(_, count)| self.form == Form::Lines || *count == words.len());
         let other = other.map(|(owners, _)| owners).unwrap_or_default();
         let count = near.map_or(1, |(_, count)| count);
         let written = if self.form == Form::Yaml { words.join(" ") } else { words[..count.min(words.len())].join(" ") };
