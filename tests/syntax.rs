@@ -130,6 +130,19 @@ fn both_forms_say_the_same() {
     assert_eq!(print_text(&clean("a.yaml", &yaml)), text);
 }
 
+/// The page on the two forms shows one protocol in both.
+#[test]
+fn the_manual_shows_what_is_read() {
+    let page = fs::read_to_string(root().join("docs/language-surfaces.md")).expect("a readable page");
+    let block = |language: &str| {
+        let (_, rest) = page.split_once(&format!("```{language}\n")).expect("an example");
+        rest.split_once("```").expect("its end").0.to_owned()
+    };
+    let (text, yaml) = (block("text"), block("yaml"));
+    assert_eq!(clean("a.fp", &text), clean("a.yaml", &yaml));
+    assert_eq!(print_yaml(&clean("a.fp", &text)), yaml);
+}
+
 #[test]
 fn line_ends_and_marks_of_editors_do_not_matter() {
     let text = fs::read_to_string(root().join("tests/cases/syntax/good/wheel_forces.fp")).expect("a readable case");
@@ -328,7 +341,7 @@ mod round_trip {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
 
         #[test]
         fn random_documents_pass_through_both_forms(document in document()) {

@@ -44,7 +44,13 @@ fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
         Some(fault) if header.name.as_ref().map_or(kind.named && header.title.is_none(), |name| name.end == fault.at.start) => {
             header.name = Some(header.name.map_or(fault.at.start, |name| name.start)..fault.at.end);
         }
-        Some(fault) => report(reader, source, raw.header.range.start, fault),
+        Some(mut fault) => {
+            let rest = text[fault.at.start..].trim();
+            if fault.help.is_none() && header.title.is_none() && !rest.contains('"') {
+                fault.help = Some(format!("a title stands in quotes: {} {}", &text[..fault.at.start].trim_end(), rules::quoted(rest)));
+            }
+            report(reader, source, raw.header.range.start, fault);
+        }
         None => {}
     }
     let title = header.title.map(|range| unquote(&[range], &text, &raw.header, source, reader));

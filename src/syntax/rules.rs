@@ -18,6 +18,23 @@ pub enum Form {
     Yaml,
 }
 
+impl Form {
+    fn spelling(self, kind: &Kind) -> &'static str {
+        match self {
+            Self::Lines => kind.word,
+            Self::Yaml => kind.group,
+        }
+    }
+}
+
+/// The kind a word names, or the other form's word for it, or the one it is near to.
+pub fn meant_kind(form: Form, word: &str) -> Option<&'static Kind> {
+    let named = |name: &str| KINDS.iter().find(|kind| form.spelling(kind) == name);
+    named(word)
+        .or_else(|| KINDS.iter().find(|kind| kind.word == word || kind.group == word))
+        .or_else(|| near(word, KINDS.iter().map(|kind| form.spelling(kind))).and_then(named))
+}
+
 /// Takes in blocks as they are read and notes what is wrong with them.
 #[derive(Debug)]
 pub struct Reader<'a> {
@@ -39,15 +56,12 @@ impl<'a> Reader<'a> {
 
     /// The kind of block a word names, or the nearest one beside a problem.
     pub fn kind(&mut self, word: &str, at: &Span) -> Option<&'static Kind> {
-        let spelt = |kind: &Kind| if self.form == Form::Lines { kind.word } else { kind.group };
-        let other = |kind: &Kind| if self.form == Form::Lines { kind.group } else { kind.word };
-        if let Some(kind) = KINDS.iter().find(|kind| spelt(kind) == word) {
+        let form = self.form;
+        let spelt = |kind: &Kind| form.spelling(kind);
+        let near = meant_kind(form, word);
+        if let Some(kind) = near.filter(|kind| spelt(kind) == word) {
             return Some(kind);
         }
-        let near = KINDS
-            .iter()
-            .find(|kind| other(kind) == word)
-            .or_else(|| near(word, KINDS.iter().map(spelt)).and_then(|near| KINDS.iter().find(|kind| spelt(kind) == near)));
         let owners = owners(&[word]);
         let problem = Problem::error("unknown-block", format!("`{word}` is no block of a protocol")).at(at);
         self.problems.push(match (near, owners.is_empty()) {
@@ -67,6 +81,8 @@ impl<'a> Reader<'a> {
             (1..=words.len().min(LONGEST)).rev().map(|count| (owners(&words[..count]), count)).find(|(owners, _)| !owners.is_empty());
         // `minimum signal` is rather a slip for `minimum signals` than the `minimum` of another kind.
         let near = near_key(kind, words).filter(|(_, count)| other.as_ref().is_none_or(|(_, other)| count > other));
+        // A key of YAML is one as a whole.
+        let near = near.filter(|(_, count)| self.form == Form::Lines || *count == words.len());
         let other = other.map(|(owners, _)| owners).unwrap_or_default();
         let count = near.map_or(1, |(_, count)| count);
         let written = if self.form == Form::Yaml { words.join(" ") } else { words[..count.min(words.len())].join(" ") };

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use super::document::Comments;
 use super::keys::{self, Kind};
-use super::{lines, rules};
+use super::lines;
+use super::rules::{self, Form};
 use crate::problem::{Problem, Problems};
 use crate::source::Source;
 
@@ -107,10 +108,10 @@ impl Splitter<'_> {
             );
             self.add(above.unwrap_or(2), rest);
         } else if indent == 0 {
-            self.begin(kind, rest);
+            self.begin(rules::meant_kind(Form::Lines, word), rest);
         } else if above.is_some_and(|column| indent > column) {
             self.carry_on(rest);
-        } else if kind.is_some() && !self.blocks.last().is_some_and(|block| block.may_hold(word)) {
+        } else if kind.is_some() && self.blocks.last().is_none_or(|block| block.kind.is_some() && !block.may_hold(word)) {
             self.problem("indentation", &format!("`{word}` begins a block and is indented"), word_at, "blocks begin in the first column");
             self.begin(kind, rest);
         } else {

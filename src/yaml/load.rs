@@ -243,19 +243,17 @@ impl<'a> Loader<'a> {
         let at = marker
             .byte_offset()
             .unwrap_or_else(|| self.source.text.char_indices().nth(marker.index()).map_or(self.source.text.len(), |(at, _)| at));
-        let tab = matches!(
-            error.kind(),
-            ErrorKind::TabNotAllowed
-                | ErrorKind::TabInBlockIndentation
-                | ErrorKind::TabInIndentation
-                | ErrorKind::TabInPlainScalar
-                | ErrorKind::TabAtBlockScalarStart
-        );
+        let tab = is_tab(error.kind());
         // The parser points at the value that a tab comes to stand in.
         let at = self.source.text.get(at..).and_then(|rest| rest.find('\t')).filter(|_| tab).map_or(at, |tab| at + tab);
         let span = self.source.span(at..at);
         let (says, help) = in_words(error.kind());
-        let problem = Problem::error(if tab { "tab-indentation" } else { "yaml-syntax" }, says).at(&span);
+        let code = match error.kind() {
+            _ if tab => "tab-indentation",
+            ErrorKind::RecursionLimitExceeded => "yaml-too-deep",
+            _ => "yaml-syntax",
+        };
+        let problem = Problem::error(code, says).at(&span);
         match help {
             Some(help) => problem.help(help),
             None => problem,
@@ -289,14 +287,21 @@ fn written(text: Cow<'_, str>, style: ScalarStyle, span: Span) -> (String, Span,
     (text.into_owned(), if exact { inner } else { span }, exact)
 }
 
+fn is_tab(kind: &ErrorKind) -> bool {
+    matches!(
+        kind,
+        ErrorKind::TabNotAllowed
+            | ErrorKind::TabInBlockIndentation
+            | ErrorKind::TabInIndentation
+            | ErrorKind::TabInPlainScalar
+            | ErrorKind::TabAtBlockScalarStart
+    )
+}
+
 /// The fact and the remedy for the faults people make; the parser's own words for the rest.
 fn in_words(kind: &ErrorKind) -> (String, Option<&'static str>) {
     let (says, help) = match kind {
-        ErrorKind::TabNotAllowed
-        | ErrorKind::TabInBlockIndentation
-        | ErrorKind::TabInIndentation
-        | ErrorKind::TabInPlainScalar
-        | ErrorKind::TabAtBlockScalarStart => ("a tab stands in the indentation", Some("YAML is indented with blanks")),
+        kind if is_tab(kind) => ("a tab stands in the indentation", Some("YAML is indented with blanks")),
         ErrorKind::UnclosedQuotedScalar => ("a quote is opened and never closed", None),
         ErrorKind::MappingValueNotAllowed => {
             ("a second `:` stands where a value is expected", Some("quote a value that holds `: `, and give each key its own line"))

@@ -75,10 +75,10 @@ fn aliases_are_written_out() {
 #[test]
 fn problems_are_at_their_place() {
     for (text, code, at) in [
-        ("a: 1\nb: [1, 2\n", "yaml-syntax", "3:1"),
-        ("a: 1\n\tb: 2\n", "yaml-syntax", "2:1"),
+        ("a: 1\nb: [1, 2\n", "yaml-syntax", "2:4"),
+        ("a: 1\n\tb: 2\n", "tab-indentation", "2:1"),
         ("a: b: c\n", "yaml-syntax", "1:5"),
-        ("a: 'open\nb: 1\n", "yaml-syntax", "1:4"),
+        ("a: 'open\nb: 1\n", "yaml-syntax", "2:1"),
         ("a: 1\nb: 2\na: 3\n", "duplicate-key", "3:1"),
         ("a: 1\n'a': 3\n", "duplicate-key", "2:2"),
         ("x: *none\n", "yaml-syntax", "1:4"),
@@ -97,6 +97,14 @@ fn problems_are_at_their_place() {
 }
 
 #[test]
+fn a_tree_as_written_keeps_repeated_keys() {
+    let mut problems = Problems::default();
+    let tree = load_as_written(&Source::new("t", "a: 1\nb: .nan\na: 3\n"), &mut problems).expect("a tree");
+    assert_eq!(tree.entries().iter().map(|(key, _)| key.text.as_str()).collect::<Vec<_>>(), ["a", "b", "a"]);
+    assert_eq!(problems.0.iter().map(|problem| problem.code).collect::<Vec<_>>(), ["not-finite"]);
+}
+
+#[test]
 fn an_alias_bomb_is_refused_at_once() {
     let mut bomb = String::from("a0: &a0 [x, x, x, x, x, x, x, x, x]\n");
     for n in 1..9 {
@@ -104,7 +112,7 @@ fn an_alias_bomb_is_refused_at_once() {
         bomb += &format!("a{n}: &a{n} [{again}]\n");
     }
     assert_eq!(faults(&bomb)[0].0, "yaml-too-large");
-    assert_eq!(faults(&"[".repeat(100))[0].0, "yaml-too-deep");
+    assert_eq!(faults(&("[".repeat(100) + &"]".repeat(100)))[0].0, "yaml-too-deep");
     assert_eq!(faults(&"- ".repeat(100_000)).len(), 1);
 }
 
