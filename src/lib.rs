@@ -13,9 +13,12 @@
 //! [`source`], [`problem`], [`units`], [`yaml`] and `metrics` are leaves the stages lean on; `data` reads campaigns.
 
 pub mod catalog;
+pub mod certify;
 pub mod check;
+pub mod cli;
 pub mod data;
 pub mod graph;
+pub mod library;
 pub mod metrics;
 pub mod problem;
 pub mod report;

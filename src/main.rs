@@ -1,1 +1,7 @@
-fn main() {}
+//! The `fishplate` program.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    fishplate::cli::run().into()
+}

@@ -1,8 +1,12 @@
 //! Numbers taken from one signal of one section, and statistics over all section x signal pairs.
 
 use crate::metrics::percentile::{Method, percentile};
-use crate::metrics::statistics;
+use crate::metrics::interval::{mean_interval, standard_deviation_interval};
+use crate::metrics::statistics::{self, Divisor};
 use crate::units::Dimension;
+
+/// Confidence of the intervals printed beside statistics.
+const CONFIDENCE: f64 = 0.95;
 
 /// What reduces a signal to a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,10 +40,10 @@ pub const REDUCERS: &[ReducerEntry] = &[
     same("median", "The 50 % value.", |_, x| statistics::median(x)),
     same("mean", "Arithmetic mean of the samples.", |_, x| statistics::mean(x)),
     same("rms", "Root of the mean square; the mean is not removed.", |_, x| statistics::rms(x)),
-    same("std", "Standard deviation of the samples (n-1).", |_, x| statistics::standard_deviation(x, 1)),
+    same("std", "Standard deviation of the samples (n-1).", |_, x| statistics::standard_deviation(x, Divisor::Sample)),
     same("minimum", "Smallest sample.", |_, x| statistics::minimum(x)),
     same("maximum", "Largest sample.", |_, x| statistics::maximum(x)),
-    same("peak", "Largest magnitude.", |_, x| statistics::peak(x)),
+    same("peak", "Largest magnitude.", |_, x| statistics::peak_magnitude(x)),
     same("range", "Largest less smallest sample.", |_, x| statistics::range(x)),
     same("first", "First sample of the section.", |_, x| x.first().copied()),
     same("last", "Last sample of the section.", |_, x| x.last().copied()),
@@ -66,7 +70,7 @@ impl Reducer {
     /// `None` where the value is not defined: no samples, a slope over one sample.
     pub fn run(self, axis: &[f64], samples: &[f64], method: Method) -> Option<f64> {
         match self {
-            Self::Percentile(percent) => percentile(samples, percent, method),
+            Self::Percentile(percent) => percentile(samples, percent, method).ok(),
             Self::Named(entry) => (entry.run)(axis, samples),
         }
     }
@@ -113,19 +117,19 @@ pub const STATISTICS: &[StatisticEntry] = &[
         name: "mean",
         title: "mean",
         run: |x, _| statistics::mean(x),
-        interval: Some(|x| statistics::mean_interval(x, 0.95)),
+        interval: Some(|x| mean_interval(x, CONFIDENCE).map(|interval| (interval.low, interval.high))),
     },
     StatisticEntry {
         name: "std",
         title: "standard deviation",
-        run: statistics::standard_deviation,
-        interval: Some(|x| statistics::std_interval(x, 0.95)),
+        run: |x, ddof| statistics::standard_deviation(x, if ddof == 0 { Divisor::Population } else { Divisor::Sample }),
+        interval: Some(|x| standard_deviation_interval(x, CONFIDENCE).map(|interval| (interval.low, interval.high))),
     },
     plain("rms", "root mean square", |x, _| statistics::rms(x)),
     plain("median", "median", |x, _| statistics::median(x)),
     plain("minimum", "smallest value", |x, _| statistics::minimum(x)),
     plain("maximum", "largest value", |x, _| statistics::maximum(x)),
-    plain("peak", "largest magnitude", |x, _| statistics::peak(x)),
+    plain("peak", "largest magnitude", |x, _| statistics::peak_magnitude(x)),
     plain("range", "range", |x, _| statistics::range(x)),
 ];
 

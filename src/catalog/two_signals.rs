@@ -93,14 +93,14 @@ pub const METRICS: &[MetricEntry] = &[
         &[Part::Word("weighted"), Part::Word("integrated"), Part::Word("factor")],
         "WIFac: 1 where the signals are alike, 0 where they have nothing in common.",
         "Ray et al., NCHRP 22-24",
-        pair::wifac
+        pair::weighted_integrated_factor
     ),
     ratio!(&[Part::Word("correlation")], "Pearson correlation of the samples.", "Pearson 1895", pair::correlation),
     ratio!(
         &[Part::Word("misfit")],
         "Sum of the squared differences over the smaller of the sums of squares.",
         "Kraft et al. 2013, as described by Goetz & Polach",
-        pair::misfit_squared
+        pair::kraft_misfit
     ),
     ratio!(
         &[Part::Word("matching"), Part::Word("probability")],
@@ -113,14 +113,14 @@ pub const METRICS: &[MetricEntry] = &[
         true,
         "Root mean square of the differences of the samples.",
         "definition",
-        pair::rmse
+        pair::root_mean_square_error
     ),
     of_signal!(
         &[Part::Word("area"), Part::Word("between"), Part::Word("distributions")],
         false,
         "Area between the two cumulative distributions of the samples.",
         "Ferson, Oberkampf & Ginzburg 2008",
-        pair::area
+        pair::area_metric
     ),
     MetricEntry {
         form: form(&[Part::Word("hysteresis"), Part::Word("maximum"), Part::Word("over"), Part::Signal("axis")]),
@@ -140,7 +140,12 @@ pub const METRICS: &[MetricEntry] = &[
     },
 ];
 
-fn loop_error(pair: &Pair<'_>) -> Result<hysteresis::MatchingError, String> {
+/// Share of the input's range by which it must turn back to count as a turning point.
+const TURNING: f64 = 0.05;
+
+fn loop_error(pair: &Pair<'_>) -> Result<hysteresis::Matching, String> {
     let (x_simulated, x_measured) = pair.over.ok_or("the signal of the loop's axis is missing")?;
-    hysteresis::matching_error(x_simulated, pair.simulated, x_measured, pair.measured).map_err(|undefined| undefined.to_string())
+    let simulated = hysteresis::Loop { x: x_simulated, y: pair.simulated };
+    let measured = hysteresis::Loop { x: x_measured, y: pair.measured };
+    hysteresis::matching(simulated, measured, TURNING).map_err(|undefined| undefined.to_string())
 }

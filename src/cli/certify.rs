@@ -150,7 +150,7 @@ impl Certify {
                 files.push(("report.pdf".into(), typst::typeset(&data, &figures, &[attachment])?.bytes));
             }
             if self.only != Only::Pdf {
-                files.push(("report.html".into(), html::html(&data, &figures, found)?.into_bytes()));
+                files.push(("report.html".into(), html::html(&data, &figures)?.into_bytes()));
             }
         }
         files.push(("results.json".into(), results.into_bytes()));

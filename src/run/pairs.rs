@@ -10,6 +10,7 @@ use crate::catalog::Pair;
 use crate::check::evaluate::{Values, flag, number};
 use crate::check::plan::{Evaluation, InputSide, Quantity, StepSpec};
 use crate::graph::{InputNode, NodeId, Operation, SignalNodes};
+use crate::metrics::filter::Band;
 use crate::metrics::resample;
 use crate::problem::Problem;
 use crate::result::{CheckResult, FileHash};
@@ -115,13 +116,19 @@ fn side(work: &Work<'_>, unit: &Unit, kind: &str, wanted: &BTreeSet<NodeId>, kno
 const SLOW_FILTER: f64 = 1.0;
 const SLOW_FILTER_MARGIN: f64 = 5.0;
 
+fn lowest_edge(band: Band) -> f64 {
+    match band {
+        Band::LowPass(edge) | Band::HighPass(edge) | Band::BandPass(edge, _) | Band::BandStop(edge, _) => edge,
+    }
+}
+
 fn note_margins(work: &Work<'_>, unit: &Unit, needed: &BTreeSet<NodeId>, opened: &Opened, values: &mut SectionValues) {
     let Some((before, after)) = opened.margins else { return };
     if unit.extent.is_none() || before.min(after) >= SLOW_FILTER_MARGIN {
         return;
     }
     let slow = needed.iter().any(|&id| match &work.graph.nodes[id].operation {
-        Operation::Step(StepSpec::Butterworth { band, .. }) => band.lowest_edge().is_some_and(|edge| edge < SLOW_FILTER),
+        Operation::Step(StepSpec::Butterworth { band, .. }) => lowest_edge(*band) < SLOW_FILTER,
         _ => false,
     });
     if slow {

@@ -1,0 +1,55 @@
+# A test on the spot: no track, no sections, no zones; angles over cant in place of forces over distance.
+
+protocol stationary-sway "Matching error of the hysteresis loops of a stationary sway test"
+  edition  "In the manner of EN 15273-2:2013, stationary sway test"
+  source   "Goetz & Polach, section 3.3: largest and mean matching error on the hysteresis loop of the primary and secondary roll angle"
+  author   "Fishplate"
+  scope    "Models used for gauging: roll angles of the two suspension stages while the vehicle is canted slowly to both sides. The limits are parameters; the numbers of the standard are to be put in by the user."
+  axis     time in s
+  note     "The simulated angle is compared with the measured one at the same cant on the same branch of the loop, rising or falling."
+
+parameter largest_error "Limit of the largest matching error"
+  default  1 mrad
+  range    0.01 mrad to 100 mrad
+
+parameter mean_error "Limit of the mean matching error"
+  default  0.5 mrad
+  range    0.01 mrad to 100 mrad
+
+channel cant "Cant of the vehicle"
+  in  mm
+
+channel primary_roll "Roll angle of the primary suspension"
+  in      mrad
+  column  "primary roll angle"
+
+channel secondary_roll "Roll angle of the secondary suspension"
+  in      mrad
+  column  "secondary roll angle"
+
+sections
+  use      whole records
+  minimum  1
+
+quantity primary_largest "Primary suspension, largest matching error"
+  of      primary_roll
+  metric  hysteresis maximum over cant
+  limit   maximum largest_error
+
+quantity primary_mean "Primary suspension, mean matching error"
+  of      primary_roll
+  metric  hysteresis mean over cant
+  limit   maximum mean_error
+
+quantity secondary_largest "Secondary suspension, largest matching error"
+  of      secondary_roll
+  metric  hysteresis maximum over cant
+  limit   maximum largest_error
+
+quantity secondary_mean "Secondary suspension, mean matching error"
+  of      secondary_roll
+  metric  hysteresis mean over cant
+  limit   maximum mean_error
+
+verdict
+  validated  when every limit holds
