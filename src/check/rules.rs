@@ -143,7 +143,7 @@ impl Checker<'_> {
                 Some(method) => rules.percentiles = method,
                 None => {
                     let problem = Problem::error("unknown-choice", format!("`{word}` is no percentile rule")).at(&field.value.span);
-                    self.problems.push(problem.suggest(&word, Method::names()));
+                    self.problems.push(problem.suggest(&word, Method::ALL.iter().map(|method| method.name())));
                 }
             }
         }

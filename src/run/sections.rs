@@ -72,11 +72,11 @@ pub fn units(plan: &Plan, campaign: &Campaign, facts: &Facts, problems: &mut Pro
         return Vec::new();
     }
     let mut units = Vec::new();
-    for row in 0..table.rows() {
+    for row in 0..table.rows.len() {
         let columns: Vec<Result<Scalar, String>> = plan.columns.iter().map(|datum| cell(datum, table, row)).collect();
         let ends = [cell(&start, table, row), cell(&end, table, row)];
         let mut unit = Unit {
-            name: table.name(row).to_string(),
+            name: row_name(table, row),
             zone: plan.sections.zone.and_then(|zone| match &columns[zone] {
                 Ok(Scalar::Word(word)) => Some(word.clone()),
                 _ => None,
@@ -86,7 +86,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, facts: &Facts, problems: &mut Pro
             checks: Vec::new(),
             fault: None,
             faulty: false,
-            span: Some(table.row_span(row)),
+            span: table.rows[row].first().map(|cell| cell.span.clone()),
         };
         match ends {
             [Ok(Scalar::Number(start)), Ok(Scalar::Number(end))] if start < end => unit.extent = Some((start, end)),
@@ -99,13 +99,17 @@ pub fn units(plan: &Plan, campaign: &Campaign, facts: &Facts, problems: &mut Pro
     units
 }
 
+fn row_name(table: &crate::data::table::Table, row: usize) -> String {
+    table.names().nth(row).map_or_else(String::new, |cell| cell.value.clone())
+}
+
 fn whole_record(plan: &Plan, name: String) -> Unit {
     let columns = plan.columns.iter().map(|datum| datum.default.clone().ok_or_else(|| format!("`{}` is not known of a whole record", datum.name))).collect();
     Unit { name, zone: None, extent: None, columns, checks: Vec::new(), fault: None, faulty: false, span: None }
 }
 
 /// A column that the protocol declares must be there, in a unit of its dimension.
-fn column_missing(datum: &Datum, table: &crate::data::table::SectionTable, problems: &mut Problems) -> bool {
+fn column_missing(datum: &Datum, table: &crate::data::table::Table, problems: &mut Problems) -> bool {
     let Some(index) = table.column(&datum.key) else {
         if datum.default.is_some() {
             return false;
@@ -113,7 +117,7 @@ fn column_missing(datum: &Datum, table: &crate::data::table::SectionTable, probl
         let known: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
         problems.push(
             Problem::error("missing-column", format!("the table of sections has no column `{}`", datum.key))
-                .at(&table.header_span())
+                .at(&table.columns[0].span.to(&table.columns[table.columns.len() - 1].span))
                 .also(&datum.span, "the protocol needs it")
                 .suggest(&datum.key, known),
         );
@@ -121,30 +125,26 @@ fn column_missing(datum: &Datum, table: &crate::data::table::SectionTable, probl
     };
     let column = &table.columns[index];
     let DatumKind::Number(unit) = &datum.kind else { return false };
-    let found = column.unit.clone().unwrap_or_else(OfMeasure::one);
-    if found.dimension == unit.dimension {
-        return false;
+    match column.unit(Some(unit.dimension)) {
+        Ok(_) => false,
+        Err(problem) => {
+            problems.push(problem.also(&datum.span, format!("declared in {unit}")));
+            true
+        }
     }
-    problems.push(
-        Problem::error("unit-mismatch", format!("column `{}` is {}, the protocol needs {}", column.name, found.dimension.in_words(), unit.dimension.in_words()))
-            .at(&column.span)
-            .also(&datum.span, format!("declared in {unit}"))
-            .help(format!("head it `{} [{unit}]`", column.name)),
-    );
-    true
 }
 
-fn cell(datum: &Datum, table: &crate::data::table::SectionTable, row: usize) -> Result<Scalar, String> {
+fn cell(datum: &Datum, table: &crate::data::table::Table, row: usize) -> Result<Scalar, String> {
     let Some(index) = table.column(&datum.key) else {
         return datum.default.clone().ok_or_else(|| format!("there is no column `{}`", datum.key));
     };
-    let text = table.cell(row, index).trim();
+    let text = table.cell(row, index).map_or("", |cell| cell.value.trim());
     if text.is_empty() {
         return datum.default.clone().ok_or_else(|| format!("`{}` is empty", datum.key));
     }
-    let of_column = match (&datum.kind, &table.columns[index].unit) {
-        (DatumKind::Number(_), Some(unit)) => DatumKind::Number(unit.clone()),
-        (DatumKind::Number(_), None) => DatumKind::Number(OfMeasure::one()),
+    // Cells are in the unit of the column's header, which was found to be of the right dimension.
+    let of_column = match (&datum.kind, table.columns[index].unit(None)) {
+        (DatumKind::Number(_), Ok(unit)) => DatumKind::Number(unit),
         (kind, _) => kind.clone(),
     };
     scalar(&of_column, text).map_err(|says| format!("`{}`: {says}", datum.key))
