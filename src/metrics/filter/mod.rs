@@ -53,7 +53,7 @@ pub struct Filter {
 }
 
 impl Filter {
-    /// Butterworth filter for signals at `sampling_rate` [Hz].
+    /// Butterworth filter for signals at `sampling_rate` in Hz.
     ///
     /// `order` counts the poles of a low-pass or high-pass, and the poles per edge of a band-pass or band-stop, of one pass.
     /// With [`Cutoff::AsApplied`] and [`Phase::Zero`] the pre-warped frequencies are moved so that the -3 dB points of both
@@ -80,7 +80,7 @@ impl Filter {
     /// A signal not longer than the extension of its ends.
     pub fn apply(&self, signal: &[f64]) -> Result<Vec<f64>, TooShort> {
         self.long_enough(signal)?;
-        let [filtered] = self.run([signal]);
+        let [filtered] = self.run([signal], &mut Vec::new());
         Ok(filtered)
     }
 
@@ -94,35 +94,36 @@ impl Filter {
             self.long_enough(signal)?;
         }
         let mut filtered = Vec::with_capacity(signals.len());
+        let mut fours_at_work = Vec::new();
         for equal in signals.chunk_by(|left, right| left.len() == right.len()) {
             let (fours, rest) = equal.as_chunks::<4>();
             for four in fours {
-                filtered.extend(self.run(*four));
+                filtered.extend(self.run(*four, &mut fours_at_work));
             }
             match *rest {
                 [] => {}
-                [a] => filtered.extend(self.run([a])),
-                [a, b] => filtered.extend(self.run([a, b])),
+                [a] => filtered.extend(self.run([a], &mut Vec::new())),
+                [a, b] => filtered.extend(self.run([a, b], &mut Vec::new())),
                 // Four lanes cost what three would: the last runs twice.
-                [a, b, c, ..] => filtered.extend(self.run([a, b, c, c]).into_iter().take(3)),
+                [a, b, c, ..] => filtered.extend(self.run([a, b, c, c], &mut fours_at_work).into_iter().take(3)),
             }
         }
         Ok(filtered)
     }
 
-    /// Amplitude ratio of the filter as applied at a frequency [Hz]; 1 in the pass band.
+    /// Amplitude ratio of the filter as applied at a frequency in Hz; 1 in the pass band.
     pub fn gain(&self, frequency: f64) -> f64 {
         let angle = std::f64::consts::TAU * frequency / self.sampling_rate;
         let pass: f64 = self.gain * self.sections.iter().map(|section| section.magnitude(angle)).product::<f64>();
         if self.phase == Phase::Zero { pass * pass } else { pass }
     }
 
-    /// Time [s] in which the slowest part of a transient falls to 1/e, from the pole nearest to the unit circle.
+    /// Time, in s, in which the slowest part of a transient falls to 1/e, from the pole nearest to the unit circle.
     pub fn time_constant(&self) -> f64 {
         self.time_constant
     }
 
-    /// Time [s] in which the slowest part of a transient falls to 1 %: a record should reach that far beyond the part of it
+    /// Time, in s, in which the slowest part of a transient falls to 1 %: a record should reach that far beyond the part of it
     /// that is evaluated, at both ends for [`Phase::Zero`].
     ///
     /// An estimate: 4.6 time constants of the slowest pole. What the filter makes of a particular end may die out sooner.

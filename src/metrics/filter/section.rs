@@ -22,7 +22,7 @@ impl Section {
         Steady { state: [output - 1.0, self.b2 - self.a2 * output], output }
     }
 
-    /// Amplitude ratio at an angle [rad per sample].
+    /// Amplitude ratio at an angle in rad per sample.
     pub(super) fn magnitude(&self, angle: f64) -> f64 {
         let (sine, cosine) = angle.sin_cos();
         let (sine_2, cosine_2) = (2.0 * angle).sin_cos();

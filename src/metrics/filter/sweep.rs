@@ -6,39 +6,55 @@
 
 use super::{Filter, Phase, section::Section};
 
+/// Rows that are moved between the signals and the lanes at a time: few enough to stay in the nearest cache.
+const ROWS: usize = 64;
+
 impl Filter {
-    /// Signals of equal length, longer than the padding.
-    pub(super) fn run<const LANES: usize>(&self, signals: [&[f64]; LANES]) -> [Vec<f64>; LANES] {
-        let mut samples = self.laid_out(signals);
-        let last = samples.len() - 1;
-        match self.phase {
-            Phase::CausalFromRest => sweep_all::<LANES, false>(&self.sections, &mut samples, [0.0; LANES]),
-            Phase::Causal => {
-                let level = samples[0];
-                sweep_all::<LANES, false>(&self.sections, &mut samples, level);
-            }
-            Phase::Zero => {
-                let level = samples[0];
-                sweep_all::<LANES, false>(&self.sections, &mut samples, level);
-                let level = samples[last];
-                sweep_all::<LANES, true>(&self.sections, &mut samples, level);
-            }
+    /// Signals of equal length, longer than the padding. `samples` is working memory.
+    pub(super) fn run<const LANES: usize>(&self, signals: [&[f64]; LANES], samples: &mut Vec<[f64; LANES]>) -> [Vec<f64>; LANES] {
+        self.lay_out(signals, samples);
+        let from = match self.phase {
+            Phase::Zero | Phase::Causal => samples[0],
+            Phase::CausalFromRest => [0.0; LANES],
+        };
+        sweep_all::<LANES, false>(&self.sections, samples, from);
+        if self.phase == Phase::Zero {
+            let from = samples[samples.len() - 1];
+            sweep_all::<LANES, true>(&self.sections, samples, from);
         }
         let inner = &samples[self.padding..samples.len() - self.padding];
-        std::array::from_fn(|lane| inner.iter().map(|sample| sample[lane]).collect())
+        let mut filtered = signals.map(|signal| Vec::with_capacity(signal.len()));
+        for rows in inner.chunks(ROWS) {
+            for (lane, values) in filtered.iter_mut().enumerate() {
+                values.extend(rows.iter().map(|row| row[lane]));
+            }
+        }
+        filtered
     }
 
     /// The signals side by side, both ends reflected about their end points, times the gain of all passes.
-    fn laid_out<const LANES: usize>(&self, signals: [&[f64]; LANES]) -> Vec<[f64; LANES]> {
+    fn lay_out<const LANES: usize>(&self, signals: [&[f64]; LANES], samples: &mut Vec<[f64; LANES]>) {
         let gain = if self.phase == Phase::Zero { self.gain * self.gain } else { self.gain };
         let length = signals[0].len();
-        let signals: [&[f64]; LANES] = signals.map(|signal| &signal[..length]);
-        let reflected = |about: usize, from: usize| signals.map(|signal| gain * (2.0 * signal[about] - signal[from]));
-        let mut samples = Vec::with_capacity(length + 2 * self.padding);
-        samples.extend((1..=self.padding).rev().map(|k| reflected(0, k)));
-        samples.extend((0..length).map(|k| signals.map(|signal| gain * signal[k])));
-        samples.extend((1..=self.padding).map(|k| reflected(length - 1, length - 1 - k)));
-        samples
+        samples.clear();
+        samples.resize(length + 2 * self.padding, [0.0; LANES]);
+        let (before, rest) = samples.split_at_mut(self.padding);
+        let (inner, after) = rest.split_at_mut(length);
+        for (lane, signal) in signals.into_iter().enumerate() {
+            for (row, value) in before.iter_mut().rev().zip(&signal[1..]) {
+                row[lane] = gain * (2.0 * signal[0] - value);
+            }
+            for (row, value) in after.iter_mut().zip(signal[..length - 1].iter().rev()) {
+                row[lane] = gain * (2.0 * signal[length - 1] - value);
+            }
+        }
+        for (block, rows) in inner.chunks_mut(ROWS).enumerate() {
+            for (lane, signal) in signals.into_iter().enumerate() {
+                for (row, value) in rows.iter_mut().zip(&signal[block * ROWS..]) {
+                    row[lane] = gain * value;
+                }
+            }
+        }
     }
 }
 
@@ -85,13 +101,14 @@ fn sweep<const LANES: usize, const SECTIONS: usize, const BACKWARD: bool, const 
 ) {
     let mut step = |sample: &mut [f64; LANES]| {
         let mut values = *sample;
-        for (section, [first, second]) in sections.iter().zip(&mut states) {
+        for k in 0..SECTIONS {
+            let Section { b1, b2, a1, a2 } = sections[k];
             for lane in 0..LANES {
                 let input = values[lane];
-                let output = input + first[lane];
+                let output = input + states[k][0][lane];
                 // The product with the output comes last: nothing else has to wait for it.
-                first[lane] = (section.b1 * input + second[lane]) - section.a1 * output;
-                second[lane] = if ENDS_IN_ONE { input } else { section.b2 * input } - section.a2 * output;
+                states[k][0][lane] = (b1 * input + states[k][1][lane]) - a1 * output;
+                states[k][1][lane] = if ENDS_IN_ONE { input } else { b2 * input } - a2 * output;
                 values[lane] = output;
             }
         }
