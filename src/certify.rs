@@ -4,7 +4,7 @@ use sha2::{Digest, Sha256};
 
 use crate::check::plan::{Parameter, Plan, SetBy};
 use crate::check::{self, Overrides, diff, family::Family};
-use crate::data::campaign::Campaign;
+use crate::data::Campaign;
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
 use crate::result::{

@@ -10,7 +10,7 @@ use super::output::{Console, Exit};
 use super::protocols::load;
 use crate::certify::{Compiled, certify, compile};
 use crate::check::{Override, Overrides, plan::SetBy};
-use crate::data::campaign::Campaign;
+use crate::data::Campaign;
 use crate::data::write::write_all;
 use crate::library;
 use crate::problem::{Problem, Problems};

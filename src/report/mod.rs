@@ -3,6 +3,8 @@
 //! [`view::view`] rounds, sorts and words; the templates only place what it gives.
 
 pub mod figure;
+pub mod json;
+pub mod tables;
 pub mod html;
 pub mod number;
 pub mod typst;

@@ -2,7 +2,7 @@
 
 use crate::check::evaluate::Values;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
-use crate::data::campaign::Campaign;
+use crate::data::Campaign;
 use crate::problem::{Problem, Problems};
 
 /// Values of the vehicle, one for each [`Plan::vehicle`].

@@ -12,7 +12,7 @@ mod traces;
 use rayon::prelude::*;
 
 use crate::check::plan::{OnFault, Plan};
-use crate::data::campaign::Campaign;
+use crate::data::Campaign;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::{FileHash, QuantityResult, SectionResult, Trace, Verdict, ZoneResult};
@@ -119,9 +119,10 @@ fn nothing_usable(units: &[Unit], values: Vec<SectionValues>) -> Problems {
     for problem in values.into_iter().flat_map(|values| values.problems).take(MOST) {
         problems.push(problem);
     }
-    for unit in units.iter().filter(|unit| problems.0.len() < MOST && unit.fault.is_some()) {
+    let told = problems.0.len();
+    for unit in units.iter().filter(|unit| unit.fault.is_some()).take(MOST - told.min(MOST)) {
         let problem = Problem::error("section-not-usable", format!("section {}: {}", unit.name, unit.fault.clone().unwrap_or_default()));
-        if problems.0.is_empty() || unit.span.is_some() && !unit.faulty {
+        if told == 0 || !unit.faulty {
             problems.push(match &unit.span {
                 Some(span) => problem.at(span),
                 None => problem,

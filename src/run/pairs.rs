@@ -3,12 +3,13 @@
 use std::collections::BTreeSet;
 
 use super::facts::Known;
-use super::record::{Fault, Found, MEASUREMENT, Opened, SIMULATION, TRACK, Work, columns, open};
+use super::record::{Fault, Found, Opened, Work, columns, open};
 use super::sections::Unit;
 use super::signal::Samples;
 use crate::catalog::Pair;
 use crate::check::evaluate::{Values, flag, number};
 use crate::check::plan::{Evaluation, InputSide, Quantity, StepSpec};
+use crate::data::RecordKind;
 use crate::graph::{InputNode, NodeId, Operation, SignalNodes};
 use crate::metrics::filter::Band;
 use crate::metrics::resample;
@@ -59,8 +60,8 @@ fn fill(work: &Work<'_>, unit: &Unit, values: &mut SectionValues) -> Result<(), 
         .map_err(Fault::new)?;
     let wanted = wanted(work, &active);
     // The simulated record is reduced to numbers before the measured one is opened: one record in memory at a time.
-    let (simulated, _) = side(work, unit, SIMULATION, &wanted, &known, values)?;
-    let (measured, _) = side(work, unit, MEASUREMENT, &wanted, &known, values)?;
+    let (simulated, _) = side(work, unit, RecordKind::Simulation, &wanted, &known, values)?;
+    let (measured, _) = side(work, unit, RecordKind::Measurement, &wanted, &known, values)?;
     for (index, quantity) in work.plan.quantities.iter().enumerate() {
         let mut pairs = Vec::new();
         for (number, nodes) in work.graph.quantities[index].signals.iter().enumerate() {
@@ -100,7 +101,7 @@ fn wanted(work: &Work<'_>, active: &[bool]) -> BTreeSet<NodeId> {
     wanted
 }
 
-fn side(work: &Work<'_>, unit: &Unit, kind: &str, wanted: &BTreeSet<NodeId>, known: &Known<'_>, values: &mut SectionValues) -> Result<(Evaluated, Opened), Fault> {
+fn side(work: &Work<'_>, unit: &Unit, kind: RecordKind, wanted: &BTreeSet<NodeId>, known: &Known<'_>, values: &mut SectionValues) -> Result<(Evaluated, Opened), Fault> {
     let needed = columns(work.graph, wanted, known).map_err(Fault::new)?;
     let opened = open(work, unit, kind, &needed)?;
     values.files.push(opened.file.clone());
@@ -224,9 +225,9 @@ fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut Se
     let mut found = Vec::new();
     let mut missing = None;
     if !wanted.is_empty() {
-        let exists = work.campaign.record(TRACK, &unit.name).is_some_and(|path| path.is_file());
+        let exists = work.campaign.record(RecordKind::Track, &unit.name).is_some_and(|path| path.is_file());
         if exists {
-            found = side(work, unit, TRACK, &wanted, known, values)?.0;
+            found = side(work, unit, RecordKind::Track, &wanted, known, values)?.0;
         } else {
             missing = Some("not checked: there is no track record".to_string());
         }

@@ -9,13 +9,14 @@ use super::signal::{Along, Extent, Rate, Samples, Signal, apply, arithmetic};
 use crate::catalog::Reducer;
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Plan, StepSpec};
-use crate::data::campaign::Campaign;
-use crate::data::checks::check_axis;
-use crate::data::record::{Record, Wanted, read_record};
+use crate::data::checks::{Section, check_axis};
+use crate::data::record::{Record, Wanted, read_headings, read_record};
+use crate::data::{Campaign, RecordKind};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::{Method, percentiles};
 use crate::problem::Problem;
 use crate::result::FileHash;
+use crate::units::Dimension;
 
 /// What every record is worked on with.
 #[derive(Clone, Copy, Debug)]
@@ -27,11 +28,6 @@ pub struct Work<'a> {
     /// For each signal of each quantity, whether its channels were recorded at all.
     pub present: &'a [Vec<bool>],
 }
-
-/// The kinds of record of a campaign.
-pub const MEASUREMENT: &str = "measurement";
-pub const SIMULATION: &str = "simulation";
-pub const TRACK: &str = "track";
 
 /// A reason why a record cannot be used, and the problems behind it.
 #[derive(Debug)]
@@ -95,33 +91,38 @@ fn chosen(conditions: &[crate::check::plan::Expr], inputs: &[NodeId], known: &Kn
 }
 
 /// Reads and checks a record of one kind for one section.
-pub fn open(work: &Work<'_>, unit: &Unit, kind: &str, needed: &BTreeSet<NodeId>) -> Result<Opened, Fault> {
-    let path = work.campaign.record(kind, &unit.name).ok_or_else(|| Fault::new(format!("the campaign has no {kind} records")))?;
+pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<NodeId>) -> Result<Opened, Fault> {
+    let path = work.campaign.record(kind, &unit.name).ok_or_else(|| Fault::new(format!("the campaign has no {} records", kind.in_words())))?;
     let shown = work.campaign.shown(&path);
-    let axis_name = &work.plan.axis.column;
-    let mut wanted = vec![Wanted { name: axis_name.clone(), dimension: work.plan.axis.unit.dimension }];
-    let time = work.plan.time.as_ref().filter(|time| kind != TRACK && time.column != *axis_name);
+    let axis = &work.plan.axis;
+    let mut wanted = vec![Wanted::new(axis.column.as_str(), axis.unit.dimension)];
+    let time = work.plan.time.as_ref().filter(|time| kind != RecordKind::Track && time.column != axis.column);
     if let Some(time) = time {
-        wanted.push(Wanted { name: time.column.clone(), dimension: time.unit.dimension });
+        wanted.push(Wanted::new(time.column.as_str(), time.unit.dimension));
     }
     for &id in needed {
         if let Operation::Read { column } = &work.graph.nodes[id].operation {
-            wanted.push(Wanted { name: column.clone(), dimension: work.graph.nodes[id].dimension });
+            if !wanted.iter().any(|known| known.name == *column) {
+                wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
+            }
         }
     }
-    let mut record = read_record(&path, &shown, &wanted).map_err(|problems| Fault { says: said(&problems), problems })?;
-    let axis = record.take(axis_name).ok_or_else(|| Fault::new(format!("{shown} has no column `{axis_name}`")))?;
-    let time = time.and_then(|time| record.take(&time.column));
-    let file = FileHash { path: shown.clone(), sha256: record.sha256.clone(), bytes: record.bytes };
-    let extent = unit.extent.unwrap_or_else(|| {
-        let ends = (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
-        (ends.0.min(ends.1), ends.0.max(ends.1))
+    let fault = |problems: Vec<Problem>| Fault { says: said(&problems), problems };
+    let record = read_record(&path, &shown, &wanted).map_err(fault)?;
+    let clock = time.map_or(axis.column.as_str(), |time| time.column.as_str());
+    let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
+    let checked = check_axis(&record, clock, &axis.column, section.as_ref()).map_err(fault)?;
+    let file = FileHash { path: shown, sha256: record.sha256.clone(), bytes: record.bytes as u64 };
+    let along_axis = record.column(&axis.column).map(|column| column.values.clone()).unwrap_or_default();
+    let extent = unit.extent.unwrap_or_else(|| (along_axis.first().copied().unwrap_or(0.0), along_axis.last().copied().unwrap_or(0.0)));
+    let in_time = time.is_some() || axis.unit.dimension == Dimension::TIME;
+    let along = Arc::new(Along {
+        axis: along_axis,
+        time: time.and_then(|time| record.column(&time.column)).map(|column| column.values.clone()),
+        rate: if in_time { Rate::PerTime(checked.sampling_rate) } else { Rate::PerLength(checked.sampling_rate) },
     });
-    let checked = check_axis(&shown, &axis, time.as_deref(), work.plan.axis.unit.dimension, unit.extent, kind != TRACK)
-        .map_err(|problems| Fault { says: said(&problems), problems })?;
-    let rate = checked.sampling_rate.map_or(Rate::Unknown, Rate::PerTime);
-    let along = Arc::new(Along { axis, time, rate });
-    Ok(Opened { record, along, extent, file, margins: checked.margins })
+    let margins = in_time.then_some((checked.before, checked.after));
+    Ok(Opened { record, along, extent, file, margins })
 }
 
 /// The facts of several problems in one line.
@@ -270,8 +271,8 @@ impl State<'_> {
         let input = |index: usize| self.signal(node.inputs[index]);
         match &node.operation {
             Operation::Read { column } => {
-                let values = self.opened.record.values(column).ok_or_else(|| format!("no column `{column}`"))?;
-                Ok(Signal::Samples(Samples { along: Arc::clone(&self.opened.along), values: Arc::new(values.to_vec()) }))
+                let values = self.opened.record.column(column).ok_or_else(|| format!("no column `{column}`"))?;
+                Ok(Signal::Samples(Samples { along: Arc::clone(&self.opened.along), values: Arc::new(values.values.clone()) }))
             }
             Operation::Constant(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
             Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?),
@@ -292,13 +293,13 @@ impl State<'_> {
 
 /// Which signals of which quantities were recorded at all: a position missing from every record is left out, not a fault of each section.
 pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes: &mut Vec<String>) -> Vec<Vec<bool>> {
-    let mut seen: Vec<(&str, BTreeSet<String>)> = Vec::new();
-    for kind in [MEASUREMENT, SIMULATION] {
+    let mut seen: Vec<(RecordKind, BTreeSet<String>)> = Vec::new();
+    for kind in [RecordKind::Measurement, RecordKind::Simulation] {
         let mut columns = BTreeSet::new();
         for unit in units {
-            if let Some(path) = campaign.record(kind, &unit.name) {
-                columns.extend(crate::data::record::header_names(&path));
-            }
+            // A record that cannot be read is a fault of its section, told when it is opened.
+            let headings = campaign.record(kind, &unit.name).and_then(|path| read_headings(&path, "").ok());
+            columns.extend(headings.into_iter().flatten().map(|heading| heading.name));
         }
         seen.push((kind, columns));
     }
@@ -306,11 +307,11 @@ pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes
         .quantities
         .iter()
         .map(|quantity| {
-            let all: Vec<Vec<(String, &str)>> = quantity
+            let all: Vec<Vec<(String, RecordKind)>> = quantity
                 .signals
                 .iter()
                 .map(|signal| {
-                    let mut missing = Vec::new();
+                    let mut missing: Vec<(String, RecordKind)> = Vec::new();
                     for column in reads(graph, signal.compare) {
                         for (kind, columns) in &seen {
                             if !columns.contains(&column) {
@@ -327,7 +328,7 @@ pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes
                 .map(|missing| {
                     if !none {
                         for (column, kind) in missing {
-                            let note = format!("`{column}` is in no record of {kind}: its position is left out");
+                            let note = format!("`{column}` is in no record of the {}: its position is left out", kind.in_words());
                             if !notes.contains(&note) {
                                 notes.push(note);
                             }

@@ -5,7 +5,7 @@ use super::pairs::SectionValues;
 use super::signal::Extent;
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Datum, DatumKind, OnFault, Plan, Scalar};
-use crate::data::campaign::Campaign;
+use crate::data::Campaign;
 use crate::problem::{Problem, Problems};
 use crate::result::{CheckResult, DataItem, SectionResult};
 use crate::source::Span;

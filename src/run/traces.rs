@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use super::record::{Found, MEASUREMENT, SIMULATION, Work, columns, open};
+use super::record::{Found, Work, columns, open};
 use super::sections::Unit;
 use super::signal::Samples;
+use crate::data::RecordKind;
 use crate::result::{Curve, QuantityResult, Trace};
 
 /// Points of a curve in a plot: each of so many stretches keeps its smallest and largest sample, so that no peak is lost.
@@ -38,7 +39,7 @@ fn trace(work: &Work<'_>, unit: &Unit, index: usize, signal: usize) -> Option<Tr
     let node = work.graph.quantities[index].signals[signal].filtered;
     let wanted = BTreeSet::from([node]);
     let known = unit.known(work.facts);
-    let curve = |kind: &str| {
+    let curve = |kind: RecordKind| {
         let needed = columns(work.graph, &wanted, &known).ok()?;
         let opened = open(work, unit, kind, &needed).ok()?;
         let found = opened.evaluate(work.graph, &needed, &wanted, &known, work.plan.sections.percentiles).ok()?;
@@ -47,8 +48,8 @@ fn trace(work: &Work<'_>, unit: &Unit, index: usize, signal: usize) -> Option<Tr
             _ => None,
         }
     };
-    let (measured, extent) = curve(MEASUREMENT)?;
-    let (simulated, _) = curve(SIMULATION)?;
+    let (measured, extent) = curve(RecordKind::Measurement)?;
+    let (simulated, _) = curve(RecordKind::Simulation)?;
     let axis = &work.plan.axis;
     Some(Trace {
         quantity: quantity.id.clone(),
