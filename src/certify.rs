@@ -5,6 +5,7 @@ use sha2::{Digest, Sha256};
 use crate::check::plan::{Parameter, Plan, SetBy};
 use crate::check::{self, Overrides, diff, family::Family};
 use crate::data::Campaign;
+use crate::data::campaign::Fact;
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
 use crate::result::{
@@ -34,7 +35,8 @@ pub fn compile(family: Family, overrides: &Overrides, problems: &mut Problems) -
 /// What makes the campaign unusable as a whole; see [`run::run`].
 pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Certification, Problems> {
     let outcome = run::run(&compiled.plan, &compiled.graph, campaign, settings, progress)?;
-    let mut files: Vec<FileHash> = campaign.files.clone();
+    let mut files: Vec<FileHash> =
+        campaign.files.iter().map(|file| FileHash { path: file.path.clone(), sha256: file.sha256.clone(), bytes: file.bytes }).collect();
     files.extend(outcome.files);
     Ok(Certification {
         protocol: protocol_info(compiled),
@@ -42,7 +44,7 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
             name: campaign.name.clone(),
             files,
             vehicle: vehicle_items(&compiled.plan, campaign),
-            facts: campaign.facts.clone(),
+            facts: campaign.facts.iter().map(fact_item).collect(),
         },
         verdict: outcome.verdict,
         reasons: outcome.reasons,
@@ -106,6 +108,11 @@ fn parameter_info(parameter: &Parameter) -> ParameterInfo {
         default: parameter.default.clone(),
         set_by: set_by.into(),
     }
+}
+
+fn fact_item(fact: &Fact) -> DataItem {
+    let name = if fact.group.is_empty() { fact.name.clone() } else { format!("{}: {}", fact.group.replace('_', " "), fact.name) };
+    DataItem { name, value: fact.text.clone(), unit: fact.unit.clone().filter(|unit| unit != "-"), used: false }
 }
 
 /// Values the protocol reads first, with their units, then all others of the file.

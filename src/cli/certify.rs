@@ -1,6 +1,6 @@
 //! `certify`: the main job.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
@@ -9,15 +9,16 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::output::{Console, Exit};
 use super::protocols::load;
 use crate::certify::{Compiled, certify, compile};
+use crate::check::family::{self, Family};
 use crate::check::{Override, Overrides, plan::SetBy};
 use crate::data::Campaign;
-use crate::data::write::write_all;
+use crate::data::write::Outputs;
 use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::report::{figure, html, json, number, tables, typst, view};
 use crate::result::{Certification, Verdict};
 use crate::run::Settings;
-use crate::source::Source;
+use crate::source::{Source, Spanned};
 use crate::syntax::document::Text;
 
 #[derive(Debug, Args)]
@@ -66,7 +67,7 @@ impl Certify {
         let prepared = self.prepare(&mut problems);
         console.problems(&problems);
         let Some((compiled, campaign)) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
-        let bar = progress_bar(console, campaign.record_names().len());
+        let bar = progress_bar(console, campaign.names.len());
         let settings = Settings { traces: if self.only == Only::Results { 0 } else { self.plots } };
         let found = certify(&compiled, &campaign, settings, &|section| {
             bar.set_message(section.to_string());
@@ -87,8 +88,10 @@ impl Certify {
                 return Exit::Unfinished;
             }
         };
-        if let Err(error) = write_all(&self.out, &files) {
-            return console.fail(Problem::error("cannot-write", format!("{} cannot be written: {error}", self.out.display())), Exit::Unfinished);
+        let mut outputs = Outputs::new(&self.out);
+        let written = files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes)).and_then(|()| outputs.commit());
+        if let Err(problem) = written {
+            return console.fail(problem, Exit::Unfinished);
         }
         if !console.quiet {
             console.print(&summary(&found, console.color));
@@ -101,13 +104,7 @@ impl Certify {
         let campaign = Campaign::open(&self.campaign, problems)?;
         let family = match (&self.protocol, &campaign.protocol) {
             (Some(name), _) => load(name, problems),
-            (None, Some((name, span))) => match library::find(name, Some(&campaign.folder)) {
-                Ok(source) => Some(crate::check::family::read(&source, &library::parent, problems)),
-                Err(problem) => {
-                    problems.push(problem.at(span));
-                    None
-                }
-            },
+            (None, Some(named)) => campaign_protocol(&campaign, named, problems),
             (None, None) => load(library::SHIPPED[0].name, problems),
         }?;
         let overrides = self.overrides(&campaign, problems)?;
@@ -118,8 +115,10 @@ impl Certify {
     /// Parameters of the campaign, and over them those of the command line.
     fn overrides(&self, campaign: &Campaign, problems: &mut Problems) -> Option<Overrides> {
         let mut overrides = Overrides::new();
-        for (name, text) in &campaign.parameters {
-            overrides.insert(name.clone(), Override { text: text.clone(), set_by: SetBy::Campaign });
+        for parameter in &campaign.parameters {
+            let value = &parameter.value;
+            let text = Text { text: value.raw.clone(), span: value.span.clone(), exact: value.exact };
+            overrides.insert(parameter.name.text.clone(), Override { text, set_by: SetBy::Campaign });
         }
         for set in &self.set {
             let Some((name, value)) = set.split_once('=') else {
@@ -134,12 +133,12 @@ impl Certify {
     }
 
     /// All files of the report, by path below the output folder.
-    fn files(&self, found: &Certification) -> Result<Vec<(PathBuf, Vec<u8>)>, Problems> {
+    fn files(&self, found: &Certification) -> Result<Vec<(String, Vec<u8>)>, Problems> {
         let results = json::results(found);
         let mut files = Vec::new();
         let tables = tables::tables(found).map_err(|error| Problems(vec![Problem::error("table", error.to_string())]))?;
         for (name, bytes) in tables {
-            files.push((Path::new("tables").join(name), bytes));
+            files.push((format!("tables/{name}"), bytes));
         }
         if self.only != Only::Results {
             let data = view::view(found);
@@ -156,6 +155,21 @@ impl Certify {
         files.push(("results.json".into(), results.into_bytes()));
         Ok(files)
     }
+}
+
+/// The protocol a campaign names: a shipped one, or a file inside the campaign.
+fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mut Problems) -> Option<Family> {
+    let source = match library::shipped(&named.value) {
+        Some(source) => source,
+        None => match campaign.read_named(named) {
+            Ok((source, _)) => source,
+            Err(problem) => {
+                problems.push(problem.suggest(&named.value, library::SHIPPED.iter().map(|shipped| shipped.name)));
+                return None;
+            }
+        },
+    };
+    Some(family::read(&source, &library::parent, problems))
 }
 
 fn progress_bar(console: &Console, sections: usize) -> Arc<ProgressBar> {

@@ -80,7 +80,7 @@ impl Console {
     pub fn write(&self, path: &Path, bytes: &[u8]) -> Exit {
         match crate::data::write::write_whole(path, bytes) {
             Ok(()) => Exit::Done,
-            Err(error) => self.fail(Problem::error("cannot-write", format!("{} cannot be written: {error}", path.display())), Exit::Unfinished),
+            Err(problem) => self.fail(problem, Exit::Unfinished),
         }
     }
 }

@@ -105,7 +105,12 @@ impl Heading {
         match wanted {
             Some(dimension) if dimension != unit.dimension => Err(Problem::error(
                 "unit-mismatch",
-                format!("the column `{name}` is in {}, which is {}; {} is needed", unit.text, unit.dimension.in_words(), dimension.in_words()),
+                format!(
+                    "the column `{name}` is in {}, which is {}; {} is needed",
+                    unit.text,
+                    unit.dimension.in_words(),
+                    dimension.in_words()
+                ),
             )
             .at(&written.span)),
             _ => Ok(unit),

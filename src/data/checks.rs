@@ -46,7 +46,9 @@ pub struct Section {
 /// `axis-not-increasing`; `section-reversed`; `outside-record`; `section-empty`.
 pub fn check_axis(record: &Record, clock: &str, axis: &str, section: Option<&Section>) -> Result<Axis, Vec<Problem>> {
     let column = |name: &str| {
-        record.column(name).ok_or_else(|| vec![Problem::error("unknown-channel", format!("`{}` was read without its column `{name}`", record.shown))])
+        record
+            .column(name)
+            .ok_or_else(|| vec![Problem::error("unknown-channel", format!("`{}` was read without its column `{name}`", record.shown))])
     };
     let (clock, axis) = (column(clock)?, column(axis)?);
     let mut problems = Vec::new();
@@ -74,7 +76,12 @@ fn first_fall(values: &[f64]) -> Option<usize> {
 fn not_increasing(code: &'static str, record: &Record, column: &Column, row: usize) -> Problem {
     let [from, to] = [row, row + 1].map(|row| number(column, column.values[row]));
     let does = if from == to { format!("stays at {from}") } else { format!("goes back from {from} to {to}") };
-    placed(Problem::error(code, format!("`{}` {does} at row {} of `{}`; it must increase", column.name, row + 3, record.shown)), record, row + 1, column)
+    placed(
+        Problem::error(code, format!("`{}` {does} at row {} of `{}`; it must increase", column.name, row + 3, record.shown)),
+        record,
+        row + 1,
+        column,
+    )
 }
 
 /// The sampling rate, if the steps are even.
@@ -82,7 +89,8 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
     let times = &clock.values;
     let (&[first, ..], &[.., last]) = (times.as_slice(), times.as_slice()) else { return None };
     if times.len() < 3 {
-        problems.push(Problem::error("too-short", format!("`{}` has {} samples; a sampling rate cannot be told", record.shown, times.len())));
+        problems
+            .push(Problem::error("too-short", format!("`{}` has {} samples; a sampling rate cannot be told", record.shown, times.len())));
         return None;
     }
     if let Some(row) = first_fall(times) {
@@ -91,9 +99,12 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
     }
     let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let resolution = resolution(clock);
-    // The median is the usual step whatever the gaps; a stamp rounded to `resolution` may make a step that much longer.
+    // The median is the usual step whatever the gaps. Rounded stamps make many steps longer or shorter by the resolution, so where
+    // hardly any step differs from the usual one, rounding is not the reason.
     let usual = median(&steps);
-    let longest = (GAP * usual).max(usual + 1.5 * resolution);
+    let unusual = steps.iter().filter(|step| (*step - usual).abs() > 1e-6 * usual).count();
+    let rounding = if unusual * 100 < steps.len() { 0.0 } else { resolution };
+    let longest = (GAP * usual).max(usual + 1.5 * rounding);
     let gaps: Vec<usize> = (0..steps.len()).filter(|row| steps[*row] > longest).collect();
     for row in gaps.iter().take(TOLD) {
         let says = format!(
@@ -257,6 +268,10 @@ mod tests {
         gap.drain(100..120);
         let faults = check(gap, None).expect_err("a gap");
         assert_eq!(faults, [("gap", "`time` has a gap of 0.105 s between rows 101 and 102 of `r.csv`, 21 sampling steps".to_string())]);
+
+        let mut one = even(400, 1000.0, 3);
+        one.remove(100);
+        assert_eq!(check(one, None).expect_err("one sample")[0].0, "gap");
 
         let mut back = even(100, 200.0, 3);
         back[50].0 = back[48].0.clone();

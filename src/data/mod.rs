@@ -10,15 +10,14 @@
 //! | `checks` | whether the samples of a record can be evaluated |
 //! | `write` | every file the program makes |
 
-mod cells;
 pub mod campaign;
+mod cells;
 pub mod checks;
 mod folder;
 pub mod hash;
 pub mod record;
 pub mod table;
 pub mod text;
-pub mod tree;
 pub mod write;
 
 pub use campaign::{Campaign, RecordKind};

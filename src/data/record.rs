@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use super::cells::{self, Heading};
 use super::hash::sha256;
-use super::text::{decode, read_large};
+use super::text::{decode, read_large, read_line};
 use crate::problem::Problem;
 use crate::source::{Source, Span};
 use crate::units::{Dimension, Unit};
@@ -114,7 +114,7 @@ pub fn read_record(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record
 /// # Errors
 /// As [`read_record`], of the file and its header.
 pub fn read_headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
-    let bytes = read_large(path, shown).map_err(|problem| vec![problem])?;
+    let bytes = read_line(path, shown).map_err(|problem| vec![problem])?;
     let text = decode(&bytes, shown).map_err(|problem| vec![problem])?;
     header(text, shown).map(|(headings, _)| headings)
 }

@@ -65,7 +65,9 @@ impl Table {
                 problems.push(Problem::error("name-missing", format!("the row has no `{}`", self.columns[self.key].name)).at(&name.span));
             } else if let Some(before) = first.get(name.value.as_str()) {
                 problems.push(
-                    Problem::error("duplicate-name", format!("two rows are called `{}`", name.value)).at(&name.span).also(before, "the first of them"),
+                    Problem::error("duplicate-name", format!("two rows are called `{}`", name.value))
+                        .at(&name.span)
+                        .also(before, "the first of them"),
                 );
             } else {
                 first.insert(&name.value, &name.span);

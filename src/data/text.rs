@@ -1,7 +1,7 @@
 //! From a file to its text: readable, not empty, UTF-8.
 
 use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -32,6 +32,15 @@ pub(super) fn read_large(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
     read_bytes(path, shown, LARGE)
 }
 
+/// The first line of a record file.
+pub(super) fn read_line(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
+    let mut line = Vec::new();
+    let unreadable = |error: std::io::Error| Problem::error("file-unreadable", format!("`{shown}` cannot be read: {error}"));
+    let file = File::open(path).map_err(unreadable)?;
+    BufReader::new(file.take(SMALL)).read_until(b'\n', &mut line).map_err(unreadable)?;
+    if line.is_empty() { Err(empty(shown)) } else { Ok(line) }
+}
+
 fn read_bytes(path: &Path, shown: &str, limit: u64) -> Result<Vec<u8>, Problem> {
     let unreadable = |why: &dyn std::fmt::Display| Problem::error("file-unreadable", format!("`{shown}` cannot be read: {why}"));
     // What is no plain file is refused before it is opened: a pipe would wait for ever.
@@ -43,7 +52,10 @@ fn read_bytes(path: &Path, shown: &str, limit: u64) -> Result<Vec<u8>, Problem> 
         return Err(unreadable(if meta.is_dir() { &"it is a folder" } else { &"it is no plain file" }));
     }
     if meta.len() > limit {
-        return Err(Problem::error("file-too-large", format!("`{shown}` has {} MB; the most that is read is {} MB", meta.len() >> 20, limit >> 20)));
+        return Err(Problem::error(
+            "file-too-large",
+            format!("`{shown}` has {} MB; the most that is read is {} MB", meta.len() >> 20, limit >> 20),
+        ));
     }
     let mut bytes = Vec::with_capacity(usize::try_from(meta.len()).unwrap_or(0) + 1);
     let file = File::open(path).map_err(|error| unreadable(&error))?;

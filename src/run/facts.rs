@@ -88,9 +88,6 @@ impl<'a> Known<'a> {
         Self { facts, columns: None, extent: None, inputs: &[], sides: None, limits: &[] }
     }
 
-    pub fn section(facts: &'a Facts, columns: &'a [Result<Scalar, String>], extent: (f64, f64)) -> Self {
-        Self { columns: Some(columns), extent: Some(extent), ..Self::vehicle(facts) }
-    }
 }
 
 impl Values for Known<'_> {

@@ -53,7 +53,7 @@ pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
 pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Outcome, Problems> {
     let mut problems = Problems::default();
     let facts = Facts::read(plan, campaign, &mut problems);
-    let mut units = sections::units(plan, campaign, &facts, &mut problems);
+    let mut units = sections::units(plan, campaign, &mut problems);
     if problems.any_error() {
         return Err(problems);
     }

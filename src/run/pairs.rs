@@ -23,7 +23,8 @@ pub struct SectionValues {
     pub pairs: Vec<Vec<Option<PairSi>>>,
     pub checks: Vec<CheckResult>,
     pub files: Vec<FileHash>,
-    pub notes: Vec<String>,
+    /// Record beyond the section [s], where it is too little for a slow filter to settle.
+    pub short_margin: Option<f64>,
     pub fault: Option<String>,
     pub problems: Vec<Problem>,
 }
@@ -112,6 +113,17 @@ fn side(work: &Work<'_>, unit: &Unit, kind: RecordKind, wanted: &BTreeSet<NodeId
     Ok((found, opened))
 }
 
+/// One note for all sections with too little record for a slow filter.
+pub fn margin_note(values: &[SectionValues]) -> Option<String> {
+    let short: Vec<f64> = values.iter().filter_map(|values| values.short_margin).collect();
+    let least = short.iter().copied().reduce(f64::min)?;
+    Some(format!(
+        "In {} of {} sections the records reach less than {SLOW_FILTER_MARGIN} s beyond the section (least {least:.1} s): a filter with an edge below {SLOW_FILTER} Hz has not fully settled there, and its values may be off by a few per cent.",
+        short.len(),
+        values.len()
+    ))
+}
+
 /// Filters that reach below this frequency need this much record on each side to settle (own trials: 5 s keep the error of a
 /// 0.4 Hz edge below 0.5 % of an rms value).
 const SLOW_FILTER: f64 = 1.0;
@@ -133,11 +145,7 @@ fn note_margins(work: &Work<'_>, unit: &Unit, needed: &BTreeSet<NodeId>, opened:
         _ => false,
     });
     if slow {
-        values.notes.push(format!(
-            "Some records reach less than {SLOW_FILTER_MARGIN} s beyond the section; a filter with an edge below {SLOW_FILTER} Hz has not fully settled there (first: {} with {:.1} s)",
-            unit.name,
-            before.min(after)
-        ));
+        values.short_margin = Some(before.min(after));
     }
 }
 
@@ -225,7 +233,7 @@ fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut Se
     let mut found = Vec::new();
     let mut missing = None;
     if !wanted.is_empty() {
-        let exists = work.campaign.record(RecordKind::Track, &unit.name).is_some_and(|path| path.is_file());
+        let exists = work.campaign.has(RecordKind::Track) && work.campaign.record_place(RecordKind::Track, &unit.cell).is_ok();
         if exists {
             found = side(work, unit, RecordKind::Track, &wanted, known, values)?.0;
         } else {

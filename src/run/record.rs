@@ -10,7 +10,7 @@ use crate::catalog::Reducer;
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Plan, StepSpec};
 use crate::data::checks::{Section, check_axis};
-use crate::data::record::{Record, Wanted, read_headings, read_record};
+use crate::data::record::{Record, Wanted, read_headings};
 use crate::data::{Campaign, RecordKind};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::{Method, percentiles};
@@ -92,8 +92,6 @@ fn chosen(conditions: &[crate::check::plan::Expr], inputs: &[NodeId], known: &Kn
 
 /// Reads and checks a record of one kind for one section.
 pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<NodeId>) -> Result<Opened, Fault> {
-    let path = work.campaign.record(kind, &unit.name).ok_or_else(|| Fault::new(format!("the campaign has no {} records", kind.in_words())))?;
-    let shown = work.campaign.shown(&path);
     let axis = &work.plan.axis;
     let mut wanted = vec![Wanted::new(axis.column.as_str(), axis.unit.dimension)];
     let time = work.plan.time.as_ref().filter(|time| kind != RecordKind::Track && time.column != axis.column);
@@ -108,11 +106,11 @@ pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<No
         }
     }
     let fault = |problems: Vec<Problem>| Fault { says: said(&problems), problems };
-    let record = read_record(&path, &shown, &wanted).map_err(fault)?;
+    let (record, read) = work.campaign.read(kind, &unit.cell, &wanted).map_err(fault)?;
     let clock = time.map_or(axis.column.as_str(), |time| time.column.as_str());
     let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
     let checked = check_axis(&record, clock, &axis.column, section.as_ref()).map_err(fault)?;
-    let file = FileHash { path: shown, sha256: record.sha256.clone(), bytes: record.bytes as u64 };
+    let file = FileHash { path: read.path, sha256: read.sha256, bytes: read.bytes };
     let along_axis = record.column(&axis.column).map(|column| column.values.clone()).unwrap_or_default();
     let extent = unit.extent.unwrap_or_else(|| (along_axis.first().copied().unwrap_or(0.0), along_axis.last().copied().unwrap_or(0.0)));
     let in_time = time.is_some() || axis.unit.dimension == Dimension::TIME;
@@ -298,7 +296,7 @@ pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes
         let mut columns = BTreeSet::new();
         for unit in units {
             // A record that cannot be read is a fault of its section, told when it is opened.
-            let headings = campaign.record(kind, &unit.name).and_then(|path| read_headings(&path, "").ok());
+            let headings = campaign.record_place(kind, &unit.cell).ok().and_then(|place| read_headings(&place.path, &place.shown).ok());
             columns.extend(headings.into_iter().flatten().map(|heading| heading.name));
         }
         seen.push((kind, columns));
@@ -328,7 +326,7 @@ pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes
                 .map(|missing| {
                     if !none {
                         for (column, kind) in missing {
-                            let note = format!("`{column}` is in no record of the {}: its position is left out", kind.in_words());
+                            let note = format!("`{column}` is in no record of the {}: its position is left out", kind.key());
                             if !notes.contains(&note) {
                                 notes.push(note);
                             }

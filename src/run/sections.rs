@@ -6,6 +6,7 @@ use super::signal::Extent;
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Datum, DatumKind, OnFault, Plan, Scalar};
 use crate::data::Campaign;
+use crate::data::table::Cell;
 use crate::problem::{Problem, Problems};
 use crate::result::{CheckResult, DataItem, SectionResult};
 use crate::source::Span;
@@ -15,6 +16,8 @@ use crate::units::Unit as OfMeasure;
 #[derive(Debug)]
 pub struct Unit {
     pub name: String,
+    /// The name where it is written, which is also that of its records.
+    pub cell: Cell,
     pub zone: Option<String>,
     /// `None` for a whole record.
     pub extent: Option<Extent>,
@@ -43,9 +46,9 @@ impl Unit {
 }
 
 /// Reads the sections as the protocol declares their columns.
-pub fn units(plan: &Plan, campaign: &Campaign, facts: &Facts, problems: &mut Problems) -> Vec<Unit> {
+pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<Unit> {
     if plan.sections.whole_records {
-        return campaign.record_names().into_iter().map(|name| whole_record(plan, name)).collect();
+        return campaign.names.iter().map(|name| whole_record(plan, name)).collect();
     }
     let Some(table) = &campaign.sections else {
         problems.push(
@@ -76,7 +79,8 @@ pub fn units(plan: &Plan, campaign: &Campaign, facts: &Facts, problems: &mut Pro
         let columns: Vec<Result<Scalar, String>> = plan.columns.iter().map(|datum| cell(datum, table, row)).collect();
         let ends = [cell(&start, table, row), cell(&end, table, row)];
         let mut unit = Unit {
-            name: row_name(table, row),
+            name: campaign.names[row].value.clone(),
+            cell: campaign.names[row].clone(),
             zone: plan.sections.zone.and_then(|zone| match &columns[zone] {
                 Ok(Scalar::Word(word)) => Some(word.clone()),
                 _ => None,
@@ -86,7 +90,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, facts: &Facts, problems: &mut Pro
             checks: Vec::new(),
             fault: None,
             faulty: false,
-            span: table.rows[row].first().map(|cell| cell.span.clone()),
+            span: Some(campaign.names[row].span.clone()),
         };
         match ends {
             [Ok(Scalar::Number(start)), Ok(Scalar::Number(end))] if start < end => unit.extent = Some((start, end)),
@@ -95,17 +99,12 @@ pub fn units(plan: &Plan, campaign: &Campaign, facts: &Facts, problems: &mut Pro
         }
         units.push(unit);
     }
-    let _ = facts;
     units
 }
 
-fn row_name(table: &crate::data::table::Table, row: usize) -> String {
-    table.names().nth(row).map_or_else(String::new, |cell| cell.value.clone())
-}
-
-fn whole_record(plan: &Plan, name: String) -> Unit {
+fn whole_record(plan: &Plan, name: &Cell) -> Unit {
     let columns = plan.columns.iter().map(|datum| datum.default.clone().ok_or_else(|| format!("`{}` is not known of a whole record", datum.name))).collect();
-    Unit { name, zone: None, extent: None, columns, checks: Vec::new(), fault: None, faulty: false, span: None }
+    Unit { name: name.value.clone(), cell: name.clone(), zone: None, extent: None, columns, checks: Vec::new(), fault: None, faulty: false, span: None }
 }
 
 /// A column that the protocol declares must be there, in a unit of its dimension.
@@ -217,12 +216,8 @@ pub fn take_over(plan: &Plan, units: &mut [Unit], values: &[SectionValues], note
         if let Some(fault) = &values.fault {
             unit.refuse(fault.clone(), true);
         }
-        for note in &values.notes {
-            if !notes.contains(note) {
-                notes.push(note.clone());
-            }
-        }
     }
+    notes.extend(super::pairs::margin_note(values));
     if stop.any_error() { Err(stop) } else { Ok(()) }
 }
 

@@ -20,7 +20,6 @@ pub struct Along {
 pub enum Rate {
     PerTime(f64),
     PerLength(f64),
-    Unknown,
 }
 
 #[derive(Clone, Debug)]
@@ -69,7 +68,6 @@ impl Samples {
         let StepSpec::Butterworth { band, order, phase, cutoff } = spec else { return Err("not a filter".into()) };
         match self.along.rate {
             Rate::PerTime(rate) | Rate::PerLength(rate) => Filter::design(*band, *order, rate, *phase, *cutoff).map_err(|error| error.to_string()),
-            Rate::Unknown => Err("the record has no constant rate to filter at".into()),
         }
     }
 

@@ -14,7 +14,8 @@ pub(super) fn read(body: &str, width: usize, columns: &mut [Column], shown: &str
         slots[column.position] = Some(slot);
         column.values.reserve(expected_rows(bytes, width));
     }
-    let mut sinks: Vec<Sink> = columns.iter_mut().map(|column| Sink { factor: column.unit.factor, values: std::mem::take(&mut column.values) }).collect();
+    let mut sinks: Vec<Sink> =
+        columns.iter_mut().map(|column| Sink { factor: column.unit.factor, values: std::mem::take(&mut column.values) }).collect();
     let mut faults = fault::Faults::new(shown);
     let mut at = 0;
     let mut rows = 0;
