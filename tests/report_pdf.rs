@@ -5,6 +5,7 @@ mod certification;
 
 use std::io::Write;
 use std::process::{Command, Stdio};
+use std::sync::OnceLock;
 
 use certification::{HOSTILE, LONG};
 use fishplate::report::typst::{Attachment, Pdf, typeset};
@@ -20,13 +21,19 @@ fn attached() -> Attachment<'static> {
 /// A report that compiled without a remark.
 #[track_caller]
 fn rendered(found: &Certification) -> Pdf {
-    match typeset(&view(found), &certification::placeholders(found), &[attached()]) {
+    match typeset(&view(found), &fishplate::report::figure::figures(found), &[attached()]) {
         Ok(pdf) => {
             assert!(pdf.warnings.0.is_empty(), "{}", pdf.warnings.render(false));
             pdf
         }
         Err(problems) => panic!("{}", problems.render(false)),
     }
+}
+
+/// The full report, typeset once for all tests that only look at it.
+fn full() -> &'static Pdf {
+    static FULL: OnceLock<Pdf> = OnceLock::new();
+    FULL.get_or_init(|| rendered(&certification::certification()))
 }
 
 /// What a tool of poppler prints about a PDF; `None` where the tool is not installed.
@@ -37,7 +44,7 @@ fn poppler(tool: &str, arguments: &[&str], pdf: &Pdf) -> Option<Vec<u8>> {
     match Command::new(tool).args(before).arg(file.path()).args(after).stderr(Stdio::null()).output() {
         Ok(output) => Some(output.stdout),
         Err(_) => {
-            println!("skipped: {tool} is not installed");
+            eprintln!("skipped: {tool} is not installed");
             None
         }
     }
@@ -60,12 +67,12 @@ fn holds(bytes: &[u8], word: &str) -> bool {
 #[test]
 fn a_full_report_compiles_and_has_its_parts() {
     let found = certification::certification();
-    let pdf = rendered(&found);
+    let pdf = full();
     if let Ok(path) = std::env::var("REPORT_PDF") {
         std::fs::write(path, &pdf.bytes).expect("REPORT_PDF can be written");
     }
     assert!((30..=60).contains(&pdf.pages), "{} pages", pdf.pages);
-    let Some(text) = text(&pdf) else { return };
+    let Some(text) = text(pdf) else { return };
     for word in [
         "NOT VALIDATED",
         "Contents",
@@ -89,11 +96,10 @@ fn a_full_report_compiles_and_has_its_parts() {
 #[test]
 fn the_same_input_gives_the_same_bytes() {
     let found = certification::certification();
-    let (first, second) = (rendered(&found), rendered(&found));
-    assert!(first.bytes == second.bytes);
+    assert!(rendered(&found).bytes == full().bytes);
     let mut other = found;
     other.campaign.name.push('!');
-    assert!(rendered(&other).bytes != first.bytes);
+    assert!(rendered(&other).bytes != full().bytes);
 }
 
 #[test]
@@ -113,7 +119,7 @@ fn text_of_users_is_printed_as_it_is() {
 
 #[test]
 fn an_archive_can_keep_it() {
-    let pdf = rendered(&certification::certification());
+    let pdf = full();
     assert!(pdf.bytes.starts_with(b"%PDF-1.7"));
     for word in ["pdfaid:part", "pdfaid:conformance", "pdfuaid:part", "/StructTreeRoot", "/Lang", "/Outlines"] {
         assert!(holds(&pdf.bytes, word), "{word} is missing");
@@ -123,9 +129,9 @@ fn an_archive_can_keep_it() {
 
 #[test]
 fn results_are_attached() {
-    let pdf = rendered(&certification::certification());
+    let pdf = full();
     assert!(holds(&pdf.bytes, "results.json") && holds(&pdf.bytes, "AFRelationship"));
-    let Some(found) = poppler("pdfdetach", &["-save", "1", "-o", "/dev/stdout"], &pdf) else { return };
+    let Some(found) = poppler("pdfdetach", &["-save", "1", "-o", "/dev/stdout"], pdf) else { return };
     assert_eq!(found, RESULTS);
 }
 

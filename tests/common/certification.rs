@@ -56,7 +56,7 @@ const KINDS: &[Kind] = &[
     Kind { id: "az_max", title: "Vertical acceleration of the car body, maximum", symbol: "z̈*max", unit: "m/s^2", filter: BAND, processing: MOST, limit: 0.40, size: 0.8, signals: ENDS },
 ];
 
-/// The made-up certification; figures are not part of it.
+/// The made-up certification.
 pub fn certification() -> Certification {
     let mut noise = Noise(7);
     let sections = sections(&mut noise);
@@ -124,17 +124,7 @@ pub fn empty() -> Certification {
     }
 }
 
-/// The view's figure names, each with a drawing that says which it is.
-pub fn placeholders(found: &Certification) -> Vec<(String, String)> {
-    let mut names = vec!["overview".to_owned(), "domain".to_owned()];
-    names.extend((0..found.quantities.len()).map(|at| format!("pairs-{at}")));
-    names.extend((0..found.traces.len()).map(|at| format!("trace-{at}")));
-    let mut drawn: Vec<(String, String)> = names.into_iter().map(|name| (name.clone(), placeholder(&name, 680, 300))).collect();
-    drawn.push(("graph".into(), found.protocol.graph_svg.clone()));
-    drawn
-}
-
-fn placeholder(name: &str, width: u32, height: u32) -> String {
+fn drawing(name: &str, width: u32, height: u32) -> String {
     let mut noise = Noise(name.len() as u64);
     let points: Vec<String> = (0..800)
         .map(|x| format!("{:.2},{:.2}", 40.0 + f64::from(x) * f64::from(width - 60) / 800.0, f64::from(height) / 2.0 + 60.0 * noise.next()))
@@ -503,7 +493,7 @@ fn protocol() -> ProtocolInfo {
             },
         ],
         graph_nodes: 96,
-        graph_svg: placeholder("graph", 1400, 600),
+        graph_svg: drawing("graph", 1400, 600),
         verdict_rule: "every statistic of every quantity holds, and every zone has at least 3 sections".into(),
     }
 }

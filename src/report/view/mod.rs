@@ -246,7 +246,7 @@ fn cut(name: &str, most: usize) -> String {
 /// Letters of a name of a section or signal that a report prints.
 const NAME: usize = 80;
 /// Letters of the symbol of a quantity that a report prints.
-const SYMBOL: usize = 40;
+const SYMBOL: usize = 32;
 
 fn fact(name: &str, value: String) -> Fact {
     Fact { name: name.to_owned(), value }
