@@ -208,7 +208,12 @@ impl Layer<'_> {
     pub fn text(&mut self, text: &str, point: Point, font: &Font) {
         let weight = if font.bold { FontStyle::Bold } else { FontStyle::Normal };
         let turned = if font.upward { FontTransform::Rotate270 } else { FontTransform::None };
-        let size = (font.size * STEPS).round() * FONT_SIZE_FACTOR;
+        let steps = (font.size * STEPS).round();
+        let mut size = steps * FONT_SIZE_FACTOR;
+        // The division is to give the whole number back, not one with a last digit of rounding.
+        if size / FONT_SIZE_FACTOR > steps {
+            size = size.next_down();
+        }
         let described = FontDesc::new(FontFamily::Name(FAMILY), size, weight).transform(turned);
         let held = match font.held {
             Held::Start => HPos::Left,
