@@ -153,8 +153,7 @@ impl Canvas {
         let end = text.rfind("</svg>").unwrap_or(text.len());
         // All quotes in texts are escaped, so these patterns are attributes: full opacity is the default; a filled shape takes
         // the edge of its group; half an x-height lies below the middle of digits and capitals.
-        text.get(start..end)
-            .unwrap_or_default()
+        whole_sizes(text.get(start..end).unwrap_or_default())
             .replace(" opacity=\"1\"", "")
             .replace(" stroke=\"none\" stroke-width=\"1\"", "")
             .replace("dy=\"0.5ex\"", "dy=\"0.35em\"")
@@ -241,6 +240,23 @@ fn outline(mark: Mark, (x, y): Point, radius: f64) -> Vec<Point> {
             (x + size * radius * angle.sin(), y - size * radius * angle.cos())
         })
         .collect()
+}
+
+/// Font sizes without the last digit of rounding that plotters' division leaves.
+fn whole_sizes(shapes: &str) -> String {
+    const SIZE: &str = "font-size=\"";
+    let mut pieces = shapes.split(SIZE);
+    let mut text = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        text.push_str(SIZE);
+        match piece.split_once('"').and_then(|(size, rest)| Some((size.parse::<f64>().ok()?, rest))) {
+            Some((size, rest)) => {
+                let _ = write!(text, "{}\"{rest}", size.round());
+            }
+            None => text.push_str(piece),
+        }
+    }
+    text
 }
 
 fn stroke(color: RGBColor, width: f64) -> ShapeStyle {

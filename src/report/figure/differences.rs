@@ -12,6 +12,8 @@ use super::zones::Zones;
 use crate::report::number;
 use crate::result::QuantityResult;
 
+/// Numbers on the y axis at most.
+pub const TICKS: usize = 6;
 /// Room for the longest section name, reading upward, in points.
 const NAME: f64 = 34.0;
 /// Runs of sections of one zone that are named above the diagram; more are left unnamed.
@@ -86,16 +88,21 @@ pub struct Against<'a> {
     pub slots: &'a Slots<'a>,
 }
 
+/// The scale over all differences, levels and zero.
+pub fn scale(quantity: &QuantityResult, levels: &Levels, bottom: f64, top: f64) -> Scale {
+    let differences = quantity.values.iter().map(|pair| pair.difference);
+    Scale::over(differences.chain(levels.values()).chain([0.0]), bottom, top)
+}
+
 /// Draws the diagram from a left edge to the right edge of the figure, between top and bottom, in points.
 pub fn draw(canvas: &mut Canvas, quantity: &QuantityResult, against: &Against<'_>, (left, top, bottom): (f64, f64, f64)) {
     let Against { zones, levels, slots } = *against;
-    let differences = quantity.values.iter().map(|pair| pair.difference);
     let x = Scale { low: 0.0, high: slots.sections.len().max(1) as f64, from: left, to: WIDTH - 2.0 };
-    let y = Scale::over(differences.chain(levels.values()).chain([0.0]), bottom, top);
+    let y = scale(quantity, levels, bottom, top);
     let frame = Frame { x, y };
     grounds(canvas, &frame, levels, slots);
     let what = if quantity.has_sides { "simulated − measured" } else { "value of the metric" };
-    frame.y_axis(canvas, &y.ticks(6), &axis::title(what, &quantity.unit));
+    frame.y_axis(canvas, &y.ticks(TICKS), &axis::title(what, &quantity.unit));
     names(canvas, &frame, slots);
     zone_heads(canvas, &frame, slots);
     lines(canvas, &frame, levels, slots);

@@ -177,7 +177,7 @@ fn scatter(canvas: &mut Canvas, (across, up): (&Panel<'_>, &Panel<'_>), zones: &
     let bottom = top + SCATTER;
     let y = up.scale(bottom, top);
     let ticks = y.ticks(6);
-    let frame = Frame { x: across.scale(Frame::room_for(&ticks) + 12.0, WIDTH - 6.0), y };
+    let frame = Frame { x: across.scale(Frame::axis_room(&ticks), WIDTH - 6.0), y };
     frame.x_axis(canvas, &frame.x.ticks(8), &axis::title(across.name, across.unit));
     frame.y_axis(canvas, &ticks, &axis::title(up.name, up.unit));
     frame.spine(canvas);

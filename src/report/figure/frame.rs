@@ -28,8 +28,13 @@ impl Frame {
         self.y.from
     }
 
-    /// Room that numbers of the y axis take to its left, in points.
-    pub fn room_for(ticks: &[Tick]) -> f64 {
+    /// Room that a y axis takes to its left with numbers and title, in points.
+    pub fn axis_room(ticks: &[Tick]) -> f64 {
+        Self::room_for(ticks) + 11.5
+    }
+
+    /// Room of the numbers alone.
+    fn room_for(ticks: &[Tick]) -> f64 {
         ticks.iter().map(|tick| text_width(&tick.label, TICK)).fold(0.0, f64::max) + 5.0
     }
 
@@ -43,7 +48,7 @@ impl Frame {
                 layer.text(&tick.label, (self.left() - 3.5, y), &Font::right(TICK).color(MUTED));
             }
             let middle = f64::midpoint(self.top(), self.bottom());
-            layer.text(title, (self.left() - room - 4.5, middle), &Font::middle(TEXT).upward());
+            layer.text(title, (self.left() - room - 6.0, middle), &Font::middle(TEXT).upward());
         });
     }
 

@@ -74,7 +74,7 @@ impl Levels {
             self.line(statistic, &[value], (BLUE, 1.3, SOLID), says(statistic, &shown(statistic, value)));
         }
         if let Some(limit) = statistic.limit {
-            let text = says_of_limit(statistic, &format!("{}{}", sign(two_sided), number::significant(limit, 4)));
+            let text = says_of_limit(statistic, &format!("{}{}", sign(two_sided), shown(statistic, limit)));
             self.line(statistic, &both(0.0, limit, two_sided), (BLUE, 0.9, DASHED), text);
         }
     }
@@ -85,7 +85,7 @@ impl Levels {
             self.explain(Entry::ground(SHADE, format!("mean ± {}", says(statistic, &shown(statistic, value)))));
         }
         if let Some(limit) = statistic.limit {
-            let text = format!("mean ± {}", says_of_limit(statistic, &number::significant(limit, 4)));
+            let text = format!("mean ± {}", says_of_limit(statistic, &shown(statistic, limit)));
             self.line(statistic, &both(center, limit, true), (VERMILION, 0.9, DOTTED), text);
         }
     }
@@ -96,7 +96,7 @@ impl Levels {
             self.line(statistic, &[value], (color, 1.1, DASH_DOT), says(statistic, &shown(statistic, value)));
         }
         if let Some(limit) = statistic.limit {
-            let text = says_of_limit(statistic, &format!("{}{}", sign(two_sided), number::significant(limit, 4)));
+            let text = says_of_limit(statistic, &format!("{}{}", sign(two_sided), shown(statistic, limit)));
             self.line(statistic, &both(0.0, limit, two_sided), (INK, 0.9, DASHED), text);
         }
     }
@@ -125,8 +125,9 @@ fn sign(two_sided: bool) -> &'static str {
     if two_sided { "±" } else { "" }
 }
 
+/// As the tables print it: with the decimals of the limit.
 fn shown(statistic: &StatisticResult, value: f64) -> String {
-    let decimals = number::decimals(&statistic.unit, [value].into_iter().chain(statistic.limit));
+    let decimals = number::decimals(&statistic.unit, statistic.limit.or(Some(value)));
     statistic.limit.map_or_else(|| number::fixed(value, decimals), |limit| number::beside(value, limit, decimals))
 }
 

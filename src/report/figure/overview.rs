@@ -142,8 +142,9 @@ fn row(canvas: &mut Canvas, frame: &Frame, quantity: &QuantityResult, series: &S
     }
     let shared = statistics.len() > LINES;
     let farthest = statistics.iter().filter_map(|one| signed(one)).fold(0.0_f64, |most, value| most.max(value.abs()));
-    if shared && statistics.iter().all(|one| signed(one).is_none()) {
+    if statistics.iter().all(|one| signed(one).is_none()) {
         nothing(canvas, frame, middle, "not assessable");
+        return;
     }
     for (at, statistic) in statistics.iter().enumerate() {
         let y = top + line * (0.5 + if lines == 1 { 0.0 } else { at as f64 });

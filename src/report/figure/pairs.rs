@@ -13,8 +13,12 @@ use crate::result::{PairValue, QuantityResult};
 
 /// Height of the plotting areas, in points: with sides, that of a square.
 const HEIGHT: f64 = 158.0;
-/// Room of y axes, numbers and title, in points.
+/// Least room of y axes, numbers and title, in points: figures under each other are flush where numbers are short.
 const AXIS: f64 = 38.0;
+/// Distance between the two diagrams, in points.
+const GUTTER: f64 = 12.0;
+/// Numbers on the axes of the left diagram at most.
+const TICKS: usize = 5;
 
 /// Left the simulated over the measured values, right their differences in the order of the sections with mean, standard
 /// deviation and limits. Where a metric gives one number for both signals, only the right diagram, over the full width.
@@ -27,29 +31,35 @@ pub fn pairs(quantity: &QuantityResult, zones: &Zones) -> String {
     let with_sides: Vec<(&PairValue, f64, f64)> =
         quantity.values.iter().filter_map(|pair| Some((pair, pair.simulated?, pair.measured?))).collect();
     let both = quantity.has_sides && !with_sides.is_empty();
-    let left = if both { AXIS + HEIGHT + AXIS + 12.0 } else { AXIS };
+    let own = Frame::axis_room(&differences::scale(quantity, &levels, bottom, top).ticks(differences::TICKS)).max(AXIS);
+    let side = Frame::axis_room(&Scale::over(ends(&with_sides), 0.0, 1.0).ticks(TICKS)).max(AXIS);
+    let left = if both { side + HEIGHT + GUTTER + own } else { own };
     let slots = differences::Slots::of(quantity);
     let mut canvas = Canvas::new(WIDTH, bottom + slots.room().max(24.0));
     marks.draw(&mut canvas, (AXIS, 0.0));
     lines.draw(&mut canvas, (AXIS, marks.height()));
     if both {
-        scatter(&mut canvas, quantity, zones, &with_sides, bottom);
+        scatter(&mut canvas, quantity, zones, &with_sides, (side, bottom));
     }
     differences::draw(&mut canvas, quantity, &differences::Against { zones, levels: &levels, slots: &slots }, (left, top, bottom));
     canvas.finish()
 }
 
-fn scatter(canvas: &mut Canvas, quantity: &QuantityResult, zones: &Zones, values: &[(&PairValue, f64, f64)], bottom: f64) {
+/// Both sides of all pairs: what equal axes must hold.
+fn ends(values: &[(&PairValue, f64, f64)]) -> impl Iterator<Item = f64> {
+    values.iter().flat_map(|(_, simulated, measured)| [*simulated, *measured])
+}
+
+fn scatter(canvas: &mut Canvas, quantity: &QuantityResult, zones: &Zones, values: &[(&PairValue, f64, f64)], (left, bottom): (f64, f64)) {
     let of = |side: &str| axis::title(side, &quantity.unit);
-    let ends = || values.iter().flat_map(|(_, simulated, measured)| [*simulated, *measured]);
-    let frame = Frame { x: Scale::over(ends(), AXIS, AXIS + HEIGHT), y: Scale::over(ends(), bottom, bottom - HEIGHT) };
-    let ticks = frame.x.ticks(5);
+    let frame = Frame { x: Scale::over(ends(values), left, left + HEIGHT), y: Scale::over(ends(values), bottom, bottom - HEIGHT) };
+    let ticks = frame.x.ticks(TICKS);
     frame.x_axis(canvas, &ticks, &of("measured"));
     frame.y_axis(canvas, &ticks, &of("simulated"));
     canvas.draw(|layer| layer.line((frame.left(), bottom), (frame.right(), frame.top()), MUTED, 0.8));
     canvas.draw(|layer| layer.text("simulated = measured", (frame.right(), frame.top() - 5.0), &Font::right(TICK).color(MUTED)));
     frame.spine(canvas);
-    let decimals = number::decimals(&quantity.unit, ends());
+    let decimals = number::decimals(&quantity.unit, ends(values));
     for (pair, simulated, measured) in values {
         let (mark, color) = zones.mark(pair.zone.as_deref());
         let title = tooltip(pair, &quantity.unit, decimals);

@@ -3,6 +3,8 @@
 
 use plotters::style::RGBColor;
 
+use crate::report::visible::visible;
+
 /// Type of all text; the families after the first stand in where it is not installed.
 pub const FAMILY: &str = "IBM Plex Sans, DejaVu Sans, Arial, sans-serif";
 
@@ -93,10 +95,11 @@ pub fn text_width(text: &str, size: f64) -> f64 {
     em * size
 }
 
-/// A text cut to a width, with an ellipsis.
+/// A text as it is drawn, cut to a width with an ellipsis.
 pub fn cut(text: &str, size: f64, width: f64) -> String {
-    if text_width(text, size) <= width {
-        return text.to_owned();
+    let text = visible(text);
+    if text_width(&text, size) <= width {
+        return text;
     }
     let mut kept = String::new();
     for c in text.chars() {
@@ -121,5 +124,6 @@ mod tests {
         let short = cut(&"wide ".repeat(40), TEXT, 60.0);
         assert!(short.ends_with('…') && text_width(&short, TEXT) <= 66.0, "{short}");
         assert_eq!(cut("abc", TEXT, 0.0), "…");
+        assert!(text_width(&cut(&"\u{202e}".repeat(9), TEXT, 60.0), TEXT) <= 66.0);
     }
 }

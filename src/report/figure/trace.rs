@@ -24,7 +24,7 @@ pub fn trace(trace: &Trace) -> String {
     let curves = [&trace.measured, &trace.simulated];
     let y = Scale::over(curves.iter().flat_map(|curve| curve.y.iter().copied()), bottom, top);
     let ticks = y.ticks(6);
-    let left = Frame::room_for(&ticks) + 10.0;
+    let left = Frame::axis_room(&ticks);
     let along = curves.iter().flat_map(|curve| curve.x.iter().copied()).chain([trace.start, trace.end]);
     let (low, high) = axis::extent(along).unwrap_or((0.0, 1.0));
     let frame = Frame { x: Scale { low, high, from: left, to: WIDTH - 6.0 }, y };
