@@ -313,9 +313,29 @@ impl Checker<'_> {
             factors,
             only_when,
             scope,
-            words: normalised(&text.text[written.statistic.range.end..]),
+            words: self.with_values(&normalised(&text.text[written.statistic.range.end..])),
             span: text.span.clone(),
         })
+    }
+
+    /// The words of a limit with the values of parameters in place of their names: `2/3 of std`, not `share of std`.
+    fn with_values(&self, words: &str) -> String {
+        let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+        let mut out = String::new();
+        let mut rest = words;
+        while !rest.is_empty() {
+            let name = rest.find(|c| !is_name(c)).unwrap_or(rest.len());
+            if name == 0 {
+                let next = rest.find(is_name).unwrap_or(rest.len());
+                out.push_str(&rest[..next]);
+                rest = &rest[next..];
+                continue;
+            }
+            let word = &rest[..name];
+            out.push_str(self.names.parameters.get(word).map_or(word, |parameter| parameter.value_words.as_str()));
+            rest = &rest[name..];
+        }
+        out
     }
 
     fn limit_scope(&mut self, scope: &At<WrittenScope>, text: &Text) -> Option<LimitScope> {

@@ -4,7 +4,8 @@ use indexmap::IndexMap;
 
 use super::{Graph, InputNode, Node, NodeId, Operation, QuantityNodes, SignalNodes};
 use crate::check::evaluate::{shape, words};
-use crate::check::plan::{Evaluation, Expr, Input, Operator, Plan, Quantity, Signal, SignalKind, Step, StepSpec};
+use crate::catalog::Metric;
+use crate::check::plan::{Evaluation, Expr, Input, Kind, Operator, Plan, Quantity, Signal, SignalKind, Step, StepSpec};
 use crate::source::Span;
 use crate::units::Dimension;
 
@@ -175,6 +176,12 @@ impl Builder {
                 Evaluation::Sides { value, inputs, .. } => {
                     let inputs: Vec<InputNode> = inputs.iter().map(|input| self.input(input, Some(processed))).collect();
                     let of: Vec<NodeId> = inputs.iter().map(|input| input.node).collect();
+                    // A value that is one reduced signal needs no node of its own.
+                    if matches!(value.kind, Kind::Input(0)) {
+                        let compare = self.compare(index, quantity, number, name, of, None);
+                        signals.push(SignalNodes { processed, filtered, inputs, over: None, compare });
+                        continue;
+                    }
                     let label = format!("{} of {name}", words(value));
                     let node = self.add(Operation::Value { quantity: index, signal: number }, of, dimension, &value.span, label, format!("value {index}"));
                     (inputs, None, vec![node], None)
@@ -186,12 +193,16 @@ impl Builder {
                     (Vec::new(), over, before, Some(*metric))
                 }
             };
-            let label = format!("{} {name}: {}", quantity.id, quantity.words.comparison);
-            let compare = Operation::Compare { quantity: index, signal: number, metric };
-            let compare = self.add(compare, before, dimension, &quantity.span, label, format!("compare {index}"));
+            let compare = self.compare(index, quantity, number, name, before, metric);
             signals.push(SignalNodes { processed, filtered, inputs, over, compare });
         }
         QuantityNodes { signals }
+    }
+
+    fn compare(&mut self, index: usize, quantity: &Quantity, number: usize, name: &str, of: Vec<NodeId>, metric: Option<Metric>) -> NodeId {
+        let label = format!("{} {name}: {}", quantity.id, quantity.words.comparison);
+        let operation = Operation::Compare { quantity: index, signal: number, metric };
+        self.add(operation, of, quantity.unit.dimension, &quantity.span, label, format!("compare {index}"))
     }
 }
 
