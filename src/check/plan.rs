@@ -142,7 +142,10 @@ pub struct Signal {
 #[derive(Clone, Debug)]
 pub enum SignalKind {
     /// A column of the records, and the channel it is a position of.
-    Column { column: String, channel: String },
+    Column {
+        column: String,
+        channel: String,
+    },
     /// A number that does not change along the record.
     Scalar(Expr),
     Binary(Operator, Box<Signal>, Box<Signal>),

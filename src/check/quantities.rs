@@ -68,7 +68,8 @@ impl Checker<'_> {
         let limits = self.limits(block, &unit, result);
         if limits.is_empty() && block.field("limit").is_none() {
             self.problems.push(
-                Problem::warning("no-limit", format!("quantity `{}` has no limit: it is reported, and decides nothing", block.name_text())).at(block.span()),
+                Problem::warning("no-limit", format!("quantity `{}` has no limit: it is reported, and decides nothing", block.name_text()))
+                    .at(block.span()),
             );
         }
         let filter = self.filter_words(block, &chain);
@@ -119,7 +120,8 @@ impl Checker<'_> {
             }
             let signal = self.signal(&phrase, of, &position)?;
             if signal.track {
-                self.problems.push(Problem::error("track-quantity", "the track record has no simulated and measured side to compare").at(&used));
+                self.problems
+                    .push(Problem::error("track-quantity", "the track record has no simulated and measured side to compare").at(&used));
                 return None;
             }
             found.push((filled, signal, position));
@@ -135,7 +137,9 @@ impl Checker<'_> {
         let result = self.number_type(&expr)?;
         if scope.inputs.is_empty() {
             self.problems.push(
-                Problem::error("value-of-nothing", "the value takes nothing from the signal").at(&value.value.span).help("for instance `median`, `rms`, `|p99.85|`"),
+                Problem::error("value-of-nothing", "the value takes nothing from the signal")
+                    .at(&value.value.span)
+                    .help("for instance `median`, `rms`, `|p99.85|`"),
             );
             return None;
         }
@@ -174,16 +178,24 @@ impl Checker<'_> {
             let unit = self.unit(&field.value)?;
             if unit.dimension != dimension {
                 self.problems.push(
-                    Problem::error("unit-mismatch", format!("the values are {}, the unit is one of {}", dimension.in_words(), unit.dimension.in_words()))
-                        .at(&field.value.span)
-                        .also(&of.span, dimension.in_words()),
+                    Problem::error(
+                        "unit-mismatch",
+                        format!("the values are {}, the unit is one of {}", dimension.in_words(), unit.dimension.in_words()),
+                    )
+                    .at(&field.value.span)
+                    .also(&of.span, dimension.in_words()),
                 );
                 return None;
             }
             return Some(unit);
         }
         let signal = from_pest::of_places(of, self.problems)?.signal.node;
-        let own = self.names.channels.get(&signal).map(|channel| channel.unit.clone()).or_else(|| self.names.signals.get(&signal).and_then(|signal| signal.unit.clone()));
+        let own = self
+            .names
+            .channels
+            .get(&signal)
+            .map(|channel| channel.unit.clone())
+            .or_else(|| self.names.signals.get(&signal).and_then(|signal| signal.unit.clone()));
         Some(match own {
             Some(unit) if unit.dimension == dimension => unit,
             _ if dimension == Dimension::ONE => Unit::one(),
@@ -208,7 +220,10 @@ impl Checker<'_> {
         let Some(field) = block.field(key) else { return Some(default) };
         let (value, dimension) = self.constant(&field.value)?;
         if dimension != Dimension::ONE || value.fract() != 0.0 || !(0.0..=1e6).contains(&value) {
-            self.problems.push(Problem::error("not-a-count", format!("`{key}` is a whole number, this is {}", normalised(&field.value.text))).at(&field.value.span));
+            self.problems.push(
+                Problem::error("not-a-count", format!("`{key}` is a whole number, this is {}", normalised(&field.value.text)))
+                    .at(&field.value.span),
+            );
             return None;
         }
         Some(value as usize)
@@ -239,7 +254,9 @@ impl Checker<'_> {
         for limit in limits {
             let mut at = limit;
             for _ in 0..limits.len() {
-                let Some(next) = referred(&at.bound).and_then(|name| limits.iter().find(|limit| limit.statistic.name() == name)) else { break };
+                let Some(next) = referred(&at.bound).and_then(|name| limits.iter().find(|limit| limit.statistic.name() == name)) else {
+                    break;
+                };
                 if next.span == limit.span {
                     self.problems.push(
                         Problem::error("limit-loop", "this limit depends on itself").at(&limit.span).also(&at.span, "by way of this one"),
@@ -258,7 +275,9 @@ impl Checker<'_> {
         let Some(statistic) = Statistic::named(&written.statistic.node) else {
             let known: Vec<&str> = STATISTICS.iter().map(|entry| entry.name).chain(["each"]).collect();
             self.problems.push(
-                Problem::error("unknown-statistic", format!("`{}` is no statistic", written.statistic.node)).at(&statistic_span).suggest(&written.statistic.node, known),
+                Problem::error("unknown-statistic", format!("`{}` is no statistic", written.statistic.node))
+                    .at(&statistic_span)
+                    .suggest(&written.statistic.node, known),
             );
             return None;
         };
@@ -270,11 +289,14 @@ impl Checker<'_> {
         if bound.ty != Type::Number(dimension) {
             let found = super::scalars::in_words(&bound.ty);
             self.problems.push(
-                Problem::error("unit-mismatch", format!("the values of `{}` are {}, the limit is {found}", names_of(field), dimension.in_words()))
-                    .at(&bound.span)
-                    .label(found)
-                    .also(&self.of_span(field), dimension.in_words())
-                    .help(format!("write the limit in {unit}")),
+                Problem::error(
+                    "unit-mismatch",
+                    format!("the values of `{}` are {}, the limit is {found}", names_of(field), dimension.in_words()),
+                )
+                .at(&bound.span)
+                .label(found)
+                .also(&self.of_span(field), dimension.in_words())
+                .help(format!("write the limit in {unit}")),
             );
             return None;
         }
@@ -289,7 +311,9 @@ impl Checker<'_> {
             let factor = self.expr(factor, text, &mut Scope::vehicle())?;
             let number = self.number_type(&factor)?;
             if number != Dimension::ONE {
-                self.problems.push(Problem::error("unit-mismatch", format!("a factor is a plain number, this is {}", number.in_words())).at(&factor.span));
+                self.problems.push(
+                    Problem::error("unit-mismatch", format!("a factor is a plain number, this is {}", number.in_words())).at(&factor.span),
+                );
                 return None;
             }
             let condition = self.expr(condition, text, &mut Scope::vehicle())?;
@@ -385,7 +409,9 @@ fn referred(expr: &Expr) -> Option<String> {
         Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => referred(inner),
         Kind::Binary(_, left, right) => referred(left).or_else(|| referred(right)),
         Kind::Call(_, arguments) => arguments.iter().find_map(referred),
-        Kind::Cases(arms, otherwise) => arms.iter().find_map(|(value, _)| referred(value)).or_else(|| otherwise.as_deref().and_then(referred)),
+        Kind::Cases(arms, otherwise) => {
+            arms.iter().find_map(|(value, _)| referred(value)).or_else(|| otherwise.as_deref().and_then(referred))
+        }
         _ => None,
     }
 }
