@@ -2,7 +2,9 @@
 
 use super::evaluate::words;
 use super::names::{Assignment, bare_word, normalised};
-use super::plan::{Evaluation, Expr, InputSide, Kind, Limit, Quantity, QuantityWords, Scalar, Scope as LimitScope, Signal, Step, Type};
+use super::plan::{
+    Axis, Evaluation, Expr, InputSide, Kind, Limit, Quantity, QuantityWords, Scalar, Scope as LimitScope, Signal, Step, Type,
+};
 use super::scalars::{Scope, fold};
 use super::{Checker, overlap};
 use crate::catalog::{STATISTICS, Statistic};
@@ -44,6 +46,7 @@ impl Checker<'_> {
         let (evaluation, result, processing, comparison) = match metric {
             Some(field) => {
                 let (metric, over) = self.metric(&field.value)?;
+                let over_axis = over.as_ref().and_then(|over| bare_word(&over.phrase)).map(str::to_string);
                 let over = match over {
                     None => Vec::new(),
                     Some(over) => signals.iter().map(|(_, _, at)| self.signal(&over.phrase, &over.text, at)).collect::<Option<Vec<_>>>()?,
@@ -56,8 +59,10 @@ impl Checker<'_> {
                     );
                     return None;
                 }
+                let over_axis =
+                    over_axis.zip(over.first()).map(|(name, signal)| Axis { unit: self.own_unit(&name, signal.dimension), column: name });
                 let words = normalised(&field.value.text);
-                (Evaluation::Metric { metric, over }, (metric.0.gives)(dimension), words.clone(), words)
+                (Evaluation::Metric { metric, over, over_axis }, (metric.0.gives)(dimension), words.clone(), words)
             }
             None => {
                 let value = value?;
@@ -65,6 +70,7 @@ impl Checker<'_> {
             }
         };
         let unit = self.quantity_unit(block, &of, result)?;
+        let signal_unit = from_pest::of_places(&of, self.problems).map(|of| self.own_unit(&of.signal.node, dimension))?;
         let limits = self.limits(block, &unit, result);
         if limits.is_empty() && block.field("limit").is_none() {
             self.problems.push(
@@ -72,7 +78,7 @@ impl Checker<'_> {
                     .at(block.span()),
             );
         }
-        let filter = self.filter_words(block, &chain);
+        let filter = filter_words(&chain);
         let only = match block.field("where") {
             Some(field) => Some(self.section_condition(field)?),
             None => None,
@@ -89,6 +95,7 @@ impl Checker<'_> {
             source: text("source"),
             notes: block.fields_named("note").map(|note| note.value.text.clone()).collect(),
             unit,
+            signal_unit,
             signals: signals.into_iter().map(|(name, signal, _)| (name, signal)).collect(),
             chain,
             evaluation,
@@ -190,22 +197,18 @@ impl Checker<'_> {
             return Some(unit);
         }
         let signal = from_pest::of_places(of, self.problems)?.signal.node;
-        let own = self
-            .names
-            .channels
-            .get(&signal)
-            .map(|channel| channel.unit.clone())
-            .or_else(|| self.names.signals.get(&signal).and_then(|signal| signal.unit.clone()));
-        Some(match own {
+        Some(self.own_unit(&signal, dimension))
+    }
+
+    /// The unit of a channel or signal if it suits, else that of SI.
+    fn own_unit(&self, name: &str, dimension: Dimension) -> Unit {
+        let channel = self.names.channels.get(name).map(|channel| channel.unit.clone());
+        let own = channel.or_else(|| self.names.signals.get(name).and_then(|signal| signal.unit.clone()));
+        match own {
             Some(unit) if unit.dimension == dimension => unit,
             _ if dimension == Dimension::ONE => Unit::one(),
             _ => Unit { text: dimension.to_string(), factor: 1.0, dimension },
-        })
-    }
-
-    fn filter_words(&self, block: &Block, chain: &[Step]) -> String {
-        let _ = block;
-        if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") }
+        }
     }
 
     pub(super) fn section_condition(&mut self, field: &Field) -> Option<Expr> {
@@ -396,6 +399,10 @@ impl Checker<'_> {
             .and_then(|block| block.field("of"))
             .map_or_else(|| field.key.span.clone(), |of| of.value.span.clone())
     }
+}
+
+fn filter_words(chain: &[Step]) -> String {
+    if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") }
 }
 
 fn names_of(field: &Field) -> String {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::facts::Known;
 use super::record::{Fault, Found, Opened, Work, columns, open};
 use super::sections::Unit;
-use super::signal::Samples;
+use super::signal::{Extent, Samples};
 use crate::catalog::Pair;
 use crate::check::evaluate::{Values, flag, number};
 use crate::check::plan::{Evaluation, InputSide, Quantity, StepSpec};
@@ -23,6 +23,8 @@ pub struct SectionValues {
     pub pairs: Vec<Vec<Option<PairSi>>>,
     pub checks: Vec<CheckResult>,
     pub files: Vec<FileHash>,
+    /// What a whole record covers, as measured.
+    pub extent: Option<Extent>,
     /// Record beyond the section [s], where it is too little for a slow filter to settle.
     pub short_margin: Option<f64>,
     pub fault: Option<String>,
@@ -62,7 +64,8 @@ fn fill(work: &Work<'_>, unit: &Unit, values: &mut SectionValues) -> Result<(), 
     let wanted = wanted(work, &active);
     // The simulated record is reduced to numbers before the measured one is opened: one record in memory at a time.
     let (simulated, _) = side(work, unit, RecordKind::Simulation, &wanted, &known, values)?;
-    let (measured, _) = side(work, unit, RecordKind::Measurement, &wanted, &known, values)?;
+    let (measured, opened) = side(work, unit, RecordKind::Measurement, &wanted, &known, values)?;
+    values.extent = Some(opened.extent);
     for (index, quantity) in work.plan.quantities.iter().enumerate() {
         let mut pairs = Vec::new();
         for (number, nodes) in work.graph.quantities[index].signals.iter().enumerate() {

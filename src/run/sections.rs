@@ -21,6 +21,8 @@ pub struct Unit {
     pub zone: Option<String>,
     /// `None` for a whole record.
     pub extent: Option<Extent>,
+    /// What a report says it covers: the section, or the measured record.
+    pub covered: Option<Extent>,
     /// One for each [`Plan::columns`].
     pub columns: Vec<Result<Scalar, String>>,
     pub checks: Vec<CheckResult>,
@@ -86,6 +88,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
                 _ => None,
             }),
             extent: None,
+            covered: None,
             columns,
             checks: Vec::new(),
             fault: None,
@@ -113,6 +116,7 @@ fn whole_record(plan: &Plan, name: &Cell) -> Unit {
         cell: name.clone(),
         zone: None,
         extent: None,
+        covered: None,
         columns,
         checks: Vec::new(),
         fault: None,
@@ -236,6 +240,7 @@ pub fn take_over(plan: &Plan, units: &mut [Unit], values: &[SectionValues], note
                 }
             }
         }
+        unit.covered = unit.extent.or(values.extent);
         unit.checks.extend(values.checks.iter().cloned());
         if let Some(fault) = &values.fault {
             unit.refuse(fault.clone(), true);
@@ -250,7 +255,7 @@ pub fn results(plan: &Plan, units: Vec<Unit>) -> Vec<SectionResult> {
     units
         .into_iter()
         .map(|unit| {
-            let (start, end) = unit.extent.unwrap_or((0.0, 0.0));
+            let (start, end) = unit.covered.or(unit.extent).unwrap_or((0.0, 0.0));
             SectionResult {
                 section: unit.name,
                 zone: unit.zone,
