@@ -12,9 +12,10 @@
 //!
 //! [`source`], [`problem`], [`units`] and `metrics` are leaves the stages lean on; `data` reads campaigns.
 
-pub mod source;
-pub mod problem;
-pub mod units;
-pub mod syntax;
+pub mod data;
 pub mod metrics;
+pub mod problem;
 pub mod result;
+pub mod source;
+pub mod syntax;
+pub mod units;

@@ -79,7 +79,8 @@ impl Problem {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
         };
-        let mut group = level.primary_title(plain(&self.says)).id(self.code).elements(Vec::<Snippet<'_, annotate_snippets::Annotation<'_>>>::new());
+        let mut group =
+            level.primary_title(plain(&self.says)).id(self.code).elements(Vec::<Snippet<'_, annotate_snippets::Annotation<'_>>>::new());
         if let Some(at) = &self.at {
             let mut same = Snippet::source(at.source.text.as_str())
                 .path(at.source.name.as_str())

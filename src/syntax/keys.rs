@@ -59,7 +59,11 @@ pub const KINDS: &[Kind] = &[
         single: true,
         about: "What the protocol is. Its name is the name by which others extend it.",
         keys: &[
-            phrase("extends", "The protocol whose rules hold here unless overridden by name: a shipped name, or a path beside this file in quotes.", "en14363-2016-annex-t"),
+            phrase(
+                "extends",
+                "The protocol whose rules hold here unless overridden by name: a shipped name, or a path beside this file in quotes.",
+                "en14363-2016-annex-t",
+            ),
             text("edition", "The standard and edition it follows.", "EN 14363:2016, Annex T"),
             SOURCE,
             text("author", "Who wrote the protocol.", "Working group 10"),
@@ -105,7 +109,11 @@ pub const KINDS: &[Kind] = &[
         about: "A set of positions on the vehicle that channels are measured at.",
         keys: &[
             phrase("members", "The positions, as they appear in channel names.", "R, L"),
-            many(phrase("alias", "A name for a position that depends on the section.", "outer is L when direction is right, R when direction is left")),
+            many(phrase(
+                "alias",
+                "A name for a position that depends on the section.",
+                "outer is L when direction is right, R when direction is left",
+            )),
             NOTE,
         ],
     },
@@ -173,12 +181,7 @@ pub const KINDS: &[Kind] = &[
         named: true,
         single: false,
         about: "A chain of filter steps with a name.",
-        keys: &[
-            many(phrase("step", "One step of the chain, in order.", "low-pass 20 Hz, order 4, zero-phase")),
-            CLAUSE,
-            SOURCE,
-            NOTE,
-        ],
+        keys: &[many(phrase("step", "One step of the chain, in order.", "low-pass 20 Hz, order 4, zero-phase")), CLAUSE, SOURCE, NOTE],
     },
     Kind {
         word: "define",
@@ -186,12 +189,7 @@ pub const KINDS: &[Kind] = &[
         named: true,
         single: false,
         about: "A name for an expression: a condition, a factor, a table by zone or speed.",
-        keys: &[
-            phrase("is", "The expression.", "vehicle.category is freight or not vehicle.secondary_suspension"),
-            CLAUSE,
-            SOURCE,
-            NOTE,
-        ],
+        keys: &[phrase("is", "The expression.", "vehicle.category is freight or not vehicle.secondary_suspension"), CLAUSE, SOURCE, NOTE],
     },
     Kind {
         word: "zone",
@@ -215,7 +213,11 @@ pub const KINDS: &[Kind] = &[
         single: false,
         about: "A requirement on every section; a section that fails it is not used.",
         keys: &[
-            phrase("require", "The condition on the section's data and on reduced signals of its records.", "range of curvature <= 5 % * |mean of curvature|"),
+            phrase(
+                "require",
+                "The condition on the section's data and on reduced signals of its records.",
+                "range of curvature <= 5 % * |mean of curvature|",
+            ),
             phrase("unless", "Sections that need not satisfy it.", "direction is straight"),
             phrase("otherwise", "What happens to a section that fails: `not used` (the default), `note` or `stop`.", "note"),
             CLAUSE,
@@ -248,7 +250,11 @@ pub const KINDS: &[Kind] = &[
             text("symbol", "As printed in tables.", "(Y/Q)max"),
             phrase("of", "The signal and the positions at which it is evaluated.", "Y at wheelsets 1, 3"),
             phrase("filter", "Filters in order: names, or steps.", "LP20, then sliding mean 2 m every 0.5 m"),
-            phrase("value", "The number taken from the filtered signal of a section, for simulation and measurement alike.", "larger of |p0.15|, |p99.85|"),
+            phrase(
+                "value",
+                "The number taken from the filtered signal of a section, for simulation and measurement alike.",
+                "larger of |p0.15|, |p99.85|",
+            ),
             phrase("difference", "How the two numbers are compared.", "|simulated| - |measured|"),
             phrase("metric", "In place of value and difference: one number from the two signals.", "sprague-geers magnitude"),
             many(phrase("limit", "A statistic over all section x signal pairs and its limit.", "std 9 kN")),
@@ -267,10 +273,7 @@ pub const KINDS: &[Kind] = &[
         named: false,
         single: true,
         about: "When a model is validated.",
-        keys: &[
-            phrase("validated", "`when every limit holds`, or `when at least N quantities hold`.", "when every limit holds"),
-            NOTE,
-        ],
+        keys: &[phrase("validated", "`when every limit holds`, or `when at least N quantities hold`.", "when every limit holds"), NOTE],
     },
 ];
 

@@ -57,7 +57,10 @@ impl Dimension {
 
     /// "a force", "an acceleration", or the base units.
     pub fn in_words(self) -> String {
-        WORDS.iter().find(|(dimension, _)| *dimension == self).map_or_else(|| format!("a quantity in {self}"), |(_, word)| (*word).to_string())
+        WORDS
+            .iter()
+            .find(|(dimension, _)| *dimension == self)
+            .map_or_else(|| format!("a quantity in {self}"), |(_, word)| (*word).to_string())
     }
 }
 
