@@ -1,4 +1,28 @@
 //! Reads and writes campaigns. Nothing read is trusted before it is checked, and no channel, quantity or column is known here:
 //! what is needed is asked for by the caller.
+//!
+//! | file | what |
+//! |---|---|
+//! | `campaign` | a campaign folder: `campaign.yaml`, the vehicle, the sections, where the records are |
+//! | `record` | one sampled record, the hot path |
+//! | `table` | a small table such as `sections.csv` |
+//! | `tree` | YAML with the place of every word |
+//! | `checks` | whether the samples of a record can be evaluated |
+//! | `write` | every file the program makes |
 
+pub mod campaign;
+mod cells;
+pub mod checks;
+mod folder;
+pub mod hash;
+pub mod record;
+pub mod table;
+pub mod text;
 pub mod tree;
+pub mod write;
+
+pub use campaign::{Campaign, RecordKind};
+pub use cells::Heading;
+pub use checks::{Axis, check_axis};
+pub use record::{Column, Record, Wanted, read_record};
+pub use table::Table;

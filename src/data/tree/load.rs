@@ -292,6 +292,7 @@ fn in_words(kind: &ErrorKind) -> (String, Option<&'static str>) {
             ("a value cannot begin with this character", Some("quote the value"))
         }
         ErrorKind::RecursionLimitExceeded => ("brackets or indentation are nested too deep", None),
+        ErrorKind::UnclosedFlowCollection { open } => return (format!("`{open}` is opened and never closed"), None),
         other => return (format!("this is no valid YAML: {other}"), None),
     };
     (says.to_string(), help)

@@ -1,0 +1,345 @@
+//! A campaign folder: what it is, its vehicle, its sections, and where the records of each are.
+//!
+//! Only the keys of the folder layout are known here; all others are facts that are printed, or asked for by name.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::cells::name_and_unit;
+use super::folder::{Folder, Place, check_file_name};
+use super::record::{Record, Wanted, read_record};
+use super::table::{Cell, Table};
+use super::text::read_text;
+use super::tree::{self, Key, Node, Value};
+use crate::problem::{Problem, Problems};
+use crate::source::{Source, Span, Spanned};
+
+/// The file that makes a folder a campaign.
+pub const CAMPAIGN_FILE: &str = "campaign.yaml";
+/// The column of the section table that names the sections; without it, the first column does.
+const SECTION_KEY: &str = "section";
+
+/// The kinds of records that a campaign has, each in a folder of its own with a file per section.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum RecordKind {
+    Measurement,
+    Simulation,
+    Track,
+}
+
+impl RecordKind {
+    pub const ALL: [Self; 3] = [Self::Measurement, Self::Simulation, Self::Track];
+
+    /// The key in `campaign.yaml`.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Measurement => "measurement",
+            Self::Simulation => "simulation",
+            Self::Track => "track",
+        }
+    }
+}
+
+/// Something that `campaign.yaml` says beyond the layout.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fact {
+    /// The key of the map that it stands in; empty at the top.
+    pub group: String,
+    /// The key without its unit.
+    pub name: String,
+    /// What stood in brackets after the name.
+    pub unit: Option<String>,
+    /// As written.
+    pub text: String,
+    pub span: Span,
+}
+
+/// A value that the campaign sets for a parameter of the protocol.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    pub name: Key,
+    pub value: Node,
+}
+
+/// A file that was read, and its fingerprint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadFile {
+    /// Inside the campaign, with `/`.
+    pub path: String,
+    pub sha256: String,
+}
+
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    pub name: String,
+    pub source: Arc<Source>,
+    /// All of `campaign.yaml`, for who asks for a key by name.
+    pub tree: Node,
+    pub facts: Vec<Fact>,
+    pub parameters: Vec<Parameter>,
+    /// Name or path of the protocol that is used if none is given.
+    pub protocol: Option<Spanned<String>>,
+    /// All of the vehicle file; an empty map if the campaign names none.
+    pub vehicle: Node,
+    /// Absent if the campaign has no section table: then every measured record is evaluated as a whole.
+    pub sections: Option<Table>,
+    /// The names of the sections in the order of the table; without one, of the measured records, sorted.
+    pub names: Vec<Cell>,
+    /// `campaign.yaml`, the vehicle file and the section table, as far as there are any.
+    pub files: Vec<ReadFile>,
+    folder: Folder,
+    record_folders: Vec<(RecordKind, Spanned<String>)>,
+}
+
+impl Campaign {
+    /// Opens a campaign by its folder or its `campaign.yaml`. Records are not read yet.
+    ///
+    /// Problems: those of [`read_text`], [`tree::load`] and [`Table::read`]; `folder-missing`, `path-outside`, `path-invalid`,
+    /// `key-missing`, `wrong-kind`, `no-records`.
+    pub fn open(path: &Path, problems: &mut Problems) -> Option<Self> {
+        let before = problems.errors();
+        let named = path.file_name().is_some_and(|name| name == CAMPAIGN_FILE) && !path.is_dir();
+        let folder = Folder::open(if named { parent(path) } else { path }).map_err(|problem| problems.push(problem)).ok()?;
+        let nowhere = Source::new(path.display().to_string(), "").whole();
+        let place = folder.place(CAMPAIGN_FILE, &nowhere).map_err(|problem| problems.push(problem)).ok()?;
+        let mut opening = Opening { folder, files: Vec::new(), problems };
+        let (source, tree) = opening.yaml(&place, None)?;
+        if !matches!(tree.value, Value::Map(_)) {
+            problems.push(
+                Problem::error("wrong-kind", format!("a campaign is a map of keys and values; this is {}", tree.kind_in_words()))
+                    .at(&tree.span),
+            );
+            return None;
+        }
+        let name = opening.text(&tree, "name").map(|name| name.value);
+        if name.is_none() && tree.get("name").is_none() {
+            opening.problems.push(Problem::error("key-missing", "the campaign has no `name`").at(&tree.span.part(0..0)));
+        }
+        let vehicle = opening.vehicle(&tree);
+        let sections = opening.sections(&tree);
+        let record_folders = RecordKind::ALL.into_iter().filter_map(|kind| Some((kind, opening.text(&tree, kind.key())?))).collect();
+        let protocol = opening.text(&tree, "protocol");
+        let parameters = opening.parameters(&tree);
+        let Opening { folder, files, .. } = opening;
+        let mut campaign = Self {
+            name: name.unwrap_or_default(),
+            facts: facts(&tree),
+            parameters,
+            protocol,
+            vehicle: vehicle.unwrap_or_else(|| Node {
+                value: Value::Map(Vec::new()),
+                span: tree.span.clone(),
+                raw: String::new(),
+                exact: false,
+            }),
+            names: Vec::new(),
+            sections,
+            source,
+            tree,
+            files,
+            folder,
+            record_folders,
+        };
+        if problems.errors() == before {
+            campaign.find_names(problems);
+        }
+        (problems.errors() == before).then_some(campaign)
+    }
+
+    fn find_names(&mut self, problems: &mut Problems) {
+        self.names = match &self.sections {
+            Some(table) => table.names().cloned().collect(),
+            None => match self.measured() {
+                Ok(names) => names,
+                Err(problem) => return problems.push(problem),
+            },
+        };
+        for name in &self.names {
+            if let Err(problem) = check_file_name(&name.value, &name.span) {
+                problems.push(problem);
+            }
+        }
+    }
+
+    /// The names of the measured records.
+    fn measured(&self) -> Result<Vec<Cell>, Problem> {
+        let kind = RecordKind::Measurement;
+        let (place, span) = self.record_folder(kind)?;
+        let mut names: Vec<String> = std::fs::read_dir(&place.path)
+            .map_err(|_| Problem::error("folder-missing", format!("there is no folder `{}`", place.shown)).at(span))?
+            .filter_map(|entry| Some(entry.ok()?.file_name().to_str()?.strip_suffix(".csv")?.to_string()))
+            .filter(|name| !name.starts_with('.'))
+            .collect();
+        if names.is_empty() {
+            return Err(Problem::error("no-records", format!("there is no CSV file in `{}`", place.shown)).at(span));
+        }
+        names.sort();
+        Ok(names.into_iter().map(|name| Spanned::new(name, span.clone())).collect())
+    }
+
+    fn record_folder(&self, kind: RecordKind) -> Result<(Place, &Span), Problem> {
+        let Some((_, written)) = self.record_folders.iter().find(|(known, _)| *known == kind) else {
+            return Err(Problem::error("key-missing", format!("the campaign has no `{}`: the folder of its records", kind.key()))
+                .at(&self.tree.span.part(0..0)));
+        };
+        Ok((self.folder.place(&written.value, &written.span)?, &written.span))
+    }
+
+    /// Whether the campaign names a folder for records of a kind.
+    pub fn has(&self, kind: RecordKind) -> bool {
+        self.record_folders.iter().any(|(known, _)| *known == kind)
+    }
+
+    /// Where the record of a section is, which must exist.
+    ///
+    /// # Errors
+    /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in that folder).
+    pub fn record_place(&self, kind: RecordKind, section: &Cell) -> Result<Place, Problem> {
+        check_file_name(&section.value, &section.span)?;
+        let (folder, span) = self.record_folder(kind)?;
+        let place = self.folder.place(&format!("{}/{}.csv", folder.inside, section.value), &section.span)?;
+        if place.path.is_file() {
+            return Ok(place);
+        }
+        if !folder.path.is_dir() {
+            return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.shown)).at(span));
+        }
+        let mut others: Vec<String> = std::fs::read_dir(&folder.path)
+            .map(|entries| entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect())
+            .unwrap_or_default();
+        others.sort();
+        Err(Problem::error("file-missing", format!("there is no file `{}`", place.shown))
+            .at(&section.span)
+            .suggest(&format!("{}.csv", section.value), others.iter().map(String::as_str)))
+    }
+
+    /// Reads the wanted columns of a section's record.
+    ///
+    /// # Errors
+    /// As [`Campaign::record_place`] and [`read_record`].
+    pub fn read(&self, kind: RecordKind, section: &Cell, wanted: &[Wanted]) -> Result<(Record, ReadFile), Vec<Problem>> {
+        let place = self.record_place(kind, section).map_err(|problem| vec![problem])?;
+        let record = read_record(&place.path, &place.shown, wanted)?;
+        let file = ReadFile { path: place.inside, sha256: record.sha256.clone() };
+        Ok((record, file))
+    }
+
+    /// A file that the campaign or its vehicle names, read as text.
+    ///
+    /// # Errors
+    /// `path-outside`, `path-invalid` and those of [`read_text`].
+    pub fn read_named(&self, written: &Spanned<String>) -> Result<(Arc<Source>, ReadFile), Problem> {
+        let place = self.folder.place(&written.value, &written.span)?;
+        let (source, sha256) = read_text(&place.path, &place.shown).map_err(|problem| named_at(problem, Some(&written.span)))?;
+        Ok((source, ReadFile { path: place.inside, sha256 }))
+    }
+}
+
+fn parent(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// A problem of a file as a whole is shown where the file is named.
+fn named_at(problem: Problem, span: Option<&Span>) -> Problem {
+    match span {
+        Some(span) if problem.at.is_none() => problem.at(span),
+        _ => problem,
+    }
+}
+
+struct Opening<'a> {
+    folder: Folder,
+    files: Vec<ReadFile>,
+    problems: &'a mut Problems,
+}
+
+impl Opening<'_> {
+    fn keep<T>(&mut self, result: Result<T, Problem>) -> Option<T> {
+        result.map_err(|problem| self.problems.push(problem)).ok()
+    }
+
+    fn yaml(&mut self, place: &Place, named: Option<&Span>) -> Option<(Arc<Source>, Node)> {
+        let (source, sha256) = self.keep(read_text(&place.path, &place.shown).map_err(|problem| named_at(problem, named)))?;
+        self.files.push(ReadFile { path: place.inside.clone(), sha256 });
+        let tree = tree::load(&source, self.problems)?;
+        Some((source, tree))
+    }
+
+    /// The text of a key, if it is there; it must be a single value then.
+    fn text(&mut self, tree: &Node, key: &str) -> Option<Spanned<String>> {
+        let node = tree.get(key)?;
+        match node.scalar_text() {
+            Some(text) if !text.trim().is_empty() => Some(Spanned::new(text.to_string(), node.span.clone())),
+            _ => {
+                let says = format!("`{key}` must be text; this is {}", node.kind_in_words());
+                self.problems.push(Problem::error("wrong-kind", says).at(&node.span));
+                None
+            }
+        }
+    }
+
+    fn vehicle(&mut self, tree: &Node) -> Option<Node> {
+        let written = self.text(tree, "vehicle")?;
+        let place = self.folder.place(&written.value, &written.span);
+        let place = self.keep(place)?;
+        let (_, vehicle) = self.yaml(&place, Some(&written.span))?;
+        if matches!(vehicle.value, Value::Map(_)) {
+            return Some(vehicle);
+        }
+        let says = format!("a vehicle is a map of keys and values; this is {}", vehicle.kind_in_words());
+        self.problems.push(Problem::error("wrong-kind", says).at(&vehicle.span));
+        None
+    }
+
+    fn sections(&mut self, tree: &Node) -> Option<Table> {
+        let written = self.text(tree, "sections")?;
+        let place = self.folder.place(&written.value, &written.span);
+        let place = self.keep(place)?;
+        let mut found = Problems::default();
+        let table = Table::read(&place.path, &place.shown, SECTION_KEY, &mut found);
+        for problem in found.0 {
+            self.problems.push(named_at(problem, Some(&written.span)));
+        }
+        let table = table?;
+        self.files.push(ReadFile { path: place.inside, sha256: table.sha256.clone() });
+        Some(table)
+    }
+
+    fn parameters(&mut self, tree: &Node) -> Vec<Parameter> {
+        let Some(node) = tree.get("parameters") else { return Vec::new() };
+        if !matches!(node.value, Value::Map(_) | Value::Null) {
+            let says = format!("`parameters` must be a map of names and values; this is {}", node.kind_in_words());
+            self.problems.push(Problem::error("wrong-kind", says).at(&node.span));
+        }
+        for (key, value) in node.entries() {
+            if value.scalar_text().is_none() {
+                let says = format!("the parameter `{}` must be a single value; this is {}", key.text, value.kind_in_words());
+                self.problems.push(Problem::error("wrong-kind", says).at(&value.span));
+            }
+        }
+        node.entries().iter().map(|(name, value)| Parameter { name: name.clone(), value: value.clone() }).collect()
+    }
+}
+
+/// Scalars at the top and one map below it, in the order written.
+fn facts(tree: &Node) -> Vec<Fact> {
+    const LAYOUT: [&str; 5] = ["name", "vehicle", "sections", "parameters", "protocol"];
+    let layout = |key: &str| LAYOUT.contains(&key) || RecordKind::ALL.iter().any(|kind| kind.key() == key);
+    let mut facts = Vec::new();
+    for (key, node) in tree.entries().iter().filter(|(key, _)| !layout(&key.text)) {
+        facts.extend(fact("", key, node));
+        facts.extend(node.entries().iter().filter_map(|(inner, node)| fact(&key.text, inner, node)));
+    }
+    facts
+}
+
+fn fact(group: &str, key: &Key, node: &Node) -> Option<Fact> {
+    let text = match &node.value {
+        // A short list of scalars reads well in a line; anything deeper is no fact to print.
+        Value::List(items) => items.iter().map(Node::scalar_text).collect::<Option<Vec<_>>>()?.join(", "),
+        _ => node.scalar_text()?.to_string(),
+    };
+    let (name, unit) = name_and_unit(&key.text);
+    let unit = unit.map(|range| key.text[range].trim().to_string());
+    Some(Fact { group: group.to_string(), name: name.to_string(), unit, text, span: node.span.clone() })
+}

@@ -1,0 +1,272 @@
+//! One line of a CSV file: its cells with their places, and column headings `name [unit]`.
+//!
+//! The `csv` crate tells the row of a field but not its column, which every message needs; its reading of a line is what the
+//! tests compare with.
+
+use std::ops::Range;
+
+use crate::problem::Problem;
+use crate::source::Span;
+use crate::units::{Dimension, Unit};
+
+/// A cell without the blanks around it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct RawCell {
+    pub text: String,
+    /// Bytes in the line, without quotes.
+    pub place: Range<usize>,
+}
+
+/// A quote that is not closed, or text after it, at this place of the line.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct StrayQuote(pub Range<usize>);
+
+/// Splits a line without its line break. Quotes may hold commas and doubled quotes, not line breaks.
+pub(super) fn split(line: &str) -> Result<Vec<RawCell>, StrayQuote> {
+    let mut cells = Vec::new();
+    let mut from = 0;
+    loop {
+        let (cell, end) = if line[from..].trim_start_matches([' ', '\t']).starts_with('"') {
+            quoted(line, from + line[from..].find('"').unwrap_or(0))?
+        } else {
+            let end = line[from..].find(',').map_or(line.len(), |at| from + at);
+            (trimmed(line, from..end), end)
+        };
+        cells.push(cell);
+        if end >= line.len() {
+            return Ok(cells);
+        }
+        from = end + 1;
+    }
+}
+
+fn trimmed(line: &str, place: Range<usize>) -> RawCell {
+    let text = line[place.clone()].trim();
+    let start = place.start + line[place].find(text).unwrap_or(0);
+    RawCell { text: text.to_string(), place: start..start + text.len() }
+}
+
+/// The cell whose opening quote stands at `open`, and where its comma or the end of the line is.
+fn quoted(line: &str, open: usize) -> Result<(RawCell, usize), StrayQuote> {
+    let mut close = open + 1;
+    loop {
+        close += line[close..].find('"').ok_or(StrayQuote(open..line.len()))?;
+        if !line[close + 1..].starts_with('"') {
+            break;
+        }
+        close += 2;
+    }
+    let end = line[close..].find(',').map_or(line.len(), |at| close + at);
+    if !line[close + 1..end].trim().is_empty() {
+        return Err(StrayQuote(close + 1..end));
+    }
+    let mut cell = trimmed(line, open + 1..close);
+    cell.text = cell.text.replace("\"\"", "\"");
+    Ok((cell, end))
+}
+
+/// The heading of a column: `Y_1R [kN]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heading {
+    pub name: String,
+    /// Absent where the heading has no brackets.
+    pub unit: Option<HeadingUnit>,
+    /// The whole cell.
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeadingUnit {
+    /// As written between the brackets.
+    pub text: String,
+    pub span: Span,
+}
+
+impl Heading {
+    /// The unit of the column, of the wanted dimension if one is given.
+    ///
+    /// # Errors
+    /// `unit-missing`, `unknown-unit`, `unit-mismatch`, each at its place in the header.
+    pub fn unit(&self, wanted: Option<Dimension>) -> Result<Unit, Problem> {
+        let name = &self.name;
+        let Some(written) = &self.unit else {
+            let needed = wanted.map_or(String::new(), |dimension| format!("; {} is needed", dimension.in_words()));
+            return Err(Problem::error("unit-missing", format!("the column `{name}` has no unit{needed}"))
+                .at(&self.span)
+                .help(format!("write the unit in square brackets: `{name} [...]`, or `{name} [-]` for a plain number")));
+        };
+        let unit = Unit::parse(&written.text).map_err(|unknown| {
+            let problem = Problem::error("unknown-unit", format!("`{}` is no known unit", unknown.word)).at(&written.span);
+            match unknown.near {
+                Some(near) => problem.help(format!("did you mean `{near}`?")),
+                None => problem,
+            }
+        })?;
+        match wanted {
+            Some(dimension) if dimension != unit.dimension => Err(Problem::error(
+                "unit-mismatch",
+                format!(
+                    "the column `{name}` is in {}, which is {}; {} is needed",
+                    unit.text,
+                    unit.dimension.in_words(),
+                    dimension.in_words()
+                ),
+            )
+            .at(&written.span)),
+            _ => Ok(unit),
+        }
+    }
+}
+
+/// `cant deficiency [mm]` into name and the range of the unit.
+pub(super) fn name_and_unit(text: &str) -> (&str, Option<Range<usize>>) {
+    let inner = text.strip_suffix(']').and_then(|inner| Some((inner.rfind('[')?, inner.len())));
+    match inner {
+        Some((open, close)) => (text[..open].trim_end(), Some(open + 1..close)),
+        None => (text, None),
+    }
+}
+
+/// The headings in the first line of a file, given as the place of that line.
+pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<Heading>> {
+    if let Some(problem) = other_separator(line) {
+        problems.push(problem);
+        return None;
+    }
+    let cells = match split(line.text()) {
+        Ok(cells) => cells,
+        Err(StrayQuote(place)) => {
+            problems.push(stray_quote(&line.part(place)));
+            return None;
+        }
+    };
+    let headings: Vec<Heading> = cells
+        .iter()
+        .map(|cell| {
+            let span = line.part(cell.place.clone());
+            let (name, unit) = name_and_unit(&cell.text);
+            let unit = unit.map(|range| HeadingUnit { text: cell.text[range.clone()].trim().to_string(), span: span.part(range) });
+            Heading { name: name.to_string(), unit, span }
+        })
+        .collect();
+    let mut sorted: Vec<&Heading> = headings.iter().filter(|heading| !heading.name.is_empty()).collect();
+    sorted.sort_by(|a, b| (&a.name, a.span.start).cmp(&(&b.name, b.span.start)));
+    let before = problems.len();
+    problems.extend(sorted.windows(2).filter(|pair| pair[0].name == pair[1].name).map(|pair| {
+        Problem::error("duplicate-column", format!("two columns are called `{}`", pair[1].name))
+            .at(&pair[1].span)
+            .also(&pair[0].span, "the first of them")
+    }));
+    (problems.len() == before).then_some(headings)
+}
+
+/// A header without a comma that is parted by something else.
+fn other_separator(line: &Span) -> Option<Problem> {
+    let text = line.text();
+    [(';', "semicolon-separated", "semicolons"), ('\t', "tab-separated", "tabs")].into_iter().find_map(|(separator, code, word)| {
+        let at = text.find(separator).filter(|_| !text.contains(','))?;
+        Some(
+            Problem::error(code, format!("the columns are separated by {word}, not by commas"))
+                .at(&line.part(at..at + 1))
+                .help("write a comma between the columns and a point in the numbers"),
+        )
+    })
+}
+
+pub(super) fn stray_quote(span: &Span) -> Problem {
+    Problem::error("stray-quote", "a quoted cell is not closed, or text follows its closing quote").at(span)
+}
+
+/// A line with too few or too many cells, where a decimal comma is the likeliest reason for too many.
+pub(super) fn ragged(line: &Span, cells: &[RawCell], columns: usize) -> Problem {
+    let whole = |cell: &RawCell| cell.text.trim_start_matches(['-', '+']).bytes().all(|byte| byte.is_ascii_digit());
+    let counts = format!("the row has {} values, the header {columns} columns", cells.len());
+    // The excess is one for each number with a comma, which are most of them, and then no cell has a point.
+    let excess = cells.len().saturating_sub(columns);
+    if 2 * excess >= columns && excess <= columns && cells.iter().rev().take(columns).all(whole) {
+        return Problem::error("decimal-comma", format!("{counts}: the numbers seem to have decimal commas"))
+            .at(line)
+            .help("write numbers with a point");
+    }
+    // The first cell too many, or the place where the next one is missing.
+    let at = match cells.get(columns) {
+        Some(extra) => line.part(extra.place.start..line.end - line.start),
+        None => cells.last().map_or_else(|| line.clone(), |last| line.part(last.place.clone())),
+    };
+    Problem::error("ragged-row", counts).at(&at)
+}
+
+/// A finite number as written in a cell.
+///
+/// # Errors
+/// Code and fact: `not-a-number`, `not-finite` or `decimal-comma`.
+pub(super) fn number(text: &str) -> Result<f64, (&'static str, String)> {
+    match fast_float2::parse::<f64, _>(text) {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) => Err(("not-finite", format!("`{text}` is not a finite number"))),
+        Err(_) if text.is_empty() => Err(("not-a-number", "the cell is empty; a number is needed".to_string())),
+        Err(_) if text.matches(',').count() == 1 && fast_float2::parse::<f64, _>(text.replace(',', ".")).is_ok() => {
+            Err(("decimal-comma", format!("`{text}` has a decimal comma; numbers are written with a point")))
+        }
+        Err(_) => Err(("not-a-number", format!("`{}` is not a number", shortened(text)))),
+    }
+}
+
+/// Cell text for a message; a cell can be as long as the file.
+pub(super) fn shortened(text: &str) -> String {
+    const MOST: usize = 40;
+    if text.chars().count() <= MOST { text.to_string() } else { text.chars().take(MOST).chain(['…']).collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn places_leave_out_quotes_and_blanks() {
+        let line = "a, \"b, c\" ,,\"d \"\"e\"\"\"";
+        let cells = split(line).expect("well formed");
+        let text: Vec<_> = cells.iter().map(|cell| (cell.text.as_str(), &line[cell.place.clone()])).collect();
+        assert_eq!(text, [("a", "a"), ("b, c", "b, c"), ("", ""), ("d \"e\"", "d \"\"e\"\"")]);
+        assert!(split("\"a").is_err() && split("\"a\"b,c").is_err());
+        assert_eq!(split("").map(|cells| cells.len()), Ok(1));
+        assert_eq!(split("a,").map(|cells| cells.len()), Ok(2));
+    }
+
+    #[test]
+    fn names_and_units() {
+        let unit = |text| name_and_unit(text).1.map(|range: Range<usize>| &text[range]);
+        assert_eq!((name_and_unit("Y_1R [kN]").0, unit("Y_1R [kN]")), ("Y_1R", Some("kN")));
+        assert_eq!((name_and_unit("v[0] [m/s]").0, unit("v[0] [m/s]")), ("v[0]", Some("m/s")));
+        assert_eq!((name_and_unit("plain").0, unit("plain")), ("plain", None));
+        assert_eq!((name_and_unit("[").0, unit("[")), ("[", None));
+        assert_eq!((name_and_unit("]").0, unit("]")), ("]", None));
+    }
+
+    proptest! {
+        /// What the `csv` crate writes is split as the `csv` crate reads it.
+        #[test]
+        fn splits_as_the_csv_crate(cells in prop::collection::vec(r#"[a-z",; é]{0,6}"#, 1..6)) {
+            let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
+            writer.write_record(&cells).expect("in memory");
+            let bytes = writer.into_inner().expect("in memory");
+            let line = String::from_utf8(bytes).expect("UTF-8");
+            let found: Vec<String> = split(line.trim_end_matches('\n')).expect("well formed").into_iter().map(|cell| cell.text).collect();
+            let expected: Vec<String> = cells.iter().map(|cell| cell.trim().to_string()).collect();
+            prop_assert_eq!(found, expected);
+        }
+
+        #[test]
+        fn any_line_is_survived(line in r#"[a,";\t \[\]é]{0,24}"#) {
+            if let Ok(cells) = split(&line) {
+                for cell in cells {
+                    prop_assert!(line.get(cell.place.clone()).is_some());
+                }
+            }
+            let source = crate::source::Source::new("t", line);
+            headings(&source.whole(), &mut Vec::new());
+        }
+    }
+}

@@ -1,0 +1,303 @@
+//! Whether the samples of a record can be evaluated: an even clock without gaps, an axis that increases, the section inside.
+
+use std::ops::Range;
+
+use super::record::{Column, Record};
+use crate::problem::Problem;
+use crate::source::Span;
+
+/// A step of the clock this much longer than the usual one is a gap.
+const GAP: f64 = 1.5;
+/// Steps may differ by this share of a step, or by what the rounding of the time stamps explains.
+const JITTER: f64 = 0.01;
+/// A sampling rate this near to a whole number is that number.
+const WHOLE: f64 = 1e-3;
+/// Most gaps that are told one by one.
+const TOLD: usize = 5;
+
+/// How a record is sampled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Samples per SI unit of the clock; Hz for a clock in seconds.
+    pub sampling_rate: f64,
+    /// The samples with start <= axis <= end; all of them if no section was given.
+    pub rows: Range<usize>,
+    /// What is recorded before the first of these, in SI units of the clock.
+    pub before: f64,
+    /// What is recorded after the last of these, in SI units of the clock.
+    pub after: f64,
+}
+
+/// The stretch of the axis that is evaluated, in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    pub start: f64,
+    pub end: f64,
+    /// Where start and end are written.
+    pub at: Option<Span>,
+}
+
+/// Checks the column `clock`, which must step evenly, and the column `axis`, in which a section is given; they may be one.
+///
+/// The rate is (n - 1) / (last - first), as a whole number if it is within 0.1 % of one: time stamps are often rounded.
+///
+/// # Errors
+/// `unknown-channel` if the record was read without the column; `too-short`; `time-not-increasing`; `gap`; `uneven-step`;
+/// `axis-not-increasing`; `section-reversed`; `outside-record`; `section-empty`.
+pub fn check_axis(record: &Record, clock: &str, axis: &str, section: Option<&Section>) -> Result<Axis, Vec<Problem>> {
+    let column = |name: &str| {
+        record
+            .column(name)
+            .ok_or_else(|| vec![Problem::error("unknown-channel", format!("`{}` was read without its column `{name}`", record.shown))])
+    };
+    let (clock, axis) = (column(clock)?, column(axis)?);
+    let mut problems = Vec::new();
+    let sampling_rate = check_clock(record, clock, &mut problems);
+    if axis.position != clock.position
+        && let Some(row) = first_fall(&axis.values)
+    {
+        problems.push(not_increasing("axis-not-increasing", record, axis, row));
+    }
+    let Some(sampling_rate) = sampling_rate.filter(|_| problems.is_empty()) else { return Err(problems) };
+    let rows = match section {
+        Some(section) => check_section(record, axis, section).map_err(|problem| vec![problem])?,
+        None => 0..record.rows,
+    };
+    let times = &clock.values;
+    let (before, after) = (times[rows.start] - times[0], times[record.rows - 1] - times[rows.end - 1]);
+    Ok(Axis { sampling_rate, rows, before, after })
+}
+
+/// The row after which the values do not increase.
+fn first_fall(values: &[f64]) -> Option<usize> {
+    values.windows(2).position(|pair| pair[1] <= pair[0])
+}
+
+fn not_increasing(code: &'static str, record: &Record, column: &Column, row: usize) -> Problem {
+    let [from, to] = [row, row + 1].map(|row| number(column, column.values[row]));
+    let does = if from == to { format!("stays at {from}") } else { format!("goes back from {from} to {to}") };
+    placed(
+        Problem::error(code, format!("`{}` {does} at row {} of `{}`; it must increase", column.name, row + 3, record.shown)),
+        record,
+        row + 1,
+        column,
+    )
+}
+
+/// The sampling rate, if the steps are even.
+fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> Option<f64> {
+    let times = &clock.values;
+    let (&[first, ..], &[.., last]) = (times.as_slice(), times.as_slice()) else { return None };
+    if times.len() < 3 {
+        problems
+            .push(Problem::error("too-short", format!("`{}` has {} samples; a sampling rate cannot be told", record.shown, times.len())));
+        return None;
+    }
+    if let Some(row) = first_fall(times) {
+        problems.push(not_increasing("time-not-increasing", record, clock, row));
+        return None;
+    }
+    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let resolution = resolution(clock);
+    // The median is the usual step whatever the gaps. Rounded stamps make many steps longer or shorter by the resolution, so where
+    // hardly any step differs from the usual one, rounding is not the reason.
+    let usual = median(&steps);
+    let unusual = steps.iter().filter(|step| (*step - usual).abs() > 1e-6 * usual).count();
+    let rounding = if unusual * 100 < steps.len() { 0.0 } else { resolution };
+    let longest = (GAP * usual).max(usual + 1.5 * rounding);
+    let gaps: Vec<usize> = (0..steps.len()).filter(|row| steps[*row] > longest).collect();
+    for row in gaps.iter().take(TOLD) {
+        let says = format!(
+            "`{}` has a gap of {} between rows {} and {} of `{}`, {:.0} sampling steps",
+            clock.name,
+            number(clock, steps[*row]),
+            row + 2,
+            row + 3,
+            record.shown,
+            steps[*row] / usual
+        );
+        problems.push(placed(Problem::error("gap", says), record, row + 1, clock));
+    }
+    if gaps.len() > TOLD {
+        problems.push(Problem::error("more-problems", format!("and {} more gaps in `{}`", gaps.len() - TOLD, record.shown)));
+    }
+    if !gaps.is_empty() {
+        return None;
+    }
+    #[expect(clippy::cast_precision_loss, reason = "a record has far fewer than 2^52 samples")]
+    let rate = (times.len() - 1) as f64 / (last - first);
+    let mean = 1.0 / rate;
+    let allowed = (JITTER * mean).max(resolution * (1.0 + 1e-6));
+    if let Some(row) = steps.iter().position(|step| (step - mean).abs() > allowed) {
+        let says = format!(
+            "the step of `{}` is {} at row {} of `{}`, {} on average",
+            clock.name,
+            number(clock, steps[row]),
+            row + 3,
+            record.shown,
+            number(clock, mean)
+        );
+        problems.push(placed(Problem::error("uneven-step", says), record, row + 1, clock).help("records are sampled at a constant step"));
+        return None;
+    }
+    Some(if (rate - rate.round()).abs() < WHOLE * rate { rate.round() } else { rate })
+}
+
+/// The power of ten that all time stamps of the file are multiples of, in SI; what they were rounded to.
+fn resolution(clock: &Column) -> f64 {
+    const MOST_DECIMALS: i32 = 9;
+    let factor = clock.unit.factor;
+    (0..=MOST_DECIMALS)
+        .map(|decimals| 10f64.powi(decimals))
+        .find(|scale| {
+            // A stamp of 1000 s has an error of 1e-13 s, one part in 10^4 of the finest unit looked for.
+            clock.values.iter().all(|time| {
+                let scaled = time / factor * scale;
+                (scaled - scaled.round()).abs() < 1e-3
+            })
+        })
+        .map_or(0.0, |scale| factor / scale)
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// The samples of the section.
+fn check_section(record: &Record, axis: &Column, section: &Section) -> Result<Range<usize>, Problem> {
+    let at = |problem: Problem| match &section.at {
+        Some(span) => problem.at(span),
+        None => problem,
+    };
+    let (start, end) = (number(axis, section.start), number(axis, section.end));
+    if section.start >= section.end {
+        return Err(at(Problem::error("section-reversed", format!("the section ends at {end}, not after its start at {start}"))));
+    }
+    let values = &axis.values;
+    let (first, last) = (values[0], values[values.len() - 1]);
+    let mut missing = Vec::new();
+    if section.start < first {
+        missing.push(format!("{} at the start", number(axis, first - section.start)));
+    }
+    if section.end > last {
+        missing.push(format!("{} at the end", number(axis, section.end - last)));
+    }
+    if !missing.is_empty() {
+        let (first, last) = (number(axis, first), number(axis, last));
+        let says = format!(
+            "the section from {start} to {end} is not inside `{}`, which has `{}` from {first} to {last}: {} missing",
+            record.shown,
+            axis.name,
+            missing.join(" and ")
+        );
+        return Err(at(Problem::error("outside-record", says)));
+    }
+    let rows = values.partition_point(|value| *value < section.start)..values.partition_point(|value| *value <= section.end);
+    if rows.is_empty() {
+        return Err(at(Problem::error("section-empty", format!("no sample of `{}` lies between {start} and {end}", record.shown))));
+    }
+    Ok(rows)
+}
+
+/// A value in the unit of the file, with no more decimals than tell something.
+fn number(column: &Column, value: f64) -> String {
+    let text = format!("{:.6}", column.unit.from_si(value));
+    format!("{}{}", text.trim_end_matches('0').trim_end_matches('.'), column.unit.suffix())
+}
+
+fn placed(problem: Problem, record: &Record, row: usize, column: &Column) -> Problem {
+    match record.place(row, Some(column)) {
+        Some(span) => problem.at(&span),
+        None => problem,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::record::{Wanted, read_record};
+    use crate::units::Dimension;
+
+    fn record(rows: impl IntoIterator<Item = (String, f64)>) -> Record {
+        let file = tempfile::NamedTempFile::new().expect("a temporary file");
+        let text: String = rows.into_iter().map(|(time, distance)| format!("{time},{distance}\n")).collect();
+        std::fs::write(file.path(), format!("time [s],distance [m]\n{text}")).expect("writable");
+        let wanted = [Wanted::new("time", Dimension::TIME), Wanted::new("distance", Dimension::LENGTH)];
+        let record = read_record(file.path(), "r.csv", &wanted).expect("well formed");
+        // Messages read the line again, so the file has to stay.
+        file.keep().expect("kept");
+        record
+    }
+
+    fn even(n: u32, rate: f64, decimals: usize) -> Vec<(String, f64)> {
+        (0..n).map(|k| (format!("{:.decimals$}", f64::from(k) / rate), 10.0 + f64::from(k) * 0.2)).collect()
+    }
+
+    fn check(rows: Vec<(String, f64)>, section: Option<(f64, f64)>) -> Result<Axis, Vec<(&'static str, String)>> {
+        let record = record(rows);
+        let section = section.map(|(start, end)| Section { start, end, at: None });
+        let checked = check_axis(&record, "time", "distance", section.as_ref());
+        std::fs::remove_file(record.path()).expect("removable");
+        checked.map_err(|problems| problems.into_iter().map(|problem| (problem.code, problem.says)).collect())
+    }
+
+    #[test]
+    fn rates_survive_rounded_time_stamps() {
+        // Closed form: n samples at a known rate, printed with few decimals.
+        for (rate, decimals) in [(200.0, 3), (300.0, 3), (400.0, 3), (256.0, 3), (1000.0, 3), (333.0, 4), (2048.0, 6)] {
+            let axis = check(even(2000, rate, decimals), None).unwrap_or_else(|faults| panic!("{rate}: {faults:?}"));
+            assert_eq!((axis.sampling_rate, axis.rows), (rate, 0..2000), "{rate}");
+        }
+        let axis = check(even(2000, 33.4, 6), None).expect("even");
+        assert!((axis.sampling_rate - 33.4).abs() < 1e-4);
+    }
+
+    #[test]
+    fn margins_and_rows_of_a_section() {
+        // Samples 0.2 m and 5 ms apart from 10 m: 30 m is sample 100, 50 m sample 200.
+        let axis = check(even(401, 200.0, 3), Some((30.0 - 1e-9, 50.0 + 1e-9))).expect("inside");
+        assert_eq!(axis.rows, 100..201);
+        assert!((axis.before - 0.5).abs() < 1e-9 && (axis.after - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn faults_of_the_clock_name_their_row() {
+        let mut gap = even(400, 200.0, 3);
+        gap.drain(100..120);
+        let faults = check(gap, None).expect_err("a gap");
+        assert_eq!(faults, [("gap", "`time` has a gap of 0.105 s between rows 101 and 102 of `r.csv`, 21 sampling steps".to_string())]);
+
+        let mut one = even(400, 1000.0, 3);
+        one.remove(100);
+        assert_eq!(check(one, None).expect_err("one sample")[0].0, "gap");
+
+        let mut back = even(100, 200.0, 3);
+        back[50].0 = back[48].0.clone();
+        assert_eq!(
+            check(back, None).expect_err("goes back")[0],
+            ("time-not-increasing", "`time` goes back from 0.245 s to 0.24 s at row 52 of `r.csv`; it must increase".to_string())
+        );
+
+        let mut twice = even(100, 200.0, 3);
+        twice[50].1 = twice[49].1;
+        assert_eq!(check(twice, None).expect_err("stands")[0].0, "axis-not-increasing");
+
+        let mut uneven = even(100, 200.0, 6);
+        uneven[50].0 = "0.251000".into();
+        assert_eq!(check(uneven, None).expect_err("uneven")[0].0, "uneven-step");
+        assert_eq!(check(even(2, 200.0, 3), None).expect_err("short")[0].0, "too-short");
+    }
+
+    #[test]
+    fn faults_of_the_section_say_by_how_much() {
+        let faults = |start, end| check(even(401, 200.0, 3), Some((start, end))).expect_err("outside");
+        assert_eq!(
+            faults(5.0, 95.5),
+            [("outside-record", "the section from 5 m to 95.5 m is not inside `r.csv`, which has `distance` from 10 m to 90 m: 5 m at the start and 5.5 m at the end missing".to_string())]
+        );
+        assert_eq!(faults(30.0, 30.0)[0].0, "section-reversed");
+        assert_eq!(faults(30.05, 30.15)[0].0, "section-empty");
+    }
+}

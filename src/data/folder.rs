@@ -1,0 +1,127 @@
+//! The folder of a campaign, which nothing in the campaign may lead out of.
+
+use std::path::{Component, Path, PathBuf};
+
+use crate::problem::Problem;
+use crate::source::Span;
+
+#[derive(Clone, Debug)]
+pub(super) struct Folder {
+    /// As given by the user; the beginning of file names in messages.
+    shown: PathBuf,
+    /// Without symbolic links, to compare with.
+    real: PathBuf,
+}
+
+/// A file or folder of the campaign.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// Where it is.
+    pub path: PathBuf,
+    /// How messages name it: the folder as the user gave it, and the path inside.
+    pub shown: String,
+    /// Path inside the campaign with `/` on every system; how results name it.
+    pub inside: String,
+}
+
+impl Folder {
+    pub fn open(folder: &Path) -> Result<Self, Problem> {
+        let real = folder.canonicalize().ok().filter(|real| real.is_dir());
+        match real {
+            Some(real) => Ok(Self { shown: folder.to_path_buf(), real }),
+            None => Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.display()))),
+        }
+    }
+
+    /// A path written in the campaign, which must stay in the folder, also by way of symbolic links. It need not exist.
+    pub fn place(&self, written: &str, at: &Span) -> Result<Place, Problem> {
+        let outside = |how: &str| {
+            Problem::error("path-outside", format!("`{written}` {how}"))
+                .at(at)
+                .help("paths are relative to the campaign's folder and stay inside it")
+        };
+        // `\` and a drive letter are looked for by hand, so that a campaign is judged alike on every system.
+        let drive = written.as_bytes().get(1) == Some(&b':') && written.starts_with(|letter: char| letter.is_ascii_alphabetic());
+        if written.starts_with(['/', '\\']) || drive {
+            return Err(outside("is an absolute path"));
+        }
+        if written.trim().is_empty() || written.contains('\0') {
+            return Err(Problem::error("path-invalid", "this is no path").at(at));
+        }
+        let mut inside = Vec::new();
+        for part in written.split(['/', '\\']) {
+            match Path::new(part).components().next() {
+                None | Some(Component::CurDir) => {}
+                Some(Component::Normal(_)) => inside.push(part),
+                Some(_) => return Err(outside("leads out of the campaign's folder")),
+            }
+        }
+        let inside = inside.join("/");
+        let path = self.real.join(&inside);
+        // A path that does not exist yet cannot lead anywhere; whoever opens it is told that it is missing.
+        if path.canonicalize().is_ok_and(|real| !real.starts_with(&self.real)) {
+            return Err(outside("is a symbolic link out of the campaign's folder"));
+        }
+        let shown = if self.shown.as_os_str().is_empty() { inside.clone() } else { self.shown.join(&inside).display().to_string() };
+        Ok(Place { path, shown, inside })
+    }
+}
+
+/// A name that becomes part of a file name.
+///
+/// # Errors
+/// `path-outside` for what is no single file name on every system.
+pub(super) fn check_file_name(name: &str, at: &Span) -> Result<(), Problem> {
+    let says = if name.contains(['/', '\\', ':']) || name.starts_with('.') {
+        format!("`{name}` names a file, so it can hold no `/`, `\\` or `:` and cannot begin with a point")
+    } else if name.chars().any(char::is_control) {
+        "the name of a file holds a control character".to_string()
+    } else if name.is_empty() || name.len() > 200 {
+        "a name of a file must have 1 to 200 bytes".to_string()
+    } else {
+        return Ok(());
+    };
+    Err(Problem::error("path-outside", says).at(at))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+
+    #[test]
+    fn only_paths_inside_are_taken() {
+        let temp = tempfile::tempdir().expect("a temporary folder");
+        std::fs::create_dir(temp.path().join("in")).expect("made");
+        let folder = Folder::open(temp.path()).expect("there");
+        let span = Source::new("t", "x").whole();
+        let place = |written: &str| folder.place(written, &span).map(|place| place.inside).map_err(|problem| problem.code);
+        assert_eq!(place("in"), Ok("in".into()));
+        assert_eq!(place("./in//S01.csv"), Ok("in/S01.csv".into()));
+        assert_eq!(place("in\\S01.csv"), Ok("in/S01.csv".into()));
+        for bad in ["/etc/passwd", "..", "in/../../x", "C:\\x", "c:x", "\\\\server\\x", "in\\..\\x"] {
+            assert_eq!(place(bad), Err("path-outside"), "{bad}");
+        }
+        for bad in ["", " ", "a\0b"] {
+            assert_eq!(place(bad), Err("path-invalid"), "{bad:?}");
+        }
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("/", temp.path().join("out")).expect("linked");
+            std::os::unix::fs::symlink("in", temp.path().join("ok")).expect("linked");
+            assert_eq!(place("out"), Err("path-outside"));
+            assert_eq!(place("ok"), Ok("ok".into()));
+        }
+    }
+
+    #[test]
+    fn names_of_files() {
+        let span = Source::new("t", "x").whole();
+        for good in ["S01", "Süd 3", "a.b", "7"] {
+            assert!(check_file_name(good, &span).is_ok(), "{good}");
+        }
+        for bad in ["", "..", ".", ".hidden", "a/b", "a\\b", "a\0", "a\nb", "C:x"] {
+            assert!(check_file_name(bad, &span).is_err(), "{bad:?}");
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! One sampled record: the columns that are asked for, as numbers in SI.
+//!
+//! Records are nearly all of what a campaign weighs, so a row is read in one pass over its bytes (`rows`) and only a row that is not
+//! as it should be is looked at again, cell by cell, for what is wrong with it (`fault`).
+
+mod fault;
+mod rows;
+
+use std::path::{Path, PathBuf};
+
+use super::cells::{self, Heading};
+use super::hash::sha256;
+use super::text::{decode, read_large};
+use crate::problem::Problem;
+use crate::source::{Source, Span};
+use crate::units::{Dimension, Unit};
+
+/// A column that the caller needs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wanted {
+    /// Without the unit.
+    pub name: String,
+    /// What the unit must measure; `None` takes any unit.
+    pub dimension: Option<Dimension>,
+    /// Whether a record without the column is at fault.
+    pub required: bool,
+}
+
+impl Wanted {
+    pub fn new(name: impl Into<String>, dimension: Dimension) -> Self {
+        Self { name: name.into(), dimension: Some(dimension), required: true }
+    }
+
+    /// The same column, left out of the record without complaint where the file has none.
+    #[must_use]
+    pub fn if_there(self) -> Self {
+        Self { required: false, ..self }
+    }
+}
+
+/// The wanted columns of a record, all of one length.
+#[derive(Clone, Debug)]
+pub struct Record {
+    /// Name of the file for messages.
+    pub shown: String,
+    /// In the order they were asked for.
+    pub columns: Vec<Column>,
+    /// Every column name in the file.
+    pub channels: Vec<String>,
+    /// Number of samples.
+    pub rows: usize,
+    /// SHA-256 of the file.
+    pub sha256: String,
+    /// Size of the file.
+    pub bytes: usize,
+    path: PathBuf,
+}
+
+/// A channel: finite values at every sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    pub name: String,
+    /// As in the file.
+    pub unit: Unit,
+    /// In SI.
+    pub values: Vec<f64>,
+    /// Which column of the file it is, counted from 0.
+    pub position: usize,
+}
+
+impl Record {
+    pub fn column(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+
+    /// The file it was read from.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The line of the file that sample `row` (from 0) was read from, or the cell of one of its columns. The file is read again.
+    pub fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
+        let bytes = read_large(&self.path, &self.shown).ok()?;
+        let text = decode(&bytes, &self.shown).ok()?;
+        // A record has no blank lines between its rows, so sample 0 is always in line 2.
+        let line = text.split('\n').nth(row + 1)?.trim_end_matches('\r');
+        let whole = Source::excerpt(self.shown.as_str(), line, row + 2).whole();
+        let cell = column.and_then(|column| Some(cells::split(line).ok()?.get(column.position)?.place.clone()));
+        Some(cell.map_or(whole.clone(), |place| whole.part(place)))
+    }
+}
+
+/// Reads the wanted columns of a record; the cells of all others are not looked at.
+///
+/// `shown` is the name of the file in messages.
+///
+/// # Errors
+/// At most a handful of problems and how many more there are. Of the file: `file-missing`, `file-unreadable`, `file-empty`,
+/// `file-too-large`, `encoding`, `no-rows`. Of its header: `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`,
+/// `unknown-channel`, `unit-missing`, `unknown-unit`, `unit-mismatch`. Of a row: `ragged-row`, `truncated-row`, `blank-line`,
+/// `stray-quote`, `not-a-number`, `not-finite`, `decimal-comma`.
+pub fn read_record(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
+    let bytes = read_large(path, shown).map_err(|problem| vec![problem])?;
+    let text = decode(&bytes, shown).map_err(|problem| vec![problem])?;
+    let (headings, body) = header(text, shown)?;
+    let mut columns = find_columns(&headings, wanted, shown)?;
+    let rows = rows::read(&text[body..], headings.len(), &mut columns, shown)?;
+    let channels = headings.into_iter().map(|heading| heading.name).collect();
+    Ok(Record { shown: shown.to_string(), columns, channels, rows, sha256: sha256(&bytes), bytes: bytes.len(), path: path.to_path_buf() })
+}
+
+/// The headings of a record, for a caller that wants to know what there is.
+///
+/// # Errors
+/// As [`read_record`], of the file and its header.
+pub fn read_headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
+    let bytes = read_large(path, shown).map_err(|problem| vec![problem])?;
+    let text = decode(&bytes, shown).map_err(|problem| vec![problem])?;
+    header(text, shown).map(|(headings, _)| headings)
+}
+
+/// The headings and where the first row begins.
+fn header(text: &str, shown: &str) -> Result<(Vec<Heading>, usize), Vec<Problem>> {
+    let end = text.find('\n').unwrap_or(text.len());
+    let line = Source::new(shown, text[..end].trim_end_matches('\r')).whole();
+    if text.trim().is_empty() {
+        return Err(vec![Problem::error("file-empty", format!("`{shown}` is empty"))]);
+    }
+    let mut problems = Vec::new();
+    match cells::headings(&line, &mut problems) {
+        Some(headings) => Ok((headings, (end + 1).min(text.len()))),
+        None => Err(problems),
+    }
+}
+
+fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<Vec<Column>, Vec<Problem>> {
+    let mut columns = Vec::with_capacity(wanted.len());
+    let mut faults = fault::Faults::new(shown);
+    for wanted in wanted {
+        let Some(position) = headings.iter().position(|heading| heading.name == wanted.name) else {
+            if wanted.required {
+                faults.push(|| missing(headings, wanted, shown));
+            }
+            continue;
+        };
+        match headings[position].unit(wanted.dimension) {
+            Ok(unit) => columns.push(Column { name: wanted.name.clone(), unit, values: Vec::new(), position }),
+            Err(problem) => faults.push(|| problem),
+        }
+    }
+    faults.finish(columns)
+}
+
+fn missing(headings: &[Heading], wanted: &Wanted, shown: &str) -> Problem {
+    let problem = Problem::error("unknown-channel", format!("`{shown}` has no column `{}`", wanted.name))
+        .suggest(&wanted.name, headings.iter().map(|heading| heading.name.as_str()).filter(|name| !name.is_empty()));
+    match headings {
+        [first, .., last] => problem.at(&first.span.to(&last.span)),
+        [only] => problem.at(&only.span),
+        [] => problem,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,202 @@
+//! A small CSV table such as `sections.csv`: one row per named thing, every cell with its place.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::cells::{self, Heading, StrayQuote};
+use super::text::read_text;
+use crate::problem::{Problem, Problems};
+use crate::source::{Source, Span, Spanned};
+use crate::units::Dimension;
+
+/// A table that has a name in every row and the same number of cells in each.
+#[derive(Clone, Debug)]
+pub struct Table {
+    pub source: Arc<Source>,
+    /// SHA-256 of the file.
+    pub sha256: String,
+    pub columns: Vec<Heading>,
+    /// One cell per column, in the order of the file.
+    pub rows: Vec<Vec<Cell>>,
+    /// The column that holds the names of the rows.
+    key: usize,
+}
+
+/// The text of a cell without quotes and blanks around it, and its place.
+pub type Cell = Spanned<String>;
+
+impl Table {
+    /// Reads a table whose rows are named by the column `key`, or, where there is none of that name, by the first column.
+    ///
+    /// Problems: those of [`read_text`]; `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`; per row `blank-line`,
+    /// `ragged-row`, `decimal-comma`, `name-missing`, `duplicate-name`; `no-rows`.
+    pub fn read(path: &Path, shown: &str, key: &str, problems: &mut Problems) -> Option<Self> {
+        match read_text(path, shown) {
+            Ok((source, sha256)) => Self::parse(source, sha256, key, problems),
+            Err(problem) => {
+                problems.push(problem);
+                None
+            }
+        }
+    }
+
+    pub(super) fn parse(source: Arc<Source>, sha256: String, key: &str, problems: &mut Problems) -> Option<Self> {
+        let before = problems.errors();
+        let mut lines = lines(&source);
+        let mut found = Vec::new();
+        let columns = lines.next().and_then(|line| cells::headings(&line, &mut found));
+        found.into_iter().for_each(|problem| problems.push(problem));
+        let columns = columns?;
+        let key = columns.iter().position(|column| column.name == key).unwrap_or(0);
+        let rows: Vec<Vec<Cell>> = lines.filter_map(|line| row(&line, &columns, problems)).collect();
+        if rows.is_empty() && problems.errors() == before {
+            problems.push(Problem::error("no-rows", "the table has a header and no rows").at(&columns[0].span));
+        }
+        let table = Self { source, sha256, columns, rows, key };
+        table.check_names(problems);
+        (problems.errors() == before).then_some(table)
+    }
+
+    fn check_names(&self, problems: &mut Problems) {
+        let mut first: HashMap<&str, &Span> = HashMap::new();
+        for name in self.names() {
+            if name.value.is_empty() {
+                problems.push(Problem::error("name-missing", format!("the row has no `{}`", self.columns[self.key].name)).at(&name.span));
+            } else if let Some(before) = first.get(name.value.as_str()) {
+                problems.push(
+                    Problem::error("duplicate-name", format!("two rows are called `{}`", name.value))
+                        .at(&name.span)
+                        .also(before, "the first of them"),
+                );
+            } else {
+                first.insert(&name.value, &name.span);
+            }
+        }
+    }
+
+    /// The names of the rows, in the order of the file.
+    pub fn names(&self) -> impl Iterator<Item = &Cell> {
+        self.rows.iter().filter_map(|row| row.get(self.key))
+    }
+
+    pub fn row_named(&self, name: &str) -> Option<usize> {
+        self.names().position(|cell| cell.value == name)
+    }
+
+    /// The index of a column by its name without unit.
+    pub fn column(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| column.name == name)
+    }
+
+    /// The index of a column that is needed.
+    ///
+    /// # Errors
+    /// `unknown-column`, at the header, with the nearest names.
+    pub fn need_column(&self, name: &str) -> Result<usize, Problem> {
+        self.column(name).ok_or_else(|| {
+            let header = self.columns[0].span.to(&self.columns[self.columns.len() - 1].span);
+            Problem::error("unknown-column", format!("the table has no column `{name}`"))
+                .at(&header)
+                .suggest(name, self.columns.iter().map(|column| column.name.as_str()))
+        })
+    }
+
+    pub fn cell(&self, row: usize, column: usize) -> Option<&Cell> {
+        self.rows.get(row)?.get(column)
+    }
+
+    /// A column as numbers in SI; `None` where a cell is empty.
+    ///
+    /// # Errors
+    /// Of the heading (see [`Heading::unit`]) or of every cell that is no finite number: `not-a-number`, `not-finite`, `decimal-comma`.
+    pub fn numbers(&self, column: usize, dimension: Option<Dimension>) -> Result<Vec<Option<f64>>, Vec<Problem>> {
+        let Some(heading) = self.columns.get(column) else { return Ok(Vec::new()) };
+        let unit = heading.unit(dimension).map_err(|problem| vec![problem])?;
+        let mut problems = Vec::new();
+        let mut values = Vec::with_capacity(self.rows.len());
+        for cell in self.rows.iter().filter_map(|row| row.get(column)) {
+            match cells::number(&cell.value) {
+                _ if cell.value.is_empty() => values.push(None),
+                Ok(number) => values.push(Some(unit.to_si(number))),
+                Err((code, says)) => problems.push(Problem::error(code, format!("`{}`: {says}", heading.name)).at(&cell.span)),
+            }
+        }
+        if problems.is_empty() { Ok(values) } else { Err(problems) }
+    }
+}
+
+/// The lines of a text without line breaks; blank lines at its end are left out.
+fn lines(source: &Arc<Source>) -> impl Iterator<Item = Span> {
+    let text = source.text.trim_end_matches(['\n', '\r', ' ', '\t']);
+    // What is trimmed may be blanks of the last line, which belong to no cell either.
+    let mut from = 0;
+    text.split('\n').map(move |line| {
+        let start = from;
+        from += line.len() + 1;
+        source.span(start..start + line.trim_end_matches('\r').len())
+    })
+}
+
+fn row(line: &Span, columns: &[Heading], problems: &mut Problems) -> Option<Vec<Cell>> {
+    if line.text().trim().is_empty() {
+        problems.push(Problem::error("blank-line", "a blank line stands between the rows").at(line));
+        return None;
+    }
+    match cells::split(line.text()) {
+        Err(StrayQuote(place)) => problems.push(cells::stray_quote(&line.part(place))),
+        Ok(cells) if cells.len() == columns.len() => {
+            return Some(cells.into_iter().map(|cell| Cell::new(cell.text, line.part(cell.place))).collect());
+        }
+        Ok(cells) => problems.push(cells::ragged(line, &cells, columns.len())),
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn parse(text: &str) -> (Option<Table>, Problems) {
+        let mut problems = Problems::default();
+        let table = Table::parse(Source::new("t", text), String::new(), "section", &mut problems);
+        (table, problems)
+    }
+
+    const SAMPLE: &str = "section,zone [-],start [m],radius [m],\"note\"\r\nS01,1,105.00,,\"a, b\"\nS02,4,1e2,-250, c \n\n";
+
+    #[test]
+    fn cells_keep_their_place_and_units_are_applied() {
+        let (table, problems) = parse(SAMPLE);
+        let table = table.unwrap_or_else(|| panic!("{}", problems.render(false)));
+        assert_eq!(table.names().map(|cell| cell.value.as_str()).collect::<Vec<_>>(), ["S01", "S02"]);
+        let cell = table.cell(0, 4).expect("there");
+        assert_eq!((cell.value.as_str(), cell.span.to_string()), ("a, b", "t:2:16".to_string()));
+        assert_eq!(table.cell(1, 4).map(|cell| cell.span.to_string()), Some("t:3:17".into()));
+        assert_eq!(table.numbers(3, Some(Dimension::LENGTH)), Ok(vec![None, Some(-250.0)]));
+        assert_eq!(table.numbers(2, Some(Dimension::TIME)).map_err(|problems| problems[0].code), Err("unit-mismatch"));
+        assert_eq!(table.numbers(4, None).map_err(|problems| problems[0].code), Err("unit-missing"));
+        assert_eq!(table.need_column("strat").map_err(|problem| problem.help), Err(Some("did you mean `start`?".into())));
+        assert_eq!(table.row_named("S02"), Some(1));
+    }
+
+    #[test]
+    fn every_prefix_is_survived() {
+        (0..=SAMPLE.len()).for_each(|at| drop(parse(&SAMPLE[..at])));
+    }
+
+    proptest! {
+        #[test]
+        fn flipped_bytes_are_survived(flips in prop::collection::vec((0..SAMPLE.len(), any::<u8>()), 1..5)) {
+            let mut bytes = SAMPLE.as_bytes().to_vec();
+            for (at, byte) in flips {
+                bytes[at] = byte;
+            }
+            let (table, problems) = parse(&String::from_utf8_lossy(&bytes));
+            prop_assert_eq!(table.is_none(), problems.any_error());
+            problems.render(false);
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! Records, tables and `campaign.yaml` as text, in the form that the readers take.
+
+use std::fmt::Write;
+
+use crate::data::tree::{Node, Value};
+use crate::problem::Problem;
+use crate::units::Unit;
+
+/// A column to be written: values in SI, printed in its unit with so many decimals.
+#[derive(Clone, Copy, Debug)]
+pub struct OutColumn<'a> {
+    pub name: &'a str,
+    pub unit: &'a Unit,
+    pub values: &'a [f64],
+    pub decimals: usize,
+}
+
+/// A record with a header line `name [unit],...` and one line per sample; as many as the shortest column has.
+///
+/// # Errors
+/// `not-finite`: the first value that is no number, by column and row of the file.
+pub fn record_csv(columns: &[OutColumn<'_>]) -> Result<String, Problem> {
+    let rows = columns.iter().map(|column| column.values.len()).min().unwrap_or(0);
+    let mut text = header(columns.iter().map(|column| (column.name, column.unit)));
+    text.reserve(rows * columns.len() * 8);
+    for row in 0..rows {
+        for (at, column) in columns.iter().enumerate() {
+            let value = column.unit.from_si(column.values[row]);
+            if !value.is_finite() {
+                return Err(Problem::error("not-finite", format!("the value of `{}` in row {} is not finite", column.name, row + 2)));
+            }
+            text.push_str(if at == 0 { "" } else { "," });
+            push_number(&mut text, value, column.decimals);
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+fn header<'a>(columns: impl Iterator<Item = (&'a str, &'a Unit)>) -> String {
+    table_csv(&[columns.map(|(name, unit)| format!("{name} [{unit}]")).collect::<Vec<_>>()])
+}
+
+/// `-0.00` is no number that anyone means.
+fn push_number(text: &mut String, value: f64, decimals: usize) {
+    let start = text.len();
+    // Writing to a string cannot fail.
+    let _ = write!(text, "{value:.decimals$}");
+    if text[start..].starts_with('-') && text[start..].bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.')) {
+        text.remove(start);
+    }
+}
+
+/// Rows of cells as CSV, quoted where needed; the header is the first row.
+pub fn table_csv<S: AsRef<[u8]>>(rows: &[Vec<S>]) -> String {
+    let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
+    // Neither writing to memory nor rows of different length can fail.
+    rows.iter().for_each(|row| drop(writer.write_record(row)));
+    writer.into_inner().ok().and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_default()
+}
+
+/// The value of a key in `campaign.yaml`.
+#[derive(Clone, Copy, Debug)]
+pub enum Entry<'a> {
+    Text(&'a str),
+    Number(f64),
+    /// As it was read from another file.
+    Node(&'a Node),
+}
+
+/// `campaign.yaml` or any other map of keys and values.
+pub fn campaign_yaml(entries: &[(&str, Entry<'_>)]) -> String {
+    let mut text = String::new();
+    for (key, entry) in entries {
+        push_text(&mut text, key);
+        text.push(':');
+        match entry {
+            Entry::Text(value) => {
+                text.push(' ');
+                push_text(&mut text, value);
+                text.push('\n');
+            }
+            Entry::Number(value) => {
+                let _ = writeln!(text, " {value}");
+            }
+            Entry::Node(node) => push_node(&mut text, node, 1),
+        }
+    }
+    text
+}
+
+/// What follows a key or a dash, with its line break.
+fn push_node(text: &mut String, node: &Node, depth: usize) {
+    match &node.value {
+        Value::List(items) if items.is_empty() => text.push_str(" []\n"),
+        Value::Map(entries) if entries.is_empty() => text.push_str(" {}\n"),
+        Value::List(items) => {
+            text.push('\n');
+            for item in items {
+                let _ = write!(text, "{:1$}-", "", 2 * depth);
+                push_node(text, item, depth + 1);
+            }
+        }
+        Value::Map(entries) => {
+            text.push('\n');
+            for (key, value) in entries {
+                let _ = write!(text, "{:1$}", "", 2 * depth);
+                push_text(text, &key.text);
+                text.push(':');
+                push_node(text, value, depth + 1);
+            }
+        }
+        Value::Text(value) => {
+            text.push(' ');
+            push_text(text, value);
+            text.push('\n');
+        }
+        Value::Null => text.push('\n'),
+        Value::Bool(_) | Value::Number(_) => {
+            let _ = writeln!(text, " {}", node.raw);
+        }
+    }
+}
+
+/// Plain where that is surely read back as the same text, else in double quotes.
+fn push_text(text: &mut String, value: &str) {
+    const WORDS: [&str; 10] = ["true", "false", "null", "yes", "no", "on", "off", "y", "n", "~"];
+    // A unit in brackets may follow a word; `: ` and ` #` may not, so colons and hashes are quoted altogether.
+    let plain = value.starts_with(|letter: char| letter.is_alphabetic() || letter == '_')
+        && value.chars().all(|letter| letter.is_alphanumeric() || " _-./^()[]²³µ°%,;+*=".contains(letter))
+        && !value.ends_with(' ')
+        && !WORDS.contains(&value.to_lowercase().as_str());
+    if plain {
+        text.push_str(value);
+        return;
+    }
+    text.push('"');
+    for letter in value.chars() {
+        match letter {
+            '"' => text.push_str("\\\""),
+            '\\' => text.push_str("\\\\"),
+            '\n' => text.push_str("\\n"),
+            '\t' => text.push_str("\\t"),
+            _ if letter.is_control() || matches!(letter, '\u{feff}' | '\u{2028}' | '\u{2029}' | '\u{fffe}' | '\u{ffff}') => {
+                let _ = write!(text, "\\U{:08x}", u32::from(letter));
+            }
+            _ => text.push(letter),
+        }
+    }
+    text.push('"');
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::data::tree;
+    use crate::problem::Problems;
+    use crate::source::Source;
+
+    fn load(text: &str) -> Node {
+        let mut problems = Problems::default();
+        tree::load(&Source::new("t", text), &mut problems).unwrap_or_else(|| panic!("{text}\n{}", problems.render(false)))
+    }
+
+    /// The meaning of a tree without places.
+    fn same(a: &Node, b: &Node) -> bool {
+        match (&a.value, &b.value) {
+            (Value::List(a), Value::List(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
+            (Value::Map(a), Value::Map(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.0.text == b.0.text && same(&a.1, &b.1)),
+            (a, b) => a == b,
+        }
+    }
+
+    #[test]
+    fn numbers_have_the_decimals_asked_for() {
+        let unit = Unit::parse("kN").expect("known");
+        let time = Unit::parse("s").expect("known");
+        let columns = [
+            OutColumn { name: "time", unit: &time, values: &[0.0, 0.005], decimals: 3 },
+            OutColumn { name: "Y", unit: &unit, values: &[-1.0, 1234.567], decimals: 2 },
+        ];
+        assert_eq!(record_csv(&columns), Ok("time [s],Y [kN]\n0.000,0.00\n0.005,1.23\n".into()));
+        let bad = [OutColumn { name: "Y", unit: &unit, values: &[1.0, f64::NAN], decimals: 2 }];
+        assert!(record_csv(&bad).is_err_and(|problem| problem.says.contains("row 3")));
+    }
+
+    #[test]
+    fn a_tree_is_read_back_as_it_was() {
+        let root = load("a: {b: [1.50, no, 'x: y', [], {}], c: ~, 'd e [kN]': true}\nf: \"5\"\ng:\n- - 1\n  - k: v\n");
+        let entries: Vec<_> = root.entries().iter().map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
+        let text = campaign_yaml(&entries);
+        assert!(same(&root, &load(&text)), "{text}");
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_read_back(key in "[^\u{0}]{1,12}", value in any::<String>()) {
+            let text = campaign_yaml(&[(key.as_str(), Entry::Text(&value)), ("number \u{0}", Entry::Number(0.1))]);
+            let root = load(&text);
+            prop_assert_eq!(&root.entries()[0].0.text, &key);
+            prop_assert_eq!(&root.entries()[0].1.value, &Value::Text(value));
+            prop_assert_eq!(root.entries()[1].1.number(), Some(0.1));
+        }
+    }
+}
