@@ -221,23 +221,40 @@ impl<'a> Loader<'a> {
         if tag.is_yaml_core_schema_tag("str") || tag.original() == "!" {
             return true;
         }
-        self.problems.push(Problem::error("yaml-tag", format!("the tag `{}` has no meaning here", tag.original())).at(span));
+        let written = tag.original();
+        let before = self.source.text.get(..span.start).and_then(|before| before.rfind(&written));
+        let at = before.map_or_else(|| span.clone(), |at| self.source.span(at..at + written.len()));
+        self.problems.push(Problem::error("yaml-tag", format!("the tag `{written}` has no meaning here")).at(&at));
         false
     }
 
     fn scan_error(&self, error: &ScanError) -> Problem {
+        let text = &self.source.text;
         let marker = error.marker();
-        let at = marker
-            .byte_offset()
-            .unwrap_or_else(|| self.source.text.char_indices().nth(marker.index()).map_or(self.source.text.len(), |(at, _)| at));
-        let span = self.source.span(at..at);
-        let (says, help) = in_words(error.kind());
-        let problem = syntax(says, &span);
+        let at = marker.byte_offset().unwrap_or_else(|| text.char_indices().nth(marker.index()).map_or(text.len(), |(at, _)| at));
+        // A tab in the indentation shows up as many faults, some of them a line early.
+        let (at, (says, help)) = match indenting_tab(text, at) {
+            Some(tab) => (tab, in_words(&ErrorKind::TabInIndentation)),
+            None => (at, in_words(error.kind())),
+        };
+        let problem = syntax(says, &self.source.span(at..at));
         match help {
             Some(help) => problem.help(help),
             None => problem,
         }
     }
+}
+
+/// The first tab in the indentation of the line at an offset or of the line after it.
+fn indenting_tab(text: &str, at: usize) -> Option<usize> {
+    let start = text.get(..at)?.rfind('\n').map_or(0, |before| before + 1);
+    let mut from = start;
+    text[start..].split('\n').take(2).find_map(|line| {
+        let indent = line.len() - line.trim_start_matches([' ', '\t']).len();
+        let tab = line[..indent].find('\t').map(|tab| from + tab);
+        from += line.len() + 1;
+        tab
+    })
 }
 
 fn syntax(says: impl Into<String>, span: &Span) -> Problem {
@@ -273,8 +290,18 @@ fn in_words(kind: &ErrorKind) -> (String, Option<&'static str>) {
             ("a tab stands in the indentation", Some("YAML is indented with blanks"))
         }
         ErrorKind::UnclosedQuotedScalar => ("a quote is opened and never closed", None),
+        ErrorKind::InvalidQuotedScalarIndent => (
+            "the quoted text begun above goes on in this line, which is not indented",
+            Some("close the quote on the line where it is opened"),
+        ),
+        ErrorKind::InvalidTrailingSingleQuotedScalar | ErrorKind::InvalidTrailingDoubleQuotedScalar => {
+            ("text follows a closing quote", Some("quote the whole value"))
+        }
+        ErrorKind::UnknownQuotedScalarEscape => {
+            ("a `\\` in double quotes begins an escape, and there is none such", Some("use single quotes for text that holds `\\`"))
+        }
         ErrorKind::MappingValueNotAllowed => {
-            ("a second `:` stands where a value is expected", Some("quote a value that holds `: `, and give each key its own line"))
+            ("a `key: value` cannot begin here", Some("the keys of one map begin in the same column; quote a value that holds `: `"))
         }
         ErrorKind::ExpectedBlockMappingKey | ErrorKind::InvalidIndentation | ErrorKind::SimpleKeyExpected => {
             ("a line `key: value` is expected here", Some("the keys of one map begin in the same column, each followed by `: `"))

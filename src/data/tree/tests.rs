@@ -78,7 +78,7 @@ fn problems_are_at_their_place() {
         ("a: 1\nb: [1, 2\n", "yaml-syntax", "2:4"),
         ("a: 1\n\tb: 2\n", "yaml-syntax", "2:1"),
         ("a: b: c\n", "yaml-syntax", "1:5"),
-        ("a: 'open\nb: 1\n", "yaml-syntax", "1:4"),
+        ("a: 'open\nb: 1\n", "yaml-syntax", "2:1"),
         ("a: 1\nb: 2\na: 3\n", "duplicate-key", "3:1"),
         ("a: 1\n'a': 3\n", "duplicate-key", "2:2"),
         ("x: *none\n", "yaml-syntax", "1:4"),
@@ -87,11 +87,18 @@ fn problems_are_at_their_place() {
         ("? [1, 2]\n: 3\n", "yaml-key", "1:3"),
         ("max: .inf\n", "not-finite", "1:6"),
         ("max: 1e999\n", "not-finite", "1:6"),
-        ("max: !limit 5\n", "yaml-tag", "1:13"),
+        ("max: !limit 5\n", "yaml-tag", "1:6"),
         ("a: 1\n  b: 2\n", "yaml-syntax", "2:4"),
         ("a: @x\n", "yaml-syntax", "1:4"),
     ] {
         assert_eq!(faults(text), [(code, at.to_string())], "{text}");
+    }
+    for (text, words) in
+        [("a: 'open\nb: 1\n", "quote"), ("a: [1\n", "`[`"), ("a: 1\n b: 2", "key: value` cannot"), ("a: 1\nb\n", "key: value")]
+    {
+        let mut problems = Problems::default();
+        load(&Source::new("t", text), &mut problems);
+        assert!(problems.0[0].says.contains(words), "{}", problems.render(false));
     }
     assert_eq!(faults("a: .nan\nb: 1\nb: 2\nc: !x 1\n").len(), 3);
 }
