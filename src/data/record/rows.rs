@@ -1,6 +1,6 @@
 //! The rows of a record, in one pass over the bytes.
 
-use super::{Column, fault};
+use super::{Column, fault, number};
 use crate::problem::Problem;
 
 /// Rows reserved for before the first is read are bounded by what a row of one-digit numbers takes.
@@ -65,12 +65,12 @@ fn row(bytes: &[u8], mut at: usize, slots: &[Option<usize>], sinks: &mut [Sink])
     let last = slots.len() - 1;
     for (n, slot) in slots.iter().enumerate() {
         if let Some(slot) = slot {
-            let (number, length) = fast_float2::parse_partial::<f64, _>(&bytes[at..]).ok().filter(|(number, _)| number.is_finite())?;
+            let (value, length) = number::leading(&bytes[at..])?;
             let sink = &mut sinks[*slot];
-            sink.values.push(number * sink.factor);
+            sink.values.push(value * sink.factor);
             at += length;
         } else {
-            at += bytes[at..].iter().position(|byte| matches!(byte, b',' | b'\n' | b'"' | b'\r')).unwrap_or(bytes.len() - at);
+            at += number::until_separator(&bytes[at..]);
         }
         if n < last {
             if bytes.get(at) != Some(&b',') {
