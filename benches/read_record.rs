@@ -5,7 +5,7 @@
 #![allow(clippy::print_stdout, clippy::cast_precision_loss)]
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use fishplate::data::record::{Wanted, read_headings, read_record};
@@ -15,16 +15,16 @@ fn main() {
     let folder = std::env::args().skip(1).find(|word| !word.starts_with('-'));
     let temp = tempfile::tempdir().expect("a temporary folder");
     let files = match folder {
-        Some(folder) => csv_files(&PathBuf::from(folder)),
+        Some(folder) => csv_files(Path::new(&folder)),
         None => made(temp.path()),
     };
     let bytes: u64 = files.iter().map(|file| file.metadata().expect("readable").len()).sum();
     println!("{} files, {:.1} MB", files.len(), bytes as f64 / 1e6);
-    let time = |what: &str, read: &dyn Fn(&PathBuf) -> f64| {
+    let time = |what: &str, read: &dyn Fn(&Path) -> f64| {
         let best = (0..7)
             .map(|_| {
                 let start = Instant::now();
-                std::hint::black_box(files.iter().map(read).sum::<f64>());
+                std::hint::black_box(files.iter().map(|file| read(file)).sum::<f64>());
                 start.elapsed().as_secs_f64()
             })
             .fold(f64::INFINITY, f64::min);
@@ -44,12 +44,12 @@ fn main() {
     time("read_record, time only", &|file| checksum(file, &[Wanted::new("time", Dimension::TIME).if_there()]));
 }
 
-fn checksum(file: &PathBuf, wanted: &[Wanted]) -> f64 {
+fn checksum(file: &Path, wanted: &[Wanted]) -> f64 {
     let record = read_record(file, "bench", wanted).expect("a good record");
     record.columns.iter().filter_map(|column| column.values.last()).sum()
 }
 
-fn with_csv(file: &PathBuf, numbers: bool) -> f64 {
+fn with_csv(file: &Path, numbers: bool) -> f64 {
     let bytes = std::fs::read(file).expect("readable");
     let mut reader = csv::Reader::from_reader(bytes.as_slice());
     let mut columns = vec![Vec::new(); reader.byte_headers().expect("a header").len()];
@@ -67,14 +67,14 @@ fn with_csv(file: &PathBuf, numbers: bool) -> f64 {
     cells as f64 + columns.iter().filter_map(|column| column.last()).sum::<f64>()
 }
 
-fn csv_files(folder: &PathBuf) -> Vec<PathBuf> {
+fn csv_files(folder: &Path) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("readable").path()).collect();
     files.retain(|file| file.extension().is_some_and(|extension| extension == "csv"));
     files.sort();
     files
 }
 
-fn made(folder: &std::path::Path) -> Vec<PathBuf> {
+fn made(folder: &Path) -> Vec<PathBuf> {
     let mut text = String::from("time [s],distance [m]");
     (0..24).for_each(|n| write!(text, ",c{n} [kN]").expect("in memory"));
     for row in 0..2600 {

@@ -13,6 +13,7 @@
 pub mod campaign;
 mod cells;
 pub mod checks;
+mod faults;
 mod folder;
 pub mod hash;
 pub mod record;
@@ -24,5 +25,6 @@ pub mod write;
 pub use campaign::{Campaign, RecordKind};
 pub use cells::Heading;
 pub use checks::{Axis, check_axis};
+pub use folder::Place;
 pub use record::{Column, Record, Wanted, read_record};
 pub use table::Table;

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use serde_saphyr::granit_parser::{self as yaml, ErrorKind, Event, Parser, ScalarStyle, ScanError};
 
 use super::{Key, Node, Value, scalar};
+use crate::data::faults::Faults;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span};
 
@@ -19,17 +20,15 @@ const DEPTH: usize = 64;
 
 /// The one document of a YAML text; an empty text is [`Value::Null`].
 ///
-/// Repeated keys, tags and endless numbers are problems too, all of them reported; after a syntax error nothing more is read.
+/// Repeated keys, tags and endless numbers are problems too, the first of them told and the others counted; after a syntax error nothing more is read.
 pub fn load(source: &Arc<Source>, problems: &mut Problems) -> Option<Node> {
-    let before = problems.errors();
-    let mut loader = Loader { source, events: Parser::new_from_str(&source.text), anchors: HashMap::new(), nodes: 0, depth: 0, problems };
-    match loader.document() {
-        Ok(node) => (problems.errors() == before).then_some(node),
-        Err(problem) => {
-            problems.push(*problem);
-            None
-        }
-    }
+    let events = Parser::new_from_str(&source.text);
+    let mut loader = Loader { source, events, anchors: HashMap::new(), nodes: 0, depth: 0, faults: Faults::new(&source.name) };
+    let root = loader.document();
+    let mut faults = loader.faults;
+    let root = root.map_err(|problem| faults.push(|| *problem)).ok().filter(|_| faults.is_empty());
+    faults.add_to(problems);
+    root
 }
 
 /// A comment of a YAML text.
@@ -67,7 +66,7 @@ struct Loader<'a> {
     anchors: HashMap<usize, (Node, usize)>,
     nodes: usize,
     depth: usize,
-    problems: &'a mut Problems,
+    faults: Faults<'a>,
 }
 
 impl<'a> Loader<'a> {
@@ -185,11 +184,11 @@ impl<'a> Loader<'a> {
             let (event, span) = self.inside()?;
             let value = self.node(event, span)?;
             if let Some(first) = places.get(&key.text).and_then(|at| entries.get(*at)) {
-                self.problems.push(
+                self.faults.push(|| {
                     Problem::error("duplicate-key", format!("the key `{}` is given twice", key.text))
                         .at(&key.span)
-                        .also(&first.0.span, "first given here"),
-                );
+                        .also(&first.0.span, "first given here")
+                });
             } else {
                 places.insert(key.text.clone(), entries.len());
                 entries.push((key, value));
@@ -208,7 +207,7 @@ impl<'a> Loader<'a> {
         } else {
             scalar::resolve(&raw).unwrap_or_else(|number| {
                 let says = format!("`{raw}` is {}", if number.is_nan() { "no number" } else { "no finite number" });
-                self.problems.push(Problem::error("not-finite", says).at(&span));
+                self.faults.push(|| Problem::error("not-finite", says).at(&span));
                 Value::Null
             })
         };
@@ -224,7 +223,7 @@ impl<'a> Loader<'a> {
         let written = tag.original();
         let before = self.source.text.get(..span.start).and_then(|before| before.rfind(&written));
         let at = before.map_or_else(|| span.clone(), |at| self.source.span(at..at + written.len()));
-        self.problems.push(Problem::error("yaml-tag", format!("the tag `{written}` has no meaning here")).at(&at));
+        self.faults.push(|| Problem::error("yaml-tag", format!("the tag `{written}` has no meaning here")).at(&at));
         false
     }
 
