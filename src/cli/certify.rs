@@ -12,6 +12,7 @@ use crate::certify::{Compiled, certify, compile};
 use crate::check::family::{self, Family};
 use crate::check::{Override, Overrides, plan::SetBy};
 use crate::data::Campaign;
+use crate::data::text::read_text;
 use crate::data::write::Outputs;
 use crate::library;
 use crate::problem::{Problem, Problems};
@@ -168,7 +169,7 @@ impl Certify {
 fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mut Problems) -> Option<Family> {
     let source = match library::shipped(&named.value) {
         Some(source) => source,
-        None => match campaign.read_named(named) {
+        None => match campaign.place(named).and_then(|place| read_text(&place.path, &place.shown)) {
             Ok((source, _)) => source,
             Err(problem) => {
                 problems.push(problem.suggest(&named.value, library::SHIPPED.iter().map(|shipped| shipped.name)));
