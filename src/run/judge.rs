@@ -37,7 +37,7 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
         missing.push(format!("{} usable sections, {} are needed", used.len(), plan.sections.minimum));
     }
     let quantities: Vec<QuantityResult> =
-        plan.quantities.iter().enumerate().map(|(index, quantity)| quantity_result(plan, facts, quantity, index, &used)).collect();
+        plan.quantities.iter().enumerate().map(|(index, quantity)| quantity_result(facts, quantity, index, &used)).collect();
     for quantity in &quantities {
         if let Some(reason) = &quantity.reason {
             missing.push(format!("{}: {reason}", quantity.id));
@@ -94,7 +94,7 @@ fn zone_result(zone: &crate::check::plan::Zone, units: &[Unit]) -> ZoneResult {
 /// One pair with the section it is of.
 type Member<'a> = (&'a Unit, &'a str, PairSi);
 
-fn quantity_result(plan: &Plan, facts: &Facts, quantity: &Quantity, index: usize, used: &[(&Unit, &SectionValues)]) -> QuantityResult {
+fn quantity_result(facts: &Facts, quantity: &Quantity, index: usize, used: &[(&Unit, &SectionValues)]) -> QuantityResult {
     let mut members: Vec<Member<'_>> = Vec::new();
     let mut signals = vec![false; quantity.signals.len()];
     for (unit, values) in used {
@@ -113,7 +113,7 @@ fn quantity_result(plan: &Plan, facts: &Facts, quantity: &Quantity, index: usize
     } else {
         None
     };
-    let statistics = statistics(plan, facts, quantity, &members);
+    let statistics = statistics(facts, quantity, &members);
     let undefined = statistics
         .iter()
         .find(|statistic| statistic.holds.is_none())
@@ -153,25 +153,23 @@ fn quantity_result(plan: &Plan, facts: &Facts, quantity: &Quantity, index: usize
 }
 
 /// The limits of a quantity in an order in which each comes after those it refers to, and their results in the protocol's order.
-fn statistics(plan: &Plan, facts: &Facts, quantity: &Quantity, members: &[Member<'_>]) -> Vec<StatisticResult> {
+fn statistics(facts: &Facts, quantity: &Quantity, members: &[Member<'_>]) -> Vec<StatisticResult> {
     let mut groups: Vec<(usize, String, Vec<Member<'_>>)> = Vec::new();
     for (index, limit) in quantity.limits.iter().enumerate() {
         let applies = limit.only_when.as_ref().map_or(Ok(true), |condition| flag(condition, &Known::vehicle(facts)));
         if applies == Ok(false) {
             continue;
         }
-        for (scope, members) in scoped(plan, facts, limit, members) {
+        for (scope, members) in scoped(facts, limit, members) {
             groups.push((index, scope, members));
         }
     }
     groups.into_iter().map(|(index, scope, members)| statistic(facts, quantity, &quantity.limits[index], scope, &members)).collect()
 }
 
-fn scoped<'a>(plan: &Plan, facts: &Facts, limit: &Limit, members: &[Member<'a>]) -> Vec<(String, Vec<Member<'a>>)> {
-    let of_zone = |zone: &str| members.iter().filter(|(unit, _, _)| unit.zone.as_deref() == Some(zone)).copied().collect::<Vec<_>>();
+fn scoped<'a>(facts: &Facts, limit: &Limit, members: &[Member<'a>]) -> Vec<(String, Vec<Member<'a>>)> {
     match &limit.scope {
         Scope::All => vec![("all".into(), members.to_vec())],
-        Scope::EachZone => plan.zones.iter().map(|zone| (format!("zone {}", zone.name), of_zone(&zone.name))).collect(),
         Scope::Zones(zones) => {
             let word = if zones.len() == 1 { "zone" } else { "zones" };
             let inside =
@@ -298,7 +296,6 @@ fn bound(facts: &Facts, quantity: &Quantity, limit: &Limit, known: &Known<'_>, d
 fn words_of(scope: &Scope) -> String {
     match scope {
         Scope::All => "all".into(),
-        Scope::EachZone => "each zone".into(),
         Scope::Zones(zones) => zones.join(","),
         Scope::Where(_, words) => words.clone(),
     }
