@@ -15,7 +15,6 @@ mod signals;
 mod steps;
 
 pub use names::normalised;
-pub use quantities::DIFFERENCES;
 
 use indexmap::IndexMap;
 

@@ -5,19 +5,12 @@ use super::names::{Assignment, bare_word, normalised};
 use super::plan::{Evaluation, Expr, InputSide, Kind, Limit, Quantity, QuantityWords, Scalar, Scope as LimitScope, Signal, Step, Type};
 use super::scalars::{Scope, fold};
 use super::{Checker, overlap};
-use crate::catalog::{STATISTICS, Statistic};
+use crate::catalog::{DIFFERENCES, STATISTICS, Statistic};
 use crate::problem::Problem;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Node, Scope as WrittenScope};
 use crate::units::{Dimension, Unit};
-
-/// Comparisons with a name, so that protocols need not spell them out.
-pub const DIFFERENCES: [(&str, &str); 3] = [
-    ("oriented", "sign(measured) * (simulated - measured)"),
-    ("magnitudes", "|simulated| - |measured|"),
-    ("signed", "simulated - measured"),
-];
 
 impl Checker<'_> {
     pub(super) fn quantity(&mut self, block: &Block) -> Option<Quantity> {
