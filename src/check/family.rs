@@ -77,13 +77,11 @@ fn extends(document: &Document) -> Option<&Field> {
 /// The parent's blocks with the variant's put over them: same kind and name means override field by field.
 fn merge(parent: &Document, variant: &Document, problems: &mut Problems) -> Document {
     let mut blocks: Vec<Block> = parent.blocks.clone();
-    for block in &variant.blocks {
-        if block.kind.text == "remove" {
-            for field in &block.fields {
-                remove(&mut blocks, field, problems);
-            }
-            continue;
-        }
+    // What is removed is the parent's, wherever the variant says so: its own rules of the same name stay.
+    for field in variant.blocks.iter().filter(|block| block.kind.text == "remove").flat_map(|block| &block.fields) {
+        remove(&mut blocks, field, problems);
+    }
+    for block in variant.blocks.iter().filter(|block| block.kind.text != "remove") {
         let same = blocks.iter_mut().find(|other| other.kind.text == block.kind.text && (other.name_text() == block.name_text() || block.kind.text == "protocol"));
         match same {
             None => blocks.push(block.clone()),
