@@ -8,9 +8,7 @@ use crate::data::Campaign;
 use crate::data::campaign::Fact;
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
-use crate::result::{
-    CampaignInfo, Certification, DataItem, FileHash, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo,
-};
+use crate::result::{CampaignInfo, Certification, DataItem, FileHash, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo};
 use crate::run::{self, Progress, Settings};
 use crate::yaml::{Node, Value};
 

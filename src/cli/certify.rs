@@ -127,7 +127,10 @@ impl Certify {
             };
             let source = Source::new("--set", set.clone());
             let span = source.span(name.len() + 1..set.len());
-            overrides.insert(name.trim().to_string(), Override { text: Text { text: value.to_string(), span, exact: true }, set_by: SetBy::CommandLine });
+            overrides.insert(
+                name.trim().to_string(),
+                Override { text: Text { text: value.to_string(), span, exact: true }, set_by: SetBy::CommandLine },
+            );
         }
         Some(overrides)
     }
@@ -144,8 +147,12 @@ impl Certify {
             let data = view::view(found);
             let figures = figure::figures(found);
             if self.only != Only::Html {
-                let attachment =
-                    typst::Attachment { name: "results.json", mime: "application/json", bytes: results.as_bytes(), description: "Every number of this report" };
+                let attachment = typst::Attachment {
+                    name: "results.json",
+                    mime: "application/json",
+                    bytes: results.as_bytes(),
+                    description: "Every number of this report",
+                };
                 files.push(("report.pdf".into(), typst::typeset(&data, &figures, &[attachment])?.bytes));
             }
             if self.only != Only::Pdf {
@@ -192,7 +199,10 @@ fn summary(found: &Certification, color: bool) -> String {
     };
     let width = found.quantities.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);
     let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
-    out += &format!("{:width$}  {:>8}  {:<26} {:>5}  {:>12}  {:>12}  {:>8}\n", "quantity", "unit", "statistic", "n", "value", "limit", "share");
+    out += &format!(
+        "{:width$}  {:>8}  {:<26} {:>5}  {:>12}  {:>12}  {:>8}\n",
+        "quantity", "unit", "statistic", "n", "value", "limit", "share"
+    );
     for quantity in &found.quantities {
         for (index, statistic) in quantity.statistics.iter().enumerate() {
             let name = if index == 0 { quantity.id.as_str() } else { "" };

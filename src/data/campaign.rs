@@ -10,9 +10,9 @@ use super::folder::{Folder, Place, check_file_name};
 use super::record::{Record, Wanted, read_record};
 use super::table::{Cell, Table};
 use super::text::read_text;
-use crate::yaml::{self, Key, Node, Value};
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span, Spanned};
+use crate::yaml::{self, Key, Node, Value};
 
 /// The file that makes a folder a campaign.
 pub const CAMPAIGN_FILE: &str = "campaign.yaml";
