@@ -1,5 +1,6 @@
 //! `certify`: the main job.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -164,19 +165,30 @@ impl Certify {
     }
 }
 
-/// The protocol a campaign names: a shipped one, or a file inside the campaign.
+/// The protocol a campaign names: a shipped one, or a file inside the campaign, as are those it extends.
 fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mut Problems) -> Option<Family> {
-    let source = match library::shipped(&named.value) {
-        Some(source) => source,
-        None => match campaign.read_named(named) {
-            Ok((source, _)) => source,
-            Err(problem) => {
-                problems.push(problem.suggest(&named.value, library::SHIPPED.iter().map(|shipped| shipped.name)));
-                return None;
-            }
-        },
+    // Where inside the campaign each text stands, by the name its source goes by.
+    let inside: RefCell<Vec<(String, String)>> = RefCell::default();
+    let find = |name: &str, from: Option<&Source>| -> Result<Arc<Source>, Box<Problem>> {
+        if let Some(source) = library::shipped(name) {
+            return Ok(source);
+        }
+        let beside = from.and_then(|from| inside.borrow().iter().find(|(source, _)| *source == from.name).map(|(_, path)| path.clone()));
+        let folder = beside.as_deref().and_then(|path| path.rsplit_once('/')).map_or(String::new(), |(folder, _)| format!("{folder}/"));
+        let written = Spanned::new(format!("{folder}{name}"), named.span.clone());
+        let (source, file) = campaign
+            .read_named(&written)
+            .map_err(|problem| Box::new(problem.suggest(name, library::SHIPPED.iter().map(|shipped| shipped.name))))?;
+        inside.borrow_mut().push((source.name.clone(), file.path));
+        Ok(source)
     };
-    Some(family::read(&source, &library::parent, problems))
+    match find(&named.value, None) {
+        Ok(source) => Some(family::read(&source, &|name, from| find(name, Some(from)), problems)),
+        Err(problem) => {
+            problems.push(*problem);
+            None
+        }
+    }
 }
 
 fn progress_bar(console: &Console, sections: usize) -> Arc<ProgressBar> {

@@ -24,8 +24,11 @@ pub fn results(found: &Certification) -> String {
     root.insert("verdict".into(), json!(found.verdict));
     root.insert("reasons".into(), json!(found.reasons));
     root.insert("quantities".into(), Value::Array(found.quantities.iter().map(quantity).collect()));
-    root.insert("sections".into(), json!(found.sections));
-    root.insert("zones".into(), json!(found.zones));
+    root.insert(
+        "sections".into(),
+        Value::Array(found.sections.iter().map(|section| with_zone(json!(section), section.zone.as_deref())).collect()),
+    );
+    root.insert("zones".into(), Value::Array(found.zones.iter().map(|result| with_zone(json!(result), Some(&result.zone))).collect()));
     root.insert("domain".into(), json!(found.domain));
     root.insert("notes".into(), json!(found.notes));
     // A tree of plain values always serialises.
@@ -77,6 +80,11 @@ fn quantity(quantity: &QuantityResult) -> Value {
     });
     entry.insert("values".into(), Value::Array(values.collect()));
     Value::Object(entry)
+}
+
+fn with_zone(mut entry: Value, of: Option<&str>) -> Value {
+    entry["zone"] = zone(of);
+    entry
 }
 
 /// Zones that are numbers are written as numbers.

@@ -54,7 +54,8 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
             reasons.push(format!("{}: {}{scope} exceeds its limit{over}", quantity.id, statistic.title));
         }
     }
-    let holding = quantities.iter().filter(|quantity| quantity.holds == Some(true)).count();
+    // A quantity without limits is reported and decides nothing.
+    let holding = quantities.iter().filter(|quantity| quantity.holds == Some(true) && !quantity.statistics.is_empty()).count();
     let limits_holding =
         quantities.iter().flat_map(|quantity| &quantity.statistics).filter(|statistic| statistic.holds == Some(true)).count();
     let validated = match plan.verdict.rule {
