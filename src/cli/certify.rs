@@ -13,6 +13,7 @@ use crate::certify::{Compiled, certify, compile};
 use crate::check::family::{self, Family};
 use crate::check::{Override, Overrides, plan::SetBy};
 use crate::data::Campaign;
+use crate::data::text::read_text;
 use crate::data::write::Outputs;
 use crate::library;
 use crate::problem::{Problem, Problems};
@@ -176,10 +177,10 @@ fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mu
         let beside = from.and_then(|from| inside.borrow().iter().find(|(source, _)| *source == from.name).map(|(_, path)| path.clone()));
         let folder = beside.as_deref().and_then(|path| path.rsplit_once('/')).map_or(String::new(), |(folder, _)| format!("{folder}/"));
         let written = Spanned::new(format!("{folder}{name}"), named.span.clone());
-        let (source, file) = campaign
-            .read_named(&written)
-            .map_err(|problem| Box::new(problem.suggest(name, library::SHIPPED.iter().map(|shipped| shipped.name))))?;
-        inside.borrow_mut().push((source.name.clone(), file.path));
+        let place = campaign.place(&written)?;
+        let (source, _) = read_text(&place.path, &place.shown)
+            .map_err(|problem| problem.suggest(name, library::SHIPPED.iter().map(|shipped| shipped.name)))?;
+        inside.borrow_mut().push((source.name.clone(), place.inside));
         Ok(source)
     };
     match find(&named.value, None) {

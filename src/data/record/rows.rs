@@ -1,6 +1,7 @@
 //! The rows of a record, in one pass over the bytes.
 
-use super::{Column, fault};
+use super::{Column, fault, number};
+use crate::data::faults::Faults;
 use crate::problem::Problem;
 
 /// Rows reserved for before the first is read are bounded by what a row of one-digit numbers takes.
@@ -14,12 +15,15 @@ pub(super) fn read(body: &str, width: usize, columns: &mut [Column], shown: &str
         slots[column.position] = Some(slot);
         column.values.reserve(expected_rows(bytes, width));
     }
-    let mut sinks: Vec<Sink> =
-        columns.iter_mut().map(|column| Sink { factor: column.unit.factor, values: std::mem::take(&mut column.values) }).collect();
-    let mut faults = fault::Faults::new(shown);
+    let (names, values): (Vec<&str>, Vec<_>) =
+        columns.iter_mut().map(|column| (column.name.as_str(), (column.unit.factor, std::mem::take(&mut column.values)))).unzip();
+    let mut sinks: Vec<Sink<'_>> = names.into_iter().zip(values).map(|(name, (factor, values))| Sink { name, factor, values }).collect();
+    let mut faults = Faults::new(shown);
     let mut at = 0;
     let mut rows = 0;
-    while at < bytes.len() {
+    // Blank lines at the end are no rows.
+    let end_of_rows = body.trim_end().len();
+    while at < end_of_rows {
         if let Some(next) = row(bytes, at, &slots, &mut sinks) {
             at = next;
         } else {
@@ -27,9 +31,6 @@ pub(super) fn read(body: &str, width: usize, columns: &mut [Column], shown: &str
                 sink.values.truncate(rows);
             }
             let end = memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |found| at + found);
-            if body[at..].trim().is_empty() {
-                break;
-            }
             let line = fault::Line { text: body[at..end].trim_end_matches('\r'), number: rows + 2, last: end == bytes.len(), shown };
             // A faulty row still counts, so that the rows after it keep their numbers.
             fault::slow_row(&line, &slots, &mut sinks, &mut faults);
@@ -40,14 +41,16 @@ pub(super) fn read(body: &str, width: usize, columns: &mut [Column], shown: &str
     if rows == 0 {
         faults.push(|| Problem::error("no-rows", format!("`{shown}` has a header and no samples")));
     }
-    for (column, sink) in columns.iter_mut().zip(sinks) {
-        column.values = sink.values;
+    let values: Vec<Vec<f64>> = sinks.into_iter().map(|sink| sink.values).collect();
+    for (column, values) in columns.iter_mut().zip(values) {
+        column.values = values;
     }
     faults.finish(rows)
 }
 
 /// Where the numbers of a column go.
-pub(super) struct Sink {
+pub(super) struct Sink<'a> {
+    pub name: &'a str,
     pub factor: f64,
     pub values: Vec<f64>,
 }
@@ -61,16 +64,16 @@ fn expected_rows(bytes: &[u8], width: usize) -> usize {
 }
 
 /// Reads the row beginning at `at`; the start of the next row, or `None` if anything about it is unusual.
-fn row(bytes: &[u8], mut at: usize, slots: &[Option<usize>], sinks: &mut [Sink]) -> Option<usize> {
+fn row(bytes: &[u8], mut at: usize, slots: &[Option<usize>], sinks: &mut [Sink<'_>]) -> Option<usize> {
     let last = slots.len() - 1;
     for (n, slot) in slots.iter().enumerate() {
         if let Some(slot) = slot {
-            let (number, length) = fast_float2::parse_partial::<f64, _>(&bytes[at..]).ok().filter(|(number, _)| number.is_finite())?;
+            let (value, length) = number::leading(&bytes[at..])?;
             let sink = &mut sinks[*slot];
-            sink.values.push(number * sink.factor);
+            sink.values.push(value * sink.factor);
             at += length;
         } else {
-            at += bytes[at..].iter().position(|byte| matches!(byte, b',' | b'\n' | b'"' | b'\r')).unwrap_or(bytes.len() - at);
+            at += number::until_separator(&bytes[at..]);
         }
         if n < last {
             if bytes.get(at) != Some(&b',') {
