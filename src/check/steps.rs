@@ -30,8 +30,15 @@ impl StepSpec {
 }
 
 impl Checker<'_> {
-    /// The chain of a `filter` field or of all `step` fields of a filter, checked for the order of its steps.
+    /// The chain of a `filter` field, checked for the order of its steps.
     pub(super) fn chain(&mut self, text: &Text) -> Option<Vec<Step>> {
+        let all = self.steps_of(text)?;
+        self.step_order(&all)?;
+        Some(all)
+    }
+
+    /// The steps of one field, whatever stands before and after them.
+    fn steps_of(&mut self, text: &Text) -> Option<Vec<Step>> {
         let steps = from_pest::chain(text, self.problems)?;
         let mut all = Vec::new();
         let mut ok = true;
@@ -41,11 +48,7 @@ impl Checker<'_> {
                 None => ok = false,
             }
         }
-        if !ok {
-            return None;
-        }
-        self.step_order(&all)?;
-        Some(all)
+        ok.then_some(all)
     }
 
     pub(super) fn filter_named(&mut self, name: &str, span: &Span) -> Option<Vec<Step>> {
@@ -66,7 +69,7 @@ impl Checker<'_> {
         let mut steps = Vec::new();
         let mut ok = true;
         for field in block.fields_named("step") {
-            match self.chain(&field.value) {
+            match self.steps_of(&field.value) {
                 Some(found) => steps.extend(found),
                 None => ok = false,
             }
