@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use crate::check::plan::{Parameter, Plan, SetBy};
+use crate::check::plan::{DatumKind, Parameter, Plan, Scalar, SetBy};
 use crate::check::{self, Overrides, diff, family::Family};
 use crate::data::Campaign;
 use crate::data::campaign::Fact;
@@ -118,8 +118,11 @@ fn vehicle_items(plan: &Plan, campaign: &Campaign) -> Vec<DataItem> {
     let mut items: Vec<DataItem> = Vec::new();
     let mut read: Vec<&str> = Vec::new();
     for datum in &plan.vehicle {
-        let value = campaign.vehicle.lookup(&datum.key).and_then(Node::scalar_text).unwrap_or("").to_string();
-        let unit = if let crate::check::plan::DatumKind::Number(unit) = &datum.kind { Some(unit.text.clone()) } else { None };
+        let value = match campaign.vehicle.lookup(&datum.key).and_then(Node::scalar_text) {
+            Some(text) => text.to_string(),
+            None => datum.default.as_ref().map_or(String::new(), |default| format!("{} (default)", in_words(default, &datum.kind))),
+        };
+        let unit = if let DatumKind::Number(unit) = &datum.kind { Some(unit.text.clone()) } else { None };
         items.push(DataItem { name: datum.title.clone(), value, unit, used: true });
         read.push(&datum.key);
     }
@@ -127,6 +130,15 @@ fn vehicle_items(plan: &Plan, campaign: &Campaign) -> Vec<DataItem> {
     flatten("", &campaign.vehicle, &mut rest);
     items.extend(rest.into_iter().filter(|item| !read.contains(&item.name.as_str())));
     items
+}
+
+fn in_words(value: &Scalar, kind: &DatumKind) -> String {
+    match (value, kind) {
+        (Scalar::Number(value), DatumKind::Number(unit)) => crate::run::trimmed(unit.from_si(*value)),
+        (Scalar::Number(value), _) => crate::run::trimmed(*value),
+        (Scalar::Word(word), _) => word.clone(),
+        (Scalar::Flag(flag), _) => flag.to_string(),
+    }
 }
 
 fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {

@@ -287,7 +287,11 @@ impl Checker<'_> {
             self.problems.push(
                 Problem::error(
                     "unit-mismatch",
-                    format!("the values of `{}` are {}, the limit is {found}", names_of(field), dimension.in_words()),
+                    format!(
+                        "the values of `{}` are {}, the limit is {found}",
+                        self.block_of(field).map_or("", Block::name_text),
+                        dimension.in_words()
+                    ),
                 )
                 .at(&bound.span)
                 .label(found)
@@ -385,21 +389,18 @@ impl Checker<'_> {
         })
     }
 
+    /// The quantity a limit stands in.
+    fn block_of(&self, field: &Field) -> Option<&Block> {
+        self.blocks.iter().find(|block| block.fields.iter().any(|other| other.value.span == field.value.span))
+    }
+
     fn of_span(&self, field: &Field) -> crate::source::Span {
-        self.blocks
-            .iter()
-            .find(|block| block.fields.iter().any(|other| other.value.span == field.value.span))
-            .and_then(|block| block.field("of"))
-            .map_or_else(|| field.key.span.clone(), |of| of.value.span.clone())
+        self.block_of(field).and_then(|block| block.field("of")).map_or_else(|| field.key.span.clone(), |of| of.value.span.clone())
     }
 }
 
 fn filter_words(chain: &[Step]) -> String {
     if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") }
-}
-
-fn names_of(field: &Field) -> String {
-    normalised(&field.value.text).split(' ').next().unwrap_or("").to_string()
 }
 
 /// The statistic whose limit an expression refers to.

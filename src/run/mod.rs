@@ -20,6 +20,7 @@ use crate::result::{FileHash, QuantityResult, SectionResult, Trace, Verdict, Zon
 pub use facts::Facts;
 use pairs::SectionValues;
 use sections::Unit;
+pub use sections::trimmed;
 
 /// What a run computed; the report adds what the protocol and the campaign say about themselves.
 #[derive(Debug)]

@@ -58,12 +58,16 @@ fn code(text: &str) -> String {
 fn blocks() -> String {
     let head = |kind: &Kind| if kind.named { format!("{} *name*", code(kind.word)) } else { code(kind.word) };
     let count = |kind: &Kind| if kind.single { "one" } else { "any number" }.to_string();
-    table(&["block", "in YAML", "how many", "what it is"], KINDS.iter().map(|kind| vec![head(kind), code(kind.group), count(kind), kind.about.into()]))
+    table(
+        &["block", "in YAML", "how many", "what it is"],
+        KINDS.iter().map(|kind| vec![head(kind), code(kind.group), count(kind), kind.about.into()]),
+    )
 }
 
 fn block(kind: &Kind) -> String {
     let rows = kind.keys.iter().map(|key| {
-        let example = if key.sort == Sort::Text { format!("{} \"{}\"", key.word, key.example) } else { format!("{} {}", key.word, key.example) };
+        let example =
+            if key.sort == Sort::Text { format!("{} \"{}\"", key.word, key.example) } else { format!("{} {}", key.word, key.example) };
         let about = if key.many { format!("{} May be repeated.", key.about) } else { key.about.to_string() };
         vec![code(key.word), about, code(&example)]
     });
@@ -84,7 +88,10 @@ fn steps() -> String {
             notes += &format!("- {}: {}\n", choice.words.iter().map(|word| code(word)).collect::<Vec<_>>().join(", "), choice.about);
         }
     }
-    format!("{}The first word of an option is what holds unless another is said:\n\n{notes}\n", table(&["step", "what it does", "options"], rows))
+    format!(
+        "{}The first word of an option is what holds unless another is said:\n\n{notes}\n",
+        table(&["step", "what it does", "options"], rows)
+    )
 }
 
 fn registry(kind: &str) -> String {
@@ -141,7 +148,10 @@ fn commands() -> String {
         let arguments: Vec<String> = sub
             .get_positionals()
             .map(|argument| {
-                let name = argument.get_value_names().and_then(|names| names.first()).map_or_else(|| argument.get_id().to_string(), ToString::to_string);
+                let name = argument
+                    .get_value_names()
+                    .and_then(|names| names.first())
+                    .map_or_else(|| argument.get_id().to_string(), ToString::to_string);
                 let name = if argument.is_required_set() { name } else { format!("[{name}]") };
                 let many = argument.get_num_args().is_some_and(|range| range.max_values() > 1);
                 if many { format!("{name}…") } else { name }

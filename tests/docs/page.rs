@@ -25,7 +25,8 @@ pub struct Block {
 
 /// The README and every page below `docs`.
 pub fn pages() -> Vec<Page> {
-    let mut paths: Vec<PathBuf> = fs::read_dir(root().join("docs")).expect("a folder").map(|entry| entry.expect("readable").path()).collect();
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir(root().join("docs")).expect("a folder").map(|entry| entry.expect("readable").path()).collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
     paths.push(root().join("README.md"));
     paths.push(root().join("examples/README.md"));
@@ -83,6 +84,21 @@ impl Page {
             rest = after;
         }
         out + rest
+    }
+
+    /// The page with the code block after each block that has an answer holding that answer.
+    pub fn with_answers(&self, mut answer: impl FnMut(&Block) -> Option<String>) -> String {
+        let mut lines: Vec<String> = self.text.lines().map(|line| format!("{line}\n")).collect();
+        let blocks = self.blocks();
+        for pair in blocks.windows(2) {
+            if let Some(text) = answer(&pair[0]) {
+                let inside = pair[1].line..pair[1].line + pair[1].text.lines().count();
+                lines[inside.clone()].fill(String::new());
+                // An empty block has no line of its own to stand in.
+                lines[pair[1].line - 1] += &text;
+            }
+        }
+        lines.concat()
     }
 
     pub fn generated(&self) -> Vec<String> {
