@@ -5,18 +5,12 @@ use super::evaluate::words;
 use super::names::{Assignment, bare_word, normalised};
 use super::plan::{Axis, Evaluation, Expr, Input, InputSide, Quantity, QuantityWords, Signal, Step};
 use super::scalars::Scope;
+use crate::catalog::DIFFERENCES;
 use crate::problem::Problem;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Node};
 use crate::units::{Dimension, Unit};
-
-/// Comparisons with a name, so that protocols need not spell them out.
-pub const DIFFERENCES: [(&str, &str); 3] = [
-    ("oriented", "sign(measured) * (simulated - measured)"),
-    ("magnitudes", "|simulated| - |measured|"),
-    ("signed", "simulated - measured"),
-];
 
 /// What a quantity's value and difference, or its metric, come to.
 struct Compared {
@@ -68,7 +62,8 @@ impl Checker<'_> {
         let minimum_signals = self.count(block, "minimum signals", self.minimum_signals);
         let minimum_pairs = self.count(block, "minimum pairs", self.minimum_pairs);
         let (of, chain, signals, compared, unit) = (of?, chain?, signals?, compared?, unit?);
-        let signal_unit = from_pest::of_places(&of, self.problems).map(|written| self.own_unit(&written.signal.node, signals[0].1.dimension))?;
+        let signal_unit =
+            from_pest::of_places(&of, self.problems).map(|written| self.own_unit(&written.signal.node, signals[0].1.dimension))?;
         let text = |key: &str| block.field(key).map(|field| field.value.text.clone());
         let filter =
             if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") };
@@ -120,7 +115,8 @@ impl Checker<'_> {
             );
             return None;
         }
-        let over_axis = over_name.zip(over.first()).map(|(name, signal)| Axis { unit: self.own_unit(&name, signal.dimension), column: name });
+        let over_axis =
+            over_name.zip(over.first()).map(|(name, signal)| Axis { unit: self.own_unit(&name, signal.dimension), column: name });
         let words = normalised(&field.value.text);
         let (_, first, _) = signals.first()?;
         Some(Compared {
