@@ -4,6 +4,7 @@
 //! as it should be is looked at again, cell by cell, for what is wrong with it (`fault`).
 
 mod fault;
+mod number;
 mod rows;
 
 use std::path::{Path, PathBuf};

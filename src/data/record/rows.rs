@@ -1,6 +1,6 @@
 //! The rows of a record, in one pass over the bytes.
 
-use super::{Column, fault};
+use super::{Column, fault, number};
 use crate::problem::Problem;
 
 /// Rows reserved for before the first is read are bounded by what a row of one-digit numbers takes.
@@ -65,7 +65,10 @@ fn row(bytes: &[u8], mut at: usize, slots: &[Option<usize>], sinks: &mut [Sink])
     let last = slots.len() - 1;
     for (n, slot) in slots.iter().enumerate() {
         if let Some(slot) = slot {
-            let (number, length) = fast_float2::parse_partial::<f64, _>(&bytes[at..]).ok().filter(|(number, _)| number.is_finite())?;
+            let (number, length) = number::plain(&bytes[at..]).or_else(|| fast_float2::parse_partial(&bytes[at..]).ok())?;
+            if !number.is_finite() {
+                return None;
+            }
             let sink = &mut sinks[*slot];
             sink.values.push(number * sink.factor);
             at += length;
