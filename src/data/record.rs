@@ -4,6 +4,7 @@
 //! as it should be is looked at again, cell by cell, for what is wrong with it (`fault`).
 
 mod fault;
+mod marks;
 mod number;
 mod rows;
 
@@ -105,7 +106,7 @@ pub fn read_record(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record
     let text = decode(&bytes, shown).map_err(|problem| vec![problem])?;
     let (headings, body) = header(text, shown)?;
     let mut columns = find_columns(&headings, wanted, shown)?;
-    let rows = rows::read(&text[body..], headings.len(), &mut columns, shown)?;
+    let rows = rows::read(text, body, headings.len(), &mut columns, shown)?;
     let channels = headings.into_iter().map(|heading| heading.name).collect();
     Ok(Record { shown: shown.to_string(), columns, channels, rows, sha256: sha256(&bytes), bytes: bytes.len(), path: path.to_path_buf() })
 }
