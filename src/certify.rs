@@ -8,9 +8,7 @@ use crate::data::Campaign;
 use crate::data::campaign::Fact;
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
-use crate::result::{
-    CampaignInfo, Certification, DataItem, FileHash, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo,
-};
+use crate::result::{CampaignInfo, Certification, DataItem, FileHash, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo};
 use crate::run::{self, Progress, Settings};
 use crate::yaml::{Node, Value};
 
@@ -111,7 +109,8 @@ fn parameter_info(parameter: &Parameter) -> ParameterInfo {
 }
 
 fn fact_item(fact: &Fact) -> DataItem {
-    let name = if fact.group.is_empty() { fact.name.clone() } else { format!("{}: {}", fact.group.replace('_', " "), fact.name) };
+    let plain = fact.name.replace('_', " ");
+    let name = if fact.group.is_empty() { plain } else { format!("{}: {plain}", fact.group.replace('_', " ")) };
     DataItem { name, value: fact.text.clone(), unit: fact.unit.clone().filter(|unit| unit != "-"), used: false }
 }
 

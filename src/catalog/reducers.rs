@@ -1,7 +1,7 @@
 //! Numbers taken from one signal of one section, and statistics over all section x signal pairs.
 
-use crate::metrics::percentile::{Method, percentile};
 use crate::metrics::interval::{mean_interval, standard_deviation_interval};
+use crate::metrics::percentile::{Method, percentile};
 use crate::metrics::statistics::{self, Divisor};
 use crate::units::Dimension;
 

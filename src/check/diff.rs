@@ -61,10 +61,14 @@ fn fields(old: &Block, new: &Block, found: &mut Vec<Deviation>) {
             continue;
         }
         // A limit is compared with the one of the same statistic, others by position.
-        let leading = |field: &Field| if key.word == "limit" { field.value.text.split_whitespace().next().unwrap_or("").to_string() } else { String::new() };
+        let leading = |field: &Field| {
+            if key.word == "limit" { field.value.text.split_whitespace().next().unwrap_or("").to_string() } else { String::new() }
+        };
         let mut left: Vec<&Field> = olds.clone();
         for field in &news {
-            let at = left.iter().position(|other| leading(other) == leading(field) && (key.word == "limit" || equal(&old.kind.text, other, field)));
+            let at = left
+                .iter()
+                .position(|other| leading(other) == leading(field) && (key.word == "limit" || equal(&old.kind.text, other, field)));
             let partner = at.or_else(|| (key.word != "limit" && !left.is_empty()).then_some(0)).map(|at| left.remove(at));
             let rule = format!("{} {}", key.word, leading(field));
             one(new, rule.trim(), partner, Some(field), found);
@@ -94,7 +98,10 @@ fn equal(kind: &str, a: &Field, b: &Field) -> bool {
         return true;
     }
     let sort = keys::kind(kind).and_then(|kind| kind.key(&a.key.text)).map(|key| key.sort);
-    sort == Some(Sort::Phrase) && (both(&a.value, &b.value, from_pest::limit) || both(&a.value, &b.value, from_pest::expression) || both(&a.value, &b.value, from_pest::chain))
+    sort == Some(Sort::Phrase)
+        && (both(&a.value, &b.value, from_pest::limit)
+            || both(&a.value, &b.value, from_pest::expression)
+            || both(&a.value, &b.value, from_pest::chain))
 }
 
 fn both<T: PartialEq>(a: &Text, b: &Text, read: fn(&Text, &mut Problems) -> Option<T>) -> bool {

@@ -135,7 +135,10 @@ pub fn shape(expr: &Expr) -> String {
         Kind::Binary(operator, left, right) => format!("{operator:?}({},{})", shape(left), shape(right)),
         Kind::Call(function, arguments) => format!("{}({})", function.name, arguments.iter().map(shape).collect::<Vec<_>>().join(",")),
         Kind::Cases(arms, otherwise) => {
-            let arms: Vec<String> = arms.iter().map(|(value, condition)| format!("{}?{}", shape(value), condition.as_ref().map_or(String::new(), shape))).collect();
+            let arms: Vec<String> = arms
+                .iter()
+                .map(|(value, condition)| format!("{}?{}", shape(value), condition.as_ref().map_or(String::new(), shape)))
+                .collect();
             format!("[{};{}]", arms.join(","), otherwise.as_ref().map_or(String::new(), |value| shape(value)))
         }
     }

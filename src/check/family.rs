@@ -33,14 +33,16 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
     while let Some(field) = chain.last().and_then(|document| extends(document).cloned()) {
         let name = field.value.text.trim().trim_matches('"').to_string();
         if chain.len() > DEEPEST {
-            problems.push(Problem::error("extends-too-deep", format!("more than {DEEPEST} protocols extend each other")).at(&field.value.span));
+            problems
+                .push(Problem::error("extends-too-deep", format!("more than {DEEPEST} protocols extend each other")).at(&field.value.span));
             break;
         }
         let from = Arc::clone(&chain[chain.len() - 1].source);
         match find(&name, &from) {
             Ok(found) => {
                 if sources.iter().any(|known| known.name == found.name) {
-                    problems.push(Problem::error("extends-loop", format!("`{name}` extends itself by way of others")).at(&field.value.span));
+                    problems
+                        .push(Problem::error("extends-loop", format!("`{name}` extends itself by way of others")).at(&field.value.span));
                     break;
                 }
                 chain.push(syntax::read(&found, problems));
@@ -66,7 +68,8 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
             }
         });
     }
-    let merged = merged.unwrap_or_else(|| Document { source: Arc::clone(source), leading: Vec::new(), blocks: Vec::new(), trailing: Vec::new() });
+    let merged =
+        merged.unwrap_or_else(|| Document { source: Arc::clone(source), leading: Vec::new(), blocks: Vec::new(), trailing: Vec::new() });
     Family { merged, parent, sources }
 }
 
@@ -84,14 +87,17 @@ fn merge(parent: &Document, variant: &Document, problems: &mut Problems) -> Docu
             }
             continue;
         }
-        let same = blocks.iter_mut().find(|other| other.kind.text == block.kind.text && (other.name_text() == block.name_text() || block.kind.text == "protocol"));
+        let same = blocks
+            .iter_mut()
+            .find(|other| other.kind.text == block.kind.text && (other.name_text() == block.name_text() || block.kind.text == "protocol"));
         match same {
             None => blocks.push(block.clone()),
             Some(_) if block.kind.text == "protocol" => {
                 // Who it is, is the variant's own; how records run is inherited unless said.
                 let mut own = block.clone();
                 if let Some(old) = blocks.iter().find(|other| other.kind.text == "protocol") {
-                    for field in old.fields.iter().filter(|field| matches!(field.key.text.as_str(), "axis" | "time" | "edition" | "source")) {
+                    for field in old.fields.iter().filter(|field| matches!(field.key.text.as_str(), "axis" | "time" | "edition" | "source"))
+                    {
                         if own.field(&field.key.text).is_none() {
                             own.fields.push(field.clone());
                         }
@@ -164,7 +170,9 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, problems: &mut Problems) {
     };
     let Some(index) = blocks.iter().position(|block| block.kind.text == kind && block.name_text() == name) else {
         let known: Vec<&str> = blocks.iter().filter(|block| block.kind.text == kind).map(Block::name_text).collect();
-        problems.push(Problem::error("nothing-to-remove", format!("the parent has no {kind} `{name}`")).at(&field.value.span).suggest(name, known));
+        problems.push(
+            Problem::error("nothing-to-remove", format!("the parent has no {kind} `{name}`")).at(&field.value.span).suggest(name, known),
+        );
         return;
     };
     if field.key.text != "limit" {
@@ -175,7 +183,11 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, problems: &mut Problems) {
     let before = blocks[index].fields.len();
     blocks[index].fields.retain(|field| field.key.text != "limit" || field.value.text.split_whitespace().next() != Some(statistic));
     if blocks[index].fields.len() == before {
-        problems.push(Problem::error("nothing-to-remove", format!("`{name}` has no limit of `{statistic}`")).at(&field.value.span).help("write the quantity, then the statistic: `limit az_max mean`"));
+        problems.push(
+            Problem::error("nothing-to-remove", format!("`{name}` has no limit of `{statistic}`"))
+                .at(&field.value.span)
+                .help("write the quantity, then the statistic: `limit az_max mean`"),
+        );
     }
 }
 

@@ -156,7 +156,9 @@ impl Checker<'_> {
 
     fn unknown_overrides(&mut self, head: &Block) {
         for (name, given) in self.overrides {
-            if !self.names.parameters.contains_key(name) && !self.blocks.iter().any(|block| block.kind.text == "parameter" && block.name_text() == name) {
+            if !self.names.parameters.contains_key(name)
+                && !self.blocks.iter().any(|block| block.kind.text == "parameter" && block.name_text() == name)
+            {
                 let known: Vec<String> = self.names.parameters.keys().cloned().collect();
                 self.problems.push(
                     Problem::error("unknown-parameter", format!("protocol `{}` has no parameter `{name}`", head.name_text()))
@@ -168,7 +170,8 @@ impl Checker<'_> {
     }
 
     fn unused_parts(&mut self) {
-        let signals: Vec<(String, names::SignalDef)> = self.names.signals.iter().map(|(name, signal)| (name.clone(), signal.clone())).collect();
+        let signals: Vec<(String, names::SignalDef)> =
+            self.names.signals.iter().map(|(name, signal)| (name.clone(), signal.clone())).collect();
         for (name, signal) in signals {
             let mut at = names::Assignment::new();
             for place in &signal.places {

@@ -197,14 +197,18 @@ impl Checker<'_> {
             (Scalar::Word(source.text.trim().to_string()), Type::Word(choices))
         } else {
             let Some((default_value, dimension)) = self.constant(&default.value) else { return };
-            let Some((value, given_dimension)) = (if given.is_some() { self.constant(&source) } else { Some((default_value, dimension)) }) else {
+            let Some((value, given_dimension)) = (if given.is_some() { self.constant(&source) } else { Some((default_value, dimension)) })
+            else {
                 return;
             };
             if given_dimension != dimension {
                 self.problems.push(
-                    Problem::error("unit-mismatch", format!("parameter `{name}` is {}, this is {}", dimension.in_words(), given_dimension.in_words()))
-                        .at(&source.span)
-                        .also(&default.value.span, "its default"),
+                    Problem::error(
+                        "unit-mismatch",
+                        format!("parameter `{name}` is {}, this is {}", dimension.in_words(), given_dimension.in_words()),
+                    )
+                    .at(&source.span)
+                    .also(&default.value.span, "its default"),
                 );
                 return;
             }
@@ -224,9 +228,12 @@ impl Checker<'_> {
             let Some((found, of)) = self.constant_phrase(&phrase, &range.value) else { return };
             if of != dimension {
                 self.problems.push(
-                    Problem::error("unit-mismatch", format!("parameter `{name}` is {}, its range is {}", dimension.in_words(), of.in_words()))
-                        .at(&range.value.place(phrase.range.clone()))
-                        .also(&source.span, dimension.in_words()),
+                    Problem::error(
+                        "unit-mismatch",
+                        format!("parameter `{name}` is {}, its range is {}", dimension.in_words(), of.in_words()),
+                    )
+                    .at(&range.value.place(phrase.range.clone()))
+                    .also(&source.span, dimension.in_words()),
                 );
                 return;
             }
@@ -311,8 +318,11 @@ impl Checker<'_> {
                     let (value, dimension) = self.constant(&field.value)?;
                     if dimension != unit.dimension {
                         self.problems.push(
-                            Problem::error("unit-mismatch", format!("`{name}` is {}, its default is {}", unit.dimension.in_words(), dimension.in_words()))
-                                .at(&field.value.span),
+                            Problem::error(
+                                "unit-mismatch",
+                                format!("`{name}` is {}, its default is {}", unit.dimension.in_words(), dimension.in_words()),
+                            )
+                            .at(&field.value.span),
                         );
                     }
                     Scalar::Number(value)
@@ -384,7 +394,9 @@ impl Checker<'_> {
             let inside = part.split('}').next().unwrap_or("");
             if !places.iter().any(|place| place == inside) {
                 self.problems.push(
-                    Problem::error("pattern", format!("`{{{inside}}}` in `{pattern}` is none of its places")).at(&span).suggest(inside, places.iter().map(String::as_str)),
+                    Problem::error("pattern", format!("`{{{inside}}}` in `{pattern}` is none of its places"))
+                        .at(&span)
+                        .suggest(inside, places.iter().map(String::as_str)),
                 );
             }
         }
@@ -404,7 +416,8 @@ impl Checker<'_> {
                 match self.place_called(&joined) {
                     Some(place) => found.push(place),
                     None => {
-                        let range = words.first().map_or(0..field.value.text.len(), |first| first.range.start..words[words.len() - 1].range.end);
+                        let range =
+                            words.first().map_or(0..field.value.text.len(), |first| first.range.start..words[words.len() - 1].range.end);
                         let names: Vec<String> = self.names.places.keys().cloned().collect();
                         self.problems.push(
                             Problem::error("unknown-place", format!("`{joined}` is no place"))

@@ -7,15 +7,21 @@ use crate::syntax::document::Block;
 pub(super) fn find(limits: &[Limit], zones: &[String], block: &Block, problems: &mut Problems) {
     for (index, limit) in limits.iter().enumerate() {
         for other in &limits[..index] {
-            if other.statistic != limit.statistic || other.at_least != limit.at_least || exclusive(other.only_when.as_ref(), limit.only_when.as_ref()) {
+            if other.statistic != limit.statistic
+                || other.at_least != limit.at_least
+                || exclusive(other.only_when.as_ref(), limit.only_when.as_ref())
+            {
                 continue;
             }
             let Some(place) = shared(&other.scope, &limit.scope, zones) else { continue };
             problems.push(
-                Problem::error("limits-overlap", format!("two limits of the {} apply to `{}`{place}", limit.statistic.title(limit.ddof), block.name_text()))
-                    .at(&limit.span)
-                    .also(&other.span, "also applies")
-                    .help("give them different zones (`for zones ...`) or conditions that exclude each other (`only when ...`)"),
+                Problem::error(
+                    "limits-overlap",
+                    format!("two limits of the {} apply to `{}`{place}", limit.statistic.title(limit.ddof), block.name_text()),
+                )
+                .at(&limit.span)
+                .also(&other.span, "also applies")
+                .help("give them different zones (`for zones ...`) or conditions that exclude each other (`only when ...`)"),
             );
         }
     }
@@ -74,9 +80,15 @@ fn cases(expr: &Expr, negated: bool) -> Option<Vec<Vec<Atom>>> {
         }
         Kind::Binary(operator, left, right) => {
             let atom = match (&right.kind, operator) {
-                (Kind::Constant(Scalar::Word(word)), Operator::Is | Operator::IsNot) => Test::Word(word.clone(), (*operator == Operator::Is) != negated),
-                (Kind::Constant(Scalar::Flag(flag)), Operator::Is | Operator::IsNot) => Test::Flag(((*operator == Operator::Is) == *flag) != negated),
-                (Kind::Constant(Scalar::Number(number)), operator) => Test::Number(if negated { opposite(*operator)? } else { *operator }, *number),
+                (Kind::Constant(Scalar::Word(word)), Operator::Is | Operator::IsNot) => {
+                    Test::Word(word.clone(), (*operator == Operator::Is) != negated)
+                }
+                (Kind::Constant(Scalar::Flag(flag)), Operator::Is | Operator::IsNot) => {
+                    Test::Flag(((*operator == Operator::Is) == *flag) != negated)
+                }
+                (Kind::Constant(Scalar::Number(number)), operator) => {
+                    Test::Number(if negated { opposite(*operator)? } else { *operator }, *number)
+                }
                 _ => return Some(vec![vec![]]),
             };
             Some(vec![vec![Atom { what: what(left)?, test: atom }]])

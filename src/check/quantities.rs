@@ -2,7 +2,9 @@
 
 use super::evaluate::words;
 use super::names::{Assignment, bare_word, normalised};
-use super::plan::{Evaluation, Expr, InputSide, Kind, Limit, Quantity, QuantityWords, Scalar, Scope as LimitScope, Signal, Step, Type};
+use super::plan::{
+    Axis, Evaluation, Expr, InputSide, Kind, Limit, Quantity, QuantityWords, Scalar, Scope as LimitScope, Signal, Step, Type,
+};
 use super::scalars::{Scope, fold};
 use super::{Checker, overlap};
 use crate::catalog::{STATISTICS, Statistic};
@@ -44,6 +46,7 @@ impl Checker<'_> {
         let (evaluation, result, processing, comparison) = match metric {
             Some(field) => {
                 let (metric, over) = self.metric(&field.value)?;
+                let over_axis = over.as_ref().and_then(|over| bare_word(&over.phrase)).map(str::to_string);
                 let over = match over {
                     None => Vec::new(),
                     Some(over) => signals.iter().map(|(_, _, at)| self.signal(&over.phrase, &over.text, at)).collect::<Option<Vec<_>>>()?,
@@ -56,8 +59,10 @@ impl Checker<'_> {
                     );
                     return None;
                 }
+                let over_axis =
+                    over_axis.zip(over.first()).map(|(name, signal)| Axis { unit: self.own_unit(&name, signal.dimension), column: name });
                 let words = normalised(&field.value.text);
-                (Evaluation::Metric { metric, over }, (metric.0.gives)(dimension), words.clone(), words)
+                (Evaluation::Metric { metric, over, over_axis }, (metric.0.gives)(dimension), words.clone(), words)
             }
             None => {
                 let value = value?;
@@ -65,13 +70,15 @@ impl Checker<'_> {
             }
         };
         let unit = self.quantity_unit(block, &of, result)?;
+        let signal_unit = from_pest::of_places(&of, self.problems).map(|of| self.own_unit(&of.signal.node, dimension))?;
         let limits = self.limits(block, &unit, result);
         if limits.is_empty() && block.field("limit").is_none() {
             self.problems.push(
-                Problem::warning("no-limit", format!("quantity `{}` has no limit: it is reported, and decides nothing", block.name_text())).at(block.span()),
+                Problem::warning("no-limit", format!("quantity `{}` has no limit: it is reported, and decides nothing", block.name_text()))
+                    .at(block.span()),
             );
         }
-        let filter = self.filter_words(block, &chain);
+        let filter = filter_words(&chain);
         let only = match block.field("where") {
             Some(field) => Some(self.section_condition(field)?),
             None => None,
@@ -88,6 +95,7 @@ impl Checker<'_> {
             source: text("source"),
             notes: block.fields_named("note").map(|note| note.value.text.clone()).collect(),
             unit,
+            signal_unit,
             signals: signals.into_iter().map(|(name, signal, _)| (name, signal)).collect(),
             chain,
             evaluation,
@@ -119,7 +127,8 @@ impl Checker<'_> {
             }
             let signal = self.signal(&phrase, of, &position)?;
             if signal.track {
-                self.problems.push(Problem::error("track-quantity", "the track record has no simulated and measured side to compare").at(&used));
+                self.problems
+                    .push(Problem::error("track-quantity", "the track record has no simulated and measured side to compare").at(&used));
                 return None;
             }
             found.push((filled, signal, position));
@@ -135,7 +144,9 @@ impl Checker<'_> {
         let result = self.number_type(&expr)?;
         if scope.inputs.is_empty() {
             self.problems.push(
-                Problem::error("value-of-nothing", "the value takes nothing from the signal").at(&value.value.span).help("for instance `median`, `rms`, `|p99.85|`"),
+                Problem::error("value-of-nothing", "the value takes nothing from the signal")
+                    .at(&value.value.span)
+                    .help("for instance `median`, `rms`, `|p99.85|`"),
             );
             return None;
         }
@@ -174,26 +185,30 @@ impl Checker<'_> {
             let unit = self.unit(&field.value)?;
             if unit.dimension != dimension {
                 self.problems.push(
-                    Problem::error("unit-mismatch", format!("the values are {}, the unit is one of {}", dimension.in_words(), unit.dimension.in_words()))
-                        .at(&field.value.span)
-                        .also(&of.span, dimension.in_words()),
+                    Problem::error(
+                        "unit-mismatch",
+                        format!("the values are {}, the unit is one of {}", dimension.in_words(), unit.dimension.in_words()),
+                    )
+                    .at(&field.value.span)
+                    .also(&of.span, dimension.in_words()),
                 );
                 return None;
             }
             return Some(unit);
         }
         let signal = from_pest::of_places(of, self.problems)?.signal.node;
-        let own = self.names.channels.get(&signal).map(|channel| channel.unit.clone()).or_else(|| self.names.signals.get(&signal).and_then(|signal| signal.unit.clone()));
-        Some(match own {
+        Some(self.own_unit(&signal, dimension))
+    }
+
+    /// The unit of a channel or signal if it suits, else that of SI.
+    fn own_unit(&self, name: &str, dimension: Dimension) -> Unit {
+        let channel = self.names.channels.get(name).map(|channel| channel.unit.clone());
+        let own = channel.or_else(|| self.names.signals.get(name).and_then(|signal| signal.unit.clone()));
+        match own {
             Some(unit) if unit.dimension == dimension => unit,
             _ if dimension == Dimension::ONE => Unit::one(),
             _ => Unit { text: dimension.to_string(), factor: 1.0, dimension },
-        })
-    }
-
-    fn filter_words(&self, block: &Block, chain: &[Step]) -> String {
-        let _ = block;
-        if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") }
+        }
     }
 
     pub(super) fn section_condition(&mut self, field: &Field) -> Option<Expr> {
@@ -208,7 +223,10 @@ impl Checker<'_> {
         let Some(field) = block.field(key) else { return Some(default) };
         let (value, dimension) = self.constant(&field.value)?;
         if dimension != Dimension::ONE || value.fract() != 0.0 || !(0.0..=1e6).contains(&value) {
-            self.problems.push(Problem::error("not-a-count", format!("`{key}` is a whole number, this is {}", normalised(&field.value.text))).at(&field.value.span));
+            self.problems.push(
+                Problem::error("not-a-count", format!("`{key}` is a whole number, this is {}", normalised(&field.value.text)))
+                    .at(&field.value.span),
+            );
             return None;
         }
         Some(value as usize)
@@ -239,7 +257,9 @@ impl Checker<'_> {
         for limit in limits {
             let mut at = limit;
             for _ in 0..limits.len() {
-                let Some(next) = referred(&at.bound).and_then(|name| limits.iter().find(|limit| limit.statistic.name() == name)) else { break };
+                let Some(next) = referred(&at.bound).and_then(|name| limits.iter().find(|limit| limit.statistic.name() == name)) else {
+                    break;
+                };
                 if next.span == limit.span {
                     self.problems.push(
                         Problem::error("limit-loop", "this limit depends on itself").at(&limit.span).also(&at.span, "by way of this one"),
@@ -258,7 +278,9 @@ impl Checker<'_> {
         let Some(statistic) = Statistic::named(&written.statistic.node) else {
             let known: Vec<&str> = STATISTICS.iter().map(|entry| entry.name).chain(["each"]).collect();
             self.problems.push(
-                Problem::error("unknown-statistic", format!("`{}` is no statistic", written.statistic.node)).at(&statistic_span).suggest(&written.statistic.node, known),
+                Problem::error("unknown-statistic", format!("`{}` is no statistic", written.statistic.node))
+                    .at(&statistic_span)
+                    .suggest(&written.statistic.node, known),
             );
             return None;
         };
@@ -270,11 +292,14 @@ impl Checker<'_> {
         if bound.ty != Type::Number(dimension) {
             let found = super::scalars::in_words(&bound.ty);
             self.problems.push(
-                Problem::error("unit-mismatch", format!("the values of `{}` are {}, the limit is {found}", names_of(field), dimension.in_words()))
-                    .at(&bound.span)
-                    .label(found)
-                    .also(&self.of_span(field), dimension.in_words())
-                    .help(format!("write the limit in {unit}")),
+                Problem::error(
+                    "unit-mismatch",
+                    format!("the values of `{}` are {}, the limit is {found}", names_of(field), dimension.in_words()),
+                )
+                .at(&bound.span)
+                .label(found)
+                .also(&self.of_span(field), dimension.in_words())
+                .help(format!("write the limit in {unit}")),
             );
             return None;
         }
@@ -289,7 +314,9 @@ impl Checker<'_> {
             let factor = self.expr(factor, text, &mut Scope::vehicle())?;
             let number = self.number_type(&factor)?;
             if number != Dimension::ONE {
-                self.problems.push(Problem::error("unit-mismatch", format!("a factor is a plain number, this is {}", number.in_words())).at(&factor.span));
+                self.problems.push(
+                    Problem::error("unit-mismatch", format!("a factor is a plain number, this is {}", number.in_words())).at(&factor.span),
+                );
                 return None;
             }
             let condition = self.expr(condition, text, &mut Scope::vehicle())?;
@@ -313,9 +340,29 @@ impl Checker<'_> {
             factors,
             only_when,
             scope,
-            words: normalised(&text.text[written.statistic.range.end..]),
+            words: self.with_values(&normalised(&text.text[written.statistic.range.end..])),
             span: text.span.clone(),
         })
+    }
+
+    /// The words of a limit with the values of parameters in place of their names: `2/3 of std`, not `share of std`.
+    fn with_values(&self, words: &str) -> String {
+        let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+        let mut out = String::new();
+        let mut rest = words;
+        while !rest.is_empty() {
+            let name = rest.find(|c| !is_name(c)).unwrap_or(rest.len());
+            if name == 0 {
+                let next = rest.find(is_name).unwrap_or(rest.len());
+                out.push_str(&rest[..next]);
+                rest = &rest[next..];
+                continue;
+            }
+            let word = &rest[..name];
+            out.push_str(self.names.parameters.get(word).map_or(word, |parameter| parameter.value_words.as_str()));
+            rest = &rest[name..];
+        }
+        out
     }
 
     fn limit_scope(&mut self, scope: &At<WrittenScope>, text: &Text) -> Option<LimitScope> {
@@ -354,6 +401,10 @@ impl Checker<'_> {
     }
 }
 
+fn filter_words(chain: &[Step]) -> String {
+    if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") }
+}
+
 fn names_of(field: &Field) -> String {
     normalised(&field.value.text).split(' ').next().unwrap_or("").to_string()
 }
@@ -365,7 +416,9 @@ fn referred(expr: &Expr) -> Option<String> {
         Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => referred(inner),
         Kind::Binary(_, left, right) => referred(left).or_else(|| referred(right)),
         Kind::Call(_, arguments) => arguments.iter().find_map(referred),
-        Kind::Cases(arms, otherwise) => arms.iter().find_map(|(value, _)| referred(value)).or_else(|| otherwise.as_deref().and_then(referred)),
+        Kind::Cases(arms, otherwise) => {
+            arms.iter().find_map(|(value, _)| referred(value)).or_else(|| otherwise.as_deref().and_then(referred))
+        }
         _ => None,
     }
 }

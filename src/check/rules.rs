@@ -40,8 +40,11 @@ impl Checker<'_> {
                 let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
                 if self.number_type(&expr)? != axis {
                     self.problems.push(
-                        Problem::error("unit-mismatch", format!("sections are {} long, this is {}", axis.in_words(), super::scalars::in_words(&expr.ty)))
-                            .at(&field.value.span),
+                        Problem::error(
+                            "unit-mismatch",
+                            format!("sections are {} long, this is {}", axis.in_words(), super::scalars::in_words(&expr.ty)),
+                        )
+                        .at(&field.value.span),
                     );
                     return None;
                 }
@@ -91,7 +94,11 @@ impl Checker<'_> {
             "stop" => Some(OnFault::Stop),
             "note" => Some(OnFault::Note),
             other => {
-                self.problems.push(Problem::error("unknown-choice", format!("`{other}` is no treatment")).at(&field.value.span).suggest(other, ["not used", "stop", "note"]));
+                self.problems.push(
+                    Problem::error("unknown-choice", format!("`{other}` is no treatment"))
+                        .at(&field.value.span)
+                        .suggest(other, ["not used", "stop", "note"]),
+                );
                 None
             }
         }
@@ -186,7 +193,8 @@ impl Checker<'_> {
                     }
                 }
                 _ => {
-                    self.problems.push(Problem::error("not-a-count", "a whole number above zero is needed").at(&field.value.place(count.range)));
+                    self.problems
+                        .push(Problem::error("not-a-count", "a whole number above zero is needed").at(&field.value.place(count.range)));
                     Rule::EveryLimit
                 }
             },
@@ -199,7 +207,9 @@ impl Checker<'_> {
     pub(super) fn zones_match(&mut self, rules: &SectionRules) {
         let Some(index) = rules.zone else {
             if let Some(block) = self.blocks.iter().find(|block| block.kind.text == "zone") {
-                let problem = Problem::error("no-zone-column", "there are zones, but no section column says which section belongs to which").at(block.span());
+                let problem =
+                    Problem::error("no-zone-column", "there are zones, but no section column says which section belongs to which")
+                        .at(block.span());
                 self.problems.push(problem.help("add to `sections`: `zone zone`"));
             }
             return;
@@ -211,13 +221,18 @@ impl Checker<'_> {
         };
         for word in overlap::datum_words(&datum.kind) {
             if !self.zone_names.contains(&word) {
-                let problem = Problem::error("unknown-zone", format!("sections may be of zone {word}, which is not described")).at(&datum.span);
+                let problem =
+                    Problem::error("unknown-zone", format!("sections may be of zone {word}, which is not described")).at(&datum.span);
                 self.problems.push(problem.help(format!("add a block `zone {word}`, or take {word} out of the column's words")));
             }
         }
         let words = overlap::datum_words(&datum.kind);
-        let strangers: Vec<Block> =
-            self.blocks.iter().filter(|block| block.kind.text == "zone" && !words.iter().any(|word| word == block.name_text())).cloned().collect();
+        let strangers: Vec<Block> = self
+            .blocks
+            .iter()
+            .filter(|block| block.kind.text == "zone" && !words.iter().any(|word| word == block.name_text()))
+            .cloned()
+            .collect();
         for block in strangers {
             self.problems.push(
                 Problem::error("unknown-zone", format!("no section can be of zone {}", block.name_text()))

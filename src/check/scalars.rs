@@ -99,7 +99,9 @@ impl Checker<'_> {
                 };
                 (Kind::Power(Box::new(inner), *exponent), Type::Number(dimension))
             }
-            Node::Binary(operator @ (Operator::Is | Operator::IsNot), left, right) => return self.equality(*operator, left, right, text, &span, scope),
+            Node::Binary(operator @ (Operator::Is | Operator::IsNot), left, right) => {
+                return self.equality(*operator, left, right, text, &span, scope);
+            }
             Node::Binary(operator, left, right) => {
                 let left = self.expr(left, text, scope);
                 let right = self.expr(right, text, scope);
@@ -162,7 +164,14 @@ impl Checker<'_> {
                 || self.names.columns.iter().chain(&self.names.vehicle).any(|datum| datum.name == word))
     }
 
-    fn cases(&mut self, arms: &[(Phrase, Option<Phrase>)], otherwise: Option<&Phrase>, text: &Text, span: &Span, scope: &mut Scope) -> Option<Expr> {
+    fn cases(
+        &mut self,
+        arms: &[(Phrase, Option<Phrase>)],
+        otherwise: Option<&Phrase>,
+        text: &Text,
+        span: &Span,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         let mut checked: Vec<(Expr, Option<Expr>)> = Vec::new();
         let mut ok = true;
         for (value, condition) in arms {
@@ -193,7 +202,9 @@ impl Checker<'_> {
         let otherwise = match otherwise {
             None => None,
             Some(value) => {
-                let decided = checked.iter().any(|(_, condition)| condition.as_ref().is_none_or(|c| matches!(c.kind, Kind::Constant(Scalar::Flag(true)))));
+                let decided = checked
+                    .iter()
+                    .any(|(_, condition)| condition.as_ref().is_none_or(|c| matches!(c.kind, Kind::Constant(Scalar::Flag(true)))));
                 let inputs = scope.inputs.len();
                 let value = self.expr(value, text, scope)?;
                 if decided {
@@ -253,7 +264,9 @@ impl Checker<'_> {
                     Node::Number { value, unit: None } => value.to_string(),
                     _ => {
                         self.problems.push(
-                            Problem::error("not-a-word", "a word is compared with something that is no word").at(&right_span).also(&left.span, "a word"),
+                            Problem::error("not-a-word", "a word is compared with something that is no word")
+                                .at(&right_span)
+                                .also(&left.span, "a word"),
                         );
                         return None;
                     }
@@ -369,17 +382,22 @@ impl Checker<'_> {
             Signature::Same => Some(of[0]),
             Signature::ToPlain => Some(Dimension::ONE),
             Signature::Plain if of[0] == Dimension::ONE => Some(Dimension::ONE),
-            Signature::Plain => refuse(self, format!("`{}` takes a plain number or an angle, this is {}", function.name, of[0].in_words()), 0),
+            Signature::Plain => {
+                refuse(self, format!("`{}` takes a plain number or an angle, this is {}", function.name, of[0].in_words()), 0)
+            }
             Signature::Root => of[0].root().or_else(|| refuse(self, format!("{} has no square root", of[0].in_words()), 0)),
             Signature::PairSame if of[0] == of[1] => Some(of[0]),
-            Signature::PairSame => refuse(self, format!("`{}` takes two alike, these are {} and {}", function.name, of[0].in_words(), of[1].in_words()), 1),
+            Signature::PairSame => {
+                refuse(self, format!("`{}` takes two alike, these are {} and {}", function.name, of[0].in_words(), of[1].in_words()), 1)
+            }
         }
     }
 
     fn own_reducer(&mut self, reducer: Reducer, span: Span, scope: &mut Scope) -> Option<Expr> {
         if let Reducer::Percentile(percent) = reducer {
             if !(0.0..=100.0).contains(&percent) {
-                self.problems.push(Problem::error("out-of-range", format!("a percentile lies between 0 and 100, this is {percent}")).at(&span));
+                self.problems
+                    .push(Problem::error("out-of-range", format!("a percentile lies between 0 and 100, this is {percent}")).at(&span));
                 return None;
             }
         }
@@ -429,7 +447,8 @@ impl Checker<'_> {
     fn on_side(&mut self, name: &At<String>, arguments: &[Phrase], text: &Text, span: &Span, scope: &mut Scope) -> Option<Expr> {
         let (Some(reduce), [argument]) = (scope.reduce, arguments) else {
             self.problems.push(
-                Problem::error("side", format!("`{}(...)` takes one reduced signal, in the value of a quantity or a check", name.node)).at(span),
+                Problem::error("side", format!("`{}(...)` takes one reduced signal, in the value of a quantity or a check", name.node))
+                    .at(span),
             );
             return None;
         };
@@ -481,7 +500,11 @@ impl Checker<'_> {
                 "end" => return Some(Expr { kind: Kind::End, ty: number, span: span.clone() }),
                 "length" => {
                     let side = |kind| Box::new(Expr { kind, ty: number.clone(), span: span.clone() });
-                    return Some(Expr { kind: Kind::Binary(Operator::Subtract, side(Kind::End), side(Kind::Start)), ty: number.clone(), span: span.clone() });
+                    return Some(Expr {
+                        kind: Kind::Binary(Operator::Subtract, side(Kind::End), side(Kind::Start)),
+                        ty: number.clone(),
+                        span: span.clone(),
+                    });
                 }
                 _ => {}
             }
@@ -530,7 +553,9 @@ impl Checker<'_> {
 
     fn define(&mut self, name: &str, define: &super::names::Written, span: &Span, scope: &mut Scope) -> Option<Expr> {
         if scope.depth >= DEEPEST_DEFINE {
-            self.problems.push(Problem::error("define-loop", format!("`{name}` is defined by itself")).at(&define.text.span).also(span, "used here"));
+            self.problems.push(
+                Problem::error("define-loop", format!("`{name}` is defined by itself")).at(&define.text.span).also(span, "used here"),
+            );
             return None;
         }
         scope.depth += 1;

@@ -37,7 +37,12 @@ impl Checker<'_> {
             }
             Node::Magnitude(inner) => {
                 let inner = self.signal(inner, text, at)?;
-                Some(Signal { dimension: inner.dimension, track: inner.track, kind: SignalKind::Call(function("magnitude")?, vec![inner]), span })
+                Some(Signal {
+                    dimension: inner.dimension,
+                    track: inner.track,
+                    kind: SignalKind::Call(function("magnitude")?, vec![inner]),
+                    span,
+                })
             }
             Node::Power(inner, exponent) => {
                 let inner = self.signal(inner, text, at)?;
@@ -53,10 +58,13 @@ impl Checker<'_> {
                     _ if left.dimension == right.dimension => left.dimension,
                     _ => {
                         self.problems.push(
-                            Problem::error("unit-mismatch", format!("{} and {} cannot be added", left.dimension.in_words(), right.dimension.in_words()))
-                                .at(&right.span)
-                                .label(right.dimension.in_words())
-                                .also(&left.span, left.dimension.in_words()),
+                            Problem::error(
+                                "unit-mismatch",
+                                format!("{} and {} cannot be added", left.dimension.in_words(), right.dimension.in_words()),
+                            )
+                            .at(&right.span)
+                            .label(right.dimension.in_words())
+                            .also(&left.span, left.dimension.in_words()),
                         );
                         return None;
                     }
@@ -79,9 +87,12 @@ impl Checker<'_> {
                 let steps = self.filter_named(&filter.node, &text.place(filter.range.clone()))?;
                 if let Some(window) = steps.iter().find(|step| !step.kind.keeps_samples()) {
                     self.problems.push(
-                        Problem::error("window-in-signal", "a filter inside a signal must keep its samples, this one has a window or resamples")
-                            .at(&text.place(filter.range.clone()))
-                            .also(&window.span, "this step"),
+                        Problem::error(
+                            "window-in-signal",
+                            "a filter inside a signal must keep its samples, this one has a window or resamples",
+                        )
+                        .at(&text.place(filter.range.clone()))
+                        .also(&window.span, "this step"),
                     );
                     return None;
                 }
@@ -99,7 +110,14 @@ impl Checker<'_> {
         Some(Signal { dimension, track: false, kind: SignalKind::Scalar(expr), span })
     }
 
-    fn signal_cases(&mut self, arms: &[(Phrase, Option<Phrase>)], otherwise: Option<&Phrase>, text: &Text, span: &Span, at: &Assignment) -> Option<Signal> {
+    fn signal_cases(
+        &mut self,
+        arms: &[(Phrase, Option<Phrase>)],
+        otherwise: Option<&Phrase>,
+        text: &Text,
+        span: &Span,
+        at: &Assignment,
+    ) -> Option<Signal> {
         let mut select = Vec::new();
         for (value, condition) in arms {
             let condition = match condition {
@@ -141,9 +159,12 @@ impl Checker<'_> {
         for other in &all[1..] {
             if other.dimension != first.dimension {
                 self.problems.push(
-                    Problem::error("unit-mismatch", format!("one case is {}, another {}", first.dimension.in_words(), other.dimension.in_words()))
-                        .at(&other.span)
-                        .also(&first.span, first.dimension.in_words()),
+                    Problem::error(
+                        "unit-mismatch",
+                        format!("one case is {}, another {}", first.dimension.in_words(), other.dimension.in_words()),
+                    )
+                    .at(&other.span)
+                    .also(&first.span, first.dimension.in_words()),
                 );
                 return None;
             }
@@ -159,9 +180,12 @@ impl Checker<'_> {
         let track = of_records.first().is_some_and(|signal| signal.track);
         if let Some(other) = of_records.iter().find(|signal| signal.track != track) {
             self.problems.push(
-                Problem::error("mixed-records", "a channel of the track record cannot be combined with one of simulation and measurement, sample by sample")
-                    .at(&other.span)
-                    .also(&of_records[0].span, "the other record"),
+                Problem::error(
+                    "mixed-records",
+                    "a channel of the track record cannot be combined with one of simulation and measurement, sample by sample",
+                )
+                .at(&other.span)
+                .also(&of_records[0].span, "the other record"),
             );
             return None;
         }
@@ -196,25 +220,36 @@ impl Checker<'_> {
         }
         let known: Vec<String> = self.names.channels.keys().chain(self.names.signals.keys()).cloned().collect();
         self.problems.push(
-            Problem::error("unknown-signal", format!("no channel or signal is called `{name}`")).at(span).suggest(name, known.iter().map(String::as_str)),
+            Problem::error("unknown-signal", format!("no channel or signal is called `{name}`"))
+                .at(span)
+                .suggest(name, known.iter().map(String::as_str)),
         );
     }
 
     fn channel_at(&mut self, name: &str, channel: &Channel, span: &Span, at: &Assignment) -> Option<Signal> {
         let column = self.fill(name, &channel.column, &channel.places, &channel.span, span, at)?;
-        Some(Signal { kind: SignalKind::Column { column, channel: name.to_string() }, dimension: channel.unit.dimension, track: channel.track, span: span.clone() })
+        Some(Signal {
+            kind: SignalKind::Column { column, channel: name.to_string() },
+            dimension: channel.unit.dimension,
+            track: channel.track,
+            span: span.clone(),
+        })
     }
 
     fn signal_at(&mut self, name: &str, signal: &SignalDef, span: &Span, at: &Assignment) -> Option<Signal> {
         self.fill(name, &signal.named, &signal.places, &signal.span, span, at)?;
-        let own: Assignment = signal.places.iter().filter_map(|place| at.get(place).map(|member| (place.clone(), member.clone()))).collect();
+        let own: Assignment =
+            signal.places.iter().filter_map(|place| at.get(place).map(|member| (place.clone(), member.clone()))).collect();
         let found = self.signal(&signal.is.phrase, &signal.is.text, &own)?;
         if let Some(unit) = &signal.unit {
             if unit.dimension != found.dimension {
                 self.problems.push(
-                    Problem::error("unit-mismatch", format!("signal `{name}` is said to be in {unit}, but is {}", found.dimension.in_words()))
-                        .at(&signal.span)
-                        .also(&found.span, found.dimension.in_words()),
+                    Problem::error(
+                        "unit-mismatch",
+                        format!("signal `{name}` is said to be in {unit}, but is {}", found.dimension.in_words()),
+                    )
+                    .at(&signal.span)
+                    .also(&found.span, found.dimension.in_words()),
                 );
                 return None;
             }
@@ -223,7 +258,15 @@ impl Checker<'_> {
     }
 
     /// The name with its places put in; a problem if one is open.
-    pub(super) fn fill(&mut self, name: &str, pattern: &str, places: &[String], defined: &Span, used: &Span, at: &Assignment) -> Option<String> {
+    pub(super) fn fill(
+        &mut self,
+        name: &str,
+        pattern: &str,
+        places: &[String],
+        defined: &Span,
+        used: &Span,
+        at: &Assignment,
+    ) -> Option<String> {
         let mut filled = pattern.to_string();
         for place in places {
             let Some(member) = at.get(place) else {
@@ -247,9 +290,10 @@ impl Checker<'_> {
         let mut assignments: Vec<(Option<super::plan::Expr>, Assignment)> = vec![(None, at.clone())];
         let mut from = 0;
         while from < words.len() {
-            let Some((place, member_at)) = (from + 1..words.len())
-                .find_map(|end| self.place_called(&words[from..end].iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_")).map(|place| (place, end)))
-            else {
+            let Some((place, member_at)) = (from + 1..words.len()).find_map(|end| {
+                self.place_called(&words[from..end].iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_"))
+                    .map(|place| (place, end))
+            }) else {
                 self.unknown_place(&words[from], text);
                 return None;
             };
@@ -383,7 +427,8 @@ impl Checker<'_> {
                 found.push(member.node.clone());
             } else {
                 let near = nearest(&member.node, definition.members.iter().map(String::as_str)).map(str::to_string);
-                let problem = Problem::error("unknown-place", format!("`{}` is no {place}", member.node)).at(&text.place(member.range.clone()));
+                let problem =
+                    Problem::error("unknown-place", format!("`{}` is no {place}", member.node)).at(&text.place(member.range.clone()));
                 self.problems.push(match near {
                     Some(near) => problem.help(format!("did you mean `{near}`?")),
                     None => problem.help(format!("known here: {}", definition.members.join(", "))),

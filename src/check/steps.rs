@@ -54,7 +54,11 @@ impl Checker<'_> {
         }
         let Some(block) = self.names.filters.get(name).cloned() else {
             let names: Vec<String> = self.names.filters.keys().cloned().collect();
-            self.problems.push(Problem::error("unknown-filter", format!("no filter is called `{name}`")).at(span).suggest(name, names.iter().map(String::as_str)));
+            self.problems.push(
+                Problem::error("unknown-filter", format!("no filter is called `{name}`"))
+                    .at(span)
+                    .suggest(name, names.iter().map(String::as_str)),
+            );
             return None;
         };
         // Before the steps are read: a filter that uses itself then finds nothing instead of looping.
@@ -98,9 +102,19 @@ impl Checker<'_> {
                 StepSpec::Butterworth { .. } => {
                     let per_length = step.words.contains("1/m");
                     if per_length != over_length.is_some() {
-                        let problem = Problem::error("step-order", if per_length { "cycles per length need a record with equal steps of length" } else { "a frequency in time after resampling over a length" }).at(&step.span);
+                        let problem = Problem::error(
+                            "step-order",
+                            if per_length {
+                                "cycles per length need a record with equal steps of length"
+                            } else {
+                                "a frequency in time after resampling over a length"
+                            },
+                        )
+                        .at(&step.span);
                         self.problems.push(match over_length {
-                            Some(before) => problem.also(&before.span, "resampled here").help("write the frequency as cycles per length: `(1 / (3 m))`"),
+                            Some(before) => {
+                                problem.also(&before.span, "resampled here").help("write the frequency as cycles per length: `(1 / (3 m))`")
+                            }
                             None => problem.help("put `resample every 0.25 m` before, or write a frequency in Hz"),
                         });
                         return None;
@@ -159,7 +173,13 @@ impl Checker<'_> {
     }
 
     /// Which wording the words fit: as many fixed words in place as possible.
-    fn find_form<'f>(&mut self, step: &Written_, span: &Span, what: &'static str, forms: impl Iterator<Item = &'f Form> + Clone) -> Option<usize> {
+    fn find_form<'f>(
+        &mut self,
+        step: &Written_,
+        span: &Span,
+        what: &'static str,
+        forms: impl Iterator<Item = &'f Form> + Clone,
+    ) -> Option<usize> {
         let items: &[At<Item>] = step.parts.first().map_or(&[], Vec::as_slice);
         let fits = |form: &Form| {
             form.head.len() == items.len()
@@ -172,8 +192,10 @@ impl Checker<'_> {
         if let Some(index) = forms.clone().position(fits) {
             return Some(index);
         }
-        let said: Vec<&str> = items.iter().filter_map(|item| if let Item::Word(word) = &item.node { Some(word.as_str()) } else { None }).collect();
-        let heads: Vec<&str> = forms.clone().filter_map(|form| if let Some(Part::Word(word)) = form.head.first() { Some(*word) } else { None }).collect();
+        let said: Vec<&str> =
+            items.iter().filter_map(|item| if let Item::Word(word) = &item.node { Some(word.as_str()) } else { None }).collect();
+        let heads: Vec<&str> =
+            forms.clone().filter_map(|form| if let Some(Part::Word(word)) = form.head.first() { Some(*word) } else { None }).collect();
         let first = said.first().copied().unwrap_or("");
         let wordings: Vec<String> = forms
             .filter(|form| matches!(form.head.first(), Some(Part::Word(word)) if *word == first || nearest(first, heads.iter().copied()) == Some(*word)))
@@ -182,7 +204,8 @@ impl Checker<'_> {
         let filters: Vec<String> = self.names.filters.keys().cloned().collect();
         let problem = Problem::error("unknown-step", format!("these words are no {what}")).at(span);
         self.problems.push(if wordings.is_empty() {
-            let known: Vec<&str> = if what == "step" { heads.iter().copied().chain(filters.iter().map(String::as_str)).collect() } else { heads };
+            let known: Vec<&str> =
+                if what == "step" { heads.iter().copied().chain(filters.iter().map(String::as_str)).collect() } else { heads };
             let mut known_once: Vec<&str> = Vec::new();
             for word in known {
                 if !known_once.contains(&word) {
@@ -322,7 +345,9 @@ impl Checker<'_> {
                 }
                 let order = filled.options[0];
                 if order.fract() != 0.0 || !(1.0..=20.0).contains(&order) {
-                    self.problems.push(Problem::error("out-of-range", format!("the order is a whole number from 1 to 20, this is {order}")).at(span));
+                    self.problems.push(
+                        Problem::error("out-of-range", format!("the order is a whole number from 1 to 20, this is {order}")).at(span),
+                    );
                     return None;
                 }
                 words.push(format!(", order {order}, {}, {}", filled.choices[0], filled.choices[1]));
@@ -340,7 +365,13 @@ impl Checker<'_> {
                 self.suits("step", a == b, &a.in_words(), *b, place)?;
                 words.push(format!(", {}", filled.choices[0]));
                 let ends = if filled.choices[0] == "integral" { Ends::Integral } else { Ends::Samples };
-                StepSpec::Window { rms: entry.kind == StepKind::SlidingRms, width: number(0), step: number(1), over_time: *a == Dimension::TIME, ends }
+                StepSpec::Window {
+                    rms: entry.kind == StepKind::SlidingRms,
+                    width: number(0),
+                    step: number(1),
+                    over_time: *a == Dimension::TIME,
+                    ends,
+                }
             }
             StepKind::Resample => StepSpec::Resample { step: number(0), over_time: filled.numbers.first()?.1 == Dimension::TIME },
             StepKind::RemoveMean => StepSpec::RemoveMean,

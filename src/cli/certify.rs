@@ -12,6 +12,7 @@ use crate::certify::{Compiled, certify, compile};
 use crate::check::family::{self, Family};
 use crate::check::{Override, Overrides, plan::SetBy};
 use crate::data::Campaign;
+use crate::data::text::read_text;
 use crate::data::write::Outputs;
 use crate::library;
 use crate::problem::{Problem, Problems};
@@ -127,7 +128,10 @@ impl Certify {
             };
             let source = Source::new("--set", set.clone());
             let span = source.span(name.len() + 1..set.len());
-            overrides.insert(name.trim().to_string(), Override { text: Text { text: value.to_string(), span, exact: true }, set_by: SetBy::CommandLine });
+            overrides.insert(
+                name.trim().to_string(),
+                Override { text: Text { text: value.to_string(), span, exact: true }, set_by: SetBy::CommandLine },
+            );
         }
         Some(overrides)
     }
@@ -144,8 +148,12 @@ impl Certify {
             let data = view::view(found);
             let figures = figure::figures(found);
             if self.only != Only::Html {
-                let attachment =
-                    typst::Attachment { name: "results.json", mime: "application/json", bytes: results.as_bytes(), description: "Every number of this report" };
+                let attachment = typst::Attachment {
+                    name: "results.json",
+                    mime: "application/json",
+                    bytes: results.as_bytes(),
+                    description: "Every number of this report",
+                };
                 files.push(("report.pdf".into(), typst::typeset(&data, &figures, &[attachment])?.bytes));
             }
             if self.only != Only::Pdf {
@@ -161,7 +169,7 @@ impl Certify {
 fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mut Problems) -> Option<Family> {
     let source = match library::shipped(&named.value) {
         Some(source) => source,
-        None => match campaign.read_named(named) {
+        None => match campaign.place(named).and_then(|place| read_text(&place.path, &place.shown)) {
             Ok((source, _)) => source,
             Err(problem) => {
                 problems.push(problem.suggest(&named.value, library::SHIPPED.iter().map(|shipped| shipped.name)));
@@ -192,7 +200,10 @@ fn summary(found: &Certification, color: bool) -> String {
     };
     let width = found.quantities.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);
     let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
-    out += &format!("{:width$}  {:>8}  {:<26} {:>5}  {:>12}  {:>12}  {:>8}\n", "quantity", "unit", "statistic", "n", "value", "limit", "share");
+    out += &format!(
+        "{:width$}  {:>8}  {:<26} {:>5}  {:>12}  {:>12}  {:>8}\n",
+        "quantity", "unit", "statistic", "n", "value", "limit", "share"
+    );
     for quantity in &found.quantities {
         for (index, statistic) in quantity.statistics.iter().enumerate() {
             let name = if index == 0 { quantity.id.as_str() } else { "" };

@@ -135,7 +135,14 @@ fn plan_text(plan: &Plan) -> String {
     for quantity in &plan.quantities {
         let names: Vec<&str> = quantity.signals.iter().map(|(name, _)| name.as_str()).collect();
         let _ = writeln!(out, "quantity {} [{}]: {}", quantity.id, quantity.unit, quantity.title);
-        let _ = writeln!(out, "  of          {}\n  filter      {}\n  value       {}\n  comparison  {}", names.join(", "), quantity.words.filter, quantity.words.processing, quantity.words.comparison);
+        let _ = writeln!(
+            out,
+            "  of          {}\n  filter      {}\n  value       {}\n  comparison  {}",
+            names.join(", "),
+            quantity.words.filter,
+            quantity.words.processing,
+            quantity.words.comparison
+        );
         for limit in &quantity.limits {
             let _ = writeln!(out, "  limit       {} {}", limit.statistic.title(limit.ddof), limit.words);
         }
@@ -149,7 +156,8 @@ fn plan_json(plan: &Plan) -> Value {
         .quantities
         .iter()
         .map(|quantity| {
-            let limits: Vec<Value> = quantity.limits.iter().map(|limit| json!({"statistic": limit.statistic.name(), "limit": limit.words})).collect();
+            let limits: Vec<Value> =
+                quantity.limits.iter().map(|limit| json!({"statistic": limit.statistic.name(), "limit": limit.words})).collect();
             json!({
                 "id": quantity.id, "title": quantity.title, "unit": quantity.unit.text,
                 "signals": quantity.signals.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
@@ -163,7 +171,8 @@ fn plan_json(plan: &Plan) -> Value {
         .iter()
         .map(|zone| json!({"zone": zone.name, "title": zone.title, "where": zone.condition_words, "minimum_sections": zone.minimum_sections}))
         .collect();
-    let parameters: Vec<Value> = plan.parameters.iter().map(|parameter| json!({"name": parameter.name, "value": parameter.value})).collect();
+    let parameters: Vec<Value> =
+        plan.parameters.iter().map(|parameter| json!({"name": parameter.name, "value": parameter.value})).collect();
     json!({"name": plan.name, "title": plan.title, "parameters": parameters, "zones": zones, "quantities": quantities, "verdict": plan.verdict.words})
 }
 
@@ -217,8 +226,12 @@ pub fn entries() -> Vec<(&'static str, String, String, String)> {
 fn registry(as_json: bool) -> String {
     let entries = entries();
     if as_json {
-        let list: Vec<Value> = entries.iter().map(|(kind, name, signature, about)| json!({"kind": kind, "wording": name, "signature": signature, "about": about})).collect();
-        let units: Vec<Value> = SYMBOLS.iter().map(|unit| json!({"symbol": unit.symbol, "name": unit.name, "dimension": unit.dimension.to_string()})).collect();
+        let list: Vec<Value> = entries
+            .iter()
+            .map(|(kind, name, signature, about)| json!({"kind": kind, "wording": name, "signature": signature, "about": about}))
+            .collect();
+        let units: Vec<Value> =
+            SYMBOLS.iter().map(|unit| json!({"symbol": unit.symbol, "name": unit.name, "dimension": unit.dimension.to_string()})).collect();
         return pretty(&json!({"registry": list, "units": units}));
     }
     let mut out = String::new();

@@ -9,8 +9,8 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
-pub use output::Exit;
 use output::Console;
+pub use output::Exit;
 
 /// Validation of rail vehicle simulation models: from a protocol text and a campaign folder to a certification report.
 #[derive(Debug, Parser)]
@@ -66,7 +66,9 @@ enum Command {
         output: Option<PathBuf>,
     },
     /// Show a protocol at any stage; without a protocol, everything the language can do with signals and numbers.
-    #[command(after_help = "Example:\n  fishplate explain en14363-2016-annex-t --stage graph --format svg -o graph.svg\n  fishplate explain")]
+    #[command(
+        after_help = "Example:\n  fishplate explain en14363-2016-annex-t --stage graph --format svg -o graph.svg\n  fishplate explain"
+    )]
     Explain(explain::Explain),
     /// What differs in meaning between two protocols, rule by rule.
     #[command(after_help = "Example:\n  fishplate diff en14363-2016-annex-t my-variant.fp")]

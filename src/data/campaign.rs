@@ -10,9 +10,9 @@ use super::folder::{Folder, Place, check_file_name};
 use super::record::{Record, Wanted, read_record};
 use super::table::{Cell, Table};
 use super::text::read_text;
-use crate::yaml::{self, Key, Node, Value};
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span, Spanned};
+use crate::yaml::{self, Key, Node, Value};
 
 /// The file that makes a folder a campaign.
 pub const CAMPAIGN_FILE: &str = "campaign.yaml";
@@ -104,6 +104,11 @@ impl Campaign {
         let nowhere = Source::new(path.display().to_string(), "").whole();
         let place = folder.place(CAMPAIGN_FILE, &nowhere).map_err(|problem| problems.push(problem)).ok()?;
         let mut opening = Opening { folder, files: Vec::new(), problems };
+        if !place.path.is_file() {
+            let says = format!("there is no file `{}`", place.shown);
+            opening.problems.push(Problem::error("file-missing", says).help("a campaign is a folder with a file `campaign.yaml`"));
+            return None;
+        }
         let (source, tree) = opening.yaml(&place, None)?;
         if !matches!(tree.value, Value::Map(_)) {
             problems.push(
@@ -225,15 +230,12 @@ impl Campaign {
         Ok((record, file))
     }
 
-    /// A file that the campaign or its vehicle names, read as text.
+    /// A file that the campaign or its vehicle names; it need not exist.
     ///
     /// # Errors
-    /// `path-outside`, `path-invalid` and those of [`read_text`].
-    pub fn read_named(&self, written: &Spanned<String>) -> Result<(Arc<Source>, ReadFile), Problem> {
-        let place = self.folder.place(&written.value, &written.span)?;
-        let (source, sha256) = read_text(&place.path, &place.shown).map_err(|problem| named_at(problem, Some(&written.span)))?;
-        let bytes = size(&place.path);
-        Ok((source, ReadFile { path: place.inside, sha256, bytes }))
+    /// `path-outside`, `path-invalid`.
+    pub fn place(&self, written: &Spanned<String>) -> Result<Place, Problem> {
+        self.folder.place(&written.value, &written.span)
     }
 }
 
@@ -303,7 +305,7 @@ impl Opening<'_> {
         let place = self.folder.place(&written.value, &written.span);
         let place = self.keep(place)?;
         let mut found = Problems::default();
-        let table = Table::read(&place.path, &place.shown, SECTION_KEY, &mut found);
+        let table = Table::read(&place.path, &place.shown, Some(SECTION_KEY), &mut found);
         for problem in found.0 {
             self.problems.push(named_at(problem, Some(&written.span)));
         }

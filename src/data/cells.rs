@@ -188,12 +188,11 @@ pub(super) fn ragged(line: &Span, cells: &[RawCell], columns: usize) -> Problem 
             .at(line)
             .help("write numbers with a point");
     }
-    // The first cell too many, or the place where the next one is missing.
-    let at = match cells.get(columns) {
-        Some(extra) => line.part(extra.place.start..line.end - line.start),
-        None => cells.last().map_or_else(|| line.clone(), |last| line.part(last.place.clone())),
+    let (at, label) = match cells.get(columns) {
+        Some(extra) => (line.part(extra.place.start..line.end - line.start), "beyond the last column"),
+        None => (cells.last().map_or_else(|| line.clone(), |last| line.part(last.place.clone())), "the last value"),
     };
-    Problem::error("ragged-row", counts).at(&at)
+    Problem::error("ragged-row", counts).at(&at).label(label)
 }
 
 /// A finite number as written in a cell.

@@ -11,6 +11,7 @@ mod rows;
 use std::path::{Path, PathBuf};
 
 use super::cells::{self, Heading};
+use super::faults::Faults;
 use super::hash::sha256;
 use super::text::{decode, read_large, read_line};
 use crate::problem::Problem;
@@ -136,8 +137,8 @@ fn header(text: &str, shown: &str) -> Result<(Vec<Heading>, usize), Vec<Problem>
 }
 
 fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<Vec<Column>, Vec<Problem>> {
-    let mut columns = Vec::with_capacity(wanted.len());
-    let mut faults = fault::Faults::new(shown);
+    let mut columns: Vec<Column> = Vec::with_capacity(wanted.len());
+    let mut faults = Faults::new(shown);
     for wanted in wanted {
         let Some(position) = headings.iter().position(|heading| heading.name == wanted.name) else {
             if wanted.required {
@@ -146,6 +147,8 @@ fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<
             continue;
         };
         match headings[position].unit(wanted.dimension) {
+            // Asked for twice, a column is read once.
+            Ok(_) if columns.iter().any(|column| column.position == position) => {}
             Ok(unit) => columns.push(Column { name: wanted.name.clone(), unit, values: Vec::new(), position }),
             Err(problem) => faults.push(|| problem),
         }

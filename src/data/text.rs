@@ -34,10 +34,12 @@ pub(super) fn read_large(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
 
 /// The first line of a record file.
 pub(super) fn read_line(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
-    let mut line = Vec::new();
     let unreadable = |error: std::io::Error| Problem::error("file-unreadable", format!("`{shown}` cannot be read: {error}"));
-    let file = File::open(path).map_err(unreadable)?;
-    BufReader::new(file.take(SMALL)).read_until(b'\n', &mut line).map_err(unreadable)?;
+    if !path.is_file() {
+        return Err(Problem::error("file-missing", format!("there is no file `{shown}`")));
+    }
+    let mut line = Vec::new();
+    BufReader::new(File::open(path).map_err(unreadable)?.take(SMALL)).read_until(b'\n', &mut line).map_err(unreadable)?;
     if line.is_empty() { Err(empty(shown)) } else { Ok(line) }
 }
 

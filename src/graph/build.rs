@@ -3,15 +3,17 @@
 use indexmap::IndexMap;
 
 use super::{Graph, InputNode, Node, NodeId, Operation, QuantityNodes, SignalNodes};
+use crate::catalog::Metric;
 use crate::check::evaluate::{shape, words};
-use crate::check::plan::{Evaluation, Expr, Input, Operator, Plan, Quantity, Signal, SignalKind, Step, StepSpec};
+use crate::check::plan::{Evaluation, Expr, Input, Kind, Operator, Plan, Quantity, Signal, SignalKind, Step, StepSpec};
 use crate::source::Span;
 use crate::units::Dimension;
 
 pub fn from_plan(plan: &Plan) -> Graph {
     let mut builder = Builder { axis: plan.axis.unit.dimension, ..Builder::default() };
     let checks = plan.checks.iter().map(|check| check.inputs.iter().map(|input| builder.input(input, None)).collect()).collect();
-    let quantities: Vec<QuantityNodes> = plan.quantities.iter().enumerate().map(|(index, quantity)| builder.quantity(index, quantity)).collect();
+    let quantities: Vec<QuantityNodes> =
+        plan.quantities.iter().enumerate().map(|(index, quantity)| builder.quantity(index, quantity)).collect();
     let mut limits = Vec::new();
     for (index, quantity) in plan.quantities.iter().enumerate() {
         let compares: Vec<NodeId> = quantities[index].signals.iter().map(|signal| signal.compare).collect();
@@ -50,7 +52,9 @@ impl Builder {
             Operation::Read { column } => format!("read {column} {kind}"),
             Operation::Constant(expr) => format!("constant {}", shape(expr)),
             Operation::Select(conditions) => format!("select {}", conditions.iter().map(shape).collect::<Vec<_>>().join(";")),
-            Operation::Value { .. } | Operation::Compare { .. } | Operation::Aggregate { .. } | Operation::Limit { .. } => format!("{operation:?}"),
+            Operation::Value { .. } | Operation::Compare { .. } | Operation::Aggregate { .. } | Operation::Limit { .. } => {
+                format!("{operation:?}")
+            }
             _ => kind.clone(),
         };
         let key = format!("{what} {inputs:?}");
@@ -76,7 +80,14 @@ impl Builder {
         match &signal.kind {
             SignalKind::Column { column, channel } => {
                 let record = if signal.track { "track" } else { "record" };
-                self.add(Operation::Read { column: column.clone() }, Vec::new(), dimension, from, column.clone(), format!("{record} {channel}"))
+                self.add(
+                    Operation::Read { column: column.clone() },
+                    Vec::new(),
+                    dimension,
+                    from,
+                    column.clone(),
+                    format!("{record} {channel}"),
+                )
             }
             SignalKind::Scalar(expr) => self.constant(expr, dimension),
             SignalKind::Binary(operator, left, right) => {
@@ -134,7 +145,8 @@ impl Builder {
     /// The filtered signal of the record and the processed one of the section.
     fn processed(&mut self, signal: &Signal, chain: &[Step], from: &Span) -> (NodeId, NodeId) {
         let mut node = self.signal(signal);
-        let inside = chain.iter().position(|step| matches!(step.kind, StepSpec::Window { .. } | StepSpec::RemoveMean)).unwrap_or(chain.len());
+        let inside =
+            chain.iter().position(|step| matches!(step.kind, StepSpec::Window { .. } | StepSpec::RemoveMean)).unwrap_or(chain.len());
         for step in &chain[..inside] {
             node = self.step(node, step);
         }
@@ -175,23 +187,40 @@ impl Builder {
                 Evaluation::Sides { value, inputs, .. } => {
                     let inputs: Vec<InputNode> = inputs.iter().map(|input| self.input(input, Some(processed))).collect();
                     let of: Vec<NodeId> = inputs.iter().map(|input| input.node).collect();
+                    // A value that is one reduced signal needs no node of its own.
+                    if matches!(value.kind, Kind::Input(0)) {
+                        let compare = self.compare(index, quantity, number, name, of, None);
+                        signals.push(SignalNodes { processed, filtered, inputs, over: None, compare });
+                        continue;
+                    }
                     let label = format!("{} of {name}", words(value));
-                    let node = self.add(Operation::Value { quantity: index, signal: number }, of, dimension, &value.span, label, format!("value {index}"));
+                    let node = self.add(
+                        Operation::Value { quantity: index, signal: number },
+                        of,
+                        dimension,
+                        &value.span,
+                        label,
+                        format!("value {index}"),
+                    );
                     (inputs, None, vec![node], None)
                 }
-                Evaluation::Metric { metric, over } => {
+                Evaluation::Metric { metric, over, .. } => {
                     let over = over.get(number).map(|signal| self.processed(signal, &quantity.chain, &quantity.span).1);
                     let mut before = vec![processed];
                     before.extend(over);
                     (Vec::new(), over, before, Some(*metric))
                 }
             };
-            let label = format!("{} {name}: {}", quantity.id, quantity.words.comparison);
-            let compare = Operation::Compare { quantity: index, signal: number, metric };
-            let compare = self.add(compare, before, dimension, &quantity.span, label, format!("compare {index}"));
+            let compare = self.compare(index, quantity, number, name, before, metric);
             signals.push(SignalNodes { processed, filtered, inputs, over, compare });
         }
         QuantityNodes { signals }
+    }
+
+    fn compare(&mut self, index: usize, quantity: &Quantity, number: usize, name: &str, of: Vec<NodeId>, metric: Option<Metric>) -> NodeId {
+        let label = format!("{} {name}: {}", quantity.id, quantity.words.comparison);
+        let operation = Operation::Compare { quantity: index, signal: number, metric };
+        self.add(operation, of, quantity.unit.dimension, &quantity.span, label, format!("compare {index}"))
     }
 }
 

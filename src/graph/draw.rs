@@ -4,19 +4,20 @@ use std::fmt::Write;
 
 use super::{Graph, NodeId, Operation, Stage};
 
-const COLUMN: f64 = 196.0;
-const BOX_WIDTH: f64 = 156.0;
-const LINE: f64 = 11.0;
-const GAP: f64 = 7.0;
+const COLUMN: f64 = 148.0;
+const BOX_WIDTH: f64 = 128.0;
+const LINE: f64 = 13.0;
+const GAP: f64 = 8.0;
 const TOP: f64 = 34.0;
 /// Characters that fit on a line of a box in the font size used.
-const CHARACTERS: usize = 31;
-const MOST_LINES: usize = 4;
+const CHARACTERS: usize = 22;
+const MOST_LINES: usize = 5;
 const SWEEPS: usize = 12;
 
 /// A box of the picture.
 struct Card {
-    stage: Stage,
+    /// Column: values of reduced signals stand right of what they are made from, though both belong to one stage.
+    column: (Stage, bool),
     lines: Vec<String>,
     count: usize,
     inputs: Vec<usize>,
@@ -26,13 +27,11 @@ struct Card {
 /// A self-contained SVG; text is escaped.
 pub fn svg(graph: &Graph) -> String {
     let mut cards = cards(graph);
-    let stages: Vec<Stage> = {
-        let mut stages: Vec<Stage> = cards.iter().map(|card| card.stage).collect();
-        stages.sort_unstable();
-        stages.dedup();
-        stages
-    };
-    let columns: Vec<Vec<usize>> = stages.iter().map(|stage| (0..cards.len()).filter(|&index| cards[index].stage == *stage).collect()).collect();
+    let mut stages: Vec<(Stage, bool)> = cards.iter().map(|card| card.column).collect();
+    stages.sort_unstable();
+    stages.dedup();
+    let columns: Vec<Vec<usize>> =
+        stages.iter().map(|stage| (0..cards.len()).filter(|&index| cards[index].column == *stage).collect()).collect();
     let height = place(&mut cards, columns);
     let width = COLUMN * stages.len() as f64;
     draw(&cards, &stages, width, height)
@@ -57,11 +56,17 @@ fn cards(graph: &Graph) -> Vec<Card> {
         .enumerate()
         .map(|(index, members)| {
             let first = &graph.nodes[members[0]];
-            let mut inputs: Vec<usize> = members.iter().flat_map(|&id| graph.nodes[id].inputs.iter().map(|&input| card_of[input])).filter(|&input| input != index).collect();
+            let mut inputs: Vec<usize> = members
+                .iter()
+                .flat_map(|&id| graph.nodes[id].inputs.iter().map(|&input| card_of[input]))
+                .filter(|&input| input != index)
+                .collect();
             inputs.sort_unstable();
             inputs.dedup();
             let count = if matches!(first.operation, Operation::Aggregate { .. } | Operation::Limit { .. }) { 1 } else { members.len() };
-            Card { stage: first.operation.stage(), lines: wrapped(&label(graph, members)), count, inputs, y: 0.0 }
+            let stage = first.operation.stage();
+            let column = (stage, matches!(first.operation, Operation::Value { .. }));
+            Card { column, lines: wrapped(&label(graph, members)), count, inputs, y: 0.0 }
         })
         .collect()
 }
@@ -115,7 +120,8 @@ fn card_height(card: &Card) -> f64 {
 
 /// Orders each column by the mean height of neighbours, sweeping to and fro; gives the height of the picture.
 fn place(cards: &mut [Card], mut columns: Vec<Vec<usize>>) -> f64 {
-    let tallest = columns.iter().map(|column| column.iter().map(|&index| card_height(&cards[index]) + GAP).sum::<f64>()).fold(0.0, f64::max);
+    let tallest =
+        columns.iter().map(|column| column.iter().map(|&index| card_height(&cards[index]) + GAP).sum::<f64>()).fold(0.0, f64::max);
     let mut outputs: Vec<Vec<usize>> = vec![Vec::new(); cards.len()];
     for (index, card) in cards.iter().enumerate() {
         for &input in &card.inputs {
@@ -153,46 +159,66 @@ fn stack(cards: &mut [Card], columns: &[Vec<usize>], tallest: f64) {
     }
 }
 
-fn draw(cards: &[Card], stages: &[Stage], width: f64, height: f64) -> String {
+fn draw(cards: &[Card], stages: &[(Stage, bool)], width: f64, height: f64) -> String {
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" height=\"{height:.0}\" \
-         font-family=\"IBM Plex Sans\" font-size=\"9\">\n<rect width=\"{width:.0}\" height=\"{height:.0}\" fill=\"#ffffff\"/>\n"
+         font-family=\"IBM Plex Sans\" font-size=\"11\">\n<rect width=\"{width:.0}\" height=\"{height:.0}\" fill=\"#ffffff\"/>\n"
     );
-    let x_of = |stage: Stage| stages.iter().position(|known| *known == stage).unwrap_or(0) as f64 * COLUMN + (COLUMN - BOX_WIDTH) / 2.0;
+    let x_of =
+        |stage: (Stage, bool)| stages.iter().position(|known| *known == stage).unwrap_or(0) as f64 * COLUMN + (COLUMN - BOX_WIDTH) / 2.0;
     for stage in stages {
         let x = x_of(*stage) + BOX_WIDTH / 2.0;
-        let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"20\" text-anchor=\"middle\" font-size=\"12\" font-weight=\"600\" fill=\"#1f3a5f\">{}</text>", stage.in_words());
+        let _ = writeln!(
+            out,
+            "<text x=\"{x:.1}\" y=\"20\" text-anchor=\"middle\" font-size=\"13\" font-weight=\"600\" fill=\"#1f3a5f\">{}</text>",
+            stage.0.in_words()
+        );
     }
     for card in cards {
         for &input in &card.inputs {
             let from = &cards[input];
-            let (x1, y1) = (x_of(from.stage) + BOX_WIDTH, from.y + card_height(from) / 2.0);
-            let (x2, y2) = (x_of(card.stage), card.y + card_height(card) / 2.0);
+            let (x1, y1) = (x_of(from.column) + BOX_WIDTH, from.y + card_height(from) / 2.0);
+            let (x2, y2) = (x_of(card.column), card.y + card_height(card) / 2.0);
             if x2 > x1 {
                 let middle = (x1 + x2) / 2.0;
-                let _ = writeln!(out, "<path d=\"M{x1:.1} {y1:.1} C{middle:.1} {y1:.1} {middle:.1} {y2:.1} {x2:.1} {y2:.1}\" fill=\"none\" stroke=\"#8a97a8\" stroke-width=\"0.7\"/>");
+                let _ = writeln!(
+                    out,
+                    "<path d=\"M{x1:.1} {y1:.1} C{middle:.1} {y1:.1} {middle:.1} {y2:.1} {x2:.1} {y2:.1}\" fill=\"none\" stroke=\"#8a97a8\" stroke-width=\"0.7\"/>"
+                );
             } else {
                 // Within one column: a loop on the right side.
                 let (x, bend) = (x1, x1 + 16.0);
                 let y2 = card.y + card_height(card) / 2.0;
-                let _ = writeln!(out, "<path d=\"M{x:.1} {y1:.1} C{bend:.1} {y1:.1} {bend:.1} {y2:.1} {x:.1} {y2:.1}\" fill=\"none\" stroke=\"#8a97a8\" stroke-width=\"0.7\"/>");
+                let _ = writeln!(
+                    out,
+                    "<path d=\"M{x:.1} {y1:.1} C{bend:.1} {y1:.1} {bend:.1} {y2:.1} {x:.1} {y2:.1}\" fill=\"none\" stroke=\"#8a97a8\" stroke-width=\"0.7\"/>"
+                );
             }
         }
     }
     for card in cards {
-        let (x, h) = (x_of(card.stage), card_height(card));
+        let (x, h) = (x_of(card.column), card_height(card));
         if card.count > 1 {
-            let _ = writeln!(out, "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{BOX_WIDTH}\" height=\"{h:.1}\" rx=\"2\" fill=\"#dfe6ee\" stroke=\"#5b6b7f\" stroke-width=\"0.6\"/>", x + 3.0, card.y + 3.0);
+            let _ = writeln!(
+                out,
+                "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{BOX_WIDTH}\" height=\"{h:.1}\" rx=\"2\" fill=\"#dfe6ee\" stroke=\"#5b6b7f\" stroke-width=\"0.6\"/>",
+                x + 3.0,
+                card.y + 3.0
+            );
         }
-        let _ = writeln!(out, "<rect x=\"{x:.1}\" y=\"{:.1}\" width=\"{BOX_WIDTH}\" height=\"{h:.1}\" rx=\"2\" fill=\"#f6f8fa\" stroke=\"#5b6b7f\" stroke-width=\"0.6\"/>", card.y);
+        let _ = writeln!(
+            out,
+            "<rect x=\"{x:.1}\" y=\"{:.1}\" width=\"{BOX_WIDTH}\" height=\"{h:.1}\" rx=\"2\" fill=\"#f6f8fa\" stroke=\"#5b6b7f\" stroke-width=\"0.6\"/>",
+            card.y
+        );
         for (number, line) in card.lines.iter().enumerate() {
-            let y = card.y + 12.0 + number as f64 * LINE;
+            let y = card.y + 13.0 + number as f64 * LINE;
             let _ = writeln!(out, "<text x=\"{:.1}\" y=\"{y:.1}\" fill=\"#1b1f24\">{}</text>", x + 5.0, escaped(line));
         }
         if card.count > 1 {
             let _ = writeln!(
                 out,
-                "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" font-size=\"8\" fill=\"#1f3a5f\">×{}</text>",
+                "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" font-size=\"10\" fill=\"#1f3a5f\">×{}</text>",
                 x + BOX_WIDTH - 4.0,
                 card.y + h - 3.0,
                 card.count

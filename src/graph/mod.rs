@@ -45,7 +45,9 @@ pub struct Node {
 
 #[derive(Clone, Debug)]
 pub enum Operation {
-    Read { column: String },
+    Read {
+        column: String,
+    },
     /// A number along the record.
     Constant(Expr),
     Arithmetic(Operator),
@@ -62,13 +64,26 @@ pub enum Operation {
     Window(StepSpec),
     Reduce(Reducer),
     /// The value expression over reduced inputs.
-    Value { quantity: usize, signal: usize },
+    Value {
+        quantity: usize,
+        signal: usize,
+    },
     /// The difference or metric of a pair.
-    Compare { quantity: usize, signal: usize, metric: Option<Metric> },
+    Compare {
+        quantity: usize,
+        signal: usize,
+        metric: Option<Metric>,
+    },
     /// A statistic over all pairs of a quantity.
-    Aggregate { quantity: usize, limit: usize },
+    Aggregate {
+        quantity: usize,
+        limit: usize,
+    },
     /// The statistic against its limit.
-    Limit { quantity: usize, limit: usize },
+    Limit {
+        quantity: usize,
+        limit: usize,
+    },
     Verdict,
 }
 

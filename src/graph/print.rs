@@ -8,9 +8,20 @@ use super::{Graph, Node};
 pub fn text(graph: &Graph) -> String {
     let mut out = String::new();
     for (id, node) in graph.nodes.iter().enumerate() {
-        let inputs = if node.inputs.is_empty() { String::new() } else { format!(" <- {}", node.inputs.iter().map(|id| format!("n{id}")).collect::<Vec<_>>().join(" ")) };
+        let inputs = if node.inputs.is_empty() {
+            String::new()
+        } else {
+            format!(" <- {}", node.inputs.iter().map(|id| format!("n{id}")).collect::<Vec<_>>().join(" "))
+        };
         // Writing to a String cannot fail.
-        let _ = writeln!(out, "n{id:<4} {:<9} {} [{}]{inputs}  ({})", node.operation.stage().in_words(), node.label, node.dimension, place(node));
+        let _ = writeln!(
+            out,
+            "n{id:<4} {:<9} {} [{}]{inputs}  ({})",
+            node.operation.stage().in_words(),
+            node.label,
+            node.dimension,
+            place(node)
+        );
     }
     out
 }

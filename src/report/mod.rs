@@ -3,10 +3,10 @@
 //! [`view::view`] rounds, sorts and words; the templates only place what it gives.
 
 pub mod figure;
-pub mod json;
-pub mod tables;
 pub mod html;
+pub mod json;
 pub mod number;
+pub mod tables;
 pub mod typst;
 pub mod view;
 pub mod visible;

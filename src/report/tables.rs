@@ -41,7 +41,23 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
     });
     add(
         "summary",
-        &["quantity", "title", "filter", "processing", "statistic", "scope", "n", "unit", "value", "low 95 %", "high 95 %", "limit", "normalised", "holds", "reason"],
+        &[
+            "quantity",
+            "title",
+            "filter",
+            "processing",
+            "statistic",
+            "scope",
+            "n",
+            "unit",
+            "value",
+            "low 95 %",
+            "high 95 %",
+            "limit",
+            "normalised",
+            "holds",
+            "reason",
+        ],
         statistics.collect(),
     )?;
     let pairs = found.quantities.iter().flat_map(|quantity| {
@@ -61,18 +77,51 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
     add("values", &["quantity", "unit", "section", "zone", "signal", "simulated", "measured", "difference"], pairs.collect())?;
     add("sections", &section_header(found), section_rows(found))?;
     let checks = found.sections.iter().flat_map(|section| {
-        section.checks.iter().map(|check| vec![section.section.clone(), check.title.clone(), check.holds.map_or(String::new(), |holds| holds.to_string()), check.says.clone()])
+        section.checks.iter().map(|check| {
+            vec![
+                section.section.clone(),
+                check.title.clone(),
+                check.holds.map_or(String::new(), |holds| holds.to_string()),
+                check.says.clone(),
+            ]
+        })
     });
     add("checks", &["section", "requirement", "holds", "found"], checks.collect())?;
-    let zones = found.zones.iter().map(|z| vec![z.zone.clone(), z.title.clone(), z.condition.clone(), z.given.to_string(), z.used.to_string(), z.minimum.to_string(), z.holds.to_string()]);
+    let zones = found.zones.iter().map(|z| {
+        vec![
+            z.zone.clone(),
+            z.title.clone(),
+            z.condition.clone(),
+            z.given.to_string(),
+            z.used.to_string(),
+            z.minimum.to_string(),
+            z.holds.to_string(),
+        ]
+    });
     add("zones", &["zone", "title", "condition", "given", "used", "minimum", "holds"], zones.collect())?;
-    let domain = found.domain.iter().map(|d| vec![d.name.clone(), d.unit.clone(), d.scope.clone(), number(Some(d.low)), number(Some(d.high)), d.count.to_string()]);
+    let domain = found
+        .domain
+        .iter()
+        .map(|d| vec![d.name.clone(), d.unit.clone(), d.scope.clone(), number(Some(d.low)), number(Some(d.high)), d.count.to_string()]);
     add("domain", &["quantity", "unit", "scope", "low", "high", "sections"], domain.collect())?;
-    let vehicle = found.campaign.vehicle.iter().chain(&found.campaign.facts).map(|item| vec![item.name.clone(), item.value.clone(), item.unit.clone().unwrap_or_default(), item.used.to_string()]);
+    let vehicle = found
+        .campaign
+        .vehicle
+        .iter()
+        .chain(&found.campaign.facts)
+        .map(|item| vec![item.name.clone(), item.value.clone(), item.unit.clone().unwrap_or_default(), item.used.to_string()]);
     add("vehicle", &["name", "value", "unit", "used by the protocol"], vehicle.collect())?;
-    let parameters = found.protocol.parameters.iter().map(|p| vec![p.name.clone(), p.title.clone(), p.value.clone(), p.default.clone(), p.set_by.clone()]);
+    let parameters = found
+        .protocol
+        .parameters
+        .iter()
+        .map(|p| vec![p.name.clone(), p.title.clone(), p.value.clone(), p.default.clone(), p.set_by.clone()]);
     add("parameters", &["parameter", "title", "value", "default", "set by"], parameters.collect())?;
-    let deviations = found.protocol.deviations.iter().map(|d| vec![d.rule.clone(), d.before.clone().unwrap_or_default(), d.after.clone().unwrap_or_default()]);
+    let deviations = found
+        .protocol
+        .deviations
+        .iter()
+        .map(|d| vec![d.rule.clone(), d.before.clone().unwrap_or_default(), d.after.clone().unwrap_or_default()]);
     add("deviations", &["rule", "parent", "this protocol"], deviations.collect())?;
     let files = found.campaign.files.iter().map(|file| vec![file.path.clone(), file.bytes.to_string(), file.sha256.clone()]);
     add("files", &["file", "bytes", "sha256"], files.collect())?;

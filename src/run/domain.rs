@@ -14,11 +14,21 @@ pub fn domain(plan: &Plan, units: &[Unit]) -> Vec<DomainRange> {
             let values: Vec<f64> = units
                 .iter()
                 .filter(|section| section.fault.is_none() && zone.is_none_or(|zone| section.zone.as_deref() == Some(zone)))
-                .filter_map(|section| if let Ok(Scalar::Number(value)) = &section.columns[index] { Some(unit.from_si(*value)) } else { None })
+                .filter_map(
+                    |section| if let Ok(Scalar::Number(value)) = &section.columns[index] { Some(unit.from_si(*value)) } else { None },
+                )
                 .collect();
-            let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+            let (low, high) =
+                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
             if !values.is_empty() {
-                found.push(DomainRange { name: datum.title.clone(), unit: unit.text.clone(), scope: scope.clone(), low, high, count: values.len() });
+                found.push(DomainRange {
+                    name: datum.title.clone(),
+                    unit: unit.text.clone(),
+                    scope: scope.clone(),
+                    low,
+                    high,
+                    count: values.len(),
+                });
             }
         }
     }

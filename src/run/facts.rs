@@ -37,7 +37,8 @@ fn vehicle_datum(datum: &Datum, campaign: &Campaign, problems: &mut Problems) ->
     match scalar(&datum.kind, &text) {
         Ok(value) => Some(value),
         Err(says) => {
-            problems.push(Problem::error("vehicle-data", format!("`{}`: {says}", datum.key)).at(&node.span).also(&datum.span, "declared here"));
+            problems
+                .push(Problem::error("vehicle-data", format!("`{}`: {says}", datum.key)).at(&node.span).also(&datum.span, "declared here"));
             None
         }
     }
@@ -87,7 +88,6 @@ impl<'a> Known<'a> {
     pub fn vehicle(facts: &'a Facts) -> Self {
         Self { facts, columns: None, extent: None, inputs: &[], sides: None, limits: &[] }
     }
-
 }
 
 impl Values for Known<'_> {
@@ -115,6 +115,10 @@ impl Values for Known<'_> {
     }
 
     fn limit_of(&self, statistic: &str) -> Result<f64, String> {
-        self.limits.iter().find(|(name, _)| name == statistic).map(|(_, value)| *value).ok_or_else(|| format!("{statistic} has no limit here"))
+        self.limits
+            .iter()
+            .find(|(name, _)| name == statistic)
+            .map(|(_, value)| *value)
+            .ok_or_else(|| format!("{statistic} has no limit here"))
     }
 }

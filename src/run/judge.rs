@@ -25,12 +25,19 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
     let mut missing = Vec::new();
     let zones: Vec<ZoneResult> = plan.zones.iter().map(|zone| zone_result(zone, units)).collect();
     for zone in zones.iter().filter(|zone| !zone.holds) {
-        missing.push(format!("zone {} has {} usable section{}, {} are needed", zone.zone, zone.used, if zone.used == 1 { "" } else { "s" }, zone.minimum));
+        missing.push(format!(
+            "zone {} has {} usable section{}, {} are needed",
+            zone.zone,
+            zone.used,
+            if zone.used == 1 { "" } else { "s" },
+            zone.minimum
+        ));
     }
     if used.len() < plan.sections.minimum {
         missing.push(format!("{} usable sections, {} are needed", used.len(), plan.sections.minimum));
     }
-    let quantities: Vec<QuantityResult> = plan.quantities.iter().enumerate().map(|(index, quantity)| quantity_result(plan, facts, quantity, index, &used)).collect();
+    let quantities: Vec<QuantityResult> =
+        plan.quantities.iter().enumerate().map(|(index, quantity)| quantity_result(plan, facts, quantity, index, &used)).collect();
     for quantity in &quantities {
         if let Some(reason) = &quantity.reason {
             missing.push(format!("{}: {reason}", quantity.id));
@@ -48,7 +55,8 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
         }
     }
     let holding = quantities.iter().filter(|quantity| quantity.holds == Some(true)).count();
-    let limits_holding = quantities.iter().flat_map(|quantity| &quantity.statistics).filter(|statistic| statistic.holds == Some(true)).count();
+    let limits_holding =
+        quantities.iter().flat_map(|quantity| &quantity.statistics).filter(|statistic| statistic.holds == Some(true)).count();
     let validated = match plan.verdict.rule {
         Rule::EveryLimit => reasons.is_empty(),
         Rule::AtLeastQuantities(count) => holding >= count,
@@ -58,7 +66,13 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
         return Judged { verdict: Verdict::Validated, reasons: Vec::new(), quantities, zones };
     }
     if let Rule::AtLeastQuantities(count) | Rule::AtLeastLimits(count) = plan.verdict.rule {
-        reasons.insert(0, format!("{} hold, at least {count} are needed", if matches!(plan.verdict.rule, Rule::AtLeastLimits(_)) { limits_holding } else { holding }));
+        reasons.insert(
+            0,
+            format!(
+                "{} hold, at least {count} are needed",
+                if matches!(plan.verdict.rule, Rule::AtLeastLimits(_)) { limits_holding } else { holding }
+            ),
+        );
     }
     Judged { verdict: Verdict::NotValidated, reasons, quantities, zones }
 }
@@ -100,7 +114,10 @@ fn quantity_result(plan: &Plan, facts: &Facts, quantity: &Quantity, index: usize
         None
     };
     let statistics = statistics(plan, facts, quantity, &members);
-    let undefined = statistics.iter().find(|statistic| statistic.holds.is_none()).and_then(|statistic| statistic.reason.clone().map(|reason| format!("{}: {reason}", statistic.title)));
+    let undefined = statistics
+        .iter()
+        .find(|statistic| statistic.holds.is_none())
+        .and_then(|statistic| statistic.reason.clone().map(|reason| format!("{}: {reason}", statistic.title)));
     let reason = reason.or(undefined);
     let holds = if reason.is_some() { None } else { Some(statistics.iter().all(|statistic| statistic.holds == Some(true))) };
     let show = |value: f64| quantity.unit.from_si(value);
@@ -157,7 +174,8 @@ fn scoped<'a>(plan: &Plan, facts: &Facts, limit: &Limit, members: &[Member<'a>])
         Scope::EachZone => plan.zones.iter().map(|zone| (format!("zone {}", zone.name), of_zone(&zone.name))).collect(),
         Scope::Zones(zones) => {
             let word = if zones.len() == 1 { "zone" } else { "zones" };
-            let inside = members.iter().filter(|(unit, _, _)| unit.zone.as_ref().is_some_and(|zone| zones.contains(zone))).copied().collect();
+            let inside =
+                members.iter().filter(|(unit, _, _)| unit.zone.as_ref().is_some_and(|zone| zones.contains(zone))).copied().collect();
             vec![(format!("{word} {}", zones.join(", ")), inside)]
         }
         Scope::Where(condition, words) => {

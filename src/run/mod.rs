@@ -129,6 +129,9 @@ fn nothing_usable(units: &[Unit], values: Vec<SectionValues>) -> Problems {
             });
         }
     }
-    problems.push(Problem::error("no-usable-section", "no section of the campaign can be used").help("the problems above say why, section by section"));
+    problems.push(
+        Problem::error("no-usable-section", "no section of the campaign can be used")
+            .help("the problems above say why, section by section"),
+    );
     problems
 }

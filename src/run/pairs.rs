@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::facts::Known;
 use super::record::{Fault, Found, Opened, Work, columns, open};
 use super::sections::Unit;
-use super::signal::Samples;
+use super::signal::{Extent, Samples};
 use crate::catalog::Pair;
 use crate::check::evaluate::{Values, flag, number};
 use crate::check::plan::{Evaluation, InputSide, Quantity, StepSpec};
@@ -23,6 +23,8 @@ pub struct SectionValues {
     pub pairs: Vec<Vec<Option<PairSi>>>,
     pub checks: Vec<CheckResult>,
     pub files: Vec<FileHash>,
+    /// What a whole record covers, as measured.
+    pub extent: Option<Extent>,
     /// Record beyond the section [s], where it is too little for a slow filter to settle.
     pub short_margin: Option<f64>,
     pub fault: Option<String>,
@@ -62,7 +64,8 @@ fn fill(work: &Work<'_>, unit: &Unit, values: &mut SectionValues) -> Result<(), 
     let wanted = wanted(work, &active);
     // The simulated record is reduced to numbers before the measured one is opened: one record in memory at a time.
     let (simulated, _) = side(work, unit, RecordKind::Simulation, &wanted, &known, values)?;
-    let (measured, _) = side(work, unit, RecordKind::Measurement, &wanted, &known, values)?;
+    let (measured, opened) = side(work, unit, RecordKind::Measurement, &wanted, &known, values)?;
+    values.extent = Some(opened.extent);
     for (index, quantity) in work.plan.quantities.iter().enumerate() {
         let mut pairs = Vec::new();
         for (number, nodes) in work.graph.quantities[index].signals.iter().enumerate() {
@@ -102,7 +105,14 @@ fn wanted(work: &Work<'_>, active: &[bool]) -> BTreeSet<NodeId> {
     wanted
 }
 
-fn side(work: &Work<'_>, unit: &Unit, kind: RecordKind, wanted: &BTreeSet<NodeId>, known: &Known<'_>, values: &mut SectionValues) -> Result<(Evaluated, Opened), Fault> {
+fn side(
+    work: &Work<'_>,
+    unit: &Unit,
+    kind: RecordKind,
+    wanted: &BTreeSet<NodeId>,
+    known: &Known<'_>,
+    values: &mut SectionValues,
+) -> Result<(Evaluated, Opened), Fault> {
     let needed = columns(work.graph, wanted, known).map_err(Fault::new)?;
     let opened = open(work, unit, kind, &needed)?;
     values.files.push(opened.file.clone());
@@ -163,12 +173,21 @@ fn samples_of(found: &Evaluated, node: NodeId) -> Result<&Samples, String> {
     }
 }
 
-fn pair(quantity: &Quantity, number: usize, nodes: &SignalNodes, simulated: &Evaluated, measured: &Evaluated, known: &Known<'_>, unit: &Unit) -> Result<PairSi, String> {
+fn pair(
+    quantity: &Quantity,
+    number: usize,
+    nodes: &SignalNodes,
+    simulated: &Evaluated,
+    measured: &Evaluated,
+    known: &Known<'_>,
+    unit: &Unit,
+) -> Result<PairSi, String> {
     let _ = number;
     match &quantity.evaluation {
         Evaluation::Sides { value, difference, .. } => {
             let own = |side: InputSide| -> Result<f64, String> {
-                let inputs: Vec<Result<f64, String>> = nodes.inputs.iter().map(|input| input_value(input, side, simulated, measured)).collect();
+                let inputs: Vec<Result<f64, String>> =
+                    nodes.inputs.iter().map(|input| input_value(input, side, simulated, measured)).collect();
                 self::number(value, &Known { inputs: &inputs, ..section(known) })
             };
             let (s, m) = (own(InputSide::Simulated)?, own(InputSide::Measured)?);
@@ -219,17 +238,20 @@ fn common(simulated: &Samples, measured: &Samples, unit: &Unit) -> Result<(Vec<f
         None => Ok(samples.clone()),
     };
     let (s, m) = (cut(simulated)?, cut(measured)?);
-    let same = s.along.axis.len() == m.along.axis.len() && s.along.axis.iter().zip(&m.along.axis).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
+    let same = s.along.axis.len() == m.along.axis.len()
+        && s.along.axis.iter().zip(&m.along.axis).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
     if same {
         return Ok((s.values.to_vec(), m.values.to_vec()));
     }
-    let onto = resample::interpolate(&simulated.along.axis, &simulated.values, &m.along.axis).map_err(|error| format!("the simulation cannot be brought onto the measured points: {error}"))?;
+    let onto = resample::interpolate(&simulated.along.axis, &simulated.values, &m.along.axis)
+        .map_err(|error| format!("the simulation cannot be brought onto the measured points: {error}"))?;
     Ok((onto, m.values.to_vec()))
 }
 
 /// Checks that use the track record. Without one they are said to be not checked.
 fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut SectionValues) -> Result<(), Fault> {
-    let wanted: BTreeSet<NodeId> = work.graph.checks.iter().flatten().map(|input| input.node).filter(|&node| work.graph.nodes[node].track).collect();
+    let wanted: BTreeSet<NodeId> =
+        work.graph.checks.iter().flatten().map(|input| input.node).filter(|&node| work.graph.nodes[node].track).collect();
     let mut found = Vec::new();
     let mut missing = None;
     if !wanted.is_empty() {
@@ -257,7 +279,8 @@ fn record_checks(work: &Work<'_>, known: &Known<'_>, simulated: &Evaluated, meas
         if inputs.is_empty() || inputs.iter().all(|input| work.graph.nodes[input.node].track) {
             continue;
         }
-        let inputs: Vec<Result<f64, String>> = inputs.iter().map(|input| input_value(input, InputSide::Measured, simulated, measured)).collect();
+        let inputs: Vec<Result<f64, String>> =
+            inputs.iter().map(|input| input_value(input, InputSide::Measured, simulated, measured)).collect();
         values.checks[index] = checked(check, known, &inputs, None);
     }
 }

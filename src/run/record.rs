@@ -87,7 +87,10 @@ fn chosen(conditions: &[crate::check::plan::Expr], inputs: &[NodeId], known: &Kn
     if inputs.len() > conditions.len() {
         return Ok(inputs.len() - 1);
     }
-    Err(format!("none of the cases of `{}` applies to this section", conditions.first().map_or(String::new(), crate::check::evaluate::words)))
+    Err(format!(
+        "none of the cases of `{}` applies to this section",
+        conditions.first().map_or(String::new(), crate::check::evaluate::words)
+    ))
 }
 
 /// Reads and checks a record of one kind for one section.
@@ -137,8 +140,23 @@ fn said(problems: &[Problem]) -> String {
 
 impl Opened {
     /// Values of the wanted nodes. Nodes run level by level, so that channels that pass the same filter pass it together.
-    pub fn evaluate(&self, graph: &Graph, needed: &BTreeSet<NodeId>, wanted: &BTreeSet<NodeId>, known: &Known<'_>, method: Method) -> Result<Vec<(NodeId, Found)>, String> {
-        let mut state = State { opened: self, graph, known, method, values: vec![None; graph.nodes.len()], uses: vec![0; graph.nodes.len()], found: Vec::new() };
+    pub fn evaluate(
+        &self,
+        graph: &Graph,
+        needed: &BTreeSet<NodeId>,
+        wanted: &BTreeSet<NodeId>,
+        known: &Known<'_>,
+        method: Method,
+    ) -> Result<Vec<(NodeId, Found)>, String> {
+        let mut state = State {
+            opened: self,
+            graph,
+            known,
+            method,
+            values: vec![None; graph.nodes.len()],
+            uses: vec![0; graph.nodes.len()],
+            found: Vec::new(),
+        };
         let mut level = vec![0_usize; graph.nodes.len()];
         let mut deepest = 0;
         for &id in needed {
@@ -205,7 +223,9 @@ impl State<'_> {
         match self.signal(id)? {
             Signal::Samples(samples) => Ok(samples.clone()),
             // A number that does not change still fills a signal where one is needed.
-            Signal::Constant(value) => Ok(Samples { along: Arc::clone(&self.opened.along), values: Arc::new(vec![*value; self.opened.along.axis.len()]) }),
+            Signal::Constant(value) => {
+                Ok(Samples { along: Arc::clone(&self.opened.along), values: Arc::new(vec![*value; self.opened.along.axis.len()]) })
+            }
         }
     }
 
@@ -216,7 +236,9 @@ impl State<'_> {
             let node = &self.graph.nodes[id];
             let Operation::Step(spec @ StepSpec::Butterworth { .. }) = &node.operation else { continue };
             let samples = self.samples(node.inputs[0])?;
-            let same = groups.iter_mut().find(|(known, members)| known == spec && members[0].1.along.rate == samples.along.rate && members[0].1.values.len() == samples.values.len());
+            let same = groups.iter_mut().find(|(known, members)| {
+                known == spec && members[0].1.along.rate == samples.along.rate && members[0].1.values.len() == samples.values.len()
+            });
             match same {
                 Some((_, members)) => members.push((id, samples)),
                 None => groups.push((spec.clone(), vec![(id, samples)])),
@@ -245,7 +267,8 @@ impl State<'_> {
                 Reducer::Named(_) => {
                     let samples = self.samples(node.inputs[0])?;
                     let value = reducer.run(&samples.along.axis, &samples.values, self.method).filter(|value| value.is_finite());
-                    let value = value.ok_or_else(|| format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len()))?;
+                    let value =
+                        value.ok_or_else(|| format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len()))?;
                     self.found.push((id, Found::Number(value)));
                     continue;
                 }

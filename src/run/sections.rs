@@ -21,6 +21,8 @@ pub struct Unit {
     pub zone: Option<String>,
     /// `None` for a whole record.
     pub extent: Option<Extent>,
+    /// What a report says it covers: the section, or the measured record.
+    pub covered: Option<Extent>,
     /// One for each [`Plan::columns`].
     pub columns: Vec<Result<Scalar, String>>,
     pub checks: Vec<CheckResult>,
@@ -86,6 +88,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
                 _ => None,
             }),
             extent: None,
+            covered: None,
             columns,
             checks: Vec::new(),
             fault: None,
@@ -103,8 +106,23 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
 }
 
 fn whole_record(plan: &Plan, name: &Cell) -> Unit {
-    let columns = plan.columns.iter().map(|datum| datum.default.clone().ok_or_else(|| format!("`{}` is not known of a whole record", datum.name))).collect();
-    Unit { name: name.value.clone(), cell: name.clone(), zone: None, extent: None, columns, checks: Vec::new(), fault: None, faulty: false, span: None }
+    let columns = plan
+        .columns
+        .iter()
+        .map(|datum| datum.default.clone().ok_or_else(|| format!("`{}` is not known of a whole record", datum.name)))
+        .collect();
+    Unit {
+        name: name.value.clone(),
+        cell: name.clone(),
+        zone: None,
+        extent: None,
+        covered: None,
+        columns,
+        checks: Vec::new(),
+        fault: None,
+        faulty: false,
+        span: None,
+    }
 }
 
 /// A column that the protocol declares must be there, in a unit of its dimension.
@@ -173,7 +191,10 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
                 let check = number(minimum, &known).map(|minimum| {
                     // A length written with two decimals may fall short of the minimum by rounding alone.
                     let holds = end - start >= minimum * (1.0 - 1e-9);
-                    (holds, format!("length {} {unit}, at least {} {unit}", trimmed(unit.from_si(end - start)), trimmed(unit.from_si(minimum))))
+                    (
+                        holds,
+                        format!("length {} {unit}, at least {} {unit}", trimmed(unit.from_si(end - start)), trimmed(unit.from_si(minimum))),
+                    )
                 });
                 verdicts.push(match check {
                     Ok((holds, says)) => CheckResult { name: "length".into(), title: "Minimum length".into(), holds: Some(holds), says },
@@ -183,7 +204,11 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
         }
         for check in verdicts {
             if check.holds != Some(true) {
-                let reason = if check.name == "zone" { format!("contradicts its zone: {}", check.says) } else { format!("{}: {}", check.title.to_lowercase(), check.says) };
+                let reason = if check.name == "zone" {
+                    format!("contradicts its zone: {}", check.says)
+                } else {
+                    format!("{}: {}", check.title.to_lowercase(), check.says)
+                };
                 unit.refuse(reason, false);
             }
             unit.checks.push(check);
@@ -208,10 +233,14 @@ pub fn take_over(plan: &Plan, units: &mut [Unit], values: &[SectionValues], note
                 match rule.otherwise {
                     OnFault::NotUsed => unit.refuse(format!("{}: {}", check.title.to_lowercase(), check.says), false),
                     OnFault::Note => notes.push(format!("section {}: {}: {}", unit.name, check.title.to_lowercase(), check.says)),
-                    OnFault::Stop => stop.push(Problem::error("section-check", format!("section {}: {}: {}", unit.name, check.title.to_lowercase(), check.says)).at(&rule.span)),
+                    OnFault::Stop => stop.push(
+                        Problem::error("section-check", format!("section {}: {}: {}", unit.name, check.title.to_lowercase(), check.says))
+                            .at(&rule.span),
+                    ),
                 }
             }
         }
+        unit.covered = unit.extent.or(values.extent);
         unit.checks.extend(values.checks.iter().cloned());
         if let Some(fault) = &values.fault {
             unit.refuse(fault.clone(), true);
@@ -226,7 +255,7 @@ pub fn results(plan: &Plan, units: Vec<Unit>) -> Vec<SectionResult> {
     units
         .into_iter()
         .map(|unit| {
-            let (start, end) = unit.extent.unwrap_or((0.0, 0.0));
+            let (start, end) = unit.covered.or(unit.extent).unwrap_or((0.0, 0.0));
             SectionResult {
                 section: unit.name,
                 zone: unit.zone,

@@ -67,7 +67,9 @@ impl Samples {
     pub fn designed(&self, spec: &StepSpec) -> Result<Filter, String> {
         let StepSpec::Butterworth { band, order, phase, cutoff } = spec else { return Err("not a filter".into()) };
         match self.along.rate {
-            Rate::PerTime(rate) | Rate::PerLength(rate) => Filter::design(*band, *order, rate, *phase, *cutoff).map_err(|error| error.to_string()),
+            Rate::PerTime(rate) | Rate::PerLength(rate) => {
+                Filter::design(*band, *order, rate, *phase, *cutoff).map_err(|error| error.to_string())
+            }
         }
     }
 
@@ -176,6 +178,9 @@ pub fn apply(inputs: &[&Signal], run: &dyn Fn(&[f64]) -> f64) -> Result<Signal, 
     }
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(Signal::Samples(base.with(values))),
-        Some(at) => Err(format!("a computed signal is not finite at {:.3} on the axis (a division by zero, or a value a function is not defined for)", base.along.axis[at])),
+        Some(at) => Err(format!(
+            "a computed signal is not finite at {:.3} on the axis (a division by zero, or a value a function is not defined for)",
+            base.along.axis[at]
+        )),
     }
 }

@@ -167,7 +167,8 @@ fn explain(rule: Rule, error: &pest::error::Error<Rule>, text: &Text) -> Problem
         }
     }
     // An error in an exact text is underlined at the word; at its end, the last word is.
-    let range = if found.is_empty() { text.text.trim_end().len().saturating_sub(1)..text.text.trim_end().len() } else { at..at + found.len() };
+    let range =
+        if found.is_empty() { text.text.trim_end().len().saturating_sub(1)..text.text.trim_end().len() } else { at..at + found.len() };
     let problem = Problem::error("syntax", says).at(&text.place(range));
     match expected.len() {
         0 => problem,
@@ -423,7 +424,8 @@ fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
         Rule::reduced => {
             let mut parts = first.into_inner();
             let reducer = parts.next()?;
-            let node = if reducer.as_rule() == Rule::percentile { percentile(&reducer)? } else { Node::Path(reducer.as_str().trim().to_string()) };
+            let node =
+                if reducer.as_rule() == Rule::percentile { percentile(&reducer)? } else { Node::Path(reducer.as_str().trim().to_string()) };
             let reducer = At { range: bytes(&reducer), node };
             Node::Reduced(Box::new(reducer), Box::new(signed(parts.next()?)?))
         }
@@ -488,7 +490,10 @@ mod tests {
             ("vehicle.category is freight or not vehicle.x", "(Or (Is vehicle.category freight) (not vehicle.x))"),
             ("Y at side R + Y at side L", "(Add Y@side.R Y@side.L)"),
             ("(Y through LP20) / (Q through LP20)", "(Divide Y>LP20 Q>LP20)"),
-            ("250 m when zone is 1 and v <= 220 km/h, 500 m when zone is 1, otherwise 70 m", "[250?(And (Is zone 1) (LessEqual v 61.111111111111114)), 500?(Is zone 1); 70]"),
+            (
+                "250 m when zone is 1 and v <= 220 km/h, 500 m when zone is 1, otherwise 70 m",
+                "[250?(And (Is zone 1) (LessEqual v 61.111111111111114)), 500?(Is zone 1); 70]",
+            ),
             ("range of curvature <= 5 % * |mean of curvature|", "(LessEqual range of curvature (Multiply 0.05 |mean of curvature|))"),
             ("-p0.15", "(neg p0.15)"),
             ("x^2 is not 3", "(IsNot x^2 3)"),

@@ -3,9 +3,9 @@
 pub mod document;
 pub mod from_pest;
 pub mod keys;
-pub mod phrase;
 mod layout;
 mod lines;
+pub mod phrase;
 mod print_text;
 mod print_yaml;
 mod read_text;

@@ -41,7 +41,10 @@ pub enum Operator {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {
     /// A number as written and its unit: the value is in SI.
-    Number { value: f64, unit: Option<Unit> },
+    Number {
+        value: f64,
+        unit: Option<Unit>,
+    },
     /// `p99.85`: the value below which so many per cent of the samples lie.
     Percentile(f64),
     /// `vehicle.category`, `Y`, `LP20`.

@@ -2,38 +2,9 @@
 
 use super::rows::Sink;
 use crate::data::cells::{self, StrayQuote};
+use crate::data::faults::Faults;
 use crate::problem::Problem;
 use crate::source::{Source, Span};
-
-/// Enough to see what is wrong with a file; the rest is counted.
-const SHOWN: usize = 5;
-
-/// The first problems of a file and the number of the others.
-pub(super) struct Faults<'a> {
-    shown: &'a str,
-    problems: Vec<Problem>,
-    more: usize,
-}
-
-impl<'a> Faults<'a> {
-    pub fn new(shown: &'a str) -> Self {
-        Self { shown, problems: Vec::new(), more: 0 }
-    }
-
-    pub fn push(&mut self, problem: impl FnOnce() -> Problem) {
-        if self.problems.len() < SHOWN { self.problems.push(problem()) } else { self.more += 1 }
-    }
-
-    pub fn finish<T>(mut self, value: T) -> Result<T, Vec<Problem>> {
-        match self.more {
-            0 if self.problems.is_empty() => return Ok(value),
-            0 => {}
-            1 => self.problems.push(Problem::error("more-problems", format!("and 1 more problem in `{}`", self.shown))),
-            more => self.problems.push(Problem::error("more-problems", format!("and {more} more problems in `{}`", self.shown))),
-        }
-        Err(self.problems)
-    }
-}
 
 /// A line of the file without its line break.
 pub(super) struct Line<'a> {
@@ -75,7 +46,7 @@ pub(super) fn slow_row(line: &Line<'_>, width: usize, sinks: &mut [Sink], faults
         let cell = &cells[sink.position];
         match cells::number(&cell.text) {
             Ok(number) => sink.values.push(number * sink.factor),
-            Err((code, says)) => faults.push(|| Problem::error(code, says).at(&line.span().part(cell.place.clone()))),
+            Err((code, says)) => faults.push(|| Problem::error(code, format!("`{}`: {says}", sink.name)).at(&line.span().part(cell.place.clone()))),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The rows of a record, in one pass over the bytes.
 
 use super::{Column, fault, marks::Marks, number};
+use crate::data::faults::Faults;
 use crate::problem::Problem;
 
 /// Rows reserved for before the first is read are bounded by what a row of one-digit numbers takes.
@@ -10,24 +11,29 @@ const SHORTEST_CELL: usize = 2;
 pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column], shown: &str) -> Result<usize, Vec<Problem>> {
     let bytes = text.as_bytes();
     let expected = expected_rows(&bytes[start..], width);
+    let sink = |column: &Column| Sink {
+        name: column.name.clone(),
+        position: column.position,
+        factor: column.unit.factor,
+        values: Vec::with_capacity(expected),
+    };
     // In the order of the file, in which their faults are told.
     let mut columns: Vec<&mut Column> = columns.iter_mut().collect();
     columns.sort_by_key(|column| column.position);
-    let mut sinks: Vec<Sink> = columns
-        .iter()
-        .map(|column| Sink { position: column.position, factor: column.unit.factor, values: Vec::with_capacity(expected) })
-        .collect();
-    let mut faults = fault::Faults::new(shown);
+    let mut sinks: Vec<Sink> = columns.iter().map(|column| sink(column)).collect();
+    let mut faults = Faults::new(shown);
     let mut marks = Marks::default();
     let mut rows = 0;
     let mut at = start;
-    while at < bytes.len() {
-        marks.find(bytes, at);
+    // Blank lines at the end are no rows.
+    let end_of_rows = start + text[start..].trim_end().len();
+    while at < end_of_rows {
         let stretch = at;
+        marks.find(bytes, stretch);
         let mut cells = marks.after.as_slice();
-        while at < marks.end {
-            if let Some(next) = row(bytes, cells, width, &mut sinks) {
-                cells = &cells[next..];
+        while at < marks.end.min(end_of_rows) {
+            if row(bytes, cells, width, &mut sinks).is_some() {
+                cells = &cells[width..];
                 at = cells[0];
                 rows += 1;
                 continue;
@@ -37,10 +43,7 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
             }
             let end = memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |found| at + found);
             if end >= marks.end && at > stretch {
-                break;
-            }
-            if text[at..].trim().is_empty() {
-                at = bytes.len();
+                // Cut off by the end of the stretch: the next one begins with it.
                 break;
             }
             let line = fault::Line { text: text[at..end].trim_end_matches('\r'), number: rows + 2, last: end == bytes.len(), shown };
@@ -62,6 +65,7 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
 
 /// Where the numbers of a column go.
 pub(super) struct Sink {
+    pub name: String,
     /// Which cell of a row.
     pub position: usize,
     pub factor: f64,
@@ -76,9 +80,12 @@ fn expected_rows(bytes: &[u8], width: usize) -> usize {
     rows + rows / 16 + 1
 }
 
-/// Reads the row whose cells begin at the first `width` marks; how many marks it takes, or `None` if anything about it is unusual.
+/// Reads the row whose cells begin at the first `width` marks; the mark after them is where the next row begins.
+///
+/// `None` if anything about it is unusual; some columns may then have a value more.
+// Inlined, it would compete with the loop around it for registers.
 #[inline(never)]
-fn row(bytes: &[u8], cells: &[usize], width: usize, sinks: &mut [Sink]) -> Option<usize> {
+fn row(bytes: &[u8], cells: &[usize], width: usize, sinks: &mut [Sink]) -> Option<()> {
     let (cells, next) = (cells.get(..width)?, *cells.get(width)?);
     // Quotes and missing cells show up where only commas should be.
     if bytes[next - 1] != b'\n' || !cells[1..].iter().all(|cell| bytes[cell - 1] == b',') {
@@ -89,5 +96,5 @@ fn row(bytes: &[u8], cells: &[usize], width: usize, sinks: &mut [Sink]) -> Optio
         let cell = cells[sink.position]..cells.get(sink.position + 1).map_or(end, |next| next - 1);
         sink.values.push(number::read(bytes, cell)? * sink.factor);
     }
-    Some(width)
+    Some(())
 }

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use crate::yaml::{Node, Value};
 use crate::problem::Problem;
 use crate::units::Unit;
+use crate::yaml::{Node, Value};
 
 /// A column to be written: values in SI, printed in its unit with so many decimals.
 #[derive(Clone, Copy, Debug)]
@@ -155,9 +155,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::yaml;
     use crate::problem::Problems;
     use crate::source::Source;
+    use crate::yaml;
 
     fn load(text: &str) -> Node {
         let mut problems = Problems::default();

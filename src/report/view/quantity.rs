@@ -7,7 +7,7 @@ use crate::report::number;
 use crate::result::{PairValue, QuantityResult, StatisticResult};
 
 /// Pairs in the list of the worst.
-const WORST: usize = 8;
+const WORST: usize = 5;
 /// Signals side by side in one block of values: more do not fit a page.
 const SIGNALS_WITH_SIDES: usize = 4;
 const SIGNALS_WITHOUT_SIDES: usize = 10;
