@@ -8,12 +8,14 @@ use crate::metrics::filter::Filter;
 use crate::metrics::resample;
 use crate::metrics::window::{Kind, Sliding};
 
-/// What samples run along, in SI; the axis increases or decreases strictly.
+/// What samples run along, in SI; axis and time increase strictly.
 #[derive(Debug)]
 pub struct Along {
     pub axis: Arc<Vec<f64>>,
     pub time: Option<Arc<Vec<f64>>>,
     pub rate: Rate,
+    /// Row of the file that the first sample was read from; `None` where samples are not those of the file.
+    pub first_row: Option<usize>,
 }
 
 /// Samples per second, or per metre after resampling over a length.
@@ -49,7 +51,20 @@ impl Along {
 
     fn part(&self, range: Range<usize>) -> Self {
         let part = |of: &[f64]| Arc::new(of[range.clone()].to_vec());
-        Self { axis: part(&self.axis), time: self.time.as_deref().map(|time| part(time)), rate: self.rate }
+        Self {
+            axis: part(&self.axis),
+            time: self.time.as_deref().map(|time| part(time)),
+            rate: self.rate,
+            first_row: self.first_row.map(|row| row + range.start),
+        }
+    }
+
+    /// Where a sample is, in words.
+    fn place(&self, sample: usize) -> String {
+        match self.first_row {
+            Some(row) => format!("in row {}", row + sample),
+            None => format!("at {:.3} on the axis", self.axis[sample]),
+        }
     }
 }
 
@@ -117,10 +132,10 @@ impl Samples {
         let (grid, values) = resample::resample(over, &self.values, step).map_err(error)?;
         let along = if over_time {
             let axis = resample::interpolate(over, axis, &grid).map_err(error)?;
-            Along { axis: Arc::new(axis), time: Some(Arc::new(grid)), rate: Rate::PerTime(1.0 / step) }
+            Along { axis: Arc::new(axis), time: Some(Arc::new(grid)), rate: Rate::PerTime(1.0 / step), first_row: None }
         } else {
             let time = self.along.time.as_ref().map(|time| resample::interpolate(over, time, &grid)).transpose().map_err(error)?;
-            Along { axis: Arc::new(grid), time: time.map(Arc::new), rate: Rate::PerLength(1.0 / step) }
+            Along { axis: Arc::new(grid), time: time.map(Arc::new), rate: Rate::PerLength(1.0 / step), first_row: None }
         };
         Ok(Self { along: Arc::new(along), values: Arc::new(values) })
     }
@@ -141,9 +156,9 @@ impl Samples {
                 let middle: Vec<f64> = starts.iter().map(|start| start + width / 2.0).collect();
                 let along = if *over_time {
                     let axis = resample::interpolate(over, &self.along.axis, &middle).map_err(|error| error.to_string())?;
-                    Along { axis: Arc::new(axis), time: Some(Arc::new(middle)), rate: Rate::PerTime(1.0 / step) }
+                    Along { axis: Arc::new(axis), time: Some(Arc::new(middle)), rate: Rate::PerTime(1.0 / step), first_row: None }
                 } else {
-                    Along { axis: Arc::new(middle), time: None, rate: Rate::PerLength(1.0 / step) }
+                    Along { axis: Arc::new(middle), time: None, rate: Rate::PerLength(1.0 / step), first_row: None }
                 };
                 Ok(Self { along: Arc::new(along), values: Arc::new(values) })
             }
@@ -185,7 +200,7 @@ pub fn apply(inputs: &[&Signal], run: fn(&[f64]) -> f64) -> Result<Signal, Strin
     match *inputs {
         [of] => each(of, |value| run(&[value])),
         [left, right] => each_pair(left, right, |a, b| run(&[a, b])),
-        _ => Err(format!("a function of {} signals", inputs.len())),
+        _ => Err(format!("a function of {} signals is not known", inputs.len())),
     }
 }
 
@@ -207,8 +222,8 @@ fn each_pair(left: &Signal, right: &Signal, run: impl Fn(f64, f64) -> f64) -> Re
         (Signal::Samples(left), Signal::Constant(b)) => finite(left, left.values.iter().map(|a| run(*a, *b)).collect()),
         (Signal::Constant(a), Signal::Samples(right)) => finite(right, right.values.iter().map(|b| run(*a, *b)).collect()),
         (Signal::Samples(left), Signal::Samples(right)) => {
-            if left.values.len() != right.values.len() {
-                return Err("two signals of different length are combined".into());
+            if !Arc::ptr_eq(&left.along, &right.along) && left.along.axis != right.along.axis {
+                return Err("signals of different sampling are combined; resample both alike".into());
             }
             finite(left, left.values.iter().zip(right.values.iter()).map(|(a, b)| run(*a, *b)).collect())
         }
@@ -225,8 +240,5 @@ fn finite(along: &Samples, values: Vec<f64>) -> Result<Signal, String> {
         return Ok(Signal::Samples(along.with(values)));
     }
     let at = values.iter().position(|value| !value.is_finite()).unwrap_or(0);
-    Err(format!(
-        "a computed signal is not finite at {:.3} on the axis (a division by zero, or a value a function is not defined for)",
-        along.along.axis[at]
-    ))
+    Err(format!("no finite number {}: a division by zero, or a value a function is not defined for", along.along.place(at)))
 }

@@ -46,7 +46,9 @@ pub(super) fn slow_row(line: &Line<'_>, width: usize, sinks: &mut [Sink], faults
         let cell = &cells[sink.position];
         match cells::number(&cell.text) {
             Ok(number) => sink.values.push(number * sink.factor),
-            Err((code, says)) => faults.push(|| Problem::error(code, format!("`{}`: {says}", sink.name)).at(&line.span().part(cell.place.clone()))),
+            Err((code, says)) => {
+                faults.push(|| Problem::error(code, format!("`{}`: {says}", sink.name)).at(&line.span().part(cell.place.clone())))
+            }
         }
     }
 }

@@ -97,11 +97,15 @@ mod tests {
 
     #[test]
     fn what_is_plain() {
-        for (text, number) in [("-12.34", -12.34), ("7", 7.0), ("007.50", 7.5), ("-12345678", -12_345_678.0), ("9999999.12345678", 9_999_999.123_456_78)] {
+        for (text, number) in
+            [("-12.34", -12.34), ("7", 7.0), ("007.50", 7.5), ("-12345678", -12_345_678.0), ("9999999.12345678", 9_999_999.123_456_78)]
+        {
             assert_eq!(plain_in_a_row(text), Some(number), "{text}");
         }
         assert!(plain_in_a_row("-0.00").is_some_and(|zero| zero == 0.0 && zero.is_sign_negative()));
-        for text in ["", "-", ".", "-.", "--1", "+1", "1e3", "1.5e-3", "1.2.3", "1 ", " 1", "\"1\"", "inf", "1\u{b2}", "1:", "1/", "12345678x9"] {
+        for text in
+            ["", "-", ".", "-.", "--1", "+1", "1e3", "1.5e-3", "1.2.3", "1 ", " 1", "\"1\"", "inf", "1\u{b2}", "1:", "1/", "12345678x9"]
+        {
             assert_eq!(plain_in_a_row(text), None, "{text}");
         }
         assert_eq!(plain(b"1,2", 0..1), None, "at the end of the text");
