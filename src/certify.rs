@@ -109,7 +109,8 @@ fn parameter_info(parameter: &Parameter) -> ParameterInfo {
 }
 
 fn fact_item(fact: &Fact) -> DataItem {
-    let name = if fact.group.is_empty() { fact.name.clone() } else { format!("{}: {}", fact.group.replace('_', " "), fact.name) };
+    let plain = fact.name.replace('_', " ");
+    let name = if fact.group.is_empty() { plain } else { format!("{}: {plain}", fact.group.replace('_', " ")) };
     DataItem { name, value: fact.text.clone(), unit: fact.unit.clone().filter(|unit| unit != "-"), used: false }
 }
 

@@ -134,7 +134,7 @@ fn faulty_tables() {
 fn faulty_campaigns() {
     for (case, expected) in [
         ("yaml_syntax", &["yaml-syntax campaign.yaml:2:10"][..]),
-        ("yaml_tab", &["yaml-syntax campaign.yaml:3:1"]),
+        ("yaml_tab", &["tab-indentation campaign.yaml:3:2"]),
         ("duplicate_key", &["duplicate-key campaign.yaml:2:1"]),
         ("no_name", &["key-missing campaign.yaml:1:1"]),
         ("not_a_map", &["wrong-kind campaign.yaml:1:1"]),

@@ -45,7 +45,7 @@ fn applies(limit: &Limit, facts: &Facts) -> Result<bool, String> {
     limit.only_when.as_ref().map_or(Ok(true), |condition| flag(condition, &Known::vehicle(facts)))
 }
 
-/// What a statistic is taken over: a scope with `each zone` taken apart.
+/// What a statistic is taken over.
 #[derive(Clone, Debug)]
 enum Part<'a> {
     All,
@@ -53,19 +53,15 @@ enum Part<'a> {
     Where(&'a Scope),
 }
 
-/// A zone that needs no section and has none is left out of `each zone`.
+/// A limit of zones that need no section and have none is left out.
 fn parts<'a>(plan: &Plan, limit: &'a Limit, members: &[Member<'_>]) -> Vec<Part<'a>> {
+    let needed = |name: &str| plan.zones.iter().any(|zone| zone.name == name && zone.minimum_sections > 0);
     let filled = |zone: &str| members.iter().any(|(unit, _, _)| unit.zone.as_deref() == Some(zone));
     match &limit.scope {
         Scope::All => vec![Part::All],
+        Scope::Zones(zones) if !zones.iter().any(|zone| needed(zone) || filled(zone)) => Vec::new(),
         Scope::Zones(zones) => vec![Part::Zones(zones.clone())],
         scope @ Scope::Where(..) => vec![Part::Where(scope)],
-        Scope::EachZone => plan
-            .zones
-            .iter()
-            .filter(|zone| zone.minimum_sections > 0 || filled(&zone.name))
-            .map(|zone| Part::Zones(vec![zone.name.clone()]))
-            .collect(),
     }
 }
 
@@ -94,7 +90,6 @@ impl Part<'_> {
         match (scope, self) {
             (Scope::All, Self::All) => Some(Closeness::Same),
             (Scope::All, _) => Some(Closeness::General),
-            (Scope::EachZone, Self::Zones(zones)) if zones.len() == 1 => Some(Closeness::Same),
             (Scope::Zones(of), Self::Zones(zones)) if zones.iter().all(|zone| of.contains(zone)) => Some(Closeness::Same),
             (Scope::Where(_, a), Self::Where(Scope::Where(_, b))) if a == b => Some(Closeness::Same),
             _ => None,
