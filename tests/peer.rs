@@ -64,7 +64,8 @@ fn same_statistics(case: &str, found: &Certification, expected: &Value) {
     for (quantity, expected) in found.quantities.iter().zip(quantities) {
         assert_eq!(quantity.values.len() as u64, expected["pairs"], "{case} {}", quantity.id);
         assert_eq!(quantity.holds, expected["holds"].as_bool(), "{case} {}", quantity.id);
-        let largest = quantity.values.iter().flat_map(|pair| [pair.simulated, pair.measured]).flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let largest =
+            quantity.values.iter().flat_map(|pair| [pair.simulated, pair.measured]).flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
         for name in ["mean", "std"] {
             let statistic = statistic(quantity, name);
             let what = format!("{case} {} {name}", quantity.id);
@@ -141,7 +142,9 @@ fn the_coach_that_validates() {
 fn no_reference_is_left_out() {
     let mut settings: Vec<String> = std::fs::read_dir("tests/cases/peer")
         .expect("a folder")
-        .filter_map(|entry| entry.ok()?.file_name().to_str()?.strip_suffix(".json")?.split_once('.').map(|(_, setting)| setting.to_string()))
+        .filter_map(|entry| {
+            entry.ok()?.file_name().to_str()?.strip_suffix(".json")?.split_once('.').map(|(_, setting)| setting.to_string())
+        })
         .collect();
     settings.sort();
     settings.dedup();
@@ -170,7 +173,8 @@ fn practice_campaigns() {
 #[test]
 fn sprague_geers_example() {
     let expected = expected(Path::new("tests/cases/sprague_geers/expected.json"));
-    let found = certified(Path::new("examples/sprague-geers"), "sprague-geers", &[]).unwrap_or_else(|problems| panic!("{}", problems.render(false)));
+    let found = certified(Path::new("examples/sprague-geers"), "sprague-geers", &[])
+        .unwrap_or_else(|problems| panic!("{}", problems.render(false)));
     let mut count = 0;
     for value in expected["values"].as_array().expect("a list") {
         let text = |key: &str| value[key].as_str().expect("text");
@@ -191,7 +195,8 @@ fn sprague_geers_example() {
 #[test]
 fn sway_example() {
     let expected = expected(Path::new("tests/cases/sway/expected.json"));
-    let found = certified(Path::new("examples/sway"), "stationary-sway", &[]).unwrap_or_else(|problems| panic!("{}", problems.render(false)));
+    let found =
+        certified(Path::new("examples/sway"), "stationary-sway", &[]).unwrap_or_else(|problems| panic!("{}", problems.render(false)));
     for value in expected["values"].as_array().expect("a list") {
         let text = |key: &str| value[key].as_str().expect("text");
         for (name, key) in [("largest", "maximum"), ("mean", "mean")] {

@@ -68,7 +68,8 @@ impl Checker<'_> {
         let minimum_signals = self.count(block, "minimum signals", self.minimum_signals);
         let minimum_pairs = self.count(block, "minimum pairs", self.minimum_pairs);
         let (of, chain, signals, compared, unit) = (of?, chain?, signals?, compared?, unit?);
-        let signal_unit = from_pest::of_places(&of, self.problems).map(|written| self.own_unit(&written.signal.node, signals[0].1.dimension))?;
+        let signal_unit =
+            from_pest::of_places(&of, self.problems).map(|written| self.own_unit(&written.signal.node, signals[0].1.dimension))?;
         let text = |key: &str| block.field(key).map(|field| field.value.text.clone());
         let filter =
             if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") };
@@ -120,7 +121,8 @@ impl Checker<'_> {
             );
             return None;
         }
-        let over_axis = over_name.zip(over.first()).map(|(name, signal)| Axis { unit: self.own_unit(&name, signal.dimension), column: name });
+        let over_axis =
+            over_name.zip(over.first()).map(|(name, signal)| Axis { unit: self.own_unit(&name, signal.dimension), column: name });
         let words = normalised(&field.value.text);
         let (_, first, _) = signals.first()?;
         Some(Compared {

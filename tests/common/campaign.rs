@@ -105,10 +105,7 @@ pub fn write_tiny(folder: &Path) {
         fs::create_dir_all(folder.join(kind)).expect("a folder");
     }
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("written");
-    write(
-        "campaign.yaml",
-        "name: Tiny\nvehicle: vehicle.yaml\nsections: sections.csv\nmeasurement: measurement\nsimulation: simulation\n",
-    );
+    write("campaign.yaml", "name: Tiny\nvehicle: vehicle.yaml\nsections: sections.csv\nmeasurement: measurement\nsimulation: simulation\n");
     write("vehicle.yaml", "name: Wagon\ncategory: passenger\nrunning_gear: bogies\nsecondary_suspension: true\nstatic_wheel_load: 50\n");
     let mut sections =
         String::from("section,zone [-],start [m],end [m],radius [m],direction,cant [mm],cant deficiency [mm],speed [km/h]\n");
@@ -131,7 +128,8 @@ pub fn write_tiny(folder: &Path) {
 
 /// `gain` and `phase` set simulation and measurement apart.
 fn record(number: usize, length: f64, speed: f64, side: f64, gain: f64, phase: f64) -> String {
-    let channels: Vec<String> = ["Y", "Q"].iter().flat_map(|name| ["1R", "1L", "3R", "3L"].map(|wheel| format!("{name}_{wheel}"))).collect();
+    let channels: Vec<String> =
+        ["Y", "Q"].iter().flat_map(|name| ["1R", "1L", "3R", "3L"].map(|wheel| format!("{name}_{wheel}"))).collect();
     let mut text = String::from("time [s],distance [m]");
     for channel in &channels {
         let _ = write!(text, ",{channel} [kN]");
