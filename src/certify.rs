@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use crate::check::plan::{DatumKind, Parameter, Plan, Scalar, SetBy};
+use crate::check::plan::{Parameter, Plan, SetBy};
 use crate::check::{self, Overrides, diff, family::Family};
 use crate::data::Campaign;
 use crate::data::campaign::Fact;
@@ -41,7 +41,7 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
         campaign: CampaignInfo {
             name: campaign.name.clone(),
             files,
-            vehicle: vehicle_items(&compiled.plan, campaign),
+            vehicle: vehicle_items(&compiled.plan, campaign, outcome.vehicle),
             facts: campaign.facts.iter().map(fact_item).collect(),
         },
         verdict: outcome.verdict,
@@ -109,36 +109,17 @@ fn parameter_info(parameter: &Parameter) -> ParameterInfo {
 }
 
 fn fact_item(fact: &Fact) -> DataItem {
-    let name = if fact.group.is_empty() { fact.name.clone() } else { format!("{}: {}", fact.group.replace('_', " "), fact.name) };
+    let plain = fact.name.replace('_', " ");
+    let name = if fact.group.is_empty() { plain } else { format!("{}: {plain}", fact.group.replace('_', " ")) };
     DataItem { name, value: fact.text.clone(), unit: fact.unit.clone().filter(|unit| unit != "-"), used: false }
 }
 
 /// Values the protocol reads first, with their units, then all others of the file.
-fn vehicle_items(plan: &Plan, campaign: &Campaign) -> Vec<DataItem> {
-    let mut items: Vec<DataItem> = Vec::new();
-    let mut read: Vec<&str> = Vec::new();
-    for datum in &plan.vehicle {
-        let value = match campaign.vehicle.lookup(&datum.key).and_then(Node::scalar_text) {
-            Some(text) => text.to_string(),
-            None => datum.default.as_ref().map_or(String::new(), |default| format!("{} (default)", in_words(default, &datum.kind))),
-        };
-        let unit = if let DatumKind::Number(unit) = &datum.kind { Some(unit.text.clone()) } else { None };
-        items.push(DataItem { name: datum.title.clone(), value, unit, used: true });
-        read.push(&datum.key);
-    }
+fn vehicle_items(plan: &Plan, campaign: &Campaign, used: Vec<DataItem>) -> Vec<DataItem> {
     let mut rest = Vec::new();
     flatten("", &campaign.vehicle, &mut rest);
-    items.extend(rest.into_iter().filter(|item| !read.contains(&item.name.as_str())));
-    items
-}
-
-fn in_words(value: &Scalar, kind: &DatumKind) -> String {
-    match (value, kind) {
-        (Scalar::Number(value), DatumKind::Number(unit)) => crate::run::trimmed(unit.from_si(*value)),
-        (Scalar::Number(value), _) => crate::run::trimmed(*value),
-        (Scalar::Word(word), _) => word.clone(),
-        (Scalar::Flag(flag), _) => flag.to_string(),
-    }
+    let unused = rest.into_iter().filter(|item| !plan.vehicle.iter().any(|datum| datum.key == item.name));
+    used.into_iter().chain(unused).collect()
 }
 
 fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {
@@ -157,11 +138,8 @@ fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {
     }
 }
 
-/// Reports name files without the folders of the machine they were made on.
+/// Reports name a protocol's file without its folders: they are the same wherever and however the program was called.
 fn file_name(path: &str) -> String {
-    if path.starts_with("protocols/") {
-        return path.to_string();
-    }
     std::path::Path::new(path).file_name().map_or_else(|| path.to_string(), |name| name.to_string_lossy().into_owned())
 }
 

@@ -1,7 +1,7 @@
 //! `certify`: the main job.
 
-use std::cell::RefCell;
-use std::path::PathBuf;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
@@ -44,7 +44,7 @@ pub struct Certify {
     plots: usize,
     /// Records worked on at a time [default: one per core]
     #[arg(long, short)]
-    jobs: Option<usize>,
+    jobs: Option<NonZeroUsize>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
@@ -63,7 +63,7 @@ impl Certify {
     pub fn run(self, console: &Console) -> Exit {
         if let Some(jobs) = self.jobs {
             // Fails only if the pool was made before, which nothing does before here.
-            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global();
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
         }
         let mut problems = Problems::default();
         let prepared = self.prepare(&mut problems);
@@ -168,28 +168,25 @@ impl Certify {
 
 /// The protocol a campaign names: a shipped one, or a file inside the campaign, as are those it extends.
 fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mut Problems) -> Option<Family> {
-    // Where inside the campaign each text stands, by the name its source goes by.
-    let inside: RefCell<Vec<(String, String)>> = RefCell::default();
-    let find = |name: &str, from: Option<&Source>| -> Result<Arc<Source>, Box<Problem>> {
-        if let Some(source) = library::shipped(name) {
-            return Ok(source);
+    let inside = |named: &Spanned<String>| {
+        if let Some(shipped) = library::shipped(&named.value) {
+            return Ok(shipped);
         }
-        let beside = from.and_then(|from| inside.borrow().iter().find(|(source, _)| *source == from.name).map(|(_, path)| path.clone()));
-        let folder = beside.as_deref().and_then(|path| path.rsplit_once('/')).map_or(String::new(), |(folder, _)| format!("{folder}/"));
-        let written = Spanned::new(format!("{folder}{name}"), named.span.clone());
-        let place = campaign.place(&written)?;
-        let (source, _) = read_text(&place.path, &place.shown)
-            .map_err(|problem| problem.suggest(name, library::SHIPPED.iter().map(|shipped| shipped.name)))?;
-        inside.borrow_mut().push((source.name.clone(), place.inside));
-        Ok(source)
+        let place = campaign.place(named)?;
+        read_text(&place.path, &place.shown).map(|(source, _)| source).map_err(|problem| {
+            let problem = if problem.at.is_some() { problem } else { problem.at(&named.span) };
+            if problem.code == "file-missing" { problem.suggest(&named.value, library::names()) } else { problem }
+        })
     };
-    match find(&named.value, None) {
-        Ok(source) => Some(family::read(&source, &|name, from| find(name, Some(from)), problems)),
-        Err(problem) => {
-            problems.push(*problem);
-            None
+    let source = inside(named).map_err(|problem| problems.push(problem)).ok()?;
+    let parent = |name: &str, from: &Source| {
+        if let Some(shipped) = library::shipped(name) {
+            return Ok(shipped);
         }
-    }
+        let beside = Path::new(campaign.inside(&from.name)).parent().unwrap_or(Path::new(""));
+        inside(&Spanned::new(beside.join(name).display().to_string(), source.whole())).map_err(Box::new)
+    };
+    Some(family::read(&source, &parent, problems))
 }
 
 fn progress_bar(console: &Console, sections: usize) -> Arc<ProgressBar> {

@@ -20,8 +20,9 @@ pub struct Explain {
     /// Path of a protocol, or the name of a shipped one; without it the registry is listed.
     #[arg(value_name = "PROTOCOL")]
     protocol: Option<String>,
-    #[arg(long, value_enum, default_value_t = Stage::Plan)]
-    stage: Stage,
+    /// [default: plan]
+    #[arg(long, value_enum, requires = "protocol")]
+    stage: Option<Stage>,
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// File to write; the terminal otherwise.
@@ -64,19 +65,22 @@ impl Explain {
     }
 
     fn stage_text(&self, name: &str, console: &Console) -> Result<String, Exit> {
-        if self.stage != Stage::Graph && matches!(self.format, Format::Dot | Format::Svg) {
+        let stage = self.stage.unwrap_or(Stage::Plan);
+        if stage != Stage::Graph && matches!(self.format, Format::Dot | Format::Svg) {
             return Err(console.fail(Problem::error("format", "only the graph is drawn: `--stage graph`"), Exit::Wrong));
         }
         let mut problems = Problems::default();
         let family = load(name, &mut problems);
-        let plan = family.as_ref().and_then(|family| check::check(family, &Overrides::new(), &mut problems));
+        // As written is as written: what a rule means is looked at for the later stages only.
+        let checked = family.as_ref().filter(|_| stage != Stage::Ast);
+        let plan = checked.and_then(|family| check::check(family, &Overrides::new(), &mut problems));
         console.problems(&problems);
-        let Some(family) = family else { return Err(Exit::Wrong) };
-        if self.stage == Stage::Ast {
+        let Some(family) = family.filter(|_| !problems.any_error()) else { return Err(Exit::Wrong) };
+        if stage == Stage::Ast {
             return Ok(if self.format == Format::Json { pretty(&document_json(&family.merged)) } else { document_text(&family.merged) });
         }
         let Some(plan) = plan else { return Err(Exit::Wrong) };
-        Ok(match (self.stage, self.format) {
+        Ok(match (stage, self.format) {
             (Stage::Graph, format) => {
                 let graph = graph::from_plan(&plan);
                 match format {

@@ -208,26 +208,32 @@ impl Campaign {
             return Ok(place);
         }
         if !folder.path.is_dir() {
-            return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.shown)).at(span));
+            return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside)).at(span));
         }
         let mut others: Vec<String> = std::fs::read_dir(&folder.path)
             .map(|entries| entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect())
             .unwrap_or_default();
         others.sort();
-        Err(Problem::error("file-missing", format!("there is no file `{}`", place.shown))
+        Err(Problem::error("file-missing", format!("there is no file `{}`", place.inside))
             .at(&section.span)
             .suggest(&format!("{}.csv", section.value), others.iter().map(String::as_str)))
     }
 
-    /// Reads the wanted columns of a section's record.
+    /// Reads the wanted columns of a section's record. Its faults go into results, which must be the same wherever the campaign lies:
+    /// they name the record by its path inside the campaign.
     ///
     /// # Errors
     /// As [`Campaign::record_place`] and [`read_record`].
     pub fn read(&self, kind: RecordKind, section: &Cell, wanted: &[Wanted]) -> Result<(Record, ReadFile), Vec<Problem>> {
         let place = self.record_place(kind, section).map_err(|problem| vec![problem])?;
-        let record = read_record(&place.path, &place.shown, wanted)?;
+        let record = read_record(&place.path, &place.inside, wanted)?;
         let file = ReadFile { path: place.inside, sha256: record.sha256.clone(), bytes: record.bytes as u64 };
         Ok((record, file))
+    }
+
+    /// The path inside the campaign of a file that a message names by the folder as it was given.
+    pub fn inside<'a>(&self, shown: &'a str) -> &'a str {
+        self.folder.inside(shown)
     }
 
     /// A file that the campaign or its vehicle names; it need not exist.

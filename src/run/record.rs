@@ -56,12 +56,13 @@ pub struct Opened {
 /// Value of a wanted node.
 #[derive(Clone, Debug)]
 pub enum Found {
-    Number(f64),
+    /// A reduced signal, and of how many samples or windows.
+    Number(f64, usize),
     Samples(Samples),
 }
 
-/// Columns that the wanted nodes of one section read.
-pub fn columns(graph: &Graph, wanted: &BTreeSet<NodeId>, known: &Known<'_>) -> Result<BTreeSet<NodeId>, String> {
+/// All nodes that the wanted ones need in one section: of the cases of a signal, the one that applies.
+pub fn needed(graph: &Graph, wanted: &BTreeSet<NodeId>, known: &Known<'_>) -> Result<BTreeSet<NodeId>, String> {
     let mut needed = BTreeSet::new();
     let mut open: Vec<NodeId> = wanted.iter().copied().collect();
     while let Some(id) = open.pop() {
@@ -108,7 +109,7 @@ pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<No
             }
         }
     }
-    let fault = |problems: Vec<Problem>| Fault { says: said(&problems), problems };
+    let fault = |problems: Vec<Problem>| Fault { says: said(work.campaign, &problems), problems };
     let (record, read) = work.campaign.read(kind, &unit.cell, &wanted).map_err(fault)?;
     let clock = time.map_or(axis.column.as_str(), |time| time.column.as_str());
     let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
@@ -121,21 +122,30 @@ pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<No
         axis: along_axis,
         time: time.and_then(|time| record.column(&time.column)).map(|column| column.values.clone()),
         rate: if in_time { Rate::PerTime(checked.sampling_rate) } else { Rate::PerLength(checked.sampling_rate) },
+        // The header is row 1.
+        first_row: Some(2),
     });
     let margins = in_time.then_some((checked.before, checked.after));
     Ok(Opened { record, along, extent, file, margins })
 }
 
-/// The facts of several problems in one line.
-fn said(problems: &[Problem]) -> String {
+/// The facts of several problems in one line, each with its place unless the fact names it.
+fn said(campaign: &Campaign, problems: &[Problem]) -> String {
     let all: Vec<String> = problems
         .iter()
         .map(|problem| match &problem.at {
-            Some(at) => format!("{} ({}, row {})", problem.says, at.source.name, at.line()),
+            Some(at) => placed(&problem.says, campaign.inside(&at.source.name), at.line()),
             None => problem.says.clone(),
         })
         .collect();
     all.join("; ")
+}
+
+/// A fact that names its file and row already needs no place; one that names its file only needs none in the header.
+fn placed(says: &str, file: &str, row: usize) -> String {
+    let names_file = says.contains(&format!("`{file}`"));
+    let names_row = row == 1 || says.split(|c: char| !c.is_ascii_digit()).any(|word| word.parse() == Ok(row));
+    if names_file && names_row { says.to_string() } else { format!("{says} ({file}, row {row})") }
 }
 
 impl Opened {
@@ -179,10 +189,9 @@ impl Opened {
                 }
             }
             for &id in &here {
-                if wanted.contains(&id) {
-                    if let Some(Signal::Samples(samples)) = &state.values[id] {
-                        state.found.push((id, Found::Samples(samples.clone())));
-                    }
+                if wanted.contains(&id) && state.values[id].is_some() {
+                    let samples = state.samples(id)?;
+                    state.found.push((id, Found::Samples(samples)));
                 }
                 state.release(id);
             }
@@ -269,7 +278,7 @@ impl State<'_> {
                     let value = reducer.run(&samples.along.axis, &samples.values, self.method).filter(|value| value.is_finite());
                     let value =
                         value.ok_or_else(|| format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len()))?;
-                    self.found.push((id, Found::Number(value)));
+                    self.found.push((id, Found::Number(value, samples.values.len())));
                     continue;
                 }
             };
@@ -282,7 +291,7 @@ impl State<'_> {
             let samples = self.samples(input)?;
             let percents: Vec<f64> = members.iter().map(|(_, percent)| *percent).collect();
             let values = percentiles(&samples.values, &percents, self.method).map_err(|error| error.to_string())?;
-            self.found.extend(members.iter().zip(values).map(|((id, _), value)| (*id, Found::Number(value))));
+            self.found.extend(members.iter().zip(values).map(|((id, _), value)| (*id, Found::Number(value, samples.values.len()))));
         }
         Ok(())
     }
@@ -313,7 +322,7 @@ impl State<'_> {
 }
 
 /// Which signals of which quantities were recorded at all: a position missing from every record is left out, not a fault of each section.
-pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes: &mut Vec<String>) -> Vec<Vec<bool>> {
+pub fn present_columns(graph: &Graph, campaign: &Campaign, facts: &Facts, units: &[Unit], notes: &mut Vec<String>) -> Vec<Vec<bool>> {
     let mut seen: Vec<(RecordKind, BTreeSet<String>)> = Vec::new();
     for kind in [RecordKind::Measurement, RecordKind::Simulation] {
         let mut columns = BTreeSet::new();
@@ -333,7 +342,7 @@ pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes
                 .iter()
                 .map(|signal| {
                     let mut missing: Vec<(String, RecordKind)> = Vec::new();
-                    for column in reads(graph, signal.compare) {
+                    for column in reads(graph, signal.compare, facts, units) {
                         for (kind, columns) in &seen {
                             if !columns.contains(&column) {
                                 missing.push((column.clone(), *kind));
@@ -362,18 +371,16 @@ pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes
         .collect()
 }
 
-/// Columns below a node.
-fn reads(graph: &Graph, node: NodeId) -> BTreeSet<String> {
-    let mut columns = BTreeSet::new();
-    let mut open = vec![node];
-    let mut seen = BTreeSet::new();
-    while let Some(id) = open.pop() {
-        if seen.insert(id) {
+/// Columns below a node that some section needs.
+fn reads(graph: &Graph, node: NodeId, facts: &Facts, units: &[Unit]) -> BTreeSet<String> {
+    let mut read = BTreeSet::new();
+    for unit in units {
+        // Where it cannot be told which signal applies, the section is refused when it is evaluated.
+        for id in needed(graph, &BTreeSet::from([node]), &unit.known(facts)).unwrap_or_default() {
             if let Operation::Read { column } = &graph.nodes[id].operation {
-                columns.insert(column.clone());
+                read.insert(column.clone());
             }
-            open.extend(&graph.nodes[id].inputs);
         }
     }
-    columns
+    read
 }

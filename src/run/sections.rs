@@ -1,6 +1,6 @@
 //! Sections of the campaign: their data, the requirements on them, and why one is not used.
 
-use super::facts::{Facts, Known, scalar};
+use super::facts::{Facts, Known, item, scalar, trimmed};
 use super::pairs::SectionValues;
 use super::signal::Extent;
 use crate::check::evaluate::{flag, number};
@@ -8,7 +8,7 @@ use crate::check::plan::{Datum, DatumKind, OnFault, Plan, Scalar};
 use crate::data::Campaign;
 use crate::data::table::Cell;
 use crate::problem::{Problem, Problems};
-use crate::result::{CheckResult, DataItem, SectionResult};
+use crate::result::{CheckResult, SectionResult};
 use crate::source::Span;
 use crate::units::Unit as OfMeasure;
 
@@ -246,8 +246,27 @@ pub fn take_over(plan: &Plan, units: &mut [Unit], values: &[SectionValues], note
             unit.refuse(fault.clone(), true);
         }
     }
+    notes.extend(unchecked(units));
     notes.extend(super::pairs::margin_note(values));
     if stop.any_error() { Err(stop) } else { Ok(()) }
+}
+
+/// One note for each requirement that could not be checked on sections that are used all the same.
+fn unchecked(units: &[Unit]) -> Vec<String> {
+    let mut found: Vec<(&str, &str, Vec<&str>)> = Vec::new();
+    for unit in units.iter().filter(|unit| unit.fault.is_none()) {
+        for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
+            match found.iter_mut().find(|(title, says, _)| *title == check.title && *says == check.says) {
+                Some((_, _, names)) => names.push(&unit.name),
+                None => found.push((&check.title, &check.says, vec![&unit.name])),
+            }
+        }
+    }
+    let sentence = |(title, says, names): (&str, &str, Vec<&str>)| {
+        let of = if names.len() == units.len() { "all sections".to_string() } else { format!("section {}", names.join(", ")) };
+        format!("{title}: {says} ({of})")
+    };
+    found.into_iter().map(sentence).collect()
 }
 
 pub fn results(plan: &Plan, units: Vec<Unit>) -> Vec<SectionResult> {
@@ -265,27 +284,9 @@ pub fn results(plan: &Plan, units: Vec<Unit>) -> Vec<SectionResult> {
                 start: axis.from_si(start),
                 end: axis.from_si(end),
                 axis_unit: axis.text.clone(),
-                columns: plan.columns.iter().zip(&unit.columns).map(|(datum, value)| item(datum, value)).collect(),
+                columns: plan.columns.iter().zip(&unit.columns).map(|(datum, value)| item(datum, value.as_ref().ok())).collect(),
                 checks: unit.checks,
             }
         })
         .collect()
-}
-
-fn item(datum: &Datum, value: &Result<Scalar, String>) -> DataItem {
-    let (value, unit) = match (value, &datum.kind) {
-        (Ok(Scalar::Number(value)), DatumKind::Number(unit)) => (trimmed(unit.from_si(*value)), Some(unit.text.clone())),
-        (Ok(Scalar::Number(value)), _) => (trimmed(*value), None),
-        (Ok(Scalar::Word(word)), _) => (word.clone(), None),
-        (Ok(Scalar::Flag(flag)), _) => (flag.to_string(), None),
-        (Err(_), DatumKind::Number(unit)) => (String::new(), Some(unit.text.clone())),
-        (Err(_), _) => (String::new(), None),
-    };
-    DataItem { name: datum.title.clone(), value, unit, used: true }
-}
-
-/// A number of a table without the tail that conversion between units leaves: `56.3`, not `56.300000000000004`.
-pub fn trimmed(value: f64) -> String {
-    let rounded = (value * 1e6).round() / 1e6;
-    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }

@@ -7,12 +7,14 @@ use crate::metrics::filter::Filter;
 use crate::metrics::resample;
 use crate::metrics::window::{Kind, Sliding};
 
-/// What samples run along, in SI; the axis increases or decreases strictly.
+/// What samples run along, in SI; axis and time increase strictly.
 #[derive(Debug)]
 pub struct Along {
     pub axis: Vec<f64>,
     pub time: Option<Vec<f64>>,
     pub rate: Rate,
+    /// Row of the file that the first sample was read from; `None` where samples are not those of the file.
+    pub first_row: Option<usize>,
 }
 
 /// Samples per second, or per metre after resampling over a length.
@@ -47,7 +49,20 @@ impl Along {
     }
 
     fn part(&self, range: std::ops::Range<usize>) -> Self {
-        Self { axis: self.axis[range.clone()].to_vec(), time: self.time.as_ref().map(|time| time[range].to_vec()), rate: self.rate }
+        Self {
+            axis: self.axis[range.clone()].to_vec(),
+            time: self.time.as_ref().map(|time| time[range.clone()].to_vec()),
+            rate: self.rate,
+            first_row: self.first_row.map(|row| row + range.start),
+        }
+    }
+
+    /// Where a sample is, in words.
+    fn place(&self, sample: usize) -> String {
+        match self.first_row {
+            Some(row) => format!("in row {}", row + sample),
+            None => format!("at {:.3} on the axis", self.axis[sample]),
+        }
     }
 }
 
@@ -89,10 +104,15 @@ impl Samples {
         let over = along_time.unwrap_or(axis);
         let (grid, values) = resample::resample(over, &self.values, step).map_err(error)?;
         let along = if over_time {
-            Along { axis: resample::interpolate(over, axis, &grid).map_err(error)?, time: Some(grid), rate: Rate::PerTime(1.0 / step) }
+            Along {
+                axis: resample::interpolate(over, axis, &grid).map_err(error)?,
+                time: Some(grid),
+                rate: Rate::PerTime(1.0 / step),
+                first_row: None,
+            }
         } else {
             let time = self.along.time.as_ref().map(|time| resample::interpolate(over, time, &grid)).transpose().map_err(error)?;
-            Along { axis: grid, time, rate: Rate::PerLength(1.0 / step) }
+            Along { axis: grid, time, rate: Rate::PerLength(1.0 / step), first_row: None }
         };
         Ok(Self { along: Arc::new(along), values: Arc::new(values) })
     }
@@ -113,9 +133,9 @@ impl Samples {
                 let middle: Vec<f64> = starts.iter().map(|start| start + width / 2.0).collect();
                 let along = if *over_time {
                     let axis = resample::interpolate(over, &self.along.axis, &middle).map_err(|error| error.to_string())?;
-                    Along { axis, time: Some(middle), rate: Rate::PerTime(1.0 / step) }
+                    Along { axis, time: Some(middle), rate: Rate::PerTime(1.0 / step), first_row: None }
                 } else {
-                    Along { axis: middle, time: None, rate: Rate::PerLength(1.0 / step) }
+                    Along { axis: middle, time: None, rate: Rate::PerLength(1.0 / step), first_row: None }
                 };
                 Ok(Self { along: Arc::new(along), values: Arc::new(values) })
             }
@@ -150,7 +170,10 @@ pub fn arithmetic(operator: Operator, left: &Signal, right: &Signal) -> Result<S
     apply(&[left, right], &|of| run(of[0], of[1]))
 }
 
-/// A function of up to two signals, sample by sample.
+/// A function of signals, sample by sample.
+///
+/// # Errors
+/// As [`arithmetic`].
 pub fn apply(inputs: &[&Signal], run: &dyn Fn(&[f64]) -> f64) -> Result<Signal, String> {
     let base = inputs.iter().find_map(|input| if let Signal::Samples(samples) = input { Some(samples) } else { None });
     let Some(base) = base else {
@@ -160,12 +183,12 @@ pub fn apply(inputs: &[&Signal], run: &dyn Fn(&[f64]) -> f64) -> Result<Signal, 
     };
     for input in inputs {
         if let Signal::Samples(samples) = input {
-            if samples.values.len() != base.values.len() {
-                return Err("two signals of different length are combined".into());
+            if !Arc::ptr_eq(&samples.along, &base.along) && samples.along.axis != base.along.axis {
+                return Err("signals of different sampling are combined; resample both alike".into());
             }
         }
     }
-    let mut of = [0.0; 2];
+    let mut of = vec![0.0; inputs.len()];
     let mut values = Vec::with_capacity(base.values.len());
     for index in 0..base.values.len() {
         for (slot, input) in of.iter_mut().zip(inputs) {
@@ -174,13 +197,10 @@ pub fn apply(inputs: &[&Signal], run: &dyn Fn(&[f64]) -> f64) -> Result<Signal, 
                 Signal::Constant(value) => *value,
             };
         }
-        values.push(run(&of[..inputs.len()]));
+        values.push(run(&of));
     }
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(Signal::Samples(base.with(values))),
-        Some(at) => Err(format!(
-            "a computed signal is not finite at {:.3} on the axis (a division by zero, or a value a function is not defined for)",
-            base.along.axis[at]
-        )),
+        Some(at) => Err(format!("no finite number {}: a division by zero, or a value a function is not defined for", base.along.place(at))),
     }
 }

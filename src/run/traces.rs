@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use super::record::{Found, Work, columns, open};
+use super::record::{Found, Work, needed, open};
 use super::sections::Unit as Section;
 use super::signal::Samples;
 use crate::check::plan::Evaluation;
@@ -59,7 +59,7 @@ fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Option
     let wanted: BTreeSet<NodeId> = [node].into_iter().chain(over.node).collect();
     let known = unit.known(work.facts);
     let curve = |kind: RecordKind| {
-        let needed = columns(work.graph, &wanted, &known).ok()?;
+        let needed = needed(work.graph, &wanted, &known).ok()?;
         let opened = open(work, unit, kind, &needed).ok()?;
         let found = opened.evaluate(work.graph, &needed, &wanted, &known, work.plan.sections.percentiles).ok()?;
         let of = |node: NodeId| {
