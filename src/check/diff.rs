@@ -5,11 +5,11 @@ use crate::result::Deviation;
 use crate::syntax::document::{Block, Document, Field, Text};
 use crate::syntax::from_pest;
 use crate::syntax::keys::{self, Sort};
+use crate::syntax::phrase::{Phrase, Pick};
+use crate::units::Unit;
 
+use super::family::slot;
 use super::names::normalised;
-
-/// Fields that say who wrote a protocol, not what it rules.
-const NOT_RULES: [&str; 2] = ["extends", "author"];
 
 /// Rules that are new, gone or changed from the first document to the second, in the order of the second.
 pub fn diff(before: &Document, after: &Document) -> Vec<Deviation> {
@@ -29,7 +29,7 @@ pub fn diff(before: &Document, after: &Document) -> Vec<Deviation> {
 }
 
 fn same(a: &Block, b: &Block) -> bool {
-    a.kind.text == b.kind.text && (a.name_text() == b.name_text() || a.kind.text == "protocol")
+    a.kind.text == b.kind.text && (a.name_text() == b.name_text() || keys::kind(&a.kind.text).is_some_and(|kind| kind.single))
 }
 
 fn head(block: &Block) -> String {
@@ -52,32 +52,48 @@ fn fields(old: &Block, new: &Block, found: &mut Vec<Deviation>) {
     if title(old) != title(new) {
         found.push(Deviation { rule: format!("{}, title", head(new)), before: title(old), after: title(new) });
     }
-    let keys = keys::kind(&new.kind.text).map_or(&[][..], |kind| kind.keys);
-    for key in keys.iter().filter(|key| !NOT_RULES.contains(&key.word)) {
+    for key in keys::kind(&new.kind.text).map_or(&[][..], |kind| kind.keys) {
         let olds: Vec<&Field> = old.fields_named(key.word).collect();
         let news: Vec<&Field> = new.fields_named(key.word).collect();
-        if !key.many {
-            one(old, key.word, olds.first().copied(), news.first().copied(), found);
-            continue;
-        }
-        // A limit is compared with the one of the same statistic, others by position.
-        let leading = |field: &Field| {
-            if key.word == "limit" { field.value.text.split_whitespace().next().unwrap_or("").to_string() } else { String::new() }
-        };
-        let mut left: Vec<&Field> = olds.clone();
-        for field in &news {
-            let at = left
-                .iter()
-                .position(|other| leading(other) == leading(field) && (key.word == "limit" || equal(&old.kind.text, other, field)));
-            let partner = at.or_else(|| (key.word != "limit" && !left.is_empty()).then_some(0)).map(|at| left.remove(at));
-            let rule = format!("{} {}", key.word, leading(field));
-            one(new, rule.trim(), partner, Some(field), found);
-        }
-        for field in left {
-            let rule = format!("{} {}", key.word, leading(field));
-            one(new, rule.trim(), Some(field), None, found);
+        if key.many {
+            many(new, &olds, &news, found);
+        } else {
+            one(new, key.word, olds.first().copied(), news.first().copied(), found);
         }
     }
+}
+
+/// Fields of which there may be several: those that are equal are put aside, then limits are compared with the one of the same
+/// statistic and zones, others in the order they stand.
+fn many(block: &Block, olds: &[&Field], news: &[&Field], found: &mut Vec<Deviation>) {
+    let kind = &block.kind.text;
+    let mut left: Vec<&Field> = olds.to_vec();
+    let mut changed: Vec<&Field> = Vec::new();
+    for new in news {
+        match left.iter().position(|old| equal(kind, old, new)) {
+            Some(at) => drop(left.remove(at)),
+            None => changed.push(new),
+        }
+    }
+    for new in changed {
+        let limit = new.key.text == "limit";
+        let partner = left
+            .iter()
+            .position(|old| slot(old) == slot(new))
+            .or_else(|| left.iter().position(|old| !limit || statistic(old) == statistic(new)));
+        one(block, &rule(new), partner.map(|at| left.remove(at)), Some(new), found);
+    }
+    for old in left {
+        one(block, &rule(old), Some(old), None, found);
+    }
+}
+
+fn rule(field: &Field) -> String {
+    format!("{} {}", field.key.text, statistic(field)).trim().to_string()
+}
+
+fn statistic(field: &Field) -> &str {
+    if field.key.text == "limit" { field.value.text.split_whitespace().next().unwrap_or("") } else { "" }
 }
 
 fn one(block: &Block, rule: &str, old: Option<&Field>, new: Option<&Field>, found: &mut Vec<Deviation>) {
@@ -92,19 +108,56 @@ fn one(block: &Block, rule: &str, old: Option<&Field>, new: Option<&Field>, foun
     }
 }
 
-/// The same meaning: equal words, or expressions that read the same (`0.4 m/s^2` and `0.40 m/s²`).
 fn equal(kind: &str, a: &Field, b: &Field) -> bool {
-    if normalised(&a.value.text) == normalised(&b.value.text) {
-        return true;
-    }
-    let sort = keys::kind(kind).and_then(|kind| kind.key(&a.key.text)).map(|key| key.sort);
-    sort == Some(Sort::Phrase)
-        && (both(&a.value, &b.value, from_pest::limit)
-            || both(&a.value, &b.value, from_pest::expression)
-            || both(&a.value, &b.value, from_pest::chain))
+    normalised(&a.value.text) == normalised(&b.value.text) || meaning(kind, a).is_some_and(|meant| meaning(kind, b) == Some(meant))
 }
 
-fn both<T: PartialEq>(a: &Text, b: &Text, read: fn(&Text, &mut Problems) -> Option<T>) -> bool {
-    let (a, b) = (read(a, &mut Problems::default()), read(b, &mut Problems::default()));
-    a.is_some() && a == b
+/// What a field says apart from the way it is written; `None` for prose and for what cannot be read.
+fn meaning(kind: &str, field: &Field) -> Option<String> {
+    let key = keys::kind(kind)?.key(&field.key.text)?;
+    if key.sort != Sort::Phrase {
+        return None;
+    }
+    let quiet = &mut Problems::default();
+    let text: &Text = &field.value;
+    match key.word {
+        "limit" if kind == "quantity" => from_pest::limit(text, quiet).map(|limit| limit.meaning()),
+        "filter" | "step" | "metric" => {
+            from_pest::chain(text, quiet).map(|chain| chain.iter().map(|step| step.node.meaning()).collect::<Vec<_>>().join("; "))
+        }
+        "of" => from_pest::of_places(text, quiet).map(|of| format!("{} {}", of.signal.node, picks(&of.picks))),
+        "at" => from_pest::places(text, quiet).map(|at| picks(&at)),
+        "one of" | "members" => {
+            from_pest::list(text, quiet).map(|list| list.into_iter().map(|item| item.node).collect::<Vec<_>>().join(", "))
+        }
+        "in" => Unit::parse(&text.text).ok().map(|unit| unit_meaning(&unit)),
+        "axis" | "time" => {
+            let (name, unit) = from_pest::axis(text, quiet)?;
+            Some(format!("{} {}", name.node, unit_meaning(&Unit::parse(&unit.node).ok()?)))
+        }
+        "range" => from_pest::range(text, quiet).map(|(low, high)| format!("{} {}", low.meaning(), high.meaning())),
+        "alias" => from_pest::alias(text, quiet).map(|alias| {
+            let cases: Vec<String> =
+                alias.cases.iter().map(|(member, condition)| format!("{}?{}", member.node, condition.meaning())).collect();
+            format!("{} {}", alias.name.node, cases.join(", "))
+        }),
+        _ => from_pest::expression(text, quiet).map(|phrase: Phrase| phrase.meaning()),
+    }
+}
+
+fn unit_meaning(unit: &Unit) -> String {
+    format!("{:e} {}", unit.factor, unit.dimension)
+}
+
+/// `at wheelsets 1, 3 and side L`; singular and plural mean the same.
+fn picks(picks: &[Pick]) -> String {
+    let one = |pick: &Pick| {
+        let words = pick.words.iter().chain(&pick.more).map(|word| word.node.as_str());
+        words
+            .filter(|word| !matches!(*word, "each" | "every" | "all"))
+            .map(|word| word.strip_suffix('s').unwrap_or(word))
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    picks.iter().map(one).collect::<Vec<_>>().join("; ")
 }

@@ -62,7 +62,7 @@ pub fn evaluate(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
         }
         Kind::Cases(arms, otherwise) => {
             for (value, condition) in arms {
-                if condition.as_ref().map_or(Ok(true), |condition| flag(condition, values))? {
+                if flag(condition, values)? {
                     return evaluate(value, values);
                 }
             }
@@ -135,10 +135,7 @@ pub fn shape(expr: &Expr) -> String {
         Kind::Binary(operator, left, right) => format!("{operator:?}({},{})", shape(left), shape(right)),
         Kind::Call(function, arguments) => format!("{}({})", function.name, arguments.iter().map(shape).collect::<Vec<_>>().join(",")),
         Kind::Cases(arms, otherwise) => {
-            let arms: Vec<String> = arms
-                .iter()
-                .map(|(value, condition)| format!("{}?{}", shape(value), condition.as_ref().map_or(String::new(), shape)))
-                .collect();
+            let arms: Vec<String> = arms.iter().map(|(value, condition)| format!("{}?{}", shape(value), shape(condition))).collect();
             format!("[{};{}]", arms.join(","), otherwise.as_ref().map_or(String::new(), |value| shape(value)))
         }
     }

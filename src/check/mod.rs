@@ -2,27 +2,37 @@
 //!
 //! Every problem is noted and checking goes on, so that an author sees all of them in one go.
 
+mod closed;
+mod conditions;
+mod declared;
 pub mod diff;
 pub mod evaluate;
 pub mod family;
+mod limits;
 mod names;
 mod overlap;
+mod parameters;
 pub mod plan;
+mod positions;
 mod quantities;
 mod rules;
+mod scalar_names;
 mod scalars;
 mod signals;
 mod steps;
 
 pub use names::normalised;
 
+use std::collections::BTreeSet;
+
 use indexmap::IndexMap;
 
 use crate::problem::{Problem, Problems};
+use crate::source::Span;
 use crate::syntax::document::{Block, Document, Text};
 use crate::units::Dimension;
 use names::Names;
-use plan::{Axis, NamedFilter, Parameter, Plan, SetBy, Step};
+use plan::{Axis, Expr, NamedFilter, Parameter, Plan, SetBy, Step};
 
 /// A parameter set from outside the protocol.
 #[derive(Clone, Debug)]
@@ -33,6 +43,11 @@ pub struct Override {
 
 pub type Overrides = IndexMap<String, Override>;
 
+/// How deep expressions, definitions and signals may lie inside each other, all together: what the stack surely holds.
+const DEEPEST: usize = 700;
+/// How many parts of expressions are looked at before a protocol is refused whose definitions double each other up.
+const MOST_WORK: usize = 1_000_000;
+
 struct Checker<'a> {
     blocks: Vec<Block>,
     problems: &'a mut Problems,
@@ -40,10 +55,21 @@ struct Checker<'a> {
     names: Names,
     axis: Option<Axis>,
     zone_names: Vec<String>,
+    /// The zone of a section, where there are zones.
+    zone: Option<Expr>,
     /// Kind and name of the parent's blocks, to tell a misspelt override from a new rule.
     parent_names: Vec<(String, String)>,
     filter_steps: IndexMap<String, Option<Vec<Step>>>,
-    signal_depth: usize,
+    /// Named parts being looked into, innermost last: one that comes up again is made of itself.
+    open: Vec<String>,
+    /// Named parts that were found to be made of themselves.
+    looped: BTreeSet<String>,
+    used_defines: BTreeSet<String>,
+    /// Conditions that hold wherever the expression in hand is evaluated.
+    assumed: Vec<Expr>,
+    in_quantity: bool,
+    depth: usize,
+    work: usize,
     ddof: usize,
     minimum_signals: usize,
     minimum_pairs: usize,
@@ -51,6 +77,9 @@ struct Checker<'a> {
 
 /// The plan of a protocol with its parameters set, or `None` after problems of severity error were noted.
 pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Problems) -> Option<Plan> {
+    if !family.whole {
+        return None;
+    }
     let document = &family.merged;
     let parent_names = family
         .parent
@@ -64,18 +93,125 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
         names: Names::default(),
         axis: None,
         zone_names: document.blocks.iter().filter(|block| block.kind.text == "zone").map(|block| block.name_text().to_string()).collect(),
+        zone: None,
         parent_names,
         filter_steps: IndexMap::new(),
-        signal_depth: 0,
+        open: Vec::new(),
+        looped: BTreeSet::new(),
+        used_defines: BTreeSet::new(),
+        assumed: Vec::new(),
+        in_quantity: false,
+        depth: 0,
+        work: 0,
         ddof: 1,
         minimum_signals: 1,
         minimum_pairs: 1,
     };
+    let before = checker.problems.0.len();
     let plan = checker.plan(document);
+    if plan.is_some() && !problems.any_error() {
+        let checked = plan.as_ref().map_or(0, rule_count);
+        let written = document.blocks.iter().map(written_rules).sum::<usize>();
+        // No rule may get lost without a word: the verdict would rest on the others.
+        if checked < written {
+            problems.push(Problem::error(
+                "internal",
+                format!("{written} rules are written and {checked} were understood; this is a fault of the program"),
+            ));
+        }
+    }
+    in_reading_order(problems, before);
     if problems.any_error() { None } else { plan }
 }
 
+/// Puts the problems from the given one on in the order of their places, those of each text together.
+fn in_reading_order(problems: &mut Problems, from: usize) {
+    let mut sources: Vec<String> = Vec::new();
+    for problem in &problems.0[from..] {
+        if let Some(at) = problem.at.as_ref().filter(|at| !sources.contains(&at.source.name)) {
+            sources.push(at.source.name.clone());
+        }
+    }
+    let place = |problem: &Problem| problem.at.as_ref().map(|at| (sources.iter().position(|name| *name == at.source.name), at.start));
+    problems.0[from..].sort_by_key(place);
+}
+
+fn written_rules(block: &Block) -> usize {
+    match block.kind.text.as_str() {
+        "zone" | "check" | "filter" => 1,
+        "quantity" => 1 + block.fields_named("limit").count(),
+        _ => 0,
+    }
+}
+
+fn rule_count(plan: &Plan) -> usize {
+    let limits = |quantity: &plan::Quantity| {
+        let mut written: Vec<&Span> = quantity.limits.iter().map(|limit| &limit.span).collect();
+        written.dedup();
+        written.len()
+    };
+    plan.zones.len() + plan.checks.len() + plan.filters.len() + plan.quantities.iter().map(|quantity| 1 + limits(quantity)).sum::<usize>()
+}
+
 impl Checker<'_> {
+    /// One level deeper into what is written; `None` after a problem if that is too deep or too much.
+    fn deeper<T>(&mut self, at: &Span, look: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        if self.work > MOST_WORK {
+            return None;
+        }
+        self.work += 1;
+        if self.work > MOST_WORK {
+            self.problems.push(
+                Problem::error("too-large", "definitions and signals use each other so often that the rules become too large")
+                    .at(at)
+                    .help("let each part be used once or twice, not twice at every level"),
+            );
+            return None;
+        }
+        if self.depth >= DEEPEST {
+            self.problems.push(Problem::error("too-deep", "definitions and signals lie too deep inside each other").at(at));
+            return None;
+        }
+        self.depth += 1;
+        let found = look(self);
+        self.depth -= 1;
+        found
+    }
+
+    /// Looks into a named part; `None` after a problem if it is being looked into already.
+    fn inside<T>(&mut self, kind: &str, name: &str, at: &Span, look: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        let key = format!("{kind} {name}");
+        if self.looped.contains(&key) {
+            return None;
+        }
+        if let Some(from) = self.open.iter().position(|open| *open == key) {
+            let round: Vec<String> =
+                self.open[from..].iter().chain([&key]).map(|part| format!("`{}`", part.split(' ').next_back().unwrap_or(part))).collect();
+            let code = match kind {
+                "parameter" => "parameter-loop",
+                "signal" => "signal-loop",
+                "filter" => "filter-loop",
+                _ => "define-loop",
+            };
+            let says = if round.len() > 2 {
+                format!("{kind} `{name}` is made of itself: {}", round.join(", then "))
+            } else {
+                format!("{kind} `{name}` is made of itself")
+            };
+            let mut problem = Problem::error(code, says).at(at);
+            if let Some(block) = self.blocks.iter().find(|block| block.kind.text == kind && block.name_text() == name) {
+                problem = problem.also(block.span(), "begins here");
+            }
+            self.problems.push(problem);
+            self.looped.extend(self.open[from..].iter().cloned());
+            return None;
+        }
+        self.open.push(key);
+        let found = look(self);
+        self.open.pop();
+        found
+    }
+
     fn plan(&mut self, document: &Document) -> Option<Plan> {
         let blocks = self.blocks.clone();
         let of = |kind: &'static str| blocks.iter().filter(move |block| block.kind.text == kind);
@@ -94,16 +230,14 @@ impl Checker<'_> {
         let time = head.field("time").and_then(|field| self.axis_field(field, &[Dimension::TIME]));
         self.gather_names();
         self.unknown_overrides(head);
+        let sections = self.section_rules(of("sections").next());
+        self.zones_match(&sections);
         let verdict_block = of("verdict").next();
         self.ddof = self.divisor(verdict_block);
         if let Some(block) = verdict_block {
             self.minimum_signals = self.count(block, "minimum signals", 1).unwrap_or(1);
             self.minimum_pairs = self.count(block, "minimum pairs", 1).unwrap_or(1);
         }
-        // Signals and defines that no quantity uses are checked too: a mistake in them would show on the day they are used.
-        self.unused_parts();
-        let sections = self.section_rules(of("sections").next());
-        self.zones_match(&sections);
         let zones = of("zone").filter_map(|block| self.zone(block)).collect();
         let checks = of("check").filter_map(|block| self.section_check(block)).collect();
         let filters = of("filter").filter_map(|block| self.named_filter(block)).collect();
@@ -111,11 +245,13 @@ impl Checker<'_> {
         if of("quantity").next().is_none() {
             self.problems.push(Problem::error("no-quantity", "the protocol has no quantity: nothing would be compared").at(head.span()));
         }
-        let verdict = self.verdict_rule(verdict_block);
-        let parameters = self
-            .names
-            .parameters
-            .iter()
+        self.unused_parts();
+        let verdict = self.verdict_rule(verdict_block, head, &quantities);
+        let names = &self.names;
+        let parameters = names
+            .parameter_blocks
+            .keys()
+            .filter_map(|name| names.parameters.get_key_value(name))
             .map(|(name, found)| Parameter {
                 name: name.clone(),
                 title: found.title.clone(),
@@ -155,32 +291,14 @@ impl Checker<'_> {
 
     fn unknown_overrides(&mut self, head: &Block) {
         for (name, given) in self.overrides {
-            if !self.names.parameters.contains_key(name)
-                && !self.blocks.iter().any(|block| block.kind.text == "parameter" && block.name_text() == name)
-            {
-                let known: Vec<String> = self.names.parameters.keys().cloned().collect();
+            if !self.names.parameter_blocks.contains_key(name) {
+                let known: Vec<String> = self.names.parameter_blocks.keys().cloned().collect();
                 self.problems.push(
                     Problem::error("unknown-parameter", format!("protocol `{}` has no parameter `{name}`", head.name_text()))
                         .at(&given.text.span)
                         .suggest(name, known.iter().map(String::as_str)),
                 );
             }
-        }
-    }
-
-    fn unused_parts(&mut self) {
-        let signals: Vec<(String, names::SignalDef)> =
-            self.names.signals.iter().map(|(name, signal)| (name.clone(), signal.clone())).collect();
-        for (name, signal) in signals {
-            let mut at = names::Assignment::new();
-            for place in &signal.places {
-                if let Some(member) = self.names.places.get(place).and_then(|place| place.members.first()) {
-                    at.insert(place.clone(), member.clone());
-                }
-            }
-            let phrase = crate::syntax::phrase::At { node: crate::syntax::phrase::Node::Path(name), range: 0..0 };
-            let text = Text { text: String::new(), span: signal.span.clone(), exact: false };
-            self.signal(&phrase, &text, &at);
         }
     }
 }

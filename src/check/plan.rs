@@ -124,7 +124,8 @@ pub enum Kind {
     Power(Box<Expr>, i8),
     Binary(Operator, Box<Expr>, Box<Expr>),
     Call(&'static Function, Vec<Expr>),
-    Cases(Vec<(Expr, Option<Expr>)>, Option<Box<Expr>>),
+    /// The first whose condition holds, else the last.
+    Cases(Vec<(Expr, Expr)>, Option<Box<Expr>>),
 }
 
 pub use crate::syntax::phrase::Operator;
@@ -162,6 +163,8 @@ pub struct Step {
     pub kind: StepSpec,
     /// As printed: `low-pass 20 Hz, order 4, zero-phase, as-applied`.
     pub words: String,
+    /// Whether its frequencies are cycles per length, so that it can only follow a resampling over a length.
+    pub per_length: bool,
     pub span: Span,
 }
 
@@ -291,10 +294,10 @@ pub struct Limit {
     pub span: Span,
 }
 
+/// Which pairs a limit is about. A limit `for each zone` is one limit for every zone.
 #[derive(Clone, Debug)]
 pub enum Scope {
     All,
-    EachZone,
     Zones(Vec<String>),
     Where(Box<Expr>, String),
 }
@@ -303,6 +306,7 @@ pub enum Scope {
 pub struct VerdictRule {
     pub rule: Rule,
     pub words: String,
+    pub span: Span,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

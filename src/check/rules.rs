@@ -1,9 +1,9 @@
 //! Checks what stands beside quantities: axis, zones, section checks, treatment of sections, verdict.
 
+use super::Checker;
 use super::names::normalised;
-use super::plan::{Axis, Check, DatumKind, Input, OnFault, Rule, SectionRules, VerdictRule, Zone};
+use super::plan::{Axis, Check, DatumKind, Expr, Input, Kind, OnFault, Quantity, Rule, SectionRules, Type, VerdictRule, Zone};
 use super::scalars::Scope;
-use super::{Checker, overlap};
 use crate::metrics::percentile::Method;
 use crate::problem::Problem;
 use crate::syntax::document::{Block, Field, Text};
@@ -160,7 +160,7 @@ impl Checker<'_> {
             rules.minimum = minimum;
         }
         if let Some(field) = block.field("percentiles") {
-            let word = self.choice_word(field);
+            let word = self.choice_field(field).unwrap_or_else(|| Method::Linear.name().to_string());
             match Method::from_name(&word) {
                 Some(method) => rules.percentiles = method,
                 None => {
@@ -173,17 +173,13 @@ impl Checker<'_> {
     }
 
     /// A word, or the value of the choice parameter it names.
-    fn choice_word(&self, field: &Field) -> String {
-        let word = normalised(&field.value.text);
-        match self.names.parameters.get(&word).map(|parameter| &parameter.value) {
-            Some(super::plan::Scalar::Word(choice)) => choice.clone(),
-            _ => word,
-        }
+    fn choice_field(&mut self, field: &Field) -> Option<String> {
+        self.choice_word(&normalised(&field.value.text), &field.value.span)
     }
 
     pub(super) fn divisor(&mut self, block: Option<&Block>) -> usize {
         let Some(field) = block.and_then(|block| block.field("standard deviation")) else { return 1 };
-        match self.choice_word(field).as_str() {
+        match self.choice_field(field).as_deref().unwrap_or("n-1") {
             "n-1" => 1,
             "n" => 0,
             other => {
@@ -194,28 +190,34 @@ impl Checker<'_> {
         }
     }
 
-    pub(super) fn verdict_rule(&mut self, block: Option<&Block>) -> VerdictRule {
-        let every = VerdictRule { rule: Rule::EveryLimit, words: "validated when every limit holds".into() };
+    pub(super) fn verdict_rule(&mut self, block: Option<&Block>, head: &Block, quantities: &[Quantity]) -> VerdictRule {
+        let span = block.map_or_else(|| head.span().clone(), |block| block.span().clone());
+        let every = VerdictRule { rule: Rule::EveryLimit, words: "validated when every limit holds".into(), span: span.clone() };
         let Some(field) = block.and_then(|block| block.field("validated")) else { return every };
         let words = format!("validated {}", normalised(&field.value.text));
-        let rule = match from_pest::verdict(&field.value, self.problems) {
-            Some(WrittenVerdict::AtLeast { count, of_limits }) => match self.constant_phrase(&count, &field.value) {
-                Some((count, Dimension::ONE)) if count >= 1.0 && count.fract() == 0.0 => {
-                    if of_limits {
-                        Rule::AtLeastLimits(count as usize)
-                    } else {
-                        Rule::AtLeastQuantities(count as usize)
-                    }
-                }
-                _ => {
-                    self.problems
-                        .push(Problem::error("not-a-count", "a whole number above zero is needed").at(&field.value.place(count.range)));
-                    Rule::EveryLimit
-                }
-            },
-            _ => Rule::EveryLimit,
+        let Some(WrittenVerdict::AtLeast { count, of_limits }) = from_pest::verdict(&field.value, self.problems) else {
+            return VerdictRule { words, ..every };
         };
-        VerdictRule { rule, words }
+        let place = field.value.place(count.range.clone());
+        let (wanted, dimension) = match self.constant_phrase(&count, &field.value) {
+            Some(found) => found,
+            None => return every,
+        };
+        if dimension != Dimension::ONE || wanted < 1.0 || wanted.fract() != 0.0 {
+            self.problems.push(Problem::error("not-a-count", "a whole number above zero is needed").at(&place));
+            return every;
+        }
+        let wanted = wanted as usize;
+        let (there, what) = if of_limits {
+            (quantities.iter().map(|quantity| quantity.limits.len()).sum::<usize>(), "limits")
+        } else {
+            (self.blocks.iter().filter(|block| block.kind.text == "quantity").count(), "quantities")
+        };
+        if wanted > there && !self.problems.any_error() {
+            self.problems.push(Problem::error("out-of-range", format!("{wanted} {what} are asked for, there are {there}")).at(&place));
+        }
+        let rule = if of_limits { Rule::AtLeastLimits(wanted) } else { Rule::AtLeastQuantities(wanted) };
+        VerdictRule { rule, words, span }
     }
 
     /// The zones of the protocol and the words of the zone column must be the same, or sections would fall between them.
@@ -230,18 +232,16 @@ impl Checker<'_> {
             return;
         };
         let datum = self.names.columns[index].clone();
-        let DatumKind::Words(_) = datum.kind else {
-            self.problems.push(Problem::error("zone-column", "the zone column holds words: `one of 1, 2, 3, 4`").at(&datum.span));
+        let DatumKind::Words(words) = &datum.kind else {
+            let problem = Problem::error("zone-column", "the column that tells the zone holds words").at(&datum.span);
+            self.problems.push(problem.help("`one of zones`, the names of the zone blocks"));
             return;
         };
-        for word in overlap::datum_words(&datum.kind) {
-            if !self.zone_names.contains(&word) {
-                let problem =
-                    Problem::error("unknown-zone", format!("sections may be of zone {word}, which is not described")).at(&datum.span);
-                self.problems.push(problem.help(format!("add a block `zone {word}`, or take {word} out of the column's words")));
-            }
+        self.zone = Some(Expr { kind: Kind::Column(index), ty: Type::Word(words.clone()), span: datum.span.clone() });
+        for word in words.iter().filter(|word| !self.zone_names.contains(word)) {
+            let problem = Problem::error("unknown-zone", format!("sections may be of zone {word}, which is not described")).at(&datum.span);
+            self.problems.push(problem.help(format!("add a block `zone {word}`, or let the column be `one of zones`")));
         }
-        let words = overlap::datum_words(&datum.kind);
         let strangers: Vec<Block> = self
             .blocks
             .iter()
@@ -252,8 +252,8 @@ impl Checker<'_> {
             self.problems.push(
                 Problem::error("unknown-zone", format!("no section can be of zone {}", block.name_text()))
                     .at(block.span())
-                    .also(&datum.span, "the words of the zone column")
-                    .help(format!("add {} to the words of the zone column", block.name_text())),
+                    .also(&datum.span, "its words are those of the zone column")
+                    .help("let the column be `one of zones`"),
             );
         }
     }

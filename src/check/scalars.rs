@@ -1,18 +1,15 @@
 //! Types expressions over numbers, words and conditions, and folds what is constant.
 
 use super::Checker;
-use super::evaluate::{Nothing, evaluate};
-use super::names::{Assignment, bare_word};
-use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Scalar, Type};
-use crate::catalog::{FUNCTIONS, Function, REDUCERS, Reducer, Signature};
+use super::conditions::impossible;
+use super::evaluate::{Nothing, evaluate, words};
+use super::plan::{Expr, Input, InputSide, Kind, Operator, Scalar, Type};
+use crate::catalog::{FUNCTIONS, Function, Reducer, Signature};
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
-use crate::units::{Dimension, Unit};
-
-/// Defines may refer to defines, but not for ever.
-const DEEPEST_DEFINE: usize = 24;
+use crate::units::Dimension;
 
 /// Which names an expression may use, and the reduced signals found in it.
 #[derive(Debug)]
@@ -25,8 +22,9 @@ pub(super) struct Scope {
     pub pair: Option<Dimension>,
     /// Limits of other statistics, of this dimension.
     pub limits: Option<(Dimension, Vec<String>)>,
+    /// The one zone that the expression is about.
+    pub zone: Option<String>,
     pub inputs: Vec<Input>,
-    depth: usize,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +37,7 @@ pub(super) struct Reduce {
 
 impl Scope {
     fn new(vehicle: bool, section: bool) -> Self {
-        Self { vehicle, section, reduce: None, pair: None, limits: None, inputs: Vec::new(), depth: 0 }
+        Self { vehicle, section, reduce: None, pair: None, limits: None, zone: None, inputs: Vec::new() }
     }
 
     /// Parameters and numbers only.
@@ -68,6 +66,10 @@ impl Checker<'_> {
     /// A typed expression, or `None` after a problem was noted.
     pub(super) fn expr(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Expr> {
         let span = text.place(phrase.range.clone());
+        self.deeper(&span.clone(), |checker| checker.expr_inside(phrase, text, span, scope))
+    }
+
+    fn expr_inside(&mut self, phrase: &Phrase, text: &Text, span: Span, scope: &mut Scope) -> Option<Expr> {
         let (kind, ty) = match &phrase.node {
             Node::Number { value, unit } => {
                 let dimension = unit.as_ref().map_or(Dimension::ONE, |unit| unit.dimension);
@@ -93,21 +95,24 @@ impl Checker<'_> {
             Node::Power(inner, exponent) => {
                 let inner = self.expr(inner, text, scope)?;
                 let dimension = self.number_type(&inner)?;
-                let Some(dimension) = dimension.power(*exponent) else {
-                    self.problems.push(Problem::error("power", "this power is beyond any unit").at(&span));
-                    return None;
-                };
+                let dimension = self.power(dimension, *exponent, &span)?;
                 (Kind::Power(Box::new(inner), *exponent), Type::Number(dimension))
             }
             Node::Binary(operator @ (Operator::Is | Operator::IsNot), left, right) => {
                 return self.equality(*operator, left, right, text, &span, scope);
             }
             Node::Binary(operator, left, right) => {
-                let left = self.expr(left, text, scope);
-                let right = self.expr(right, text, scope);
+                self.divided_by_share(*operator, right, &span)?;
+                let inputs = scope.inputs.len();
+                let (left, right) = (self.expr(left, text, scope), self.expr(right, text, scope));
                 let (left, right) = (left?, right?);
                 let ty = self.binary_type(*operator, &left, &right)?;
-                (Kind::Binary(*operator, Box::new(left), Box::new(right)), ty)
+                let found = self.folded(Expr { kind: Kind::Binary(*operator, Box::new(left), Box::new(right)), ty, span })?;
+                if matches!(found.kind, Kind::Constant(_)) {
+                    // `false and p0.15 > p99.85` asks nothing of the records.
+                    scope.inputs.truncate(inputs);
+                }
+                return Some(found);
             }
             Node::Call(name, arguments) if matches!(name.node.as_str(), "measured" | "simulated") => {
                 return self.on_side(name, arguments, text, &span, scope);
@@ -122,118 +127,125 @@ impl Checker<'_> {
                 (Kind::Call(function, arguments), Type::Number(dimension))
             }
             // `share of std` with a parameter `share` is a product, `mean of Y` a reduced signal.
-            Node::Reduced(factor, of) if bare_word(factor).is_some_and(|word| self.is_number_name(word)) => {
+            Node::Reduced(factor, of) if self.is_number_name(factor) => {
                 let (left, right) = (self.expr(factor, text, scope), self.expr(of, text, scope));
                 let (left, right) = (left?, right?);
                 let ty = self.binary_type(Operator::Multiply, &left, &right)?;
                 (Kind::Binary(Operator::Multiply, Box::new(left), Box::new(right)), ty)
             }
             Node::Reduced(reducer, signal) => return self.reduced(reducer, signal, text, &span, scope),
-            Node::PlaceOf(name, _) | Node::Through(_, name) => {
-                self.problems.push(
-                    Problem::error("signal-not-number", format!("`{}` is a signal here, a number is needed", name.node))
-                        .at(&span)
-                        .help("reduce it: `mean of ...`, `range of ...`"),
-                );
-                return None;
-            }
+            Node::PlaceOf(name, _) => return self.not_a_number(&name.node, &span),
+            Node::Through(inner, _) => return self.not_a_number(&words_at(text, inner), &span),
             Node::Cases(arms, otherwise) => return self.cases(arms, otherwise.as_deref(), text, &span, scope),
         };
-        Some(fold(Expr { kind, ty, span }))
+        self.folded(Expr { kind, ty, span })
     }
 
-    /// Whether the protocol has a block of this name: if it is not known all the same, its own problem was noted.
-    pub(super) fn is_block(&self, name: &str) -> bool {
-        const NAMED: [&str; 6] = ["parameter", "define", "channel", "signal", "section", "filter"];
-        self.blocks.iter().any(|block| block.name_text() == name && NAMED.contains(&block.kind.text.as_str()) && !self.defined(name))
+    fn not_a_number(&mut self, signal: &str, span: &Span) -> Option<Expr> {
+        self.problems.push(
+            Problem::error("signal-not-number", format!("`{signal}` is a signal, and a number is needed"))
+                .at(span)
+                .help("take a number from it: `mean of ...`, `range of ...`"),
+        );
+        None
     }
 
-    fn defined(&self, name: &str) -> bool {
-        self.names.parameters.contains_key(name)
-            || self.names.defines.contains_key(name)
-            || self.names.channels.contains_key(name)
-            || self.names.signals.contains_key(name)
-            || self.names.filters.contains_key(name)
-            || self.names.columns.iter().any(|datum| datum.name == name)
+    pub(super) fn power(&mut self, dimension: Dimension, exponent: i8, span: &Span) -> Option<Dimension> {
+        let found = dimension.power(exponent);
+        if found.is_none() {
+            self.problems.push(Problem::error("power", "this power is beyond any unit").at(span));
+        }
+        found
     }
 
-    fn is_number_name(&self, word: &str) -> bool {
-        Reducer::named(word).is_none()
-            && (self.names.parameters.contains_key(word)
-                || self.names.defines.contains_key(word)
-                || self.names.columns.iter().chain(&self.names.vehicle).any(|datum| datum.name == word))
+    /// `2/3 of std` is two thirds of it, but `2/share of std` could be either.
+    fn divided_by_share(&mut self, operator: Operator, right: &Phrase, span: &Span) -> Option<()> {
+        if operator != Operator::Divide || !matches!(&right.node, Node::Reduced(factor, _) if self.is_number_name(factor)) {
+            return Some(());
+        }
+        self.problems.push(
+            Problem::error("ambiguous", "this can be read as `a / (b of c)` and as `(a / b) of c`")
+                .at(span)
+                .help("put parentheses around what belongs together"),
+        );
+        None
     }
 
     fn cases(
         &mut self,
-        arms: &[(Phrase, Option<Phrase>)],
+        arms: &[(Phrase, Phrase)],
         otherwise: Option<&Phrase>,
         text: &Text,
         span: &Span,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let mut checked: Vec<(Expr, Option<Expr>)> = Vec::new();
+        let mut found: Vec<(Expr, Expr)> = Vec::new();
+        let mut last: Option<Expr> = None;
+        let mut values: Vec<Expr> = Vec::new();
         let mut ok = true;
         for (value, condition) in arms {
-            let condition = match condition {
-                None => None,
-                Some(condition) => {
-                    let Some(condition) = self.expr(condition, text, scope) else {
-                        ok = false;
-                        continue;
-                    };
-                    ok &= self.flag_type(&condition).is_some();
-                    Some(condition)
-                }
-            };
-            // An arm that a parameter rules out is still checked, but asks nothing of the records.
             let inputs = scope.inputs.len();
-            let Some(value) = self.expr(value, text, scope) else {
+            let condition = self.expr(condition, text, scope).filter(|condition| self.flag_type(condition).is_some());
+            // An arm that a parameter rules out is still checked, but asks nothing of the records.
+            let value = self.expr(value, text, scope);
+            let (Some(value), Some(condition)) = (value, condition) else {
                 ok = false;
                 continue;
             };
-            if matches!(condition.as_ref().map(|condition| &condition.kind), Some(Kind::Constant(Scalar::Flag(false)))) {
-                scope.inputs.truncate(inputs);
-                ok &= checked.first().is_none_or(|(first, _)| first.ty == value.ty || self.alike(first, &value).is_some());
-                continue;
+            values.push(value.clone());
+            match condition.kind {
+                _ if last.is_some() => scope.inputs.truncate(inputs),
+                Kind::Constant(Scalar::Flag(false)) => scope.inputs.truncate(inputs),
+                Kind::Constant(Scalar::Flag(true)) => last = Some(value),
+                _ => found.push((value, condition)),
             }
-            checked.push((value, condition));
         }
-        let otherwise = match otherwise {
-            None => None,
-            Some(value) => {
-                let decided = checked
-                    .iter()
-                    .any(|(_, condition)| condition.as_ref().is_none_or(|c| matches!(c.kind, Kind::Constant(Scalar::Flag(true)))));
-                let inputs = scope.inputs.len();
-                let value = self.expr(value, text, scope)?;
-                if decided {
-                    scope.inputs.truncate(inputs);
-                    None
-                } else {
-                    Some(value)
+        if let Some(otherwise) = otherwise {
+            let inputs = scope.inputs.len();
+            match self.expr(otherwise, text, scope) {
+                None => ok = false,
+                Some(value) => {
+                    values.push(value.clone());
+                    if last.is_some() {
+                        scope.inputs.truncate(inputs);
+                    } else {
+                        last = Some(value);
+                    }
                 }
             }
-        };
-        if !ok {
-            return None;
         }
-        let all: Vec<&Expr> = checked.iter().map(|(value, _)| value).chain(otherwise.as_ref()).collect();
-        let Some(first) = all.first() else {
-            self.problems.push(Problem::error("no-case", "no case of this can apply with the parameters as set").at(span));
-            return None;
-        };
-        for other in &all[1..] {
+        let (first, rest) = values.split_first().filter(|_| ok)?;
+        for other in rest {
             self.alike(first, other)?;
         }
-        let ty = first.ty.clone();
-        match (checked.first(), &otherwise) {
-            (Some((value, None)), _) => return Some(value.clone()),
-            (Some((value, Some(Expr { kind: Kind::Constant(Scalar::Flag(true)), .. }))), _) => return Some(value.clone()),
-            (None, Some(value)) => return Some(value.clone()),
-            _ => {}
+        if found.is_empty() {
+            if last.is_none() {
+                let says = match &scope.zone {
+                    Some(zone) => format!("no case of this applies in zone {zone}"),
+                    None => "no case of this can apply with the parameters as set".into(),
+                };
+                self.problems.push(Problem::error("no-case", says).at(span));
+            }
+            return last;
         }
-        Some(Expr { kind: Kind::Cases(checked, otherwise.map(Box::new)), ty, span: span.clone() })
+        if last.is_none() {
+            self.covered(&found.iter().map(|(_, condition)| condition).collect::<Vec<_>>(), span);
+        }
+        let ty = first.ty.clone();
+        Some(Expr { kind: Kind::Cases(found, last.map(Box::new)), ty, span: span.clone() })
+    }
+
+    /// A warning unless one of the conditions certainly holds.
+    pub(super) fn covered(&mut self, conditions: &[&Expr], span: &Span) {
+        let mut all: Vec<(&Expr, bool)> = self.assumed.iter().map(|condition| (condition, true)).collect();
+        all.extend(conditions.iter().map(|condition| (*condition, false)));
+        if !impossible(&all) {
+            self.problems.push(
+                Problem::warning("no-otherwise", "where none of these conditions holds, this has no value")
+                    .at(span)
+                    .help("end it with `, otherwise ...`"),
+            );
+        }
     }
 
     /// Both of one type and dimension; a problem pointing at both otherwise.
@@ -255,28 +267,37 @@ impl Checker<'_> {
     }
 
     fn equality(&mut self, operator: Operator, left: &Phrase, right: &Phrase, text: &Text, span: &Span, scope: &mut Scope) -> Option<Expr> {
-        let left = self.expr(left, text, scope)?;
+        let Some(left) = self.expr(left, text, scope) else {
+            // What stands on the right is looked at all the same, unless it may be a word of what was not understood.
+            if !matches!(right.node, Node::Path(_)) {
+                self.expr(right, text, scope);
+            }
+            return None;
+        };
         let right_span = text.place(right.range.clone());
         let right = match (&left.ty, &right.node) {
-            (Type::Word(words), node) => {
+            (Type::Word(choices), node) => {
                 let word = match node {
                     Node::Path(path) => path.clone(),
                     Node::Number { value, unit: None } => value.to_string(),
                     _ => {
                         self.problems.push(
-                            Problem::error("not-a-word", "a word is compared with something that is no word")
-                                .at(&right_span)
-                                .also(&left.span, "a word"),
+                            Problem::error(
+                                "not-a-word",
+                                format!("`{}` is a word, and is compared with something that is none", words(&left)),
+                            )
+                            .at(&right_span)
+                            .also(&left.span, "a word"),
                         );
                         return None;
                     }
                 };
-                if !words.contains(&word) {
+                if !choices.contains(&word) {
                     self.problems.push(
-                        Problem::error("unknown-choice", format!("`{word}` is none of its words"))
+                        Problem::error("unknown-choice", format!("`{}` is never `{word}`", words(&left)))
                             .at(&right_span)
-                            .also(&left.span, format!("one of {}", words.join(", ")))
-                            .suggest(&word, words.iter().map(String::as_str)),
+                            .also(&left.span, format!("one of {}", choices.join(", ")))
+                            .suggest(&word, choices.iter().map(String::as_str)),
                     );
                     return None;
                 }
@@ -295,7 +316,22 @@ impl Checker<'_> {
                 }
             }
         };
-        Some(fold(Expr { kind: Kind::Binary(operator, Box::new(left), Box::new(right)), ty: Type::Flag, span: span.clone() }))
+        self.folded(Expr { kind: Kind::Binary(operator, Box::new(left), Box::new(right)), ty: Type::Flag, span: span.clone() })
+    }
+
+    /// A constant in place of an expression of constants; a problem where that has no value, such as a division by zero.
+    fn folded(&mut self, expr: Expr) -> Option<Expr> {
+        if matches!(expr.kind, Kind::Constant(_)) {
+            return Some(expr);
+        }
+        match evaluate(&expr, &Nothing) {
+            Ok(value) => Some(Expr { kind: Kind::Constant(value), ..expr }),
+            Err(_) if !of_constants(&expr) => Some(expr),
+            Err(reason) => {
+                self.problems.push(Problem::error("not-finite", reason).at(&expr.span));
+                None
+            }
+        }
     }
 
     fn binary_type(&mut self, operator: Operator, left: &Expr, right: &Expr) -> Option<Type> {
@@ -392,229 +428,25 @@ impl Checker<'_> {
             }
         }
     }
-
-    fn own_reducer(&mut self, reducer: Reducer, span: Span, scope: &mut Scope) -> Option<Expr> {
-        if let Reducer::Percentile(percent) = reducer {
-            if !(0.0..=100.0).contains(&percent) {
-                self.problems
-                    .push(Problem::error("out-of-range", format!("a percentile lies between 0 and 100, this is {percent}")).at(&span));
-                return None;
-            }
-        }
-        match scope.reduce {
-            Some(Reduce { own: Some(dimension), axis, side }) => {
-                let ty = Type::Number(reducer.gives(dimension, axis));
-                let kind = Kind::Input(add_input(scope, Input { reducer, signal: None, side, span: span.clone() }));
-                Some(Expr { kind, ty, span })
-            }
-            _ => {
-                self.problems.push(
-                    Problem::error("no-signal", format!("`{}` reduces a signal, and there is none here", reducer.in_words()))
-                        .at(&span)
-                        .help(format!("name it: `{} of ...`", reducer.in_words())),
-                );
-                None
-            }
-        }
-    }
-
-    fn reduced(&mut self, reducer: &Phrase, signal: &Phrase, text: &Text, span: &Span, scope: &mut Scope) -> Option<Expr> {
-        let Some(Reduce { axis, side, .. }) = scope.reduce else {
-            self.problems.push(Problem::error("no-records", "signals of records cannot be used here").at(span));
-            return None;
-        };
-        let found = match &reducer.node {
-            Node::Percentile(percent) => Some(Reducer::Percentile(*percent)),
-            Node::Path(name) => Reducer::named(name),
-            _ => None,
-        };
-        let Some(found) = found else {
-            let word = bare_word(reducer).unwrap_or_default();
-            self.problems.push(
-                Problem::error("unknown-reducer", format!("`{word}` reduces no signal"))
-                    .at(&text.place(reducer.range.clone()))
-                    .suggest(word, REDUCERS.iter().map(|entry| entry.name)),
-            );
-            return None;
-        };
-        let signal = self.signal(signal, text, &Assignment::new())?;
-        let ty = Type::Number(found.gives(signal.dimension, axis));
-        let kind = Kind::Input(add_input(scope, Input { reducer: found, signal: Some(signal), side, span: span.clone() }));
-        Some(Expr { kind, ty, span: span.clone() })
-    }
-
-    /// `measured(p99.85)`: the value of that side, whichever side is evaluated.
-    fn on_side(&mut self, name: &At<String>, arguments: &[Phrase], text: &Text, span: &Span, scope: &mut Scope) -> Option<Expr> {
-        let (Some(reduce), [argument]) = (scope.reduce, arguments) else {
-            self.problems.push(
-                Problem::error("side", format!("`{}(...)` takes one reduced signal, in the value of a quantity or a check", name.node))
-                    .at(span),
-            );
-            return None;
-        };
-        let side = if name.node == "measured" { InputSide::Measured } else { InputSide::Simulated };
-        scope.reduce = Some(Reduce { side, ..reduce });
-        let found = self.expr(argument, text, scope);
-        scope.reduce = Some(reduce);
-        found
-    }
-
-    fn path(&mut self, path: &str, span: &Span, scope: &mut Scope) -> Option<Expr> {
-        if let Some(pair) = scope.pair {
-            let kind = match path {
-                "simulated" => Some(Kind::Simulated),
-                "measured" => Some(Kind::Measured),
-                _ => None,
-            };
-            if let Some(kind) = kind {
-                return Some(Expr { kind, ty: Type::Number(pair), span: span.clone() });
-            }
-        }
-        if let Some((dimension, names)) = &scope.limits {
-            if names.iter().any(|name| name == path) {
-                return Some(Expr { kind: Kind::LimitOf(path.to_string()), ty: Type::Number(*dimension), span: span.clone() });
-            }
-        }
-        if scope.reduce.is_some_and(|reduce| reduce.own.is_some()) {
-            if let Some(reducer) = Reducer::named(path) {
-                return self.own_reducer(reducer, span.clone(), scope);
-            }
-        }
-        if let Some(parameter) = self.names.parameters.get(path) {
-            return Some(Expr { kind: Kind::Constant(parameter.value.clone()), ty: parameter.ty.clone(), span: span.clone() });
-        }
-        if let Some(define) = self.names.defines.get(path).cloned() {
-            return self.define(path, &define, span, scope);
-        }
-        if matches!(path, "true" | "false") {
-            return Some(Expr { kind: Kind::Constant(Scalar::Flag(path == "true")), ty: Type::Flag, span: span.clone() });
-        }
-        if let Some(found) = self.datum_path(path, span, scope) {
-            return found;
-        }
-        if scope.section {
-            let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
-            let number = Type::Number(axis);
-            match path {
-                "start" => return Some(Expr { kind: Kind::Start, ty: number, span: span.clone() }),
-                "end" => return Some(Expr { kind: Kind::End, ty: number, span: span.clone() }),
-                "length" => {
-                    let side = |kind| Box::new(Expr { kind, ty: number.clone(), span: span.clone() });
-                    return Some(Expr {
-                        kind: Kind::Binary(Operator::Subtract, side(Kind::End), side(Kind::Start)),
-                        ty: number.clone(),
-                        span: span.clone(),
-                    });
-                }
-                _ => {}
-            }
-        }
-        if let Ok(unit) = Unit::parse(path) {
-            return Some(Expr { kind: Kind::Constant(Scalar::Number(unit.factor)), ty: Type::Number(unit.dimension), span: span.clone() });
-        }
-        self.unknown_name(path, span, scope);
-        None
-    }
-
-    /// `vehicle.category`, `section.radius`, or the name alone.
-    fn datum_path(&mut self, path: &str, span: &Span, scope: &Scope) -> Option<Option<Expr>> {
-        let (role, name) = path.split_once('.').map_or(("", path), |(role, name)| (role, name));
-        let ty = |kind: &DatumKind| match kind {
-            DatumKind::Number(unit) => Type::Number(unit.dimension),
-            DatumKind::Words(words) => Type::Word(words.clone()),
-            DatumKind::Flag => Type::Flag,
-        };
-        if matches!(role, "" | "section") {
-            if let Some(index) = self.names.columns.iter().position(|datum| datum.name == name) {
-                if scope.section {
-                    let ty = ty(&self.names.columns[index].kind);
-                    return Some(Some(Expr { kind: Kind::Column(index), ty, span: span.clone() }));
-                }
-                self.problems.push(
-                    Problem::error("no-section", format!("`{path}` differs from section to section and cannot be used here"))
-                        .at(span)
-                        .help("this holds for all sections at once; a condition on sections goes into `for sections where ...` or `for zones ...`"),
-                );
-                return Some(None);
-            }
-        }
-        if matches!(role, "" | "vehicle") {
-            if let Some(index) = self.names.vehicle.iter().position(|datum| datum.name == name) {
-                if scope.vehicle {
-                    let ty = ty(&self.names.vehicle[index].kind);
-                    return Some(Some(Expr { kind: Kind::Vehicle(index), ty, span: span.clone() }));
-                }
-                self.problems.push(Problem::error("no-vehicle", format!("`{path}` is not known before a campaign is opened")).at(span));
-                return Some(None);
-            }
-        }
-        None
-    }
-
-    fn define(&mut self, name: &str, define: &super::names::Written, span: &Span, scope: &mut Scope) -> Option<Expr> {
-        if scope.depth >= DEEPEST_DEFINE {
-            self.problems.push(
-                Problem::error("define-loop", format!("`{name}` is defined by itself")).at(&define.text.span).also(span, "used here"),
-            );
-            return None;
-        }
-        scope.depth += 1;
-        let found = self.expr(&define.phrase, &define.text, scope);
-        scope.depth -= 1;
-        found
-    }
-
-    fn unknown_name(&mut self, path: &str, span: &Span, scope: &Scope) {
-        if self.is_block(path) {
-            return;
-        }
-        let mut known: Vec<String> = self.names.parameters.keys().chain(self.names.defines.keys()).cloned().collect();
-        if scope.pair.is_some() {
-            known.extend(["simulated".to_string(), "measured".to_string()]);
-        }
-        if let Some((_, names)) = &scope.limits {
-            known.extend(names.iter().cloned());
-        }
-        if scope.reduce.is_some() {
-            known.extend(REDUCERS.iter().map(|entry| entry.name.to_string()));
-        }
-        if scope.section {
-            known.extend(self.names.columns.iter().map(|datum| datum.name.clone()));
-        }
-        if scope.vehicle {
-            for datum in &self.names.vehicle {
-                known.push(format!("vehicle.{}", datum.name));
-                known.push(datum.name.clone());
-            }
-        }
-        let mut problem = Problem::error("unknown-name", format!("nothing is called `{path}` here")).at(span);
-        if self.names.channels.contains_key(path) || self.names.signals.contains_key(path) {
-            problem = problem.help(format!("`{path}` is a signal: reduce it, `mean of {path}`"));
-        } else {
-            problem = problem.suggest(path, known.iter().map(String::as_str));
-        }
-        self.problems.push(problem);
-    }
-}
-
-fn add_input(scope: &mut Scope, input: Input) -> usize {
-    scope.inputs.push(input);
-    scope.inputs.len() - 1
 }
 
 pub(super) fn function(name: &str) -> Option<&'static Function> {
     FUNCTIONS.iter().find(|function| function.name == name)
 }
 
-/// A constant in place of an expression of constants.
-pub(super) fn fold(expr: Expr) -> Expr {
-    if matches!(expr.kind, Kind::Constant(_)) {
-        return expr;
+/// Whether all direct parts are constants, which were folded before.
+fn of_constants(expr: &Expr) -> bool {
+    let constant = |part: &Expr| matches!(part.kind, Kind::Constant(_));
+    match &expr.kind {
+        Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => constant(inner),
+        Kind::Binary(_, left, right) => constant(left) && constant(right),
+        Kind::Call(_, arguments) => arguments.iter().all(constant),
+        _ => false,
     }
-    match evaluate(&expr, &Nothing) {
-        Ok(value) => Expr { kind: Kind::Constant(value), ..expr },
-        Err(_) => expr,
-    }
+}
+
+fn words_at(text: &Text, phrase: &Phrase) -> String {
+    super::names::normalised(text.text.get(phrase.range.clone()).unwrap_or(""))
 }
 
 pub(super) fn in_words(ty: &Type) -> String {

@@ -2,32 +2,22 @@
 
 use super::Checker;
 use super::names::{Assignment, Channel, SignalDef};
-use super::plan::{Kind, Operator, Scalar, Signal, SignalKind};
+use super::plan::{Expr, Kind, Operator, Scalar, Signal, SignalKind};
 use super::scalars::{Scope, function};
-use crate::problem::{Problem, nearest};
+use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::Text;
-use crate::syntax::phrase::{At, Node, Phrase, Pick};
+use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Dimension;
-
-/// Signals may be made of signals, but not for ever.
-const DEEPEST_SIGNAL: usize = 24;
 
 impl Checker<'_> {
     /// The signal an expression stands for at the given positions.
     pub(super) fn signal(&mut self, phrase: &Phrase, text: &Text, at: &Assignment) -> Option<Signal> {
-        if self.signal_depth >= DEEPEST_SIGNAL {
-            self.problems.push(Problem::error("signal-loop", "this signal is made of itself").at(&text.place(phrase.range.clone())));
-            return None;
-        }
-        self.signal_depth += 1;
-        let found = self.signal_inner(phrase, text, at);
-        self.signal_depth -= 1;
-        found
+        let span = text.place(phrase.range.clone());
+        self.deeper(&span.clone(), |checker| checker.signal_inside(phrase, text, span, at))
     }
 
-    fn signal_inner(&mut self, phrase: &Phrase, text: &Text, at: &Assignment) -> Option<Signal> {
-        let span = text.place(phrase.range.clone());
+    fn signal_inside(&mut self, phrase: &Phrase, text: &Text, span: Span, at: &Assignment) -> Option<Signal> {
         match &phrase.node {
             Node::Path(name) => self.signal_named(name, &span, phrase, text, at),
             Node::PlaceOf(name, words) => self.placed(name, words, text, &span, at),
@@ -46,7 +36,7 @@ impl Checker<'_> {
             }
             Node::Power(inner, exponent) => {
                 let inner = self.signal(inner, text, at)?;
-                let dimension = inner.dimension.power(*exponent)?;
+                let dimension = self.power(inner.dimension, *exponent, &span)?;
                 Some(Signal { dimension, track: inner.track, kind: SignalKind::Power(Box::new(inner), *exponent), span })
             }
             Node::Binary(operator @ (Operator::Add | Operator::Subtract | Operator::Multiply | Operator::Divide), left, right) => {
@@ -83,8 +73,10 @@ impl Checker<'_> {
                 Some(Signal { dimension, track, kind: SignalKind::Call(function, arguments), span })
             }
             Node::Through(inner, filter) => {
-                let inner = self.signal(inner, text, at)?;
-                let steps = self.filter_named(&filter.node, &text.place(filter.range.clone()))?;
+                let inner = self.signal(inner, text, at);
+                let steps = self.filter_named(&filter.node, &text.place(filter.range.clone()));
+                let (inner, steps) = (inner?, steps?);
+                self.step_order(&steps, false)?;
                 if let Some(window) = steps.iter().find(|step| !step.kind.keeps_samples()) {
                     self.problems.push(
                         Problem::error(
@@ -97,6 +89,19 @@ impl Checker<'_> {
                     return None;
                 }
                 Some(Signal { dimension: inner.dimension, track: inner.track, kind: SignalKind::Filtered(Box::new(inner), steps), span })
+            }
+            // `2 of Y` and `share of Y` are products.
+            Node::Reduced(factor, of) if self.is_number_name(factor) => {
+                let product = Node::Binary(Operator::Multiply, factor.clone(), of.clone());
+                self.signal(&At { node: product, range: phrase.range.clone() }, text, at)
+            }
+            Node::Binary(Operator::And, left, right) if [left, right].iter().any(|side| matches!(side.node, Node::PlaceOf(..))) => {
+                self.problems.push(
+                    Problem::error("syntax", "`and` joins conditions here, not places")
+                        .at(&span)
+                        .help("in an expression places follow one another: `Y at wheelset 1 side R`"),
+                );
+                None
             }
             Node::Cases(arms, otherwise) => self.signal_cases(arms, otherwise.as_deref(), text, &span, at),
             _ => self.scalar_signal(phrase, text, span),
@@ -112,42 +117,57 @@ impl Checker<'_> {
 
     fn signal_cases(
         &mut self,
-        arms: &[(Phrase, Option<Phrase>)],
+        arms: &[(Phrase, Phrase)],
         otherwise: Option<&Phrase>,
         text: &Text,
         span: &Span,
         at: &Assignment,
     ) -> Option<Signal> {
-        let mut select = Vec::new();
+        let mut found = Vec::new();
+        let mut last = None;
+        // Arms that parameters rule out are checked too.
+        let mut all = Vec::new();
         for (value, condition) in arms {
-            let condition = match condition {
-                None => None,
-                Some(condition) => {
-                    let condition = self.expr(condition, text, &mut Scope::section())?;
-                    self.flag_type(&condition)?;
-                    Some(condition)
-                }
-            };
-            match condition.as_ref().map(|condition| &condition.kind) {
-                Some(Kind::Constant(Scalar::Flag(false))) => {}
-                None | Some(Kind::Constant(Scalar::Flag(true))) => {
-                    let last = self.signal(value, text, at)?;
-                    return if select.is_empty() { Some(last) } else { self.select(select, Some(last), span) };
-                }
-                _ => {
-                    let value = self.signal(value, text, at)?;
-                    select.push((condition?, value));
-                }
+            let condition = self.expr(condition, text, &mut Scope::section()).filter(|condition| self.flag_type(condition).is_some());
+            let value = self.signal(value, text, at);
+            let known = condition.as_ref().map(|condition| condition.kind.clone());
+            all.push(value.as_ref().map(|value| (value.dimension, value.span.clone())));
+            match (known, value, condition) {
+                _ if last.is_some() => {}
+                (Some(Kind::Constant(Scalar::Flag(false))), ..) => {}
+                (Some(Kind::Constant(Scalar::Flag(true))), value, _) => last = Some(value?),
+                (_, Some(value), Some(condition)) => found.push((condition, value)),
+                _ => all.push(None),
             }
         }
-        let otherwise = match otherwise {
-            Some(value) => Some(self.signal(value, text, at)?),
-            None => None,
-        };
-        self.select(select, otherwise, span)
+        if let Some(otherwise) = otherwise {
+            let value = self.signal(otherwise, text, at);
+            all.push(value.as_ref().map(|value| (value.dimension, value.span.clone())));
+            if last.is_none() {
+                last = value;
+            }
+        }
+        let all: Vec<(Dimension, Span)> = all.into_iter().collect::<Option<_>>()?;
+        self.cases_alike(&all)?;
+        if last.is_none() && !found.is_empty() {
+            self.covered(&found.iter().map(|(condition, _)| condition).collect::<Vec<_>>(), span);
+        }
+        self.select(found, last, span)
     }
 
-    fn select(&mut self, arms: Vec<(super::plan::Expr, Signal)>, otherwise: Option<Signal>, span: &Span) -> Option<Signal> {
+    fn cases_alike(&mut self, all: &[(Dimension, Span)]) -> Option<()> {
+        let (first, first_span) = all.first()?;
+        let Some((other, span)) = all.iter().find(|(dimension, _)| dimension != first) else { return Some(()) };
+        self.problems.push(
+            Problem::error("unit-mismatch", format!("one case is {}, another {}", first.in_words(), other.in_words()))
+                .at(span)
+                .label(other.in_words())
+                .also(first_span, first.in_words()),
+        );
+        None
+    }
+
+    pub(super) fn select(&mut self, arms: Vec<(Expr, Signal)>, otherwise: Option<Signal>, span: &Span) -> Option<Signal> {
         if arms.is_empty() {
             if otherwise.is_none() {
                 self.problems.push(Problem::error("no-case", "no case of this can apply with the parameters as set").at(span));
@@ -155,21 +175,7 @@ impl Checker<'_> {
             return otherwise;
         }
         let all: Vec<&Signal> = arms.iter().map(|(_, signal)| signal).chain(otherwise.as_ref()).collect();
-        let first = all[0];
-        for other in &all[1..] {
-            if other.dimension != first.dimension {
-                self.problems.push(
-                    Problem::error(
-                        "unit-mismatch",
-                        format!("one case is {}, another {}", first.dimension.in_words(), other.dimension.in_words()),
-                    )
-                    .at(&other.span)
-                    .also(&first.span, first.dimension.in_words()),
-                );
-                return None;
-            }
-        }
-        let dimension = first.dimension;
+        let dimension = all[0].dimension;
         let track = self.one_record(&all)?;
         Some(Signal { dimension, track, kind: SignalKind::Select(arms, otherwise.map(Box::new)), span: span.clone() })
     }
@@ -200,9 +206,10 @@ impl Checker<'_> {
             return self.signal_at(name, &signal, span, at);
         }
         if let Some(define) = self.names.defines.get(name).cloned() {
-            return self.signal(&define.phrase, &define.text, at);
+            self.used_defines.insert(name.to_string());
+            return self.inside("define", name, span, |checker| checker.signal(&define.phrase, &define.text, at));
         }
-        let known = self.names.parameters.contains_key(name)
+        let known = self.names.parameter_blocks.contains_key(name)
             || self.names.columns.iter().any(|datum| datum.name == name)
             || name.contains('.')
             || self.names.vehicle.iter().any(|datum| datum.name == name)
@@ -215,7 +222,7 @@ impl Checker<'_> {
     }
 
     pub(super) fn unknown_signal(&mut self, name: &str, span: &Span) {
-        if self.is_block(name) {
+        if self.is_failed(name) {
             return;
         }
         let known: Vec<String> = self.names.channels.keys().chain(self.names.signals.keys()).cloned().collect();
@@ -240,7 +247,7 @@ impl Checker<'_> {
         self.fill(name, &signal.named, &signal.places, &signal.span, span, at)?;
         let own: Assignment =
             signal.places.iter().filter_map(|place| at.get(place).map(|member| (place.clone(), member.clone()))).collect();
-        let found = self.signal(&signal.is.phrase, &signal.is.text, &own)?;
+        let found = self.inside("signal", name, span, |checker| checker.signal(&signal.is.phrase, &signal.is.text, &own))?;
         if let Some(unit) = &signal.unit {
             if unit.dimension != found.dimension {
                 self.problems.push(
@@ -282,163 +289,4 @@ impl Checker<'_> {
         }
         Some(filled)
     }
-
-    /// `Y at side R`, or at an alias that the section decides.
-    fn placed(&mut self, name: &At<String>, words: &[At<String>], text: &Text, span: &Span, at: &Assignment) -> Option<Signal> {
-        let bare = At { node: Node::Path(name.node.clone()), range: name.range.clone() };
-        // Words come as place, member, place, member, ...; place names of several words are joined by `_`.
-        let mut assignments: Vec<(Option<super::plan::Expr>, Assignment)> = vec![(None, at.clone())];
-        let mut from = 0;
-        while from < words.len() {
-            let Some((place, member_at)) = (from + 1..words.len()).find_map(|end| {
-                self.place_called(&words[from..end].iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_"))
-                    .map(|place| (place, end))
-            }) else {
-                self.unknown_place(&words[from], text);
-                return None;
-            };
-            let member = &words[member_at];
-            let definition = self.names.places.get(&place)?.clone();
-            if definition.members.contains(&member.node) {
-                for (_, assignment) in &mut assignments {
-                    assignment.insert(place.clone(), member.node.clone());
-                }
-            } else if let Some((alias, alias_text)) = definition.aliases.iter().find(|(alias, _)| alias.name.node == member.node) {
-                let mut split = Vec::new();
-                for (target, condition) in &alias.cases {
-                    let condition = self.expr(condition, alias_text, &mut Scope::section())?;
-                    self.flag_type(&condition)?;
-                    for (before, assignment) in &assignments {
-                        let mut assignment = assignment.clone();
-                        assignment.insert(place.clone(), target.node.clone());
-                        let both = match before {
-                            None => condition.clone(),
-                            Some(before) => super::plan::Expr {
-                                kind: Kind::Binary(Operator::And, Box::new(before.clone()), Box::new(condition.clone())),
-                                ty: super::plan::Type::Flag,
-                                span: condition.span.clone(),
-                            },
-                        };
-                        split.push((Some(both), assignment));
-                    }
-                }
-                assignments = split;
-            } else {
-                self.unknown_member(member, &place, text);
-                return None;
-            }
-            from = member_at + 1;
-        }
-        let mut arms = Vec::new();
-        for (condition, assignment) in assignments {
-            let signal = self.signal(&bare, text, &assignment)?;
-            match condition {
-                None => return Some(signal),
-                Some(condition) => arms.push((condition, signal)),
-            }
-        }
-        self.select(arms, None, span)
-    }
-
-    fn unknown_place(&mut self, word: &At<String>, text: &Text) {
-        let names: Vec<String> = self.names.places.keys().cloned().collect();
-        self.problems.push(
-            Problem::error("unknown-place", format!("`{}` is no place", word.node))
-                .at(&text.place(word.range.clone()))
-                .suggest(&word.node, names.iter().map(String::as_str)),
-        );
-    }
-
-    fn unknown_member(&mut self, member: &At<String>, place: &str, text: &Text) {
-        let Some(definition) = self.names.places.get(place) else { return };
-        let mut known: Vec<String> = definition.members.clone();
-        known.extend(definition.aliases.iter().map(|(alias, _)| alias.name.node.clone()));
-        self.problems.push(
-            Problem::error("unknown-place", format!("`{}` is no {place}", member.node))
-                .at(&text.place(member.range.clone()))
-                .suggest(&member.node, known.iter().map(String::as_str)),
-        );
-    }
-
-    /// All positions of a selection, in the order of the places of the signal, each with its assignment.
-    pub(super) fn positions(&mut self, signal: &At<String>, picks: &[Pick], text: &Text) -> Option<Vec<Assignment>> {
-        let places = match (self.names.channels.get(&signal.node), self.names.signals.get(&signal.node)) {
-            (Some(channel), _) => channel.places.clone(),
-            (_, Some(signal)) => signal.places.clone(),
-            _ => {
-                self.unknown_signal(&signal.node, &text.place(signal.range.clone()));
-                return None;
-            }
-        };
-        let mut chosen: Assignments = Assignments::new();
-        for pick in picks {
-            self.one_pick(pick, signal, &places, text, &mut chosen)?;
-        }
-        let mut all = vec![Assignment::new()];
-        for place in &places {
-            let members = match chosen.shift_remove(place) {
-                Some(members) => members,
-                None => self.names.places.get(place)?.members.clone(),
-            };
-            all = all
-                .iter()
-                .flat_map(|before| {
-                    members.iter().map(move |member| {
-                        let mut next = before.clone();
-                        next.insert(place.clone(), member.clone());
-                        next
-                    })
-                })
-                .collect();
-        }
-        Some(all)
-    }
-
-    fn one_pick(&mut self, pick: &Pick, signal: &At<String>, places: &[String], text: &Text, chosen: &mut Assignments) -> Option<()> {
-        let words: Vec<&At<String>> = pick.words.iter().filter(|word| !matches!(word.node.as_str(), "each" | "every" | "all")).collect();
-        let every = words.len() < pick.words.len();
-        let joined = |words: &[&At<String>]| words.iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_");
-        let split = (1..=words.len()).rev().find_map(|end| self.place_called(&joined(&words[..end])).map(|place| (place, end)));
-        let Some((place, end)) = split else {
-            if let Some(word) = words.first() {
-                self.unknown_place(word, text);
-            }
-            return None;
-        };
-        let place_span = text.place(words[0].range.start..words[end - 1].range.end);
-        if !places.contains(&place) {
-            let problem = Problem::error("unknown-place", format!("`{}` is not measured at a {place}", signal.node)).at(&place_span);
-            self.problems.push(problem.suggest(&place, places.iter().map(String::as_str)));
-            return None;
-        }
-        let mut members: Vec<&At<String>> = words[end..].to_vec();
-        members.extend(&pick.more);
-        let definition = self.names.places.get(&place)?.clone();
-        if members.is_empty() {
-            if !every && !pick.words.is_empty() {
-                // `at wheelsets` without numbers means all of them.
-                chosen.insert(place, definition.members.clone());
-            }
-            return Some(());
-        }
-        let mut found = Vec::new();
-        for member in members {
-            if definition.members.contains(&member.node) {
-                found.push(member.node.clone());
-            } else {
-                let near = nearest(&member.node, definition.members.iter().map(String::as_str)).map(str::to_string);
-                let problem =
-                    Problem::error("unknown-place", format!("`{}` is no {place}", member.node)).at(&text.place(member.range.clone()));
-                self.problems.push(match near {
-                    Some(near) => problem.help(format!("did you mean `{near}`?")),
-                    None => problem.help(format!("known here: {}", definition.members.join(", "))),
-                });
-                return None;
-            }
-        }
-        chosen.insert(place, found);
-        Some(())
-    }
 }
-
-type Assignments = indexmap::IndexMap<String, Vec<String>>;

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::names::Written;
-use super::plan::{Kind, Scalar, Step, StepSpec, Type};
+use super::plan::{Kind, Scalar, Step, StepSpec};
 use super::scalars::Scope;
 use crate::catalog::{Form, METRICS, Metric, Part, STEPS, StepEntry, StepKind};
 use crate::metrics::filter::{Band, Cutoff, Phase};
@@ -20,6 +20,18 @@ pub(super) struct Filled {
     numbers: Vec<(f64, Dimension, Span)>,
     options: Vec<f64>,
     choices: Vec<&'static str>,
+    /// What an option was said for, so that it is said once.
+    said: Vec<(&'static str, Span)>,
+}
+
+impl Filled {
+    fn option_said(&mut self, name: &'static str, place: &Span) -> Result<(), Problem> {
+        if let Some((_, first)) = self.said.iter().find(|(said, _)| *said == name) {
+            return Err(Problem::error("duplicate-option", format!("the {name} is said twice")).at(place).also(first, "the first"));
+        }
+        self.said.push((name, place.clone()));
+        Ok(())
+    }
 }
 
 impl StepSpec {
@@ -32,13 +44,12 @@ impl StepSpec {
 impl Checker<'_> {
     /// The chain of a `filter` field, checked for the order of its steps.
     pub(super) fn chain(&mut self, text: &Text) -> Option<Vec<Step>> {
-        let all = self.steps_of(text)?;
-        self.step_order(&all)?;
-        Some(all)
+        let steps = self.steps(text)?;
+        self.step_order(&steps, false)?;
+        Some(steps)
     }
 
-    /// The steps of one field, whatever stands before and after them.
-    fn steps_of(&mut self, text: &Text) -> Option<Vec<Step>> {
+    fn steps(&mut self, text: &Text) -> Option<Vec<Step>> {
         let steps = from_pest::chain(text, self.problems)?;
         let mut all = Vec::new();
         let mut ok = true;
@@ -56,71 +67,65 @@ impl Checker<'_> {
             return steps.clone();
         }
         let Some(block) = self.names.filters.get(name).cloned() else {
-            let names: Vec<String> = self.names.filters.keys().cloned().collect();
-            self.problems.push(
-                Problem::error("unknown-filter", format!("no filter is called `{name}`"))
-                    .at(span)
-                    .suggest(name, names.iter().map(String::as_str)),
-            );
+            let names: Vec<&str> = self.names.filters.keys().map(String::as_str).collect();
+            let steps =
+                STEPS.iter().filter_map(|entry| if let Some(Part::Word(word)) = entry.form.head.first() { Some(*word) } else { None });
+            let mut known = names;
+            known.extend(steps);
+            known.dedup();
+            self.problems.push(Problem::error("unknown-filter", format!("no filter is called `{name}`")).at(span).suggest(name, known));
             return None;
         };
-        // Before the steps are read: a filter that uses itself then finds nothing instead of looping.
-        self.filter_steps.insert(name.to_string(), None);
-        let mut steps = Vec::new();
-        let mut ok = true;
-        for field in block.fields_named("step") {
-            match self.steps_of(&field.value) {
-                Some(found) => steps.extend(found),
-                None => ok = false,
+        let result = self.inside("filter", name, span, |checker| {
+            let mut steps = Vec::new();
+            let mut ok = checker.required(&block, "step").is_some();
+            for field in block.fields_named("step") {
+                match checker.steps(&field.value) {
+                    Some(found) => steps.extend(found),
+                    None => ok = false,
+                }
             }
-        }
-        if steps.is_empty() && block.field("step").is_none() {
-            self.required(&block, "step");
-            ok = false;
-        }
-        let result = (ok && self.step_order(&steps).is_some()).then_some(steps);
+            (ok && checker.step_order(&steps, true).is_some()).then_some(steps)
+        });
         self.filter_steps.insert(name.to_string(), result.clone());
         result
     }
 
-    /// After a window there are no samples of the record left to filter; after resampling over a length, frequencies are cycles per length.
-    fn step_order(&mut self, steps: &[Step]) -> Option<()> {
+    /// After a window there are no samples of the record left to filter; after resampling over a length, frequencies are cycles per
+    /// length. A filter by itself (`part`) may come after a resampling elsewhere.
+    pub(super) fn step_order(&mut self, steps: &[Step], part: bool) -> Option<()> {
         let mut window: Option<&Step> = None;
-        let mut over_length: Option<&Step> = None;
+        let mut resampled: Option<&Step> = None;
         for step in steps {
-            if let Some(before) = window {
-                if matches!(step.kind, StepSpec::Butterworth { .. } | StepSpec::Resample { .. }) {
-                    self.problems.push(
-                        Problem::error("step-order", "a filter over the whole record cannot follow a window inside the section")
-                            .at(&step.span)
-                            .also(&before.span, "the window")
-                            .help("put the filter before the window"),
-                    );
-                    return None;
-                }
+            let whole_record = matches!(step.kind, StepSpec::Butterworth { .. } | StepSpec::Resample { .. });
+            if let Some(before) = window.filter(|_| whole_record) {
+                self.problems.push(
+                    Problem::error("step-order", "a filter over the whole record cannot follow a window inside the section")
+                        .at(&step.span)
+                        .also(&before.span, "the window")
+                        .help("put the filter before the window"),
+                );
+                return None;
             }
             match &step.kind {
                 StepSpec::Window { .. } | StepSpec::RemoveMean => window = Some(step),
-                StepSpec::Resample { over_time, .. } => over_length = (!over_time).then_some(step),
+                StepSpec::Resample { .. } => resampled = Some(step),
                 StepSpec::Butterworth { .. } => {
-                    let per_length = step.words.contains("1/m");
-                    if per_length != over_length.is_some() {
-                        let problem = Problem::error(
-                            "step-order",
-                            if per_length {
-                                "cycles per length need a record with equal steps of length"
-                            } else {
-                                "a frequency in time after resampling over a length"
-                            },
-                        )
-                        .at(&step.span);
-                        self.problems.push(match over_length {
-                            Some(before) => {
-                                problem.also(&before.span, "resampled here").help("write the frequency as cycles per length: `(1 / (3 m))`")
-                            }
-                            None => problem.help("put `resample every 0.25 m` before, or write a frequency in Hz"),
-                        });
-                        return None;
+                    let over_length = resampled.filter(|step| matches!(step.kind, StepSpec::Resample { over_time: false, .. }));
+                    match over_length {
+                        Some(before) if !step.per_length => {
+                            let problem = Problem::error("step-order", "after resampling over a length there are no frequencies in time")
+                                .at(&step.span);
+                            self.problems.push(problem.also(&before.span, "resampled here").help("write cycles per length: `0.33 1/m`"));
+                            return None;
+                        }
+                        None if step.per_length && !(part && resampled.is_none()) => {
+                            let problem =
+                                Problem::error("step-order", "cycles per length need a record with equal steps of length").at(&step.span);
+                            self.problems.push(problem.help("put `resample every 0.25 m` before it, or write a frequency in Hz"));
+                            return None;
+                        }
+                        _ => {}
                     }
                 }
                 StepSpec::Magnitude => {}
@@ -139,7 +144,8 @@ impl Checker<'_> {
                 Kind::Constant(Scalar::Flag(false)) => return Some(Vec::new()),
                 Kind::Constant(_) => {}
                 _ => {
-                    self.problems.push(Problem::error("not-constant", "a step can only depend on parameters").at(&condition.span));
+                    self.problems
+                        .push(Problem::error("not-constant", "whether a step is taken can only depend on parameters").at(&condition.span));
                     return None;
                 }
             }
@@ -163,6 +169,15 @@ impl Checker<'_> {
         let span = text.place(step.range.clone());
         let index = self.find_form(&step.node, &span, "metric", METRICS.iter().map(|entry| &entry.form))?;
         let entry = &METRICS[index];
+        if let Some(extra) = step.node.parts.get(1).and_then(|part| part.first()) {
+            self.problems.push(Problem::error("unknown-option", "a metric has no options").at(&text.place(extra.range.clone())));
+            return None;
+        }
+        if let Some(condition) = &step.node.when {
+            let problem = Problem::error("unknown-option", "a metric has no condition").at(&text.place(condition.range.clone()));
+            self.problems.push(problem.help("sections are left out of a quantity by its field `where`"));
+            return None;
+        }
         let slot = entry.form.head.iter().position(|part| matches!(part, Part::Signal(_)));
         let over = match slot {
             None => None,
@@ -282,6 +297,7 @@ impl Checker<'_> {
         match part {
             [At { node: Item::Word(word), .. }, value] => {
                 if let Some(index) = form.numbers.iter().position(|(name, _)| name == word) {
+                    self.note(filled.option_said(form.numbers[index].0, &place))?;
                     let (number, dimension) = self.constant_phrase(&item_phrase(value), text)?;
                     self.suits(word, dimension == Dimension::ONE, "a plain number", dimension, &place)?;
                     filled.options[index] = number;
@@ -289,15 +305,10 @@ impl Checker<'_> {
                 }
             }
             [At { node: Item::Word(word), .. }] => {
-                let word = match self.names.parameters.get(word) {
-                    Some(parameter) => match (&parameter.value, &parameter.ty) {
-                        (Scalar::Word(value), Type::Word(_)) => value.clone(),
-                        _ => word.clone(),
-                    },
-                    None => word.clone(),
-                };
+                let word = self.choice_word(word, &place)?;
                 for (index, choice) in form.choices.iter().enumerate() {
                     if let Some(found) = choice.words.iter().find(|known| **known == word) {
+                        self.note(filled.option_said(choice.name, &place))?;
                         filled.choices[index] = found;
                         return Some(());
                     }
@@ -315,6 +326,10 @@ impl Checker<'_> {
             None => problem.help(format!("its options: {}", known.join(", "))),
         });
         None
+    }
+
+    fn note(&mut self, result: Result<(), Problem>) -> Option<()> {
+        result.map_err(|problem| self.problems.push(problem)).ok()
     }
 
     fn spec(&mut self, entry: &StepEntry, filled: &Filled, span: &Span) -> Option<Step> {
@@ -380,7 +395,8 @@ impl Checker<'_> {
             StepKind::RemoveMean => StepSpec::RemoveMean,
             StepKind::Magnitude => StepSpec::Magnitude,
         };
-        Some(Step { kind, words: words.join(" ").replace(" ,", ","), span: span.clone() })
+        let per_length = filled.numbers.iter().any(|(_, dimension, _)| *dimension == Dimension::ONE / Dimension::LENGTH);
+        Some(Step { kind, words: words.join(" ").replace(" ,", ","), per_length, span: span.clone() })
     }
 }
 

@@ -63,7 +63,7 @@ pub enum Node {
     /// `Y through LP20`.
     Through(Box<Phrase>, At<String>),
     /// `a when b, c when d, otherwise e`.
-    Cases(Vec<(Phrase, Option<Phrase>)>, Option<Box<Phrase>>),
+    Cases(Vec<(Phrase, Phrase)>, Option<Box<Phrase>>),
 }
 
 /// `Y at wheelsets 1, 3 and side R`.
@@ -123,4 +123,83 @@ pub enum Scope {
 pub enum Verdict {
     EveryLimit,
     AtLeast { count: Phrase, of_limits: bool },
+}
+
+impl Phrase {
+    /// The phrase without places and ways of writing: equal for `0.40 m/s^2`, `0.4 m/s²` and `400 mm/s^2`.
+    pub fn meaning(&self) -> String {
+        match &self.node {
+            Node::Number { value, unit } => number(*value, unit.as_ref()),
+            Node::Percentile(percent) => format!("p{percent}"),
+            Node::Path(path) => path.clone(),
+            Node::Binary(operator, left, right) => format!("({operator:?} {} {})", left.meaning(), right.meaning()),
+            Node::Negative(inner) => format!("(neg {})", inner.meaning()),
+            Node::Not(inner) => format!("(not {})", inner.meaning()),
+            Node::Magnitude(inner) => format!("|{}|", inner.meaning()),
+            Node::Power(inner, exponent) => format!("{}^{exponent}", inner.meaning()),
+            Node::Call(name, arguments) => format!("{}({})", name.node, joined(arguments, " ", Phrase::meaning)),
+            Node::Reduced(reducer, signal) => format!("{} of {}", reducer.meaning(), signal.meaning()),
+            Node::PlaceOf(signal, words) => format!("{}@{}", signal.node, joined(words, ".", |word| word.node.clone())),
+            Node::Through(inner, filter) => format!("{}>{}", inner.meaning(), filter.node),
+            Node::Cases(arms, otherwise) => {
+                let arms = joined(arms, ", ", |(value, condition)| format!("{}?{}", value.meaning(), condition.meaning()));
+                format!("[{arms}; {}]", otherwise.as_ref().map_or(String::new(), |value| value.meaning()))
+            }
+        }
+    }
+}
+
+impl Limit {
+    /// As [`Phrase::meaning`]; conditions and factors may stand in any order.
+    pub fn meaning(&self) -> String {
+        let mut factors: Vec<String> =
+            self.factors.iter().map(|(factor, condition)| format!("{}?{}", factor.meaning(), condition.meaning())).collect();
+        factors.sort();
+        let only = self.only_when.as_ref().map_or(String::new(), Phrase::meaning);
+        format!("{} {} * [{}] only {only} {}", self.bounds(), self.bound.meaning(), factors.join(", "), self.scope.node.meaning())
+    }
+
+    /// What it is a limit of: `std`, `p95 at least`.
+    pub fn bounds(&self) -> String {
+        format!("{}{}", self.statistic.node, if self.at_least { " at least" } else { "" })
+    }
+}
+
+impl Scope {
+    pub fn meaning(&self) -> String {
+        match self {
+            Self::All => String::new(),
+            Self::EachZone => "for each zone".into(),
+            Self::Zones(zones) => {
+                let mut zones: Vec<&str> = zones.iter().map(|zone| zone.node.as_str()).collect();
+                zones.sort_unstable();
+                format!("for zones {}", zones.join(", "))
+            }
+            Self::Where(condition) => format!("for sections where {}", condition.meaning()),
+        }
+    }
+}
+
+impl Step {
+    pub fn meaning(&self) -> String {
+        let item = |item: &At<Item>| match &item.node {
+            Item::Word(word) => word.clone(),
+            Item::Value(value) => value.meaning(),
+        };
+        let parts = joined(&self.parts, ", ", |part| joined(part, " ", item));
+        format!("{parts} when {}", self.when.as_ref().map_or(String::new(), Phrase::meaning))
+    }
+}
+
+fn joined<T>(items: &[T], between: &str, one: impl Fn(&T) -> String) -> String {
+    items.iter().map(one).collect::<Vec<_>>().join(between)
+}
+
+/// To twelve digits, so that the last bit of a conversion makes no difference.
+fn number(value: f64, unit: Option<&Unit>) -> String {
+    let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
+    match unit {
+        Some(unit) if unit.dimension != crate::units::Dimension::ONE => format!("{rounded}{{{}}}", unit.dimension),
+        _ => rounded.to_string(),
+    }
 }

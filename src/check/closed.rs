@@ -1,0 +1,105 @@
+//! Checks parts that no quantity uses: a mistake in them would show on the day they are used.
+
+use std::collections::BTreeSet;
+
+use super::Checker;
+use super::names::Assignment;
+use super::scalars::Scope;
+use crate::catalog::{Reducer, Statistic};
+use crate::syntax::document::Text;
+use crate::syntax::phrase::{At, Node, Phrase};
+
+impl Checker<'_> {
+    pub(super) fn unused_parts(&mut self) {
+        let places: Vec<_> = self.names.places.values().flat_map(|place| place.aliases.clone()).collect();
+        for (alias, text) in places {
+            for (_, condition) in &alias.cases {
+                if let Some(condition) = self.expr(condition, &text, &mut Scope::section()) {
+                    self.flag_type(&condition);
+                }
+            }
+        }
+        let signals: Vec<_> = self.names.signals.iter().map(|(name, signal)| (name.clone(), signal.clone())).collect();
+        for (name, signal) in signals {
+            let at = self.first_position(&signal.places);
+            let text = Text { text: String::new(), span: signal.span.clone(), exact: false };
+            self.signal(&At { node: Node::Path(name), range: 0..0 }, &text, &at);
+        }
+        let defines: Vec<_> = self.names.defines.iter().map(|(name, define)| (name.clone(), define.clone())).collect();
+        for (name, define) in defines {
+            if self.used_defines.contains(&name) {
+                continue;
+            }
+            match self.stands_for(&define.phrase, &mut BTreeSet::new()) {
+                Meaning::Closed => drop(self.inside("define", &name, &define.text.span, |checker| {
+                    checker.expr(&define.phrase, &define.text, &mut Scope::section())
+                })),
+                Meaning::Signal => {
+                    let places: Vec<String> = self.names.places.keys().cloned().collect();
+                    let at = self.first_position(&places);
+                    drop(self.inside("define", &name, &define.text.span, |checker| checker.signal(&define.phrase, &define.text, &at)));
+                }
+                Meaning::Open => {}
+            }
+        }
+    }
+
+    fn first_position(&self, places: &[String]) -> Assignment {
+        let first = |place: &String| Some((place.clone(), self.names.places.get(place)?.members.first()?.clone()));
+        places.iter().filter_map(first).collect()
+    }
+
+    /// What a definition can be checked as by itself.
+    fn stands_for(&self, phrase: &Phrase, seen: &mut BTreeSet<String>) -> Meaning {
+        let mut of = |phrase: &Phrase| self.stands_for(phrase, seen);
+        match &phrase.node {
+            Node::Number { .. } => Meaning::Closed,
+            // Values of a signal, of a side or of other limits mean nothing before they are used.
+            Node::Percentile(_) | Node::Reduced(..) => Meaning::Open,
+            Node::Path(path)
+                if Reducer::named(path).is_some()
+                    || Statistic::named(path).is_some()
+                    || matches!(path.as_str(), "simulated" | "measured") =>
+            {
+                Meaning::Open
+            }
+            Node::Path(path) if self.names.channels.contains_key(path) || self.names.signals.contains_key(path) => Meaning::Signal,
+            Node::Path(path) => match self.names.defines.get(path) {
+                Some(define) if seen.insert(path.clone()) => self.stands_for(&define.phrase, seen),
+                _ => Meaning::Closed,
+            },
+            Node::PlaceOf(..) | Node::Through(..) => Meaning::Signal,
+            Node::Binary(_, left, right) => of(left).with(of(right)),
+            Node::Negative(inner) | Node::Not(inner) | Node::Magnitude(inner) | Node::Power(inner, _) => of(inner),
+            Node::Call(name, _) if matches!(name.node.as_str(), "simulated" | "measured") => Meaning::Open,
+            Node::Call(_, arguments) => arguments.iter().map(&mut of).fold(Meaning::Closed, Meaning::with),
+            Node::Cases(arms, otherwise) => {
+                let mut all = Meaning::Closed;
+                for (value, condition) in arms {
+                    all = all.with(of(value));
+                    if of(condition) == Meaning::Open {
+                        all = Meaning::Open;
+                    }
+                }
+                otherwise.as_deref().map_or(all, |value| all.with(of(value)))
+            }
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Meaning {
+    Closed,
+    Signal,
+    Open,
+}
+
+impl Meaning {
+    fn with(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Open, _) | (_, Self::Open) => Self::Open,
+            (Self::Signal, _) | (_, Self::Signal) => Self::Signal,
+            _ => Self::Closed,
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! What can be told of conditions before a campaign is known: whether they exclude each other, whether they leave a case out.
+
+use super::evaluate::shape;
+use super::plan::{Expr, Kind, Operator, Scalar, Type};
+
+/// More combinations than this are not looked through.
+const MOST: usize = 256;
+
+/// Whether it is certain that these conditions never hold together; with `false` beside it, that a condition does not hold.
+pub(super) fn impossible(conditions: &[(&Expr, bool)]) -> bool {
+    let mut all: Vec<Vec<Test>> = vec![Vec::new()];
+    for (condition, holds) in conditions {
+        let Some(alternatives) = alternatives(condition, !holds) else { continue };
+        // A condition left out makes the rest weaker: what is impossible without it is so with it.
+        if all.len() * alternatives.len() <= MOST {
+            all = product(&all, &alternatives);
+        }
+    }
+    all.iter().all(|together| contradictory(together))
+}
+
+fn product(left: &[Vec<Test>], right: &[Vec<Test>]) -> Vec<Vec<Test>> {
+    left.iter().flat_map(|a| right.iter().map(move |b| a.iter().chain(b).cloned().collect())).collect()
+}
+
+/// Something about one value, which is named by its structure.
+#[derive(Clone, Debug)]
+struct Test {
+    what: String,
+    is: Is,
+}
+
+#[derive(Clone, Debug)]
+enum Is {
+    /// One of these words is it.
+    Words(Vec<String>),
+    Flag(bool),
+    Number(Operator, f64),
+}
+
+/// A condition as alternatives of tests that hold together; `None` where there are too many.
+fn alternatives(expr: &Expr, negated: bool) -> Option<Vec<Vec<Test>>> {
+    match &expr.kind {
+        Kind::Constant(Scalar::Flag(flag)) => Some(if *flag == negated { Vec::new() } else { vec![Vec::new()] }),
+        Kind::Not(inner) => alternatives(inner, !negated),
+        Kind::Binary(operator @ (Operator::And | Operator::Or), left, right) => {
+            let (left, right) = (alternatives(left, negated)?, alternatives(right, negated)?);
+            if (*operator == Operator::Or) != negated {
+                return Some(left.into_iter().chain(right).collect());
+            }
+            (left.len() * right.len() <= MOST).then(|| product(&left, &right))
+        }
+        Kind::Binary(operator, left, right) => Some(vec![test(*operator, left, right, negated).into_iter().collect()]),
+        _ => Some(vec![vec![Test { what: shape(expr), is: Is::Flag(!negated) }]]),
+    }
+}
+
+/// `None` for what nothing is known about.
+fn test(operator: Operator, left: &Expr, right: &Expr, negated: bool) -> Option<Test> {
+    let (what, constant, operator) = match (&left.kind, &right.kind) {
+        (_, Kind::Constant(constant)) => (left, constant, operator),
+        (Kind::Constant(constant), _) => (right, constant, turned(operator)),
+        _ => return None,
+    };
+    let operator = if negated { opposite(operator)? } else { operator };
+    let is = match (constant, &what.ty) {
+        (Scalar::Word(word), Type::Word(words)) => {
+            Is::Words(words.iter().filter(|other| (*other == word) == (operator == Operator::Is)).cloned().collect())
+        }
+        (Scalar::Flag(flag), _) => Is::Flag((operator == Operator::Is) == *flag),
+        (Scalar::Number(number), _) => Is::Number(operator, *number),
+        _ => return None,
+    };
+    Some(Test { what: shape(what), is })
+}
+
+/// `a < x` as `x > a`.
+fn turned(operator: Operator) -> Operator {
+    match operator {
+        Operator::Less => Operator::Greater,
+        Operator::LessEqual => Operator::GreaterEqual,
+        Operator::Greater => Operator::Less,
+        Operator::GreaterEqual => Operator::LessEqual,
+        same => same,
+    }
+}
+
+fn opposite(operator: Operator) -> Option<Operator> {
+    Some(match operator {
+        Operator::Less => Operator::GreaterEqual,
+        Operator::LessEqual => Operator::Greater,
+        Operator::Greater => Operator::LessEqual,
+        Operator::GreaterEqual => Operator::Less,
+        Operator::Is => Operator::IsNot,
+        Operator::IsNot => Operator::Is,
+        _ => return None,
+    })
+}
+
+fn contradictory(together: &[Test]) -> bool {
+    together.iter().enumerate().any(|(index, test)| {
+        let same = || together[index..].iter().filter(|other| other.what == test.what);
+        match &test.is {
+            Is::Words(words) => {
+                !words.iter().any(|word| same().all(|other| !matches!(&other.is, Is::Words(words) if !words.contains(word))))
+            }
+            Is::Flag(flag) => same().any(|other| matches!(other.is, Is::Flag(other) if other != *flag)),
+            Is::Number(operator, number) => same().any(|other| match other.is {
+                Is::Number(o, n) => apart(*operator, *number, o, n) || apart(o, n, *operator, *number),
+                _ => false,
+            }),
+        }
+    })
+}
+
+/// Whether nothing satisfies both `x below a` and `x above b`.
+fn apart(below: Operator, a: f64, above: Operator, b: f64) -> bool {
+    match (below, above) {
+        (Operator::Less, Operator::Greater | Operator::GreaterEqual) | (Operator::LessEqual, Operator::Greater) => a <= b,
+        (Operator::LessEqual, Operator::GreaterEqual) => a < b,
+        (Operator::Is, Operator::Greater) => a <= b,
+        (Operator::Is, Operator::GreaterEqual) => a < b,
+        (Operator::Is, Operator::Less) => a >= b,
+        (Operator::Is, Operator::LessEqual) => a > b,
+        (Operator::Is, Operator::Is) => a != b,
+        (Operator::Is, Operator::IsNot) => a == b,
+        _ => false,
+    }
+}

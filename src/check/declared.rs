@@ -1,0 +1,217 @@
+//! Blocks that declare what records, vehicle and sections hold: places, data, channels, signals.
+
+use super::Checker;
+use super::names::{Channel, Place, SignalDef};
+use super::plan::{Datum, DatumKind, Scalar};
+use crate::problem::Problem;
+use crate::syntax::document::{Block, Field};
+use crate::syntax::from_pest;
+use crate::syntax::phrase::{At, Pick};
+
+impl Checker<'_> {
+    pub(super) fn place(&mut self, name: &str, block: &Block) -> Option<Place> {
+        let field = self.required(block, "members")?;
+        let written = from_pest::list(&field.value, self.problems)?;
+        let mut members: Vec<String> = Vec::new();
+        for member in written {
+            let place = field.value.place(member.range);
+            if let Some(sign) = member.node.chars().find(|c| matches!(c, '-' | '.')) {
+                let says = format!("`{}` cannot be a {name}: in expressions `{sign}` would not be read as part of it", member.node);
+                self.problems.push(Problem::error("bad-name", says).at(&place));
+            } else if members.contains(&member.node) {
+                self.problems.push(Problem::error("duplicate-name", format!("`{}` is named twice", member.node)).at(&place));
+            } else {
+                members.push(member.node);
+            }
+        }
+        let mut aliases = Vec::new();
+        for field in block.fields_named("alias") {
+            let Some(alias) = from_pest::alias(&field.value, self.problems) else { continue };
+            if members.contains(&alias.name.node) {
+                let says = format!("`{}` is a {name} and an alias for one", alias.name.node);
+                self.problems.push(
+                    Problem::error("name-clash", says)
+                        .at(&field.value.place(alias.name.range.clone()))
+                        .also(&block.span().clone(), "the members"),
+                );
+            }
+            for (member, _) in &alias.cases {
+                if !members.contains(&member.node) {
+                    self.problems.push(
+                        Problem::error("unknown-place", format!("`{}` is no {name}", member.node))
+                            .at(&field.value.place(member.range.clone()))
+                            .suggest(&member.node, members.iter().map(String::as_str)),
+                    );
+                }
+            }
+            aliases.push((alias, field.value.clone()));
+        }
+        Some(Place { members, aliases })
+    }
+
+    pub(super) fn datum(&mut self, name: &str, block: &Block, key: &str, standard_key: String) -> Option<Datum> {
+        let title = block.title.as_ref().map_or_else(|| name.replace('_', " "), |title| title.text.clone());
+        let kind = match (block.field("in"), block.field("one of")) {
+            (Some(unit), None) => DatumKind::Number(self.unit(&unit.value)?),
+            (None, Some(words)) => {
+                let mut words: Vec<String> = from_pest::list(&words.value, self.problems)?.into_iter().map(|word| word.node).collect();
+                // The names of the zone blocks, so that a further zone is one block and no list need follow it.
+                if words == ["zones"] {
+                    words.clone_from(&self.zone_names);
+                }
+                if words.len() == 2 && words.contains(&"true".to_string()) && words.contains(&"false".to_string()) {
+                    DatumKind::Flag
+                } else {
+                    DatumKind::Words(words)
+                }
+            }
+            _ => {
+                self.problems.push(
+                    Problem::error("missing-field", format!("{} `{name}` needs either `in` or `one of`", block.kind.text))
+                        .at(block.span())
+                        .help("`in kN` for a number, `one of right, left` for a word"),
+                );
+                return None;
+            }
+        };
+        let key = block.field(key).map_or(standard_key, |field| field.value.text.trim().to_string());
+        Some(Datum { name: name.to_string(), title, key, kind, default: None, span: block.span().clone() })
+    }
+
+    /// The default of a datum, once everything has a name.
+    pub(super) fn datum_default(&mut self, name: &str, block: &Block) -> Option<()> {
+        let data = if block.kind.text == "vehicle" { &self.names.vehicle } else { &self.names.columns };
+        let Some(index) = data.iter().position(|datum| datum.name == name) else { return Some(()) };
+        let Some(field) = block.field("default") else { return Some(()) };
+        let word = field.value.text.trim();
+        let default = match data[index].kind.clone() {
+            DatumKind::Number(unit) => {
+                let (value, dimension) = self.constant(&field.value)?;
+                if dimension != unit.dimension {
+                    let says = format!("`{name}` is {}, its default is {}", unit.dimension.in_words(), dimension.in_words());
+                    let problem = Problem::error("unit-mismatch", says).at(&field.value.span).label(dimension.in_words());
+                    self.problems.push(match block.field("in") {
+                        Some(unit_field) => problem.also(&unit_field.value.span, unit.dimension.in_words()),
+                        None => problem,
+                    });
+                    return None;
+                }
+                Scalar::Number(value)
+            }
+            DatumKind::Flag if matches!(word, "true" | "false") => Scalar::Flag(word == "true"),
+            DatumKind::Words(words) if words.iter().any(|known| known == word) => Scalar::Word(word.to_string()),
+            kind => {
+                let words = if let DatumKind::Words(words) = kind { words } else { vec!["true".into(), "false".into()] };
+                self.problems.push(
+                    Problem::error("unknown-choice", format!("`{word}` is none of the words of `{name}`"))
+                        .at(&field.value.span)
+                        .suggest(word, words.iter().map(String::as_str)),
+                );
+                return None;
+            }
+        };
+        let data = if block.kind.text == "vehicle" { &mut self.names.vehicle } else { &mut self.names.columns };
+        data[index].default = Some(default);
+        Some(())
+    }
+
+    pub(super) fn channel(&mut self, name: &str, block: &Block) -> Option<()> {
+        let unit = self.required(block, "in").and_then(|field| self.unit(&field.value));
+        let places = block.field("at").map_or(Some(Vec::new()), |field| self.place_names(field));
+        let (unit, places) = (unit?, places?);
+        let column = block.field("column").map_or_else(|| self.standard_pattern(name, &places), |field| field.value.text.clone());
+        self.check_pattern(&column, &places, block, "column");
+        let track = match block.field("record").map(|field| (field.value.text.trim(), field)) {
+            None => false,
+            Some(("track", _)) => true,
+            Some((other, field)) => {
+                self.problems.push(
+                    Problem::error("unknown-record", format!("`{other}` is no kind of record of its own"))
+                        .at(&field.value.span)
+                        .help("`record track` for the track file; without `record` a channel stands in simulation and measurement"),
+                );
+                false
+            }
+        };
+        self.names.channels.insert(name.to_string(), Channel { places, unit, column, track, span: block.span().clone() });
+        Some(())
+    }
+
+    pub(super) fn signal_def(&mut self, name: &str, block: &Block) -> Option<()> {
+        let is = self.required(block, "is").and_then(|field| self.written(field));
+        let places = block.field("at").map_or(Some(Vec::new()), |field| self.place_names(field));
+        let unit = block.field("in").map(|field| self.unit(&field.value));
+        let (is, places) = (is?, places?);
+        let unit = match unit {
+            Some(unit) => Some(unit?),
+            None => None,
+        };
+        let named = block.field("named").map_or_else(|| self.standard_pattern(name, &places), |field| field.value.text.clone());
+        self.check_pattern(&named, &places, block, "named");
+        self.names.signals.insert(name.to_string(), SignalDef { places, is, unit, named, span: block.span().clone() });
+        Some(())
+    }
+
+    /// `ay_{running_gear}`
+    fn standard_pattern(&self, name: &str, places: &[String]) -> String {
+        let braces: String = places.iter().map(|place| format!("{{{place}}}")).collect();
+        if braces.is_empty() { name.to_string() } else { format!("{name}_{braces}") }
+    }
+
+    /// Every place must appear, or two positions would share a column.
+    fn check_pattern(&mut self, pattern: &str, places: &[String], block: &Block, key: &str) {
+        let span = block.field(key).map_or_else(|| block.span().clone(), |field| field.value.span.clone());
+        for place in places {
+            if !pattern.contains(&format!("{{{place}}}")) {
+                self.problems.push(
+                    Problem::error("pattern", format!("`{pattern}` names the same column for every {place}"))
+                        .at(&span)
+                        .help(format!("put {{{place}}} where it stands in the name")),
+                );
+            }
+        }
+        for part in pattern.split('{').skip(1) {
+            let inside = part.split('}').next().unwrap_or("");
+            if !places.iter().any(|place| place == inside) {
+                self.problems.push(
+                    Problem::error("pattern", format!("`{{{inside}}}` in `{pattern}` is none of its places"))
+                        .at(&span)
+                        .suggest(inside, places.iter().map(String::as_str)),
+                );
+            }
+        }
+    }
+
+    /// `each wheelset and side` into place names.
+    fn place_names(&mut self, field: &Field) -> Option<Vec<String>> {
+        let picks = from_pest::places(&field.value, self.problems)?;
+        let mut found = Vec::new();
+        for pick in picks {
+            let Pick { words, more } = pick;
+            let mut groups = vec![words];
+            groups.extend(more.into_iter().map(|word| vec![word]));
+            for group in groups {
+                let words: Vec<At<String>> =
+                    group.into_iter().filter(|word| !matches!(word.node.as_str(), "each" | "every" | "all")).collect();
+                match self.place_called(&words.iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_")) {
+                    Some(place) => found.push(place),
+                    None => {
+                        self.unknown_place(&words, &field.value);
+                        return None;
+                    }
+                }
+            }
+        }
+        Some(found)
+    }
+
+    /// The place of a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`, `bodies`.
+    pub(super) fn place_called(&self, word: &str) -> Option<String> {
+        let plural = |name: &str| {
+            [format!("{name}s"), format!("{name}es")].contains(&word.to_string())
+                || name.strip_suffix('y').is_some_and(|stem| format!("{stem}ies") == word)
+        };
+        let names = || self.names.places.keys();
+        names().find(|name| *name == word).or_else(|| names().find(|name| plural(name))).cloned()
+    }
+}

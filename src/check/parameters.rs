@@ -1,0 +1,138 @@
+//! Parameters: their values from default, campaign or command line, and numbers that follow from constants alone.
+
+use super::evaluate::words;
+use super::names::{ParameterDef, normalised};
+use super::plan::{Kind, Scalar, SetBy, Type};
+use super::scalars::Scope;
+use super::{Checker, Override};
+use crate::problem::Problem;
+use crate::syntax::document::{Block, Field, Text};
+use crate::syntax::from_pest;
+use crate::syntax::phrase::Phrase;
+use crate::units::Dimension;
+
+impl Checker<'_> {
+    /// The parameter of a name, looked into when it is first asked for: its default may use parameters that stand below it.
+    pub(super) fn parameter(&mut self, name: &str, at: &crate::source::Span) -> Option<ParameterDef> {
+        if let Some(found) = self.names.parameters.get(name) {
+            return Some(found.clone());
+        }
+        let block = self.names.parameter_blocks.get(name)?.clone();
+        let found = self.inside("parameter", name, at, |checker| checker.parameter_of(name, &block))?;
+        self.names.parameters.insert(name.to_string(), found.clone());
+        Some(found)
+    }
+
+    fn parameter_of(&mut self, name: &str, block: &Block) -> Option<ParameterDef> {
+        let default = self.required(block, "default")?;
+        let title = block.title.as_ref().map_or(String::new(), |title| title.text.clone());
+        let given = self.overrides.get(name).cloned();
+        let default_words = normalised(&default.value.text);
+        let (source, set_by) = match &given {
+            Some(Override { text, set_by }) => (text.clone(), *set_by),
+            None => (default.value.clone(), SetBy::Default),
+        };
+        let (value, ty) = match block.field("one of") {
+            Some(choices) => {
+                if let Some(range) = block.field("range") {
+                    let problem =
+                        Problem::error("unknown-field", format!("`{name}` is a choice of words and has no range")).at(&range.key.span);
+                    self.problems.push(problem.also(&choices.key.span, "the choice"));
+                }
+                self.choice(name, choices, &default.value, &source)?
+            }
+            None => self.number(name, block, &default.value, given.is_some().then_some(&source))?,
+        };
+        Some(ParameterDef { title, value, ty, value_words: normalised(&source.text), default_words, set_by })
+    }
+
+    fn choice(&mut self, name: &str, choices: &Field, default: &Text, source: &Text) -> Option<(Scalar, Type)> {
+        let choices: Vec<String> = from_pest::list(&choices.value, self.problems)?.into_iter().map(|choice| choice.node).collect();
+        let mut ok = true;
+        for text in [default, source] {
+            let word = text.text.trim();
+            if !choices.iter().any(|choice| choice == word) {
+                self.problems.push(
+                    Problem::error("unknown-choice", format!("`{word}` is none of the choices of `{name}`"))
+                        .at(&text.span)
+                        .suggest(word, choices.iter().map(String::as_str)),
+                );
+                ok = false;
+            }
+        }
+        ok.then(|| (Scalar::Word(source.text.trim().to_string()), Type::Word(choices)))
+    }
+
+    fn number(&mut self, name: &str, block: &Block, default: &Text, given: Option<&Text>) -> Option<(Scalar, Type)> {
+        let found = self.constant(default);
+        let set = given.map(|given| (given, self.constant(given)));
+        let (value, dimension) = found?;
+        if let Some(range) = block.field("range") {
+            self.within_range(name, value, dimension, default, range);
+        }
+        let Some((text, set)) = set else { return Some((Scalar::Number(value), Type::Number(dimension))) };
+        let (value, found) = set?;
+        if found != dimension {
+            self.problems.push(
+                Problem::error("unit-mismatch", format!("parameter `{name}` is {}, this is {}", dimension.in_words(), found.in_words()))
+                    .at(&text.span)
+                    .label(found.in_words())
+                    .also(&default.span, "its default"),
+            );
+            return None;
+        }
+        if let Some(range) = block.field("range") {
+            self.within_range(name, value, dimension, text, range);
+        }
+        Some((Scalar::Number(value), Type::Number(dimension)))
+    }
+
+    fn within_range(&mut self, name: &str, value: f64, dimension: Dimension, source: &Text, range: &Field) {
+        let Some((low, high)) = from_pest::range(&range.value, self.problems) else { return };
+        let mut ends = [0.0; 2];
+        for (end, phrase) in ends.iter_mut().zip([low, high]) {
+            let Some((found, of)) = self.constant_phrase(&phrase, &range.value) else { return };
+            if of != dimension {
+                self.problems.push(
+                    Problem::error(
+                        "unit-mismatch",
+                        format!("parameter `{name}` is {}, its range is {}", dimension.in_words(), of.in_words()),
+                    )
+                    .at(&range.value.place(phrase.range.clone()))
+                    .label(of.in_words())
+                    .also(&source.span, dimension.in_words()),
+                );
+                return;
+            }
+            *end = found;
+        }
+        if !(ends[0]..=ends[1]).contains(&value) {
+            self.problems.push(
+                Problem::error("out-of-range", format!("`{}` is outside the range of `{name}`", normalised(&source.text)))
+                    .at(&source.span)
+                    .also(&range.value.span, "the range")
+                    .help(format!("allowed: {}", normalised(&range.value.text))),
+            );
+        }
+    }
+
+    /// A number that follows from constants alone, with its dimension.
+    pub(super) fn constant(&mut self, text: &Text) -> Option<(f64, Dimension)> {
+        let phrase = from_pest::expression(text, self.problems)?;
+        self.constant_phrase(&phrase, text)
+    }
+
+    pub(super) fn constant_phrase(&mut self, phrase: &Phrase, text: &Text) -> Option<(f64, Dimension)> {
+        let expr = self.expr(phrase, text, &mut Scope::constant())?;
+        let dimension = self.number_type(&expr)?;
+        if let Kind::Constant(Scalar::Number(value)) = expr.kind {
+            return Some((value, dimension));
+        }
+        self.problems.push(
+            Problem::error("not-constant", format!("`{}` is not a number known beforehand", words(&expr)))
+                .at(&expr.span)
+                .help("write a number with its unit, a parameter, or an expression of these"),
+        );
+        None
+    }
+}

@@ -1,0 +1,235 @@
+//! Positions of signals: `Y at side R` in expressions, `Y at wheelsets 1, 3 and side outer` in quantities.
+
+use indexmap::IndexMap;
+
+use super::Checker;
+use super::names::{Assignment, Place};
+use super::plan::{Expr, Kind, Operator, Signal, Type};
+use super::scalars::Scope;
+use crate::problem::Problem;
+use crate::source::Span;
+use crate::syntax::document::Text;
+use crate::syntax::phrase::{At, Node, Phrase, Pick};
+
+impl Place {
+    fn alias(&self, name: &str) -> Option<&(crate::syntax::phrase::Alias, Text)> {
+        self.aliases.iter().find(|(alias, _)| alias.name.node == name)
+    }
+}
+
+impl Checker<'_> {
+    /// `Y at side R`, or at an alias that the section decides.
+    pub(super) fn placed(&mut self, name: &At<String>, words: &[At<String>], text: &Text, span: &Span, at: &Assignment) -> Option<Signal> {
+        let bare = At { node: Node::Path(name.node.clone()), range: name.range.clone() };
+        // Words come as place, member, place, member, ...; place names of several words are joined by `_`.
+        let mut assignment = at.clone();
+        let mut from = 0;
+        while from < words.len() {
+            let named = (from + 1..words.len()).find_map(|end| self.place_called(&joined(&words[from..end])).map(|place| (place, end)));
+            let Some((place, member_at)) = named else {
+                if let Some(place) = self.place_called(&joined(&words[from..])) {
+                    self.problems.push(
+                        Problem::error("open-place", format!("which {place} is not said"))
+                            .at(&self.span_of(&words[from..], text))
+                            .help(self.members_help(&place)),
+                    );
+                } else {
+                    self.unknown_place(&words[from..words.len().max(from + 2) - 1], text);
+                }
+                return None;
+            };
+            let member = &words[member_at];
+            let known = self.names.places.get(&place)?;
+            if !known.members.contains(&member.node) && known.alias(&member.node).is_none() {
+                self.unknown_member(member, &place, text);
+                return None;
+            }
+            assignment.insert(place, member.node.clone());
+            from = member_at + 1;
+        }
+        self.signal_where(&bare, text, &assignment, span)
+    }
+
+    /// A signal at positions of which some may be aliases: then the section decides.
+    pub(super) fn signal_where(&mut self, phrase: &Phrase, text: &Text, at: &Assignment, span: &Span) -> Option<Signal> {
+        let mut cases: Vec<(Option<Expr>, Assignment)> = vec![(None, at.clone())];
+        for (place, member) in at {
+            let Some((alias, alias_text)) = self.names.places.get(place).and_then(|known| known.alias(member)).cloned() else { continue };
+            let mut split = Vec::new();
+            let mut conditions = Vec::new();
+            for (target, condition) in &alias.cases {
+                let condition = self.expr(condition, &alias_text, &mut Scope::section())?;
+                self.flag_type(&condition)?;
+                for (before, assignment) in &cases {
+                    let mut assignment = assignment.clone();
+                    assignment.insert(place.clone(), target.node.clone());
+                    split.push((Some(both(before.as_ref(), &condition)), assignment));
+                }
+                conditions.push(condition);
+            }
+            self.alias_covers(&alias.name.node, place, &conditions, span);
+            cases = split;
+        }
+        let mut arms = Vec::new();
+        for (condition, assignment) in cases {
+            let signal = self.signal(phrase, text, &assignment)?;
+            match condition {
+                None => return Some(signal),
+                Some(condition) => arms.push((condition, signal)),
+            }
+        }
+        self.select(arms, None, span)
+    }
+
+    /// In a quantity, sections in which an alias names nothing cannot be used; a warning unless they are left out anyway.
+    fn alias_covers(&mut self, alias: &str, place: &str, conditions: &[Expr], span: &Span) {
+        if !self.in_quantity {
+            return;
+        }
+        let mut all: Vec<(&Expr, bool)> = self.assumed.iter().map(|condition| (condition, true)).collect();
+        all.extend(conditions.iter().map(|condition| (condition, false)));
+        if !super::conditions::impossible(&all) {
+            self.problems.push(
+                Problem::warning("alias-gap", format!("there are sections in which `{alias}` is no {place}: they cannot be used"))
+                    .at(span)
+                    .help("leave them out of this quantity: `where ...`"),
+            );
+        }
+    }
+
+    pub(super) fn unknown_place(&mut self, words: &[At<String>], text: &Text) {
+        let name = joined(words);
+        if self.names.failed.contains(&name) || self.names.failed.contains(name.strip_suffix('s').unwrap_or(&name)) {
+            return;
+        }
+        let names: Vec<String> = self.names.places.keys().map(|place| place.replace('_', " ")).collect();
+        let shown = name.replace('_', " ");
+        self.problems.push(
+            Problem::error("unknown-place", format!("`{shown}` is no place"))
+                .at(&self.span_of(words, text))
+                .suggest(&shown, names.iter().map(String::as_str)),
+        );
+    }
+
+    fn span_of(&self, words: &[At<String>], text: &Text) -> Span {
+        match (words.first(), words.last()) {
+            (Some(first), Some(last)) => text.place(first.range.start..last.range.end),
+            _ => text.span.clone(),
+        }
+    }
+
+    fn unknown_member(&mut self, member: &At<String>, place: &str, text: &Text) {
+        let Some(known) = self.names.places.get(place) else { return };
+        let aliases = known.aliases.iter().map(|(alias, _)| alias.name.node.as_str());
+        let all: Vec<&str> = known.members.iter().map(String::as_str).chain(aliases).collect();
+        let problem = Problem::error("unknown-place", format!("`{}` is no {}", member.node, place.replace('_', " ")))
+            .at(&text.place(member.range.clone()));
+        let problem = if member.node.chars().count() == 1 {
+            problem.help(format!("known here: {}", all.join(", ")))
+        } else {
+            problem.suggest(&member.node, all)
+        };
+        self.problems.push(problem);
+    }
+
+    fn members_help(&self, place: &str) -> String {
+        let members = self.names.places.get(place).map_or(String::new(), |place| place.members.join(", "));
+        format!("one of {members}")
+    }
+
+    /// All positions of a selection, in the order of the places of the signal, each with its assignment.
+    pub(super) fn positions(&mut self, signal: &At<String>, picks: &[Pick], text: &Text) -> Option<Vec<Assignment>> {
+        let places = match (self.names.channels.get(&signal.node), self.names.signals.get(&signal.node)) {
+            (Some(channel), _) => channel.places.clone(),
+            (_, Some(signal)) => signal.places.clone(),
+            _ => {
+                self.unknown_signal(&signal.node, &text.place(signal.range.clone()));
+                return None;
+            }
+        };
+        let mut chosen: IndexMap<String, Vec<String>> = IndexMap::new();
+        let mut ok = true;
+        for pick in picks {
+            ok &= self.one_pick(pick, signal, &places, text, &mut chosen).is_some();
+        }
+        if !ok {
+            return None;
+        }
+        let mut all = vec![Assignment::new()];
+        for place in &places {
+            let members = match chosen.shift_remove(place) {
+                Some(members) => members,
+                None => self.names.places.get(place)?.members.clone(),
+            };
+            let with = |before: &Assignment, member: &String| {
+                let mut next = before.clone();
+                next.insert(place.clone(), member.clone());
+                next
+            };
+            all = all.iter().flat_map(|before| members.iter().map(move |member| with(before, member))).collect();
+        }
+        Some(all)
+    }
+
+    fn one_pick(
+        &mut self,
+        pick: &Pick,
+        signal: &At<String>,
+        places: &[String],
+        text: &Text,
+        chosen: &mut IndexMap<String, Vec<String>>,
+    ) -> Option<()> {
+        let words: Vec<At<String>> =
+            pick.words.iter().filter(|word| !matches!(word.node.as_str(), "each" | "every" | "all")).cloned().collect();
+        let named = (1..=words.len()).rev().find_map(|end| self.place_called(&joined(&words[..end])).map(|place| (place, end)));
+        let Some((place, end)) = named else {
+            // The last word is a member, unless it is the only one.
+            let of_place = if words.is_empty() { &pick.words[..] } else { &words[..(words.len().max(2) - 1).min(words.len())] };
+            self.unknown_place(of_place, text);
+            return None;
+        };
+        if !places.contains(&place) {
+            let says = format!("`{}` is not measured at a {}", signal.node, place.replace('_', " "));
+            let problem = Problem::error("unknown-place", says).at(&self.span_of(&words[..end], text));
+            let help = if places.is_empty() {
+                "it has no places".to_string()
+            } else {
+                format!("its places: {}", places.join(", ").replace('_', " "))
+            };
+            self.problems.push(problem.help(help));
+            return None;
+        }
+        let known = self.names.places.get(&place)?.clone();
+        let members: Vec<&At<String>> = words[end..].iter().chain(&pick.more).collect();
+        let found = chosen.entry(place.clone()).or_default();
+        if members.is_empty() {
+            // `at wheelsets` and `at each wheelset` mean all of them.
+            found.clone_from(&known.members);
+        }
+        let mut ok = true;
+        for member in members {
+            if !known.members.contains(&member.node) && known.alias(&member.node).is_none() {
+                self.unknown_member(member, &place, text);
+                ok = false;
+            } else if !found.contains(&member.node) {
+                found.push(member.node.clone());
+            }
+        }
+        ok.then_some(())
+    }
+}
+
+fn joined(words: &[At<String>]) -> String {
+    words.iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_")
+}
+
+fn both(before: Option<&Expr>, condition: &Expr) -> Expr {
+    match before {
+        None => condition.clone(),
+        Some(before) => Expr {
+            kind: Kind::Binary(Operator::And, Box::new(before.clone()), Box::new(condition.clone())),
+            ty: Type::Flag,
+            span: condition.span.clone(),
+        },
+    }
+}

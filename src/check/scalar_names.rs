@@ -1,0 +1,298 @@
+//! What a name in an expression over numbers, words and conditions stands for.
+
+use super::Checker;
+use super::names::{Assignment, bare_word};
+use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Scalar, Type};
+use super::scalars::{Reduce, Scope};
+use crate::catalog::{REDUCERS, Reducer, Statistic};
+use crate::problem::Problem;
+use crate::source::Span;
+use crate::syntax::document::Text;
+use crate::syntax::phrase::{At, Node, Phrase};
+use crate::units::Unit;
+
+impl Checker<'_> {
+    /// A value taken from the quantity's own signal.
+    pub(super) fn own_reducer(&mut self, reducer: Reducer, span: Span, scope: &mut Scope) -> Option<Expr> {
+        self.percentile_range(reducer, &span)?;
+        let Some(Reduce { own: Some(dimension), axis, side }) = scope.reduce else {
+            let what = reducer.in_words();
+            let problem = Problem::error("no-signal", format!("`{what}` is taken from a signal, and there is none here")).at(&span);
+            self.problems.push(if scope.reduce.is_some() { problem.help(format!("name the signal: `{what} of ...`")) } else { problem });
+            return None;
+        };
+        let ty = Type::Number(reducer.gives(dimension, axis));
+        let kind = Kind::Input(add_input(scope, Input { reducer, signal: None, side, span: span.clone() }));
+        Some(Expr { kind, ty, span })
+    }
+
+    fn percentile_range(&mut self, reducer: Reducer, span: &Span) -> Option<()> {
+        match reducer {
+            Reducer::Percentile(percent) if !(0.0..=100.0).contains(&percent) => {
+                self.problems
+                    .push(Problem::error("out-of-range", format!("a percentile lies between 0 and 100, this is {percent}")).at(span));
+                None
+            }
+            _ => Some(()),
+        }
+    }
+
+    /// `range of curvature`: a value taken from a named signal.
+    pub(super) fn reduced(&mut self, reducer: &Phrase, signal: &Phrase, text: &Text, span: &Span, scope: &mut Scope) -> Option<Expr> {
+        let place = text.place(reducer.range.clone());
+        let found = match &reducer.node {
+            Node::Percentile(percent) => Some(Reducer::Percentile(*percent)),
+            Node::Path(name) => Reducer::named(name),
+            _ => None,
+        };
+        let Some(found) = found else {
+            let word = if let Node::Path(path) = &reducer.node { path.as_str() } else { "" };
+            if !self.is_failed(word) {
+                let numbers = self.names.parameter_blocks.keys().chain(self.names.defines.keys()).cloned().collect::<Vec<_>>();
+                let reducers = REDUCERS.iter().map(|entry| entry.name);
+                let known: Vec<&str> = if scope.reduce.is_some() {
+                    reducers.chain(numbers.iter().map(String::as_str)).collect()
+                } else {
+                    numbers.iter().map(String::as_str).collect()
+                };
+                let says = format!("`{word} of` is neither a value taken from a signal nor a share of a number");
+                self.problems.push(Problem::error("unknown-reducer", says).at(&place).suggest(word, known));
+            }
+            return None;
+        };
+        self.percentile_range(found, &place)?;
+        let Some(Reduce { axis, side, .. }) = scope.reduce else {
+            self.problems.push(
+                Problem::error(
+                    "no-records",
+                    format!("`{} of ...` is taken from the records of a section, which are not at hand here", found.in_words()),
+                )
+                .at(span),
+            );
+            return None;
+        };
+        let signal = self.signal(signal, text, &Assignment::new())?;
+        let ty = Type::Number(found.gives(signal.dimension, axis));
+        let kind = Kind::Input(add_input(scope, Input { reducer: found, signal: Some(signal), side, span: span.clone() }));
+        Some(Expr { kind, ty, span: span.clone() })
+    }
+
+    /// `measured(p99.85)`: the value of that side, whichever side is evaluated.
+    pub(super) fn on_side(&mut self, name: &At<String>, arguments: &[Phrase], text: &Text, span: &Span, scope: &mut Scope) -> Option<Expr> {
+        let (Some(reduce), [argument]) = (scope.reduce, arguments) else {
+            let says = format!("`{}(...)` holds one value taken from a signal, in the value of a quantity or in a check", name.node);
+            self.problems.push(Problem::error("side", says).at(span));
+            return None;
+        };
+        let side = if name.node == "measured" { InputSide::Measured } else { InputSide::Simulated };
+        scope.reduce = Some(Reduce { side, ..reduce });
+        let found = self.expr(argument, text, scope);
+        scope.reduce = Some(reduce);
+        found
+    }
+
+    pub(super) fn path(&mut self, path: &str, span: &Span, scope: &mut Scope) -> Option<Expr> {
+        let expr = |kind, ty| Some(Expr { kind, ty, span: span.clone() });
+        if let Some(pair) = scope.pair {
+            match path {
+                "simulated" => return expr(Kind::Simulated, Type::Number(pair)),
+                "measured" => return expr(Kind::Measured, Type::Number(pair)),
+                _ => {}
+            }
+        }
+        if let Some((dimension, names)) = &scope.limits {
+            if names.iter().any(|name| name == path) {
+                return expr(Kind::LimitOf(path.to_string()), Type::Number(*dimension));
+            }
+        }
+        if let Some(statistic) = Statistic::named(path).filter(|_| scope.limits.is_some()) {
+            let says = format!("there is no other limit of the {} that this could refer to", statistic.title(self.ddof));
+            self.problems.push(Problem::error("no-such-limit", says).at(span));
+            return None;
+        }
+        if let Some(reducer) = Reducer::named(path) {
+            return self.own_reducer(reducer, span.clone(), scope);
+        }
+        if self.names.parameter_blocks.contains_key(path) {
+            let parameter = self.parameter(path, span)?;
+            return expr(Kind::Constant(parameter.value), parameter.ty);
+        }
+        if let Some(define) = self.names.defines.get(path).cloned() {
+            self.used_defines.insert(path.to_string());
+            return self.inside("define", path, span, |checker| checker.expr(&define.phrase, &define.text, scope));
+        }
+        if matches!(path, "true" | "false") {
+            return expr(Kind::Constant(Scalar::Flag(path == "true")), Type::Flag);
+        }
+        if let Some(found) = self.datum_path(path, span, scope) {
+            return found;
+        }
+        if let Some(found) = self.extent_path(path, span, scope) {
+            return Some(found);
+        }
+        let signal = self.names.channels.contains_key(path) || self.names.signals.contains_key(path) || self.is_failed(path);
+        if let Some(unit) = Unit::parse(path).ok().filter(|_| !signal) {
+            return expr(Kind::Constant(Scalar::Number(unit.factor)), Type::Number(unit.dimension));
+        }
+        self.unknown_name(path, span, scope);
+        None
+    }
+
+    /// `start`, `end` and `length` of the section on the axis, unless the protocol has columns of these names.
+    fn extent_path(&self, path: &str, span: &Span, scope: &Scope) -> Option<Expr> {
+        let axis = self.axis.as_ref().filter(|_| scope.section)?.unit.dimension;
+        let number = |kind| Expr { kind, ty: Type::Number(axis), span: span.clone() };
+        match path {
+            "start" => Some(number(Kind::Start)),
+            "end" => Some(number(Kind::End)),
+            "length" => Some(number(Kind::Binary(Operator::Subtract, Box::new(number(Kind::End)), Box::new(number(Kind::Start))))),
+            _ => None,
+        }
+    }
+
+    /// `vehicle.category`, `section.radius`, or the name alone.
+    fn datum_path(&mut self, path: &str, span: &Span, scope: &Scope) -> Option<Option<Expr>> {
+        let (role, name) = path.split_once('.').map_or(("", path), |(role, name)| (role, name));
+        let of = |data: &[super::plan::Datum], wanted: &str| {
+            if role.is_empty() || role == wanted { data.iter().position(|datum| datum.name == name) } else { None }
+        };
+        let (column, vehicle) = (of(&self.names.columns, "section"), of(&self.names.vehicle, "vehicle"));
+        if column.is_some() && vehicle.is_some() {
+            self.problems.push(
+                Problem::error("ambiguous", format!("`{name}` is given for the vehicle and for each section"))
+                    .at(span)
+                    .help(format!("write `vehicle.{name}` or `section.{name}`")),
+            );
+            return Some(None);
+        }
+        if let Some(index) = column {
+            let is_zone = matches!(self.zone.as_ref().map(|zone| &zone.kind), Some(Kind::Column(zone)) if *zone == index);
+            let ty = datum_type(&self.names.columns[index].kind);
+            if let Some(zone) = scope.zone.clone().filter(|_| is_zone) {
+                return Some(Some(Expr { kind: Kind::Constant(Scalar::Word(zone)), ty, span: span.clone() }));
+            }
+            if scope.section {
+                return Some(Some(Expr { kind: Kind::Column(index), ty, span: span.clone() }));
+            }
+            let problem =
+                Problem::error("no-section", format!("`{path}` differs from section to section, and one number is needed here")).at(span);
+            self.problems.push(match (&scope.limits, is_zone) {
+                (Some(_), true) => problem.help("a limit that depends on the zone ends with `for each zone`"),
+                (Some(_), false) => problem
+                    .help("a limit of some sections ends with `for sections where ...`; a limit of `each` value may depend on its section"),
+                _ => problem,
+            });
+            return Some(None);
+        }
+        let index = vehicle?;
+        if scope.vehicle {
+            let ty = datum_type(&self.names.vehicle[index].kind);
+            return Some(Some(Expr { kind: Kind::Vehicle(index), ty, span: span.clone() }));
+        }
+        self.problems.push(
+            Problem::error(
+                "no-vehicle",
+                format!("`{path}` is known only with a vehicle, and a number fixed by the protocol is needed here"),
+            )
+            .at(span)
+            .help("make it a `parameter`, which a campaign can set"),
+        );
+        Some(None)
+    }
+
+    /// Whether `word of ...` is a product: a parameter, definition or datum of that name.
+    pub(super) fn is_number_name(&self, phrase: &Phrase) -> bool {
+        let Node::Path(path) = &phrase.node else { return false };
+        let datum = |role: &str, data: &[super::plan::Datum], name: &str| {
+            data.iter().any(|datum| datum.name == name || path.strip_prefix(role).is_some_and(|rest| rest == datum.name))
+        };
+        Reducer::named(path).is_none()
+            && (self.names.parameter_blocks.contains_key(path)
+                || self.names.defines.contains_key(path)
+                || datum("section.", &self.names.columns, path)
+                || datum("vehicle.", &self.names.vehicle, path))
+    }
+
+    /// Whether a name is not known because its own block has a fault, which was told already.
+    pub(super) fn is_failed(&self, path: &str) -> bool {
+        let name = path.split_once('.').map_or(path, |(_, name)| name);
+        self.names.failed.contains(name)
+    }
+
+    fn unknown_name(&mut self, path: &str, span: &Span, scope: &Scope) {
+        if self.is_failed(path) {
+            return;
+        }
+        if self.names.channels.contains_key(path) || self.names.signals.contains_key(path) {
+            self.problems.push(
+                Problem::error("signal-not-number", format!("`{path}` is a signal, and a number is needed"))
+                    .at(span)
+                    .help(format!("take a number from it: `mean of {path}`")),
+            );
+            return;
+        }
+        let digits = path.find(|c: char| !c.is_ascii_digit()).unwrap_or(0);
+        if digits > 0 {
+            let problem = Problem::error("unknown-unit", format!("`{}` is no unit", &path[digits..])).at(span);
+            self.problems.push(match Unit::parse(&path[digits..]).err().and_then(|unknown| unknown.near) {
+                Some(near) => problem.help(format!("did you mean `{} {near}`?", &path[..digits])),
+                None => problem,
+            });
+            return;
+        }
+        let mut known: Vec<String> = self.names.parameter_blocks.keys().chain(self.names.defines.keys()).cloned().collect();
+        if scope.pair.is_some() {
+            known.extend(["simulated".to_string(), "measured".to_string()]);
+        }
+        if let Some((_, names)) = &scope.limits {
+            known.extend(names.iter().cloned());
+        }
+        if scope.reduce.is_some_and(|reduce| reduce.own.is_some()) {
+            known.extend(REDUCERS.iter().map(|entry| entry.name.to_string()));
+        }
+        if scope.section {
+            known.extend(self.names.columns.iter().map(|datum| datum.name.clone()));
+        }
+        if scope.vehicle {
+            for datum in &self.names.vehicle {
+                known.push(datum.name.clone());
+                known.push(format!("vehicle.{}", datum.name));
+            }
+        }
+        self.problems.push(
+            Problem::error("unknown-name", format!("nothing is called `{path}` here"))
+                .at(span)
+                .suggest(path, known.iter().map(String::as_str)),
+        );
+    }
+
+    /// The choice that a bare word stands for: a word, or the value of the choice parameter of that name.
+    pub(super) fn choice_word(&mut self, word: &str, span: &Span) -> Option<String> {
+        if !self.names.parameter_blocks.contains_key(word) {
+            return Some(word.to_string());
+        }
+        match self.parameter(word, span)?.value {
+            Scalar::Word(choice) => Some(choice),
+            _ => Some(word.to_string()),
+        }
+    }
+
+    /// As [`Self::choice_word`], where a phrase is a bare word.
+    pub(super) fn choice_phrase(&mut self, phrase: &Phrase, text: &Text) -> Option<String> {
+        let word = bare_word(phrase)?;
+        self.choice_word(word, &text.place(phrase.range.clone()))
+    }
+}
+
+fn datum_type(kind: &DatumKind) -> Type {
+    match kind {
+        DatumKind::Number(unit) => Type::Number(unit.dimension),
+        DatumKind::Words(words) => Type::Word(words.clone()),
+        DatumKind::Flag => Type::Flag,
+    }
+}
+
+fn add_input(scope: &mut Scope, input: Input) -> usize {
+    scope.inputs.push(input);
+    scope.inputs.len() - 1
+}

@@ -1,0 +1,256 @@
+//! What is wrong with a phrase, in the words of its author rather than of the grammar.
+
+use std::ops::Range;
+
+use pest::error::{Error, ErrorVariant, InputLocation};
+
+use super::Rule;
+use crate::problem::Problem;
+use crate::syntax::document::Text;
+use crate::units::Unit;
+
+/// Parentheses, magnitudes, `not`, signs and `of` nested deeper than this are refused before they are read: no rule that a person
+/// wrote, and recursion has an end.
+const DEEPEST: usize = 60;
+/// More words, numbers and signs than this are refused: sums are read one term inside the other.
+const LONGEST: usize = 600;
+
+/// A problem if the text could overflow the stack of those who read it.
+pub(super) fn too_deep(text: &Text) -> Option<Problem> {
+    let (mut parens, mut deepest, mut others, mut tokens) = (0_usize, 0, 0, 0);
+    let mut word = String::new();
+    // Whether an operand stood last: a minus after it is a subtraction, not a sign.
+    let mut operand = false;
+    for c in text.text.chars().chain([' ']) {
+        if c.is_alphanumeric() || c == '_' || c == '.' {
+            word.push(c);
+            continue;
+        }
+        if !word.is_empty() {
+            tokens += 1;
+            others += usize::from(matches!(word.as_str(), "not" | "of"));
+            operand = !matches!(word.as_str(), "not" | "of" | "and" | "or" | "is" | "when" | "otherwise");
+            word.clear();
+        }
+        if c.is_whitespace() {
+            continue;
+        }
+        tokens += 1;
+        match c {
+            '(' => parens += 1,
+            ')' => parens = parens.saturating_sub(1),
+            '|' => others += 1,
+            '-' | '−' if !operand => others += 1,
+            _ => {}
+        }
+        deepest = deepest.max(parens);
+        operand = matches!(c, ')' | '|');
+    }
+    // Every magnitude has two bars, so that many can be nested at most.
+    if deepest + others / 2 <= DEEPEST && tokens <= LONGEST {
+        return None;
+    }
+    let says = if tokens > LONGEST {
+        format!("this phrase has {tokens} words, numbers and signs; {LONGEST} is the most a rule may have")
+    } else {
+        format!("this is nested deeper than {DEEPEST} levels")
+    };
+    let end = text.text.char_indices().map(|(at, _)| at).nth(40).unwrap_or(text.text.len());
+    Some(Problem::error("too-deep", says).at(&text.place(0..end)).help("name parts of it with `define`"))
+}
+
+pub(super) fn twice(what: &str, text: &Text, range: Range<usize>) -> Problem {
+    Problem::error("syntax", format!("a limit has one `{what}`, here is another"))
+        .at(&text.place(range))
+        .help("write two limits, or join the conditions with `and`")
+}
+
+pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
+    let at = match error.location {
+        InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
+    };
+    let (before, rest) = text.text.split_at(at.min(text.text.len()));
+    let found = first_word(rest);
+    if let Some(problem) = unknown_unit(before, found, at, text) {
+        return problem;
+    }
+    let says = if found.is_empty() {
+        format!("{} ends too early", in_words(rule))
+    } else {
+        format!("`{found}` does not fit here in {}", in_words(rule))
+    };
+    let mut expected: Vec<&str> = Vec::new();
+    if let ErrorVariant::ParsingError { positives, .. } = &error.variant {
+        for positive in positives {
+            let word = in_words(*positive);
+            if !word.is_empty() && !expected.contains(&word) {
+                expected.push(word);
+            }
+        }
+    }
+    // What can follow anything (`and`, `+`, ...) helps nobody where something definite is missing.
+    if expected.len() > 1 {
+        expected.retain(|word| *word != OPERATOR);
+    }
+    // An error in an exact text is underlined at the word; at its end, the last word is.
+    let end = text.text.trim_end().len();
+    let last = text.text[..end].rfind(char::is_whitespace).map_or(0, |at| at + 1);
+    let range = if found.is_empty() { last..end } else { at..at + found.len() };
+    let problem = Problem::error("syntax", says).at(&text.place(range));
+    match expected.as_slice() {
+        [] => problem,
+        [..] if expected.len() <= 6 => problem.help(format!("expected {}", one_of(&expected))),
+        _ => problem.help(format!("expected {}, ...", expected[..6].join(", "))),
+    }
+}
+
+/// `4 kn`: what follows a number and is no word of the language was meant as its unit.
+fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Problem> {
+    const FOLLOW: [&str; 17] = [
+        "and",
+        "or",
+        "not",
+        "is",
+        "when",
+        "otherwise",
+        "of",
+        "at",
+        "through",
+        "doubled",
+        "times",
+        "for",
+        "only",
+        "then",
+        "to",
+        "every",
+        "quantities",
+    ];
+    let digit = |c: char| c.is_ascii_digit();
+    if !before.trim_end().ends_with(digit) || FOLLOW.contains(&found) || !found.starts_with(char::is_alphabetic) {
+        return None;
+    }
+    let unknown = Unit::parse(found).err()?;
+    let problem = Problem::error("unknown-unit", format!("`{}` is no unit", unknown.word)).at(&text.place(at..at + found.len()));
+    Some(match unknown.near {
+        Some(near) => problem.help(format!("did you mean `{near}`?")),
+        None => problem.help("units are written like kN, m/s^2, km/h, mrad"),
+    })
+}
+
+/// The word or sign a text begins with.
+fn first_word(text: &str) -> &str {
+    let text = text.split_whitespace().next().unwrap_or("");
+    let of_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '/' | '^' | '-');
+    let mut end = text.find(|c| !of_word(c)).unwrap_or(text.len());
+    if end == 0 || !text.starts_with(char::is_alphanumeric) {
+        end = text.chars().next().map_or(0, char::len_utf8);
+    }
+    let most = text.char_indices().map(|(at, _)| at).nth(24).unwrap_or(text.len());
+    &text[..end.min(most)]
+}
+
+fn one_of(words: &[&str]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => (*one).to_string(),
+        [start @ .., last] => format!("{} or {last}", start.join(", ")),
+    }
+}
+
+/// Words that hold a phrase together and say nothing by themselves.
+pub(super) fn is_keyword(rule: Rule) -> bool {
+    matches!(
+        rule,
+        Rule::EOI
+            | Rule::kw_and
+            | Rule::kw_or
+            | Rule::kw_when
+            | Rule::kw_otherwise
+            | Rule::kw_at
+            | Rule::kw_through
+            | Rule::kw_doubled
+            | Rule::kw_times
+            | Rule::kw_only
+            | Rule::kw_for
+            | Rule::kw_zones
+            | Rule::kw_each
+            | Rule::kw_sections
+            | Rule::kw_where
+            | Rule::kw_to
+            | Rule::kw_in
+            | Rule::kw_every
+            | Rule::kw_holds
+            | Rule::then
+    )
+}
+
+const OPERATOR: &str = "an operator";
+
+/// What a rule is called in a message; empty where naming it would not help.
+fn in_words(rule: Rule) -> &'static str {
+    match rule {
+        Rule::expression | Rule::cases | Rule::either | Rule::both | Rule::negation | Rule::comparison => "an expression",
+        Rule::sum | Rule::product | Rule::signed | Rule::raised | Rule::primary => "a value",
+        Rule::of_places => "a signal and its places",
+        Rule::pick | Rule::places => "a selection of places",
+        Rule::place_of => "a signal at a place",
+        Rule::place_word => "a place",
+        Rule::list => "a list",
+        Rule::item => "a word",
+        Rule::alias => "an alias (`outer is L when ..., R when ...`)",
+        Rule::axis => "an axis (`distance in m`)",
+        Rule::range => "a range (`a to b`)",
+        Rule::chain => "a filter chain",
+        Rule::step | Rule::steps | Rule::part => "a step",
+        Rule::step_when | Rule::kw_when => "`when`",
+        Rule::part_item | Rule::phrase_word => "a word or a number",
+        Rule::then => "`then`",
+        Rule::limit => "a limit",
+        Rule::statistic => "a statistic such as `mean` or `std`",
+        Rule::at_least => "`at least`",
+        Rule::limit_part => "`doubled when`, `times`, `only when` or `for zones`",
+        Rule::doubled | Rule::kw_doubled => "`doubled when`",
+        Rule::times | Rule::kw_times => "`times ... when`",
+        Rule::only | Rule::kw_only => "`only when`",
+        Rule::scope | Rule::each_zone | Rule::zones_only | Rule::sections_only | Rule::kw_for => {
+            "`for zones`, `for each zone` or `for sections where`"
+        }
+        Rule::verdict | Rule::every_limit | Rule::at_least_n => "`when every limit holds` or `when at least N quantities hold`",
+        Rule::of_quantities | Rule::of_limits => "`quantities` or `limits`",
+        Rule::otherwise | Rule::kw_otherwise => "`otherwise`",
+        Rule::not => "`not`",
+        Rule::compare
+        | Rule::is
+        | Rule::is_not
+        | Rule::add
+        | Rule::multiply
+        | Rule::of
+        | Rule::exponent
+        | Rule::power
+        | Rule::kw_and
+        | Rule::kw_or => OPERATOR,
+        Rule::minus => "`-`",
+        Rule::magnitude => "`|...|`",
+        Rule::parens => "`(`",
+        Rule::extreme | Rule::which => "`larger of`",
+        Rule::call => "a function",
+        Rule::reduced => "`... of signal`",
+        Rule::through | Rule::kw_through => "`through` and a filter",
+        Rule::quantity | Rule::number => "a number",
+        Rule::percentile => "a percentile such as `p99.85`",
+        Rule::name | Rule::path | Rule::label | Rule::plain => "a name",
+        Rule::unit | Rule::factor | Rule::symbol | Rule::any_unit => "a unit",
+        Rule::zone => "a zone",
+        Rule::kw_at => "`at`",
+        Rule::kw_zones => "`zones`",
+        Rule::kw_each => "`each`",
+        Rule::kw_sections => "`sections`",
+        Rule::kw_where => "`where`",
+        Rule::kw_to => "`to`",
+        Rule::kw_in => "`in`",
+        Rule::kw_every => "`every`",
+        Rule::kw_holds => "`hold`",
+        Rule::EOI => "the end",
+        Rule::keyword | Rule::modifier | Rule::WHITESPACE | Rule::word_char | Rule::letter => "",
+    }
+}

@@ -1,0 +1,224 @@
+//! From field text to [`super::phrase`]: the only place that names the rules of `phrase.pest`.
+
+mod explain;
+mod tree;
+
+use std::ops::Range;
+
+use pest::Parser;
+use pest::iterators::Pair;
+
+use super::document::Text;
+use super::phrase::{Alias, At, Limit, Node, OfPlaces, Phrase, Pick, Scope, Step, Verdict};
+use crate::problem::Problems;
+use tree::{cases, either, pick, step, sum};
+
+#[derive(pest_derive::Parser)]
+#[grammar = "syntax/phrase.pest"]
+struct Grammar;
+
+pub fn expression(text: &Text, problems: &mut Problems) -> Option<Phrase> {
+    cases(parts(parse(Rule::expression, text, problems)?).next()?)
+}
+
+pub fn of_places(text: &Text, problems: &mut Problems) -> Option<OfPlaces> {
+    let mut inner = parts(parse(Rule::of_places, text, problems)?);
+    let signal = named(&inner.next()?);
+    Some(OfPlaces { signal, picks: inner.map(pick).collect() })
+}
+
+pub fn places(text: &Text, problems: &mut Problems) -> Option<Vec<Pick>> {
+    Some(parts(parse(Rule::places, text, problems)?).map(pick).collect())
+}
+
+pub fn list(text: &Text, problems: &mut Problems) -> Option<Vec<At<String>>> {
+    Some(parts(parse(Rule::list, text, problems)?).map(|pair| named(&pair)).collect())
+}
+
+pub fn alias(text: &Text, problems: &mut Problems) -> Option<Alias> {
+    let mut inner = parts(parse(Rule::alias, text, problems)?).filter(|pair| pair.as_rule() != Rule::is);
+    let name = named(&inner.next()?);
+    let mut cases = Vec::new();
+    while let (Some(member), Some(condition)) = (inner.next(), inner.next()) {
+        cases.push((named(&member), either(condition)?));
+    }
+    Some(Alias { name, cases })
+}
+
+/// `distance in m`: the name and the unit text.
+pub fn axis(text: &Text, problems: &mut Problems) -> Option<(At<String>, At<String>)> {
+    let mut inner = parts(parse(Rule::axis, text, problems)?);
+    Some((named(&inner.next()?), named(&inner.next()?)))
+}
+
+pub fn range(text: &Text, problems: &mut Problems) -> Option<(Phrase, Phrase)> {
+    let mut inner = parts(parse(Rule::range, text, problems)?);
+    Some((sum(inner.next()?)?, sum(inner.next()?)?))
+}
+
+pub fn chain(text: &Text, problems: &mut Problems) -> Option<Vec<At<Step>>> {
+    parts(parse(Rule::chain, text, problems)?).map(step).collect()
+}
+
+pub fn step_alone(text: &Text, problems: &mut Problems) -> Option<At<Step>> {
+    step(parts(parse(Rule::steps, text, problems)?).next()?)
+}
+
+pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
+    let mut inner = parts(parse(Rule::limit, text, problems)?).peekable();
+    let statistic = named(&inner.next()?);
+    let at_least = inner.next_if(|pair| pair.as_rule() == Rule::at_least).is_some();
+    let bound = cases(inner.next()?)?;
+    let mut limit = Limit { statistic, at_least, bound, factors: Vec::new(), only_when: None, scope: At { node: Scope::All, range: 0..0 } };
+    for part in inner {
+        let part = parts(part).next()?;
+        let range = bytes(&part);
+        let rule = part.as_rule();
+        let mut inner = parts(part);
+        match rule {
+            Rule::doubled => {
+                let two = At { node: Node::Number { value: 2.0, unit: None }, range };
+                limit.factors.push((two, either(inner.next()?)?));
+            }
+            Rule::times => limit.factors.push((sum(inner.next()?)?, either(inner.next()?)?)),
+            Rule::only => {
+                let condition = either(inner.next()?)?;
+                if limit.only_when.is_some() {
+                    problems.push(explain::twice("only when", text, range));
+                    return None;
+                }
+                limit.only_when = Some(condition);
+            }
+            _ => {
+                if limit.scope.node != Scope::All {
+                    problems.push(explain::twice("for ...", text, range));
+                    return None;
+                }
+                limit.scope = At { node: scope(inner.next()?)?, range };
+            }
+        }
+    }
+    Some(limit)
+}
+
+fn scope(pair: Pair<'_, Rule>) -> Option<Scope> {
+    let rule = pair.as_rule();
+    let mut inner = parts(pair);
+    Some(match rule {
+        Rule::zones_only => Scope::Zones(inner.map(|pair| named(&pair)).collect()),
+        Rule::sections_only => Scope::Where(Box::new(either(inner.next()?)?)),
+        _ => Scope::EachZone,
+    })
+}
+
+pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {
+    let inner = parts(parse(Rule::verdict, text, problems)?).next()?;
+    if inner.as_rule() == Rule::every_limit {
+        return Some(Verdict::EveryLimit);
+    }
+    let mut inner = parts(inner).filter(|pair| pair.as_rule() != Rule::at_least);
+    let count = sum(inner.next()?)?;
+    Some(Verdict::AtLeast { count, of_limits: inner.next()?.as_rule() == Rule::of_limits })
+}
+
+/// Runs one rule over a field; a syntax error becomes a problem at the word where it stands.
+fn parse<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Pair<'t, Rule>> {
+    if let Some(problem) = explain::too_deep(text) {
+        problems.push(problem);
+        return None;
+    }
+    match Grammar::parse(rule, &text.text) {
+        Ok(mut pairs) => pairs.next(),
+        Err(error) => {
+            problems.push(explain::syntax(rule, &error, text));
+            None
+        }
+    }
+}
+
+/// What stands inside, without the words that only hold it together.
+fn parts(pair: Pair<'_, Rule>) -> impl Iterator<Item = Pair<'_, Rule>> {
+    pair.into_inner().filter(|pair| !explain::is_keyword(pair.as_rule()))
+}
+
+fn bytes(pair: &Pair<'_, Rule>) -> Range<usize> {
+    let start = pair.as_span().start();
+    start..start + pair.as_str().trim_end().len()
+}
+
+fn named(pair: &Pair<'_, Rule>) -> At<String> {
+    At { node: pair.as_str().trim().to_string(), range: bytes(pair) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+    use crate::units::SYMBOLS;
+
+    fn text(words: &str) -> Text {
+        Text { text: words.to_string(), span: Source::new("test", words).whole(), exact: true }
+    }
+
+    #[test]
+    fn expressions_group_as_an_engineer_reads_them() {
+        for (words, want) in [
+            ("4 kN * (1 + 0.01 * Q0/kN)", "(Multiply 4000 (Add 1 (Divide (Multiply 0.01 Q0) kN)))"),
+            ("2/3 of std", "(Multiply (Divide 2 3) std)"),
+            ("larger of |p0.15|, |p99.85|", "larger(|p0.15| |p99.85|)"),
+            ("|simulated| - |measured|", "(Subtract |simulated| |measured|)"),
+            ("400 m <= radius <= 600 m", "(And (LessEqual 400 radius) (LessEqual radius 600))"),
+            ("vehicle.category is freight or not vehicle.x", "(Or (Is vehicle.category freight) (not vehicle.x))"),
+            ("Y at side R + Y at side L", "(Add Y@side.R Y@side.L)"),
+            ("(Y through LP20) / (Q through LP20)", "(Divide Y>LP20 Q>LP20)"),
+            (
+                "250 m when zone is 1 and v <= 220 km/h, 500 m when zone is 1, otherwise 70 m",
+                "[250?(And (Is zone 1) (LessEqual v 61.111111111111114)), 500?(Is zone 1); 70]",
+            ),
+            ("range of curvature <= 5 % * |mean of curvature|", "(LessEqual range of curvature (Multiply 0.05 |mean of curvature|))"),
+            ("-p0.15", "(neg p0.15)"),
+            ("x^2 is not 3", "(IsNot x^2 3)"),
+        ] {
+            let mut problems = Problems::default();
+            let phrase = expression(&text(words), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+            assert_eq!(phrase.meaning(), want, "{words}");
+        }
+    }
+
+    #[test]
+    fn limits_have_factors_conditions_and_scopes() {
+        let mut problems = Problems::default();
+        let found = limit(&text("std 0.40 m/s^2, doubled when soft, for zones 3, 4"), &mut problems).expect("a limit");
+        assert_eq!(found.statistic.node, "std");
+        assert_eq!(found.factors.len(), 1);
+        assert!(matches!(&found.scope.node, Scope::Zones(zones) if zones.len() == 2));
+        let found = limit(&text("p95 at least 0.8 only when a is b for each zone"), &mut problems).expect("a limit");
+        assert!(found.at_least && found.only_when.is_some() && found.scope.node == Scope::EachZone);
+    }
+
+    #[test]
+    fn chains_split_into_steps_and_parts() {
+        let mut problems = Problems::default();
+        let found = chain(&text("low-pass 20 Hz, order 4, zero-phase, then sliding mean 2 m every 0.5 m"), &mut problems).expect("a chain");
+        assert_eq!(found.len(), 2);
+        assert_eq!(found[0].node.parts.len(), 3);
+        assert_eq!(found[1].node.parts[0].len(), 5);
+    }
+
+    #[test]
+    fn every_unit_symbol_can_follow_a_number() {
+        for symbol in SYMBOLS.iter().filter(|symbol| !["-", "1"].contains(&symbol.symbol)) {
+            let mut problems = Problems::default();
+            let phrase = expression(&text(&format!("1 {}", symbol.symbol)), &mut problems).unwrap_or_else(|| panic!("{}", symbol.symbol));
+            assert!(matches!(phrase.node, Node::Number { unit: Some(_), .. }), "{}", symbol.symbol);
+        }
+    }
+
+    #[test]
+    fn a_syntax_error_names_the_word() {
+        let mut problems = Problems::default();
+        assert!(expression(&text("4 kN * * 3"), &mut problems).is_none());
+        let shown = problems.render(false);
+        assert!(shown.contains("`*` does not fit here"), "{shown}");
+    }
+}

@@ -1,0 +1,205 @@
+//! From the pairs of pest to the tree of a phrase.
+
+use pest::iterators::Pair;
+
+use super::{Rule, bytes, named, parts};
+use crate::syntax::phrase::{At, Item, Node, Operator, Phrase, Pick, Step};
+use crate::units::Unit;
+
+pub(super) fn pick(pair: Pair<'_, Rule>) -> Pick {
+    let text = pair.as_str();
+    let start = pair.as_span().start();
+    let comma = text.find(',').map_or(usize::MAX, |at| start + at);
+    let (words, more) = parts(pair).map(|word| named(&word)).partition(|word| word.range.start < comma);
+    Pick { words, more }
+}
+
+pub(super) fn step(pair: Pair<'_, Rule>) -> Option<At<Step>> {
+    let range = bytes(&pair);
+    let mut step = Step { parts: Vec::new(), when: None };
+    for part in parts(pair) {
+        match part.as_rule() {
+            Rule::part => step.parts.push(parts(part).map(item).collect::<Option<Vec<_>>>()?),
+            _ => step.when = Some(either(parts(part).next()?)?),
+        }
+    }
+    Some(At { node: step, range })
+}
+
+fn item(pair: Pair<'_, Rule>) -> Option<At<Item>> {
+    let range = bytes(&pair);
+    let inner = parts(pair).next()?;
+    let node = match inner.as_rule() {
+        Rule::phrase_word => Item::Word(inner.as_str().trim().to_string()),
+        Rule::parens => Item::Value(cases(parts(inner).next()?)?),
+        _ => Item::Value(At { range: range.clone(), node: quantity(inner)? }),
+    };
+    Some(At { node, range })
+}
+
+fn quantity(pair: Pair<'_, Rule>) -> Option<Node> {
+    let mut inner = parts(pair);
+    let number: f64 = inner.next()?.as_str().parse().ok()?;
+    let unit = match inner.next() {
+        Some(text) => Some(Unit::parse(text.as_str()).ok()?),
+        None => None,
+    };
+    Some(Node::Number { value: unit.as_ref().map_or(number, |unit| unit.to_si(number)), unit })
+}
+
+pub(super) fn cases(pair: Pair<'_, Rule>) -> Option<Phrase> {
+    let range = bytes(&pair);
+    let mut inner = parts(pair);
+    let first = either(inner.next()?)?;
+    let Some(condition) = inner.next() else { return Some(first) };
+    let mut arms = vec![(first, either(condition)?)];
+    let mut otherwise = None;
+    while let Some(next) = inner.next() {
+        if next.as_rule() == Rule::otherwise {
+            otherwise = Some(Box::new(either(parts(next).next()?)?));
+        } else {
+            arms.push((either(next)?, either(inner.next()?)?));
+        }
+    }
+    Some(At { node: Node::Cases(arms, otherwise), range })
+}
+
+/// Folds `a op b op c` from the left.
+fn fold(pair: Pair<'_, Rule>, one: fn(Pair<'_, Rule>) -> Option<Phrase>, operator: fn(&str) -> Operator) -> Option<Phrase> {
+    let mut inner = parts(pair);
+    let mut left = one(inner.next()?)?;
+    while let Some(next) = inner.next() {
+        let (op, right) = match next.as_rule() {
+            Rule::add | Rule::multiply => (operator(next.as_str().trim()), inner.next()?),
+            _ => (operator(""), next),
+        };
+        let right = one(right)?;
+        let range = left.range.start..right.range.end;
+        left = At { node: Node::Binary(op, Box::new(left), Box::new(right)), range };
+    }
+    Some(left)
+}
+
+pub(super) fn either(pair: Pair<'_, Rule>) -> Option<Phrase> {
+    fold(pair, both, |_| Operator::Or)
+}
+
+fn both(pair: Pair<'_, Rule>) -> Option<Phrase> {
+    fold(pair, negation, |_| Operator::And)
+}
+
+fn negation(pair: Pair<'_, Rule>) -> Option<Phrase> {
+    let range = bytes(&pair);
+    let mut inner = parts(pair);
+    let first = inner.next()?;
+    if first.as_rule() == Rule::not {
+        return Some(At { node: Node::Not(Box::new(negation(inner.next()?)?)), range });
+    }
+    comparison(first)
+}
+
+/// `a <= b`, and `a <= b <= c` as `a <= b and b <= c`.
+fn comparison(pair: Pair<'_, Rule>) -> Option<Phrase> {
+    let mut inner = parts(pair);
+    let mut left = sum(inner.next()?)?;
+    let mut all: Option<Phrase> = None;
+    while let (Some(op), Some(right)) = (inner.next(), inner.next()) {
+        let right = sum(right)?;
+        let words: String = op.as_str().split_whitespace().collect();
+        let operator = match words.as_str() {
+            "<=" | "≤" => Operator::LessEqual,
+            ">=" | "≥" => Operator::GreaterEqual,
+            "<" => Operator::Less,
+            ">" => Operator::Greater,
+            "isnot" => Operator::IsNot,
+            _ => Operator::Is,
+        };
+        let range = left.range.start..right.range.end;
+        let this = At { node: Node::Binary(operator, Box::new(left), Box::new(right.clone())), range };
+        all = Some(match all {
+            None => this,
+            Some(before) => {
+                let range = before.range.start..this.range.end;
+                At { node: Node::Binary(Operator::And, Box::new(before), Box::new(this)), range }
+            }
+        });
+        left = right;
+    }
+    Some(all.unwrap_or(left))
+}
+
+pub(super) fn sum(pair: Pair<'_, Rule>) -> Option<Phrase> {
+    fold(pair, product, |text| if text == "+" { Operator::Add } else { Operator::Subtract })
+}
+
+fn product(pair: Pair<'_, Rule>) -> Option<Phrase> {
+    fold(pair, signed, |text| if text == "/" { Operator::Divide } else { Operator::Multiply })
+}
+
+fn signed(pair: Pair<'_, Rule>) -> Option<Phrase> {
+    let range = bytes(&pair);
+    let mut inner = parts(pair);
+    let first = inner.next()?;
+    if first.as_rule() == Rule::minus {
+        return Some(At { node: Node::Negative(Box::new(signed(inner.next()?)?)), range });
+    }
+    let mut raised = parts(first);
+    let base = primary(raised.next()?)?;
+    let Some(exponent) = raised.next() else { return Some(base) };
+    let exponent = match exponent.as_str().trim() {
+        "²" => 2,
+        "³" => 3,
+        text => text.trim_start_matches('^').parse().ok()?,
+    };
+    Some(At { node: Node::Power(Box::new(base), exponent), range })
+}
+
+fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
+    let whole = bytes(&pair);
+    let mut inner = parts(pair);
+    let first = inner.next()?;
+    let range = bytes(&first);
+    let node = match first.as_rule() {
+        Rule::magnitude => Node::Magnitude(Box::new(sum(parts(first).next()?)?)),
+        Rule::parens => cases(parts(first).next()?)?.node,
+        Rule::extreme => {
+            let mut inner = parts(first).filter(|pair| pair.as_rule() != Rule::of);
+            let which = named(&inner.next()?);
+            Node::Call(which, vec![sum(inner.next()?)?, sum(inner.next()?)?])
+        }
+        Rule::quantity => quantity(first)?,
+        Rule::call => {
+            let mut inner = parts(first);
+            let name = named(&inner.next()?);
+            Node::Call(name, inner.map(either).collect::<Option<Vec<_>>>()?)
+        }
+        Rule::reduced => {
+            let mut inner = parts(first).filter(|pair| pair.as_rule() != Rule::of);
+            let reducer = inner.next()?;
+            let reducer = At { range: bytes(&reducer), node: word(&reducer)? };
+            Node::Reduced(Box::new(reducer), Box::new(signed(inner.next()?)?))
+        }
+        Rule::place_of => {
+            let mut inner = parts(first);
+            let signal = named(&inner.next()?);
+            Node::PlaceOf(signal, inner.map(|word| named(&word)).collect())
+        }
+        _ => word(&first)?,
+    };
+    let mut phrase = At { node, range };
+    for through in inner {
+        let end = bytes(&through).end;
+        let filter = named(&parts(through).next()?);
+        phrase = At { node: Node::Through(Box::new(phrase), filter), range: whole.start..end };
+    }
+    Some(phrase)
+}
+
+/// A percentile or a path.
+fn word(pair: &Pair<'_, Rule>) -> Option<Node> {
+    let text = pair.as_str().trim();
+    if pair.as_rule() == Rule::percentile {
+        return text.trim_start_matches('p').parse().ok().map(Node::Percentile);
+    }
+    Some(Node::Path(text.to_string()))
+}
