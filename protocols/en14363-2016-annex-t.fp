@@ -102,7 +102,7 @@ vehicle Q0 "Static vertical wheel force"
   key  static_wheel_load
 
 section zone "Test zone"
-  one of  1, 2, 3, 4
+  one of  zones
 
 section radius "Curve radius"
   in  m
