@@ -95,14 +95,6 @@ impl Checker<'_> {
                 let product = Node::Binary(Operator::Multiply, factor.clone(), of.clone());
                 self.signal(&At { node: product, range: phrase.range.clone() }, text, at)
             }
-            Node::Binary(Operator::And, left, right) if [left, right].iter().any(|side| matches!(side.node, Node::PlaceOf(..))) => {
-                self.problems.push(
-                    Problem::error("syntax", "`and` joins conditions here, not places")
-                        .at(&span)
-                        .help("in an expression places follow one another: `Y at wheelset 1 side R`"),
-                );
-                None
-            }
             Node::Cases(arms, otherwise) => self.signal_cases(arms, otherwise.as_deref(), text, &span, at),
             _ => self.scalar_signal(phrase, text, span),
         }

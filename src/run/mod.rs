@@ -6,6 +6,7 @@ mod judge;
 mod limits;
 mod pairs;
 mod record;
+mod requirements;
 mod sections;
 mod signal;
 mod traces;
@@ -62,18 +63,20 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
     }
     let mut notes = Vec::new();
     let present = record::present_columns(graph, campaign, &facts, &units, &mut notes);
-    sections::check_data(plan, &facts, &mut units);
+    requirements::check_data(plan, &facts, &mut units);
     stop_on_fault(plan, &units, &[])?;
     let work = record::Work { plan, graph, campaign, facts: &facts, present: &present };
     let values: Vec<SectionValues> = units
         .par_iter()
+        // Sections differ in length: shared out one by one, no worker is left with several while another has none.
+        .with_max_len(1)
         .map(|unit| {
             let values = if unit.fault.is_some() { SectionValues::default() } else { pairs::of_section(&work, unit) };
             progress(&unit.name);
             values
         })
         .collect();
-    sections::take_over(plan, &mut units, &values, &mut notes)?;
+    requirements::take_over(plan, &mut units, &values, &mut notes)?;
     stop_on_fault(plan, &units, &values)?;
     if units.iter().all(|unit| unit.fault.is_some()) {
         return Err(nothing_usable(&units, values));

@@ -88,15 +88,18 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
             }
         }
     }
-    // What can follow anything (`and`, `+`, ...) helps nobody where something definite is missing.
-    if expected.len() > 1 {
-        expected.retain(|word| *word != OPERATOR);
+    // Where an operator can follow, `at` and `through` can, and help little.
+    if expected.contains(&OPERATOR) {
+        expected.retain(|word| *word != in_words(Rule::kw_at) && *word != in_words(Rule::kw_through));
     }
     // An error in an exact text is underlined at the word; at its end, the last word is.
     let end = text.text.trim_end().len();
     let last = text.text[..end].rfind(char::is_whitespace).map_or(0, |at| at + 1);
     let range = if found.is_empty() { last..end } else { at..at + found.len() };
     let problem = Problem::error("syntax", says).at(&text.place(range));
+    if rule == Rule::expression && joins_places(before) {
+        return problem.help("in an expression places follow one another without `and`: `Y at wheelset 1 side R`");
+    }
     match expected.as_slice() {
         [] => problem,
         [..] if expected.len() <= 6 => problem.help(format!("expected {}", one_of(&expected))),
@@ -125,8 +128,8 @@ fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Pro
         "every",
         "quantities",
     ];
-    let digit = |c: char| c.is_ascii_digit();
-    if !before.trim_end().ends_with(digit) || FOLLOW.contains(&found) || !found.starts_with(char::is_alphabetic) {
+    let last = before.trim_end().rsplit(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.'))).next().unwrap_or("");
+    if last.parse::<f64>().is_err() || FOLLOW.contains(&found) || !found.starts_with(char::is_alphabetic) {
         return None;
     }
     let unknown = Unit::parse(found).err()?;
@@ -135,6 +138,12 @@ fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Pro
         Some(near) => problem.help(format!("did you mean `{near}`?")),
         None => problem.help("units are written like kN, m/s^2, km/h, mrad"),
     })
+}
+
+/// `Y at wheelset 1 and side`, before `R`.
+fn joins_places(before: &str) -> bool {
+    let words: Vec<&str> = before.split_whitespace().collect();
+    matches!(words.as_slice(), [.., "and", _]) && words.contains(&"at")
 }
 
 /// The word or sign a text begins with.
@@ -181,6 +190,9 @@ pub(super) fn is_keyword(rule: Rule) -> bool {
             | Rule::kw_every
             | Rule::kw_holds
             | Rule::then
+            | Rule::comma
+            | Rule::close_bar
+            | Rule::close_paren
     )
 }
 
@@ -250,6 +262,9 @@ fn in_words(rule: Rule) -> &'static str {
         Rule::kw_in => "`in`",
         Rule::kw_every => "`every`",
         Rule::kw_holds => "`hold`",
+        Rule::comma => "`,`",
+        Rule::close_bar => "`|`",
+        Rule::close_paren => "`)`",
         Rule::EOI => "the end",
         Rule::keyword | Rule::modifier | Rule::WHITESPACE | Rule::word_char | Rule::letter => "",
     }
