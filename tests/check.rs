@@ -310,13 +310,14 @@ fn a_variant_overrides_field_by_field() {
         ]
     );
     // A metric takes the place of value and difference.
-    let rules: Vec<String> = deviations("quantity Y_max\n  metric  sprague-geers phase\n  limit   std 0.2\n").into_iter().map(|(rule, ..)| rule).collect();
+    let rules: Vec<String> =
+        deviations("quantity Y_max\n  metric  sprague-geers phase\n  limit   std 0.2\n").into_iter().map(|(rule, ..)| rule).collect();
     assert_eq!(rules, ["quantity Y_max, value", "quantity Y_max, difference", "quantity Y_max, metric", "quantity Y_max, limit std"]);
+    assert_eq!(deviations("zone 1\n  minimum sections  5\n"), [("zone 1, minimum sections".into(), some("sections_per_zone"), some("5"))]);
     assert_eq!(
-        deviations("zone 1\n  minimum sections  5\n"),
-        [("zone 1, minimum sections".into(), some("sections_per_zone"), some("5"))]
+        deviations("remove\n  limit  az_max mean\n"),
+        [("quantity az_max, limit mean".into(), some("mean mean_limit_share of std"), None)]
     );
-    assert_eq!(deviations("remove\n  limit  az_max mean\n"), [("quantity az_max, limit mean".into(), some("mean mean_limit_share of std"), None)]);
     let removed = deviations("remove\n  quantity  az_max\n");
     assert_eq!((removed.len(), removed[0].0.as_str(), &removed[0].2), (1, "quantity az_max", &None));
 }

@@ -101,9 +101,7 @@ impl Checker<'_> {
         };
         let mut of_bound = scope();
         of_bound.limits = Some((dimension.unwrap_or(Dimension::ONE), names));
-        let bound = self
-            .expr(&written.bound, text, &mut of_bound)
-            .and_then(|bound| self.suitable_bound(bound, written.at_least, common));
+        let bound = self.expr(&written.bound, text, &mut of_bound).and_then(|bound| self.suitable_bound(bound, written.at_least, common));
         let mut factors = Vec::new();
         let mut ok = true;
         for (factor, condition) in &written.factors {

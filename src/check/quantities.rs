@@ -126,7 +126,10 @@ impl Checker<'_> {
         Some(Compared {
             evaluation: Evaluation::Metric { metric, over },
             dimension: (metric.0.gives)(first.dimension),
-            processing: words.clone(), comparison: words, from: Some(field.value.span.clone()) })
+            processing: words.clone(),
+            comparison: words,
+            from: Some(field.value.span.clone()),
+        })
     }
 
     /// Every position with its name, its signal and its assignment.

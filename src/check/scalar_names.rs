@@ -78,7 +78,14 @@ impl Checker<'_> {
     }
 
     /// `measured(p99.85)`: the value of that side, whichever side is evaluated.
-    pub(super) fn on_side(&mut self, name: &At<String>, arguments: &[Phrase], text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+    pub(super) fn on_side(
+        &mut self,
+        name: &At<String>,
+        arguments: &[Phrase],
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         let (Some(reduce), [argument]) = (scope.reduce, arguments) else {
             let says = format!("`{}(...)` holds one value taken from a signal, in the value of a quantity or in a check", name.node);
             self.problems.push(Problem::error("side", says).at(span));

@@ -267,7 +267,15 @@ impl Checker<'_> {
         None
     }
 
-    fn equality(&mut self, operator: Operator, left: &Phrase, right: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+    fn equality(
+        &mut self,
+        operator: Operator,
+        left: &Phrase,
+        right: &Phrase,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         let Some(left) = self.expr(left, text, scope) else {
             // What stands on the right is looked at all the same, unless it may be a word of what was not understood.
             if !matches!(right.node, Node::Path(_)) {
