@@ -1,5 +1,6 @@
 //! From field text to [`super::phrase`]: the only place that names the rules of `phrase.pest`.
 
+mod depth;
 mod explain;
 mod tree;
 
@@ -123,7 +124,7 @@ pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {
 
 /// Runs one rule over a field; a syntax error becomes a problem at the word where it stands.
 fn parse<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Pair<'t, Rule>> {
-    if let Some(problem) = explain::too_deep(text) {
+    if let Some(problem) = depth::too_deep(text) {
         problems.push(problem);
         return None;
     }
