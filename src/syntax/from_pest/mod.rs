@@ -183,7 +183,7 @@ mod tests {
             ("(Y through LP20) / (Q through LP20)", "(Divide Y>LP20 Q>LP20)"),
             (
                 "250 m when zone is 1 and v <= 220 km/h, 500 m when zone is 1, otherwise 70 m",
-                "[250?(And (Is zone 1) (LessEqual v 61.111111111111114)), 500?(Is zone 1); 70]",
+                "[250?(And (Is zone 1) (LessEqual v 61.1111111111)), 500?(Is zone 1); 70]",
             ),
             ("range of curvature <= 5 % * |mean of curvature|", "(LessEqual range of curvature (Multiply 0.05 |mean of curvature|))"),
             ("-p0.15", "(neg p0.15)"),
