@@ -104,10 +104,10 @@ pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<No
         wanted.push(Wanted::new(time.column.as_str(), time.unit.dimension));
     }
     for &id in needed {
-        if let Operation::Read { column } = &work.graph.nodes[id].operation {
-            if !wanted.iter().any(|known| known.name == *column) {
-                wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
-            }
+        if let Operation::Read { column } = &work.graph.nodes[id].operation
+            && !wanted.iter().any(|known| known.name == *column)
+        {
+            wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
         }
     }
     let fault = |problems: Vec<Problem>| Fault { says: said(work.campaign, &problems), problems };

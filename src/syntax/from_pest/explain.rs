@@ -9,56 +9,6 @@ use crate::problem::Problem;
 use crate::syntax::document::Text;
 use crate::units::Unit;
 
-/// Parentheses, magnitudes, `not`, signs and `of` nested deeper than this are refused before they are read: no rule that a person
-/// wrote, and recursion has an end.
-const DEEPEST: usize = 60;
-/// More words, numbers and signs than this are refused: sums are read one term inside the other.
-const LONGEST: usize = 600;
-
-/// A problem if the text could overflow the stack of those who read it.
-pub(super) fn too_deep(text: &Text) -> Option<Problem> {
-    let (mut parens, mut deepest, mut others, mut tokens) = (0_usize, 0, 0, 0);
-    let mut word = String::new();
-    // Whether an operand stood last: a minus after it is a subtraction, not a sign.
-    let mut operand = false;
-    for c in text.text.chars().chain([' ']) {
-        if c.is_alphanumeric() || c == '_' || c == '.' {
-            word.push(c);
-            continue;
-        }
-        if !word.is_empty() {
-            tokens += 1;
-            others += usize::from(matches!(word.as_str(), "not" | "of"));
-            operand = !matches!(word.as_str(), "not" | "of" | "and" | "or" | "is" | "when" | "otherwise");
-            word.clear();
-        }
-        if c.is_whitespace() {
-            continue;
-        }
-        tokens += 1;
-        match c {
-            '(' => parens += 1,
-            ')' => parens = parens.saturating_sub(1),
-            '|' => others += 1,
-            '-' | '−' if !operand => others += 1,
-            _ => {}
-        }
-        deepest = deepest.max(parens);
-        operand = matches!(c, ')' | '|');
-    }
-    // Every magnitude has two bars, so that many can be nested at most.
-    if deepest + others / 2 <= DEEPEST && tokens <= LONGEST {
-        return None;
-    }
-    let says = if tokens > LONGEST {
-        format!("this phrase has {tokens} words, numbers and signs; {LONGEST} is the most a rule may have")
-    } else {
-        format!("this is nested deeper than {DEEPEST} levels")
-    };
-    let end = text.text.char_indices().map(|(at, _)| at).nth(40).unwrap_or(text.text.len());
-    Some(Problem::error("too-deep", says).at(&text.place(0..end)).help("name parts of it with `define`"))
-}
-
 pub(super) fn twice(what: &str, text: &Text, range: Range<usize>) -> Problem {
     Problem::error("syntax", format!("a limit has one `{what}`, here is another"))
         .at(&text.place(range))
