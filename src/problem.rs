@@ -171,7 +171,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
         .filter(|(distance, candidate)| {
             let longer = word.chars().count().max(candidate.chars().count());
-            // Words of one letter have nothing in common that a slip could have left.
+            // A word of which nothing is left is another word: zone 7 is no slip for zone 1.
             *distance <= 1 + longer / 4 && *distance < longer
         })
         .min_by_key(|(distance, _)| *distance)

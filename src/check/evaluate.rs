@@ -157,7 +157,7 @@ fn binary(operator: Operator, left: &Expr, right: &Expr, values: &dyn Values) ->
 
 /// The source text of an expression, blanks normalised.
 pub fn words(expr: &Expr) -> String {
-    expr.span.text().split_whitespace().collect::<Vec<_>>().join(" ")
+    expr.span.words.to_string()
 }
 
 /// The structure of an expression without places: equal for two expressions that always have the same value.

@@ -69,6 +69,8 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
     let work = record::Work { plan, graph, campaign, facts: &facts, present: &present };
     let values: Vec<SectionValues> = units
         .par_iter()
+        // Sections differ in length: shared out one by one, no worker is left with several while another has none.
+        .with_max_len(1)
         .map(|unit| {
             let values = if unit.fault.is_some() { SectionValues::default() } else { pairs::of_section(&work, unit) };
             progress(&unit.name);

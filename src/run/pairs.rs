@@ -251,7 +251,7 @@ fn common(simulated: &Samples, measured: &Samples, extent: Option<Extent>) -> Re
     };
     let (s, m) = (cut(simulated)?, cut(measured)?);
     let same = s.along.axis.len() == m.along.axis.len()
-        && s.along.axis.iter().zip(&m.along.axis).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
+        && s.along.axis.iter().zip(m.along.axis.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
     if same {
         return Ok((s.values.to_vec(), m.values.to_vec()));
     }

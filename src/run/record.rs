@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use super::facts::{Facts, Known};
 use super::sections::Unit;
-use super::signal::{Along, Extent, Rate, Samples, Signal, apply, arithmetic};
+use super::signal::{Along, Cutter, Extent, Rate, Samples, Signal, apply, arithmetic, each};
 use crate::catalog::Reducer;
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Plan, StepSpec};
 use crate::data::checks::{Section, check_axis};
-use crate::data::record::{Record, Wanted, read_headings};
+use crate::data::record::{Wanted, read_headings};
 use crate::data::{Campaign, RecordKind};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::{Method, percentiles};
@@ -52,7 +52,8 @@ impl Fault {
 /// A record read and found fit for the section.
 #[derive(Debug)]
 pub struct Opened {
-    record: Record,
+    /// By name.
+    columns: Vec<(String, Arc<Vec<f64>>)>,
     along: Arc<Along>,
     pub extent: Extent,
     pub file: FileHash,
@@ -110,10 +111,10 @@ pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<No
         wanted.push(Wanted::new(time.column.as_str(), time.unit.dimension));
     }
     for &id in needed {
-        if let Operation::Read { column } = &work.graph.nodes[id].operation {
-            if !wanted.iter().any(|known| known.name == *column) {
-                wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
-            }
+        if let Operation::Read { column } = &work.graph.nodes[id].operation
+            && !wanted.iter().any(|known| known.name == *column)
+        {
+            wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
         }
     }
     let fault = |problems: Vec<Problem>| Fault { says: said(work.campaign, &problems), problems };
@@ -122,18 +123,20 @@ pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<No
     let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
     let checked = check_axis(&record, clock, &axis.column, section.as_ref()).map_err(fault)?;
     let file = FileHash { path: read.path, sha256: read.sha256, bytes: read.bytes };
-    let along_axis = record.column(&axis.column).map(|column| column.values.clone()).unwrap_or_default();
+    let columns: Vec<_> = record.columns.into_iter().map(|column| (column.name, Arc::new(column.values))).collect();
+    let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));
+    let along_axis = values(&axis.column).unwrap_or_default();
     let extent = unit.extent.unwrap_or_else(|| (along_axis.first().copied().unwrap_or(0.0), along_axis.last().copied().unwrap_or(0.0)));
     let in_time = time.is_some() || axis.unit.dimension == Dimension::TIME;
     let along = Arc::new(Along {
         axis: along_axis,
-        time: time.and_then(|time| record.column(&time.column)).map(|column| column.values.clone()),
+        time: time.and_then(|time| values(&time.column)),
         rate: if in_time { Rate::PerTime(checked.sampling_rate) } else { Rate::PerLength(checked.sampling_rate) },
         // The header is row 1.
         first_row: Some(2),
     });
     let margins = in_time.then_some((checked.before, checked.after));
-    Ok(Opened { record, along, extent, file, margins })
+    Ok(Opened { columns, along, extent, file, margins })
 }
 
 /// The facts of several problems in one line, each with its place unless the fact names it, and with its help.
@@ -184,6 +187,7 @@ impl Opened {
             method,
             values: vec![None; graph.nodes.len()],
             uses: vec![0; graph.nodes.len()],
+            cutter: Cutter::new(self.extent),
             found: Vec::new(),
         };
         let mut level = vec![0_usize; graph.nodes.len()];
@@ -227,6 +231,7 @@ struct State<'a> {
     values: Vec<Option<Signal>>,
     /// How many nodes still need a value.
     uses: Vec<usize>,
+    cutter: Cutter,
     found: Vec<(NodeId, Found)>,
 }
 
@@ -320,20 +325,24 @@ impl State<'_> {
         let input = |index: usize| self.signal(node.inputs[index]);
         match &node.operation {
             Operation::Read { column } => {
-                let values = self.opened.record.column(column).ok_or_else(|| format!("no column `{column}`"))?;
-                Ok(Signal::Samples(Samples { along: Arc::clone(&self.opened.along), values: Arc::new(values.values.clone()) }))
+                let found = self.opened.columns.iter().find(|(name, _)| name == column);
+                let (_, values) = found.ok_or_else(|| format!("no column `{column}`"))?;
+                Ok(Signal::Samples(Samples { along: Arc::clone(&self.opened.along), values: Arc::clone(values) }))
             }
             Operation::Constant(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
             Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?),
-            Operation::Negative => apply(&[input(0)?], &|of| -of[0]),
-            Operation::Power(exponent) => apply(&[input(0)?], &|of| of[0].powi(i32::from(*exponent))),
+            Operation::Negative => each(input(0)?, |value| -value),
+            Operation::Power(exponent) => each(input(0)?, |value| value.powi(i32::from(*exponent))),
             Operation::Apply(function) => {
                 let inputs = node.inputs.iter().map(|&input| self.signal(input)).collect::<Result<Vec<_>, _>>()?;
-                apply(&inputs, &function.run)
+                apply(&inputs, function.run)
             }
             Operation::Select(conditions) => Ok(input(chosen(conditions, &node.inputs, self.known)?)?.clone()),
             Operation::Step(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.stepped(spec)?)),
-            Operation::Cut => Ok(Signal::Samples(self.samples(node.inputs[0])?.cut(self.opened.extent)?)),
+            Operation::Cut => {
+                let samples = self.samples(node.inputs[0])?;
+                Ok(Signal::Samples(self.cutter.cut(&samples)?))
+            }
             Operation::Window(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.opened.extent)?)),
             _ => Err("this node joins records".into()),
         }

@@ -11,11 +11,11 @@ use crate::result::CheckResult;
 /// Requirements that need no record: the protocol's selection, the zone's condition, the length.
 pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
     for unit in units.iter_mut() {
-        if let Some(index) = plan.sections.zone {
-            if let Err(reason) = &unit.columns[index] {
-                let reason = reason.clone();
-                unit.refuse(reason, true);
-            }
+        if let Some(index) = plan.sections.zone
+            && let Err(reason) = &unit.columns[index]
+        {
+            let reason = reason.clone();
+            unit.refuse(reason, true);
         }
         let mut checks = Vec::new();
         if let Some(only) = &plan.sections.only {

@@ -24,7 +24,7 @@ impl Line<'_> {
 }
 
 /// Reads a row that holds quotes or blanks, or finds what is wrong with it. Columns may end with different lengths if there is a fault.
-pub(super) fn slow_row(line: &Line<'_>, slots: &[Option<usize>], sinks: &mut [Sink<'_>], faults: &mut Faults<'_>) {
+pub(super) fn slow_row(line: &Line<'_>, width: usize, sinks: &mut [Sink], faults: &mut Faults<'_>) {
     if line.text.trim().is_empty() {
         faults.push(|| Problem::error("blank-line", "a blank line stands between the rows").at(&line.span()));
         return;
@@ -33,20 +33,22 @@ pub(super) fn slow_row(line: &Line<'_>, slots: &[Option<usize>], sinks: &mut [Si
         Ok(cells) => cells,
         Err(StrayQuote(place)) => return faults.push(|| cells::stray_quote(&line.span().part(place))),
     };
-    if cells.len() < slots.len() && line.last {
+    if cells.len() < width && line.last {
         return faults.push(|| {
-            let says = format!("the file ends inside a row: {} of {} values", cells.len(), slots.len());
+            let says = format!("the file ends inside a row: {} of {} values", cells.len(), width);
             Problem::error("truncated-row", says).at(&line.span()).help("the file may have been cut off; export or copy it again")
         });
     }
-    if cells.len() != slots.len() {
-        return faults.push(|| cells::ragged(&line.span(), &cells, slots.len()));
+    if cells.len() != width {
+        return faults.push(|| cells::ragged(&line.span(), &cells, width));
     }
-    for (cell, slot) in cells.into_iter().zip(slots) {
-        let Some(sink) = slot.and_then(|slot| sinks.get_mut(slot)) else { continue };
+    for sink in sinks {
+        let cell = &cells[sink.position];
         match cells::number(&cell.text) {
             Ok(number) => sink.values.push(number * sink.factor),
-            Err((code, says)) => faults.push(|| Problem::error(code, format!("`{}`: {says}", sink.name)).at(&line.span().part(cell.place))),
+            Err((code, says)) => {
+                faults.push(|| Problem::error(code, format!("`{}`: {says}", sink.name)).at(&line.span().part(cell.place.clone())))
+            }
         }
     }
 }
