@@ -11,6 +11,7 @@ mod sections;
 mod signal;
 mod traces;
 
+use indexmap::IndexMap;
 use rayon::prelude::*;
 
 use crate::check::plan::{OnFault, Plan};
@@ -124,23 +125,30 @@ fn stop_on_fault(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Resul
 /// Every section is faulty: the problems of their records say more than a report without numbers would.
 fn nothing_usable(units: &[Unit], values: Vec<SectionValues>) -> Problems {
     const MOST: usize = 8;
-    let mut problems = Problems::default();
-    for problem in values.into_iter().flat_map(|values| values.problems).take(MOST) {
-        problems.push(problem);
-    }
-    let told = problems.0.len();
-    for unit in units.iter().filter(|unit| unit.fault.is_some()).take(MOST - told.min(MOST)) {
-        let problem = Problem::error("section-not-usable", format!("section {}: {}", unit.name, unit.fault.clone().unwrap_or_default()));
-        if told == 0 || !unit.faulty {
+    // What is wrong in the same way in section after section is shown once and counted.
+    let mut told: IndexMap<(&str, String), (Problem, usize)> = IndexMap::new();
+    for (unit, values) in units.iter().zip(values) {
+        let mut problems = values.problems;
+        if problems.is_empty() {
+            let says = format!("section {}: {}", unit.name, unit.fault.clone().unwrap_or_default());
+            let problem = Problem::error("section-not-usable", says);
             problems.push(match &unit.span {
                 Some(span) => problem.at(span),
                 None => problem,
             });
         }
+        for problem in problems {
+            let key = (problem.code, problem.says.replace(&unit.name, ""));
+            told.entry(key).and_modify(|(_, more)| *more += 1).or_insert((problem, 0));
+        }
     }
-    problems.push(
-        Problem::error("no-usable-section", "no section of the campaign can be used")
-            .help("the problems above say why, section by section"),
-    );
-    problems
+    let left_out = told.len().saturating_sub(MOST);
+    let mut all = Problems::default();
+    for (problem, more) in told.into_values().take(MOST) {
+        let says = if more == 0 { problem.says } else { format!("{}; the same {more} times more", problem.says) };
+        all.push(Problem { says, ..problem });
+    }
+    let end = Problem::error("no-usable-section", "no section of the campaign can be used");
+    all.push(if left_out == 0 { end } else { end.help(format!("{left_out} more problems are not shown")) });
+    all
 }

@@ -64,8 +64,13 @@ fn fill(work: &Work<'_>, unit: &Unit, values: &mut SectionValues) -> Result<(), 
         .map_err(Fault::new)?;
     let wanted = wanted(work, &active);
     // The simulated record is reduced to numbers before the measured one is opened: one record in memory at a time.
-    let (simulated, _) = side(work, unit, RecordKind::Simulation, &wanted, &known, values)?;
-    let (measured, opened) = side(work, unit, RecordKind::Measurement, &wanted, &known, values)?;
+    let simulated = side(work, unit, RecordKind::Simulation, &wanted, &known, values).map(|(simulated, _)| simulated);
+    let measured = side(work, unit, RecordKind::Measurement, &wanted, &known, values);
+    let (simulated, (measured, opened)) = match (simulated, measured) {
+        (Ok(simulated), Ok(measured)) => (simulated, measured),
+        (Err(first), Err(second)) => return Err(first.and(second)),
+        (Err(fault), _) | (_, Err(fault)) => return Err(fault),
+    };
     values.extent = Some(opened.extent);
     let sides = Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent };
     for (index, quantity) in work.plan.quantities.iter().enumerate() {
@@ -125,14 +130,15 @@ fn side(
     Ok((found, opened))
 }
 
-/// One note for all sections with too little record for a slow filter.
-pub fn margin_note(values: &[SectionValues]) -> Option<String> {
-    let short: Vec<f64> = values.iter().filter_map(|values| values.short_margin).collect();
+/// One note for all used sections with too little record for a slow filter.
+pub fn margin_note<'a>(used: impl Iterator<Item = &'a SectionValues>) -> Option<String> {
+    let margins: Vec<Option<f64>> = used.map(|values| values.short_margin).collect();
+    let short: Vec<f64> = margins.iter().copied().flatten().collect();
     let least = short.iter().copied().reduce(f64::min)?;
     Some(format!(
         "In {} of {} sections the records reach less than {SLOW_FILTER_MARGIN} s beyond the section (least {least:.1} s): a filter with an edge below {SLOW_FILTER} Hz has not fully settled there, and its values may be off by a few per cent.",
         short.len(),
-        values.len()
+        margins.len()
     ))
 }
 

@@ -40,6 +40,13 @@ impl Fault {
     pub fn new(says: impl Into<String>) -> Self {
         Self { says: says.into(), problems: Vec::new() }
     }
+
+    /// The faults of both records of a section.
+    pub fn and(mut self, other: Self) -> Self {
+        self.says = if self.says == other.says { self.says } else { format!("{}; {}", self.says, other.says) };
+        self.problems.extend(other.problems);
+        self
+    }
 }
 
 /// A record read and found fit for the section.

@@ -101,7 +101,8 @@ pub fn take_over(plan: &Plan, units: &mut [Unit], values: &[SectionValues], note
         }
     }
     notes.extend(unchecked(units));
-    notes.extend(super::pairs::margin_note(values));
+    let used = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).map(|(_, values)| values);
+    notes.extend(super::pairs::margin_note(used));
     if stop.any_error() { Err(stop) } else { Ok(()) }
 }
 

@@ -54,6 +54,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
     let Some(table) = &campaign.sections else {
         problems.push(
             Problem::error("no-sections", "the campaign has no table of sections, and the protocol evaluates sections")
+                .at(&campaign.tree.span.part(0..0))
                 .help("name it in campaign.yaml: `sections: sections.csv`; or use a protocol with `use whole records`"),
         );
         return Vec::new();
