@@ -99,7 +99,7 @@ fn registry(kind: &str) -> String {
     assert!(!entries.is_empty(), "nothing in the registry is a {kind}");
     let sourced = entries.iter().any(|entry| entry.source.is_some());
     let rows = entries.iter().map(|entry| {
-        let mut row = vec![code(&entry.wording), entry.signature.to_string(), entry.about.clone()];
+        let mut row = vec![code(&entry.wording), code(entry.signature), entry.about.clone()];
         if sourced {
             row.push(entry.source.unwrap_or_default().to_string());
         }
@@ -157,7 +157,12 @@ fn commands() -> String {
                 if many { format!("{name}…") } else { name }
             })
             .collect();
-        vec![code(format!("{} {}", sub.get_name(), arguments.join(" ")).trim()), about]
+        let options = sub.get_opts().filter(|option| option.is_required_set()).map(|option| {
+            let name = option.get_value_names().and_then(|names| names.first()).map_or_else(String::new, ToString::to_string);
+            format!("--{} {name}", option.get_long().unwrap_or_default())
+        });
+        let words: Vec<String> = std::iter::once(sub.get_name().to_string()).chain(arguments).chain(options).collect();
+        vec![code(&words.join(" ")), about]
     });
     table(&["command", "does"], rows)
 }

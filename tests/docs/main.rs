@@ -237,6 +237,24 @@ fn named_tests_exist() {
     assert!(count > 20, "{count} tests are named");
 }
 
+/// Files and folders of the source that pages name by their path are there.
+#[test]
+fn named_files_exist() {
+    let mut count = 0;
+    for page in pages() {
+        let prose = page.prose();
+        let path =
+            |word: &&str| (word.ends_with(".rs") || word.ends_with(".pest") || word.ends_with('/')) && !word.contains([' ', ':', '*']);
+        for word in prose.split('`').skip(1).step_by(2).filter(path) {
+            let there = ["", "src"].iter().any(|folder| root().join(folder).join(word).exists());
+            // A file named beside another of its folder stands without the folder.
+            assert!(there || !word.contains('/'), "{}: no {word}", page.name());
+            count += usize::from(there);
+        }
+    }
+    assert!(count > 10, "{count} files are named");
+}
+
 #[test]
 fn links_lead_somewhere() {
     let pages = pages();
