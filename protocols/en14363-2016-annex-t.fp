@@ -2,9 +2,11 @@
 
 protocol en14363-2016-annex-t "Validation of a simulation model by on-track tests, EN 14363:2016 Annex T"
   edition  "EN 14363:2016, Annex T (method of the DynoTRAIN project)"
-  source   "Goetz & Polach, Verification and validation of simulations in a rail vehicle certification context, Table 1"
+  source   "Goetz & Polach, Verification and validation of simulations in a rail vehicle certification"
+           "context, Table 1"
   author   "Fishplate"
-  scope    "Simulation models of rail vehicles for the acceptance of running characteristics: differences between simulation and measurement over at least three sections in each of the four test zones."
+  scope    "Simulation models of rail vehicles for the acceptance of running characteristics: differences"
+           "between simulation and measurement over at least three sections in each of the four test zones."
   axis     distance in m
   time     time in s
 
@@ -50,12 +52,15 @@ parameter percentile_rule "How a percentile is read between two samples (Hyndman
 parameter quasi_static_difference "Sign of the difference of quasi-static values"
   default  oriented
   one of   oriented, signed, magnitudes
-  note     "Oriented: positive where the simulation is larger in the direction of the measurement, in right and left curves alike, so that a wrong sign shows; magnitudes would hide it."
+  note     "Oriented: positive where the simulation is larger in the direction of the measurement, in right"
+           "and left curves alike, so that a wrong sign shows; magnitudes would hide it."
 
 parameter maximum_side "Side of the distribution that a maximum is read from"
   default  own
   one of   own, measurement, curve
-  note     "Own: the larger magnitude, for simulation and measurement each by itself. Measurement: the side that is larger in the measurement, for both. Curve: 0.15 % in right-hand and 99.85 % in left-hand curves, the side of the outer wheel."
+  note     "Own: the larger magnitude, for simulation and measurement each by itself. Measurement: the side"
+           "that is larger in the measurement, for both. Curve: 0.15 % in right-hand and 99.85 % in left-hand"
+           "curves, the side of the outer wheel."
 
 parameter variance_divisor "Divisor of the variance"
   default  n-1
@@ -102,7 +107,7 @@ vehicle Q0 "Static vertical wheel force"
   key  static_wheel_load
 
 section zone "Test zone"
-  one of  1, 2, 3, 4
+  one of  zones
 
 section radius "Curve radius"
   in  m
@@ -189,19 +194,23 @@ define extreme_value "The 0.15 % or 99.85 % value, as a magnitude"
   source  "Table 1 and its footnote *"
 
 define lighter_requirements "Vehicles whose acceleration limits are doubled"
-  is      vehicle.category is freight or vehicle.running_gear_type is single_axles or not vehicle.secondary_suspension
+  is      vehicle.category is freight or vehicle.running_gear_type is single_axles
+          or not vehicle.secondary_suspension
   source  "Table 1, footnote **"
 
 zone 1 "Straight track and very large radius curves"
   where             direction is straight or (radius > 600 m and cant_deficiency <= 40 mm)
   minimum sections  sections_per_zone
   minimum length    250 m when admissible_speed <= 220 km/h, otherwise 500 m
-  source            "Section 3.1; lengths and ranges: common statement of EN 14363, to be checked against the edition used"
+  source            "Section 3.1; lengths and ranges: common statement of EN 14363, to be checked against the"
+                    "edition used"
 
 zone 2 "Large radius curves"
   where             radius > 600 m
   minimum sections  sections_per_zone
-  minimum length    100 m when admissible_speed <= 140 km/h, 250 m when admissible_speed <= 220 km/h, otherwise 500 m
+  minimum length    100 m when admissible_speed <= 140 km/h,
+                    250 m when admissible_speed <= 220 km/h,
+                    otherwise 500 m
   source            "As zone 1"
 
 zone 3 "Small radius curves"
@@ -217,7 +226,7 @@ zone 4 "Very small radius curves"
   source            "As zone 1"
 
 check full_curve "Section lies in full curve or on straight track"
-  require  range of curvature <= 2 % * |mean of curvature| + 0.00001 / m
+  require  range of curvature <= 2 % * |mean of curvature| + 0.00001 1/m
   source   "Section 3.2"
   note     "Needs the track file; the tolerance is this protocol's own."
 

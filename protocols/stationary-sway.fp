@@ -2,11 +2,15 @@
 
 protocol stationary-sway "Matching error of the hysteresis loops of a stationary sway test"
   edition  "In the manner of EN 15273-2:2013, stationary sway test"
-  source   "Goetz & Polach, section 3.3: largest and mean matching error on the hysteresis loop of the primary and secondary roll angle"
+  source   "Goetz & Polach, section 3.3: largest and mean matching error on the hysteresis loop of the"
+           "primary and secondary roll angle"
   author   "Fishplate"
-  scope    "Models used for gauging: roll angles of the two suspension stages while the vehicle is canted slowly to both sides. The limits are parameters; the numbers of the standard are to be put in by the user."
+  scope    "Models used for gauging: roll angles of the two suspension stages while the vehicle is canted"
+           "slowly to both sides. The limits are parameters; the numbers of the standard are to be put in by"
+           "the user."
   axis     time in s
-  note     "The simulated angle is compared with the measured one at the same cant on the same branch of the loop, rising or falling."
+  note     "The simulated angle is compared with the measured one at the same cant on the same branch of the"
+           "loop, rising or falling."
 
 parameter largest_error "Limit of the largest matching error"
   default  1 mrad

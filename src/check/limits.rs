@@ -16,15 +16,15 @@ use crate::units::{Dimension, Unit};
 /// What all limits of a quantity have in common.
 struct Common<'a> {
     block: &'a Block,
-    /// Unit of the compared values, where these were understood.
-    unit: Option<&'a Unit>,
+    /// Unit of the compared values and where their dimension comes from, if these were understood.
+    unit: Option<(&'a Unit, &'a Span)>,
     /// Statistics that have a limit.
     names: Vec<String>,
 }
 
 impl Checker<'_> {
     /// The limits of a quantity; of values that were not understood (no `unit`), all but the dimension is checked.
-    pub(super) fn limits(&mut self, block: &Block, unit: Option<&Unit>) -> Option<Vec<Limit>> {
+    pub(super) fn limits(&mut self, block: &Block, unit: Option<(&Unit, &Span)>) -> Option<Vec<Limit>> {
         let fields: Vec<&Field> = block.fields_named("limit").collect();
         // A quiet first look for the names that other limits may refer to.
         let quiet = |field: &&Field| from_pest::limit(&field.value, &mut Problems::default()).map(|limit| limit.statistic.node);
@@ -91,7 +91,7 @@ impl Checker<'_> {
         text: &Text,
         common: &Common<'_>,
     ) -> Option<Limit> {
-        let dimension = common.unit.map(|unit| unit.dimension);
+        let dimension = common.unit.map(|(unit, _)| unit.dimension);
         let names = common.names.iter().filter(|name| **name != written.statistic.node).cloned().collect();
         let scope = || Scope {
             // Every value by itself may have a limit that depends on its section; a statistic over many has one limit.
@@ -101,9 +101,7 @@ impl Checker<'_> {
         };
         let mut of_bound = scope();
         of_bound.limits = Some((dimension.unwrap_or(Dimension::ONE), names));
-        let bound = self
-            .expr(&written.bound, text, &mut of_bound)
-            .and_then(|bound| self.suitable_bound(bound, written.at_least, dimension, common));
+        let bound = self.expr(&written.bound, text, &mut of_bound).and_then(|bound| self.suitable_bound(bound, written.at_least, common));
         let mut factors = Vec::new();
         let mut ok = true;
         for (factor, condition) in &written.factors {
@@ -158,17 +156,13 @@ impl Checker<'_> {
         out
     }
 
-    fn suitable_bound(&mut self, bound: Expr, at_least: bool, dimension: Option<Dimension>, common: &Common<'_>) -> Option<Expr> {
+    fn suitable_bound(&mut self, bound: Expr, at_least: bool, common: &Common<'_>) -> Option<Expr> {
         let found = self.number_type(&bound)?;
-        if let Some(dimension) = dimension.filter(|dimension| *dimension != found) {
-            let says =
-                format!("the values of `{}` are {}, this limit is {}", common.block.name_text(), dimension.in_words(), found.in_words());
-            let of = common.block.field("of").map_or_else(|| common.block.span().clone(), |of| of.value.span.clone());
-            let problem = Problem::error("unit-mismatch", says).at(&bound.span).label(found.in_words()).also(&of, dimension.in_words());
-            self.problems.push(match common.unit {
-                Some(unit) if unit.text != "-" => problem.help(format!("write the limit in {unit}")),
-                _ => problem.help("write the limit without a unit"),
-            });
+        if let Some((unit, from)) = common.unit.filter(|(unit, _)| unit.dimension != found) {
+            let wanted = unit.dimension.in_words();
+            let says = format!("the values of `{}` are {wanted}, this limit is {}", common.block.name_text(), found.in_words());
+            let help = if unit.text == "-" { "write the limit without a unit".into() } else { format!("write the limit in {unit}") };
+            self.problems.push(Problem::error("unit-mismatch", says).at(&bound.span).label(found.in_words()).also(from, wanted).help(help));
             return None;
         }
         match bound.kind {
@@ -304,7 +298,7 @@ fn way_back(from: usize, next: &[Vec<usize>]) -> Option<Vec<usize>> {
 /// The statistics whose limits an expression refers to, and where.
 fn referred(expr: &Expr, names: &mut Vec<(String, Span)>) {
     match &expr.kind {
-        Kind::LimitOf(name) => names.push((name.clone(), expr.span.clone())),
+        Kind::LimitOf(name) => names.push((name.clone(), expr.span.span.clone())),
         Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => referred(inner, names),
         Kind::Binary(_, left, right) => {
             referred(left, names);

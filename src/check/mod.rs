@@ -44,7 +44,7 @@ pub struct Override {
 pub type Overrides = IndexMap<String, Override>;
 
 /// How deep expressions, definitions and signals may lie inside each other, all together: what the stack surely holds.
-const DEEPEST: usize = 700;
+const DEEPEST: usize = 80;
 /// How many parts of expressions are looked at before a protocol is refused whose definitions double each other up.
 const MOST_WORK: usize = 1_000_000;
 

@@ -231,7 +231,10 @@ impl Checker<'_> {
         let missing: Vec<String> = keys.iter().filter(|key| block.field(key).is_none()).map(|key| format!("`{key}`")).collect();
         let Some(first) = missing.first() else { return };
         let kind = &block.kind.text;
-        let list = if missing.len() == 1 { first.clone() } else { missing.join(" and no ") };
+        let list = match missing.split_last() {
+            Some((last, before)) if !before.is_empty() => format!("{} and no {last}", before.join(", no ")),
+            _ => first.clone(),
+        };
         // A variant that names a quantity its parent lacks most likely misspelt it.
         let siblings = self.parent_names.iter().filter(|(of, _)| of == kind).map(|(_, name)| name.as_str());
         let help = match crate::problem::nearest(block.name_text(), siblings) {

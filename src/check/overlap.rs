@@ -29,7 +29,7 @@ pub(super) fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problem
             problems.push(
                 Problem::error(
                     "limits-overlap",
-                    format!("two limits of the {} apply to `{}`{place}", limit.statistic.title(limit.ddof), block.name_text()),
+                    format!("two limits of `{}` apply to `{}`{place}", limit.statistic.name(), block.name_text()),
                 )
                 .at(&limit.span)
                 .also(&other.span, "also applies")

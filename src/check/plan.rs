@@ -1,5 +1,8 @@
 //! The checked protocol: every name resolved, every number SI, every dimension right, parameters put in.
 
+use std::ops::Deref;
+use std::sync::Arc;
+
 use crate::catalog::{Function, Metric, Reducer, Statistic};
 use crate::metrics::filter::{Band, Cutoff, Phase};
 use crate::metrics::percentile::Method;
@@ -87,12 +90,26 @@ pub struct NamedFilter {
     pub source: Option<String>,
 }
 
+/// Where an expression was written, and its words: in YAML the place of a part of a field is not always known, its words are.
+#[derive(Clone, Debug)]
+pub struct Origin {
+    pub span: Span,
+    pub words: Arc<str>,
+}
+
+impl Deref for Origin {
+    type Target = Span;
+    fn deref(&self) -> &Span {
+        &self.span
+    }
+}
+
 /// A typed expression over numbers, words and conditions.
 #[derive(Clone, Debug)]
 pub struct Expr {
     pub kind: Kind,
     pub ty: Type,
-    pub span: Span,
+    pub span: Origin,
 }
 
 #[derive(Clone, Debug, PartialEq)]

@@ -47,7 +47,8 @@ impl Checker<'_> {
             assignment.insert(place, member.node.clone());
             from = member_at + 1;
         }
-        self.signal_where(&bare, text, &assignment, span)
+        let found = self.signal_where(&bare, text, &assignment, span)?;
+        Some(Signal { span: span.clone(), ..found })
     }
 
     /// A signal at positions of which some may be aliases: then the section decides.
@@ -124,12 +125,7 @@ impl Checker<'_> {
         let all: Vec<&str> = known.members.iter().map(String::as_str).chain(aliases).collect();
         let problem = Problem::error("unknown-place", format!("`{}` is no {}", member.node, place.replace('_', " ")))
             .at(&text.place(member.range.clone()));
-        let problem = if member.node.chars().count() == 1 {
-            problem.help(format!("known here: {}", all.join(", ")))
-        } else {
-            problem.suggest(&member.node, all)
-        };
-        self.problems.push(problem);
+        self.problems.push(problem.suggest(&member.node, all));
     }
 
     fn members_help(&self, place: &str) -> String {

@@ -7,6 +7,7 @@ use super::plan::{Axis, Evaluation, Expr, Input, InputSide, Quantity, QuantityWo
 use super::scalars::Scope;
 use crate::catalog::DIFFERENCES;
 use crate::problem::Problem;
+use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Node};
@@ -18,6 +19,8 @@ struct Compared {
     dimension: Dimension,
     processing: String,
     comparison: String,
+    /// What the dimension comes from, where it is not that of the signal.
+    from: Option<Span>,
 }
 
 impl Checker<'_> {
@@ -52,7 +55,8 @@ impl Checker<'_> {
         };
         let result = compared.as_ref().map(|compared| compared.dimension);
         let unit = result.zip(of.as_ref()).and_then(|(result, of)| self.quantity_unit(block, of, result));
-        let limits = self.limits(block, unit.as_ref());
+        let from = compared.as_ref().and_then(|compared| compared.from.as_ref()).or_else(|| of.as_ref().map(|of| &of.span));
+        let limits = self.limits(block, unit.as_ref().zip(from));
         if block.field("limit").is_none() {
             self.problems.push(
                 Problem::warning("no-limit", format!("quantity `{}` has no limit: it is reported, and decides nothing", block.name_text()))
@@ -124,6 +128,7 @@ impl Checker<'_> {
             dimension: (metric.0.gives)(first.dimension),
             processing: words.clone(),
             comparison: words,
+            from: Some(field.value.span.clone()),
         })
     }
 
@@ -157,18 +162,20 @@ impl Checker<'_> {
     }
 
     fn compared_by_values(&mut self, block: &Block, dimension: Option<Dimension>) -> Option<Compared> {
-        let value = block.field("value").zip(dimension).and_then(|(field, dimension)| self.value(field, dimension));
+        let value = block.field("value").and_then(|field| self.value(field, dimension));
         let result = value.as_ref().map(|(_, _, dimension)| *dimension);
         let difference = block.field("difference").and_then(|field| self.difference(field, result));
-        let ((value, inputs, _), (difference, dimension)) = (value?, difference?);
+        let ((value, inputs, result), (difference, compared)) = (value?, difference?);
         let (processing, comparison) = (words(&value), words(&difference));
-        Some(Compared { evaluation: Evaluation::Sides { value, inputs, difference }, dimension, processing, comparison })
+        let key = if compared != result { "difference" } else { "value" };
+        let from = block.field(key).filter(|_| Some(compared) != dimension).map(|field| field.value.span.clone());
+        Some(Compared { evaluation: Evaluation::Sides { value, inputs, difference }, dimension: compared, processing, comparison, from })
     }
 
-    fn value(&mut self, field: &Field, dimension: Dimension) -> Option<(Expr, Vec<Input>, Dimension)> {
+    fn value(&mut self, field: &Field, dimension: Option<Dimension>) -> Option<(Expr, Vec<Input>, Dimension)> {
         let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
         let phrase = from_pest::expression(&field.value, self.problems)?;
-        let mut scope = Scope::reducing(Some(dimension), axis);
+        let mut scope = Scope::reducing(Some(dimension?), axis);
         let expr = self.expr(&phrase, &field.value, &mut scope)?;
         let result = self.number_type(&expr)?;
         if scope.inputs.is_empty() {

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::names::normalised;
-use super::plan::{Axis, Check, DatumKind, Expr, Input, Kind, OnFault, Quantity, Rule, SectionRules, Type, VerdictRule, Zone};
+use super::plan::{Axis, Check, DatumKind, Expr, Input, Kind, OnFault, Origin, Quantity, Rule, SectionRules, Type, VerdictRule, Zone};
 use super::scalars::Scope;
 use crate::metrics::percentile::Method;
 use crate::problem::Problem;
@@ -237,7 +237,11 @@ impl Checker<'_> {
             self.problems.push(problem.help("`one of zones`, the names of the zone blocks"));
             return;
         };
-        self.zone = Some(Expr { kind: Kind::Column(index), ty: Type::Word(words.clone()), span: datum.span.clone() });
+        self.zone = Some(Expr {
+            kind: Kind::Column(index),
+            ty: Type::Word(words.clone()),
+            span: Origin { span: datum.span.clone(), words: datum.name.as_str().into() },
+        });
         for word in words.iter().filter(|word| !self.zone_names.contains(word)) {
             let problem = Problem::error("unknown-zone", format!("sections may be of zone {word}, which is not described")).at(&datum.span);
             self.problems.push(problem.help(format!("add a block `zone {word}`, or let the column be `one of zones`")));

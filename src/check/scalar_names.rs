@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::names::{Assignment, bare_word};
-use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Scalar, Type};
+use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Type};
 use super::scalars::{Reduce, Scope};
 use crate::catalog::{REDUCERS, Reducer, Statistic};
 use crate::problem::Problem;
@@ -13,7 +13,7 @@ use crate::units::Unit;
 
 impl Checker<'_> {
     /// A value taken from the quantity's own signal.
-    pub(super) fn own_reducer(&mut self, reducer: Reducer, span: Span, scope: &mut Scope) -> Option<Expr> {
+    pub(super) fn own_reducer(&mut self, reducer: Reducer, span: Origin, scope: &mut Scope) -> Option<Expr> {
         self.percentile_range(reducer, &span)?;
         let Some(Reduce { own: Some(dimension), axis, side }) = scope.reduce else {
             let what = reducer.in_words();
@@ -22,7 +22,7 @@ impl Checker<'_> {
             return None;
         };
         let ty = Type::Number(reducer.gives(dimension, axis));
-        let kind = Kind::Input(add_input(scope, Input { reducer, signal: None, side, span: span.clone() }));
+        let kind = Kind::Input(add_input(scope, Input { reducer, signal: None, side, span: span.span.clone() }));
         Some(Expr { kind, ty, span })
     }
 
@@ -38,7 +38,7 @@ impl Checker<'_> {
     }
 
     /// `range of curvature`: a value taken from a named signal.
-    pub(super) fn reduced(&mut self, reducer: &Phrase, signal: &Phrase, text: &Text, span: &Span, scope: &mut Scope) -> Option<Expr> {
+    pub(super) fn reduced(&mut self, reducer: &Phrase, signal: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let place = text.place(reducer.range.clone());
         let found = match &reducer.node {
             Node::Percentile(percent) => Some(Reducer::Percentile(*percent)),
@@ -73,12 +73,19 @@ impl Checker<'_> {
         };
         let signal = self.signal(signal, text, &Assignment::new())?;
         let ty = Type::Number(found.gives(signal.dimension, axis));
-        let kind = Kind::Input(add_input(scope, Input { reducer: found, signal: Some(signal), side, span: span.clone() }));
+        let kind = Kind::Input(add_input(scope, Input { reducer: found, signal: Some(signal), side, span: span.span.clone() }));
         Some(Expr { kind, ty, span: span.clone() })
     }
 
     /// `measured(p99.85)`: the value of that side, whichever side is evaluated.
-    pub(super) fn on_side(&mut self, name: &At<String>, arguments: &[Phrase], text: &Text, span: &Span, scope: &mut Scope) -> Option<Expr> {
+    pub(super) fn on_side(
+        &mut self,
+        name: &At<String>,
+        arguments: &[Phrase],
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         let (Some(reduce), [argument]) = (scope.reduce, arguments) else {
             let says = format!("`{}(...)` holds one value taken from a signal, in the value of a quantity or in a check", name.node);
             self.problems.push(Problem::error("side", says).at(span));
@@ -91,7 +98,7 @@ impl Checker<'_> {
         found
     }
 
-    pub(super) fn path(&mut self, path: &str, span: &Span, scope: &mut Scope) -> Option<Expr> {
+    pub(super) fn path(&mut self, path: &str, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let expr = |kind, ty| Some(Expr { kind, ty, span: span.clone() });
         if let Some(pair) = scope.pair {
             match path {
@@ -100,10 +107,10 @@ impl Checker<'_> {
                 _ => {}
             }
         }
-        if let Some((dimension, names)) = &scope.limits {
-            if names.iter().any(|name| name == path) {
-                return expr(Kind::LimitOf(path.to_string()), Type::Number(*dimension));
-            }
+        if let Some((dimension, names)) = &scope.limits
+            && names.iter().any(|name| name == path)
+        {
+            return expr(Kind::LimitOf(path.to_string()), Type::Number(*dimension));
         }
         if let Some(statistic) = Statistic::named(path).filter(|_| scope.limits.is_some()) {
             let says = format!("there is no other limit of the {} that this could refer to", statistic.title(self.ddof));
@@ -139,7 +146,7 @@ impl Checker<'_> {
     }
 
     /// `start`, `end` and `length` of the section on the axis, unless the protocol has columns of these names.
-    fn extent_path(&self, path: &str, span: &Span, scope: &Scope) -> Option<Expr> {
+    fn extent_path(&self, path: &str, span: &Origin, scope: &Scope) -> Option<Expr> {
         let axis = self.axis.as_ref().filter(|_| scope.section)?.unit.dimension;
         let number = |kind| Expr { kind, ty: Type::Number(axis), span: span.clone() };
         match path {
@@ -151,7 +158,7 @@ impl Checker<'_> {
     }
 
     /// `vehicle.category`, `section.radius`, or the name alone.
-    fn datum_path(&mut self, path: &str, span: &Span, scope: &Scope) -> Option<Option<Expr>> {
+    fn datum_path(&mut self, path: &str, span: &Origin, scope: &Scope) -> Option<Option<Expr>> {
         let (role, name) = path.split_once('.').map_or(("", path), |(role, name)| (role, name));
         let of = |data: &[super::plan::Datum], wanted: &str| {
             if role.is_empty() || role == wanted { data.iter().position(|datum| datum.name == name) } else { None }

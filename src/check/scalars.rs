@@ -3,7 +3,7 @@
 use super::Checker;
 use super::conditions::impossible;
 use super::evaluate::{Nothing, evaluate, words};
-use super::plan::{Expr, Input, InputSide, Kind, Operator, Scalar, Type};
+use super::plan::{Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Type};
 use crate::catalog::{FUNCTIONS, Function, Reducer, Signature};
 use crate::problem::Problem;
 use crate::source::Span;
@@ -65,11 +65,12 @@ impl Scope {
 impl Checker<'_> {
     /// A typed expression, or `None` after a problem was noted.
     pub(super) fn expr(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Expr> {
-        let span = text.place(phrase.range.clone());
-        self.deeper(&span.clone(), |checker| checker.expr_inside(phrase, text, span, scope))
+        let origin = origin(phrase, text);
+        let span = origin.span.clone();
+        self.deeper(&span, |checker| checker.expr_inside(phrase, text, origin, scope))
     }
 
-    fn expr_inside(&mut self, phrase: &Phrase, text: &Text, span: Span, scope: &mut Scope) -> Option<Expr> {
+    fn expr_inside(&mut self, phrase: &Phrase, text: &Text, span: Origin, scope: &mut Scope) -> Option<Expr> {
         let (kind, ty) = match &phrase.node {
             Node::Number { value, unit } => {
                 let dimension = unit.as_ref().map_or(Dimension::ONE, |unit| unit.dimension);
@@ -122,7 +123,7 @@ impl Checker<'_> {
                 let arguments: Vec<Option<Expr>> = arguments.iter().map(|argument| self.expr(argument, text, scope)).collect();
                 let arguments = arguments.into_iter().collect::<Option<Vec<_>>>()?;
                 let dimensions = arguments.iter().map(|argument| self.number_type(argument)).collect::<Option<Vec<_>>>()?;
-                let spans: Vec<Span> = arguments.iter().map(|argument| argument.span.clone()).collect();
+                let spans: Vec<Span> = arguments.iter().map(|argument| argument.span.span.clone()).collect();
                 let dimension = self.function_type(function, &dimensions, &spans)?;
                 (Kind::Call(function, arguments), Type::Number(dimension))
             }
@@ -176,7 +177,7 @@ impl Checker<'_> {
         arms: &[(Phrase, Phrase)],
         otherwise: Option<&Phrase>,
         text: &Text,
-        span: &Span,
+        span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
         let mut found: Vec<(Expr, Expr)> = Vec::new();
@@ -266,7 +267,15 @@ impl Checker<'_> {
         None
     }
 
-    fn equality(&mut self, operator: Operator, left: &Phrase, right: &Phrase, text: &Text, span: &Span, scope: &mut Scope) -> Option<Expr> {
+    fn equality(
+        &mut self,
+        operator: Operator,
+        left: &Phrase,
+        right: &Phrase,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         let Some(left) = self.expr(left, text, scope) else {
             // What stands on the right is looked at all the same, unless it may be a word of what was not understood.
             if !matches!(right.node, Node::Path(_)) {
@@ -274,7 +283,7 @@ impl Checker<'_> {
             }
             return None;
         };
-        let right_span = text.place(right.range.clone());
+        let right_span = origin(right, text);
         let right = match (&left.ty, &right.node) {
             (Type::Word(choices), node) => {
                 let word = match node {
@@ -443,6 +452,10 @@ fn of_constants(expr: &Expr) -> bool {
         Kind::Call(_, arguments) => arguments.iter().all(constant),
         _ => false,
     }
+}
+
+pub(super) fn origin(phrase: &Phrase, text: &Text) -> Origin {
+    Origin { span: text.place(phrase.range.clone()), words: words_at(text, phrase).into() }
 }
 
 fn words_at(text: &Text, phrase: &Phrase) -> String {

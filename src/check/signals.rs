@@ -95,14 +95,6 @@ impl Checker<'_> {
                 let product = Node::Binary(Operator::Multiply, factor.clone(), of.clone());
                 self.signal(&At { node: product, range: phrase.range.clone() }, text, at)
             }
-            Node::Binary(Operator::And, left, right) if [left, right].iter().any(|side| matches!(side.node, Node::PlaceOf(..))) => {
-                self.problems.push(
-                    Problem::error("syntax", "`and` joins conditions here, not places")
-                        .at(&span)
-                        .help("in an expression places follow one another: `Y at wheelset 1 side R`"),
-                );
-                None
-            }
             Node::Cases(arms, otherwise) => self.signal_cases(arms, otherwise.as_deref(), text, &span, at),
             _ => self.scalar_signal(phrase, text, span),
         }
@@ -248,18 +240,15 @@ impl Checker<'_> {
         let own: Assignment =
             signal.places.iter().filter_map(|place| at.get(place).map(|member| (place.clone(), member.clone()))).collect();
         let found = self.inside("signal", name, span, |checker| checker.signal(&signal.is.phrase, &signal.is.text, &own))?;
-        if let Some(unit) = &signal.unit {
-            if unit.dimension != found.dimension {
-                self.problems.push(
-                    Problem::error(
-                        "unit-mismatch",
-                        format!("signal `{name}` is said to be in {unit}, but is {}", found.dimension.in_words()),
-                    )
+        if let Some(unit) = &signal.unit
+            && unit.dimension != found.dimension
+        {
+            self.problems.push(
+                Problem::error("unit-mismatch", format!("signal `{name}` is said to be in {unit}, but is {}", found.dimension.in_words()))
                     .at(&signal.span)
                     .also(&found.span, found.dimension.in_words()),
-                );
-                return None;
-            }
+            );
+            return None;
         }
         Some(found)
     }

@@ -150,12 +150,11 @@ impl Checker<'_> {
                 }
             }
         }
-        if let [part] = written.parts.as_slice() {
-            if let [At { node: Item::Word(word), range }] = part.as_slice() {
-                if !STEPS.iter().any(|entry| entry.form.head == [Part::Word("magnitude")] && word == "magnitude") {
-                    return self.filter_named(word, &text.place(range.clone()));
-                }
-            }
+        if let [part] = written.parts.as_slice()
+            && let [At { node: Item::Word(word), range }] = part.as_slice()
+            && !STEPS.iter().any(|entry| entry.form.head == [Part::Word("magnitude")] && word == "magnitude")
+        {
+            return self.filter_named(word, &text.place(range.clone()));
         }
         let entry = self.find_form(&written, &span, "step", STEPS.iter().map(|entry| &entry.form))?;
         let entry = &STEPS[entry];
@@ -214,7 +213,9 @@ impl Checker<'_> {
             items.iter().filter_map(|item| if let Item::Word(word) = &item.node { Some(word.as_str()) } else { None }).collect();
         let heads: Vec<&str> =
             forms.clone().filter_map(|form| if let Some(Part::Word(word)) = form.head.first() { Some(*word) } else { None }).collect();
-        let first = said.first().copied().unwrap_or("");
+        // `low pass` for `low-pass`.
+        let joined = said.iter().take(2).copied().collect::<Vec<_>>().join("-");
+        let first = if heads.contains(&joined.as_str()) { joined.as_str() } else { said.first().copied().unwrap_or("") };
         let wordings: Vec<String> = forms
             .filter(|form| matches!(form.head.first(), Some(Part::Word(word)) if *word == first || nearest(first, heads.iter().copied()) == Some(*word)))
             .map(|form| format!("`{}`", form.in_words()))

@@ -213,6 +213,8 @@ impl Campaign {
         let mut others: Vec<String> = std::fs::read_dir(&folder.path)
             .map(|entries| entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect())
             .unwrap_or_default();
+        // The record of another section is not what was meant.
+        others.retain(|name| !self.names.iter().any(|other| name.strip_suffix(".csv") == Some(&other.value)));
         others.sort();
         Err(Problem::error("file-missing", format!("there is no file `{}`", place.inside))
             .at(&section.span)

@@ -96,7 +96,8 @@ impl Heading {
                 .help(format!("write the unit in square brackets: `{name} [...]`, or `{name} [-]` for a plain number")));
         };
         let unit = Unit::parse(&written.text).map_err(|unknown| {
-            let problem = Problem::error("unknown-unit", format!("`{}` is no known unit", unknown.word)).at(&written.span);
+            let problem = Problem::error("unknown-unit", format!("the unit of the column `{name}`: `{}` is no known unit", unknown.word))
+                .at(&written.span);
             match unknown.near {
                 Some(near) => problem.help(format!("did you mean `{near}`?")),
                 None => problem,

@@ -82,10 +82,10 @@ fn quantity(quantity: &QuantityResult) -> Value {
 
 /// A zone whose name is a whole number is written as one.
 fn zone_as_number(mut entry: Value) -> Value {
-    if let Some(zone) = entry.get_mut("zone") {
-        if let Some(number) = zone.as_str().and_then(|zone| zone.parse::<i64>().ok().filter(|number| number.to_string() == zone)) {
-            *zone = json!(number);
-        }
+    if let Some(zone) = entry.get_mut("zone")
+        && let Some(number) = zone.as_str().and_then(|zone| zone.parse::<i64>().ok().filter(|number| number.to_string() == zone))
+    {
+        *zone = json!(number);
     }
     entry
 }

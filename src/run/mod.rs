@@ -6,6 +6,7 @@ mod judge;
 mod limits;
 mod pairs;
 mod record;
+mod requirements;
 mod sections;
 mod signal;
 mod traces;
@@ -62,7 +63,7 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
     }
     let mut notes = Vec::new();
     let present = record::present_columns(graph, campaign, &facts, &units, &mut notes);
-    sections::check_data(plan, &facts, &mut units);
+    requirements::check_data(plan, &facts, &mut units);
     stop_on_fault(plan, &units, &[])?;
     let work = record::Work { plan, graph, campaign, facts: &facts, present: &present };
     let values: Vec<SectionValues> = units
@@ -75,7 +76,7 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
             values
         })
         .collect();
-    sections::take_over(plan, &mut units, &values, &mut notes)?;
+    requirements::take_over(plan, &mut units, &values, &mut notes)?;
     stop_on_fault(plan, &units, &values)?;
     if units.iter().all(|unit| unit.fault.is_some()) {
         return Err(nothing_usable(&units, values));

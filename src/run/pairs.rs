@@ -8,13 +8,14 @@ use super::sections::Unit;
 use super::signal::{Extent, Samples};
 use crate::catalog::Pair;
 use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Check, Evaluation, InputSide, Quantity, StepSpec};
+use crate::check::plan::{Check, Evaluation, Input, InputSide, Quantity, StepSpec};
 use crate::data::RecordKind;
 use crate::graph::{InputNode, NodeId, Operation, SignalNodes};
 use crate::metrics::filter::Band;
 use crate::metrics::resample;
 use crate::problem::Problem;
 use crate::result::{CheckResult, FileHash};
+use crate::units::Dimension;
 
 /// What one section came to.
 #[derive(Debug, Default)]
@@ -268,7 +269,7 @@ fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut Se
         }
         let value = |input: &InputNode| number_of(&found, input.node).map_err(|_| "not checked: there is no track record".to_string());
         let inputs: Vec<Result<f64, String>> = inputs.iter().map(value).collect();
-        values.checks.push(checked(check, known, &inputs));
+        values.checks.push(checked(work, check, known, &inputs));
     }
     Ok(())
 }
@@ -279,11 +280,11 @@ fn record_checks(work: &Work<'_>, sides: &Sides<'_>, values: &mut SectionValues)
             continue;
         }
         let inputs: Vec<Result<f64, String>> = inputs.iter().map(|input| sides.input(input, InputSide::Measured)).collect();
-        values.checks[index] = checked(check, sides.known, &inputs);
+        values.checks[index] = checked(work, check, sides.known, &inputs);
     }
 }
 
-fn checked(check: &Check, known: &Known<'_>, inputs: &[Result<f64, String>]) -> CheckResult {
+fn checked(work: &Work<'_>, check: &Check, known: &Known<'_>, inputs: &[Result<f64, String>]) -> CheckResult {
     let result = |holds: Option<bool>, says: String| CheckResult { name: check.name.clone(), title: check.title.clone(), holds, says };
     let spared = check.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known));
     match spared {
@@ -293,7 +294,20 @@ fn checked(check: &Check, known: &Known<'_>, inputs: &[Result<f64, String>]) -> 
     }
     match flag(&check.require, &Known { inputs, ..section(known) }) {
         Ok(true) => result(Some(true), check.words.clone()),
-        Ok(false) => result(Some(false), format!("not satisfied: {}", check.words)),
+        Ok(false) => result(Some(false), format!("not satisfied: {}, with {}", check.words, found_values(work, check, inputs))),
         Err(reason) => result(None, reason),
     }
+}
+
+/// `range of curvature 0.00021 1/m, mean of curvature 0.002 1/m`
+fn found_values(work: &Work<'_>, check: &Check, inputs: &[Result<f64, String>]) -> String {
+    let one = |(input, value): (&Input, &Result<f64, String>)| {
+        let value: f64 = format!("{:.3e}", value.as_ref().ok()?).parse().ok()?;
+        let signal = input.signal.as_ref()?;
+        let dimension = input.reducer.gives(signal.dimension, work.plan.axis.unit.dimension);
+        let unit = if dimension == Dimension::ONE { String::new() } else { format!(" {dimension}") };
+        let words = input.span.text().split_whitespace().collect::<Vec<_>>().join(" ");
+        Some(format!("{words} {value}{unit}"))
+    };
+    check.inputs.iter().zip(inputs).filter_map(one).collect::<Vec<_>>().join(", ")
 }

@@ -104,10 +104,10 @@ pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<No
         wanted.push(Wanted::new(time.column.as_str(), time.unit.dimension));
     }
     for &id in needed {
-        if let Operation::Read { column } = &work.graph.nodes[id].operation {
-            if !wanted.iter().any(|known| known.name == *column) {
-                wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
-            }
+        if let Operation::Read { column } = &work.graph.nodes[id].operation
+            && !wanted.iter().any(|known| known.name == *column)
+        {
+            wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
         }
     }
     let fault = |problems: Vec<Problem>| Fault { says: said(work.campaign, &problems), problems };
@@ -132,23 +132,35 @@ pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<No
     Ok(Opened { columns, along, extent, file, margins })
 }
 
-/// The facts of several problems in one line, each with its place unless the fact names it.
+/// The facts of several problems in one line, each with its place unless the fact names it, and with its help.
 fn said(campaign: &Campaign, problems: &[Problem]) -> String {
-    let all: Vec<String> = problems
-        .iter()
-        .map(|problem| match &problem.at {
-            Some(at) => placed(&problem.says, campaign.inside(&at.source.name), at.line()),
+    let mut told: Vec<(&Problem, usize)> = Vec::new();
+    for problem in problems {
+        // The same fact in row after row is told once.
+        match told.iter_mut().find(|(first, _)| first.says == problem.says) {
+            Some((_, more)) => *more += 1,
+            None => told.push((problem, 0)),
+        }
+    }
+    let sentence = |(problem, more): &(&Problem, usize)| {
+        let fact = match &problem.at {
+            Some(at) => placed(&problem.says, campaign.inside(&at.source.name), at.line(), *more),
             None => problem.says.clone(),
-        })
-        .collect();
-    all.join("; ")
+        };
+        problem.help.as_ref().map_or(fact.clone(), |help| format!("{fact}: {help}"))
+    };
+    told.iter().map(sentence).collect::<Vec<_>>().join("; ")
 }
 
 /// A fact that names its file and row already needs no place; one that names its file only needs none in the header.
-fn placed(says: &str, file: &str, row: usize) -> String {
+fn placed(says: &str, file: &str, row: usize, more: usize) -> String {
     let names_file = says.contains(&format!("`{file}`"));
     let names_row = row == 1 || says.split(|c: char| !c.is_ascii_digit()).any(|word| word.parse() == Ok(row));
-    if names_file && names_row { says.to_string() } else { format!("{says} ({file}, row {row})") }
+    match more {
+        0 if names_file && names_row => says.to_string(),
+        0 => format!("{says} ({file}, row {row})"),
+        _ => format!("{says} ({file}, row {row} and {more} more)"),
+    }
 }
 
 impl Opened {

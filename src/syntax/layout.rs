@@ -72,8 +72,47 @@ impl Quotes {
 }
 
 /// Breaks a phrase in which blanks are single, after commas and before joining words, into lines of at most `width`
-/// characters where that is possible. Joined by blanks the lines are the phrase again.
+/// characters where that is possible; cases that do not fit on one line have a line each. Joined by blanks the lines are the phrase
+/// again.
 pub fn wrap_phrase(phrase: &str, width: usize) -> Vec<String> {
+    if columns(phrase) <= width {
+        return vec![phrase.to_owned()];
+    }
+    arms(phrase).iter().flat_map(|arm| wrap_arm(arm, width)).collect()
+}
+
+/// The cases of a phrase, each `... when ...,`; the whole phrase if it has none.
+fn arms(phrase: &str) -> Vec<String> {
+    let mut arms: Vec<String> = Vec::new();
+    let (mut quotes, mut depth) = (Quotes::default(), 0_usize);
+    let (mut conditional, mut over) = (false, true);
+    for word in phrase.split(' ') {
+        let outside = !quotes.inside && depth == 0;
+        match arms.last_mut() {
+            Some(arm) if !over => {
+                arm.push(' ');
+                arm.push_str(word);
+            }
+            _ => {
+                arms.push(word.to_owned());
+                conditional = false;
+            }
+        }
+        conditional |= outside && word == "when";
+        for c in word.chars() {
+            quotes.pass(c);
+            match c {
+                '(' if !quotes.inside => depth += 1,
+                ')' if !quotes.inside => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+        }
+        over = conditional && !quotes.inside && depth == 0 && word.ends_with(',');
+    }
+    arms
+}
+
+fn wrap_arm(phrase: &str, width: usize) -> Vec<String> {
     let mut segments: Vec<String> = Vec::new();
     let mut quotes = Quotes::default();
     let mut open = false;
@@ -151,6 +190,12 @@ mod tests {
     fn a_long_phrase_breaks_at_commas_and_joining_words() {
         let lines = wrap_phrase("low-pass 20 Hz, order 4 when a is \"x, y\" and b, otherwise none", 24);
         assert_eq!(lines, ["low-pass 20 Hz, order 4", "when a is \"x, y\" and b,", "otherwise none"]);
+    }
+
+    #[test]
+    fn cases_have_a_line_each() {
+        let lines = wrap_phrase("larger of a, b when c, d when (e, f) or g, otherwise larger of h, i", 30);
+        assert_eq!(lines, ["larger of a, b when c,", "d when (e, f) or g,", "otherwise larger of h, i"]);
     }
 
     #[test]

@@ -9,56 +9,6 @@ use crate::problem::Problem;
 use crate::syntax::document::Text;
 use crate::units::Unit;
 
-/// Parentheses, magnitudes, `not`, signs and `of` nested deeper than this are refused before they are read: no rule that a person
-/// wrote, and recursion has an end.
-const DEEPEST: usize = 60;
-/// More words, numbers and signs than this are refused: sums are read one term inside the other.
-const LONGEST: usize = 600;
-
-/// A problem if the text could overflow the stack of those who read it.
-pub(super) fn too_deep(text: &Text) -> Option<Problem> {
-    let (mut parens, mut deepest, mut others, mut tokens) = (0_usize, 0, 0, 0);
-    let mut word = String::new();
-    // Whether an operand stood last: a minus after it is a subtraction, not a sign.
-    let mut operand = false;
-    for c in text.text.chars().chain([' ']) {
-        if c.is_alphanumeric() || c == '_' || c == '.' {
-            word.push(c);
-            continue;
-        }
-        if !word.is_empty() {
-            tokens += 1;
-            others += usize::from(matches!(word.as_str(), "not" | "of"));
-            operand = !matches!(word.as_str(), "not" | "of" | "and" | "or" | "is" | "when" | "otherwise");
-            word.clear();
-        }
-        if c.is_whitespace() {
-            continue;
-        }
-        tokens += 1;
-        match c {
-            '(' => parens += 1,
-            ')' => parens = parens.saturating_sub(1),
-            '|' => others += 1,
-            '-' | '−' if !operand => others += 1,
-            _ => {}
-        }
-        deepest = deepest.max(parens);
-        operand = matches!(c, ')' | '|');
-    }
-    // Every magnitude has two bars, so that many can be nested at most.
-    if deepest + others / 2 <= DEEPEST && tokens <= LONGEST {
-        return None;
-    }
-    let says = if tokens > LONGEST {
-        format!("this phrase has {tokens} words, numbers and signs; {LONGEST} is the most a rule may have")
-    } else {
-        format!("this is nested deeper than {DEEPEST} levels")
-    };
-    let end = text.text.char_indices().map(|(at, _)| at).nth(40).unwrap_or(text.text.len());
-    Some(Problem::error("too-deep", says).at(&text.place(0..end)).help("name parts of it with `define`"))
-}
-
 pub(super) fn twice(what: &str, text: &Text, range: Range<usize>) -> Problem {
     Problem::error("syntax", format!("a limit has one `{what}`, here is another"))
         .at(&text.place(range))
@@ -88,15 +38,18 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
             }
         }
     }
-    // What can follow anything (`and`, `+`, ...) helps nobody where something definite is missing.
-    if expected.len() > 1 {
-        expected.retain(|word| *word != OPERATOR);
+    // Where an operator can follow, `at` and `through` can, and help little.
+    if expected.contains(&OPERATOR) {
+        expected.retain(|word| *word != in_words(Rule::kw_at) && *word != in_words(Rule::kw_through));
     }
     // An error in an exact text is underlined at the word; at its end, the last word is.
     let end = text.text.trim_end().len();
     let last = text.text[..end].rfind(char::is_whitespace).map_or(0, |at| at + 1);
     let range = if found.is_empty() { last..end } else { at..at + found.len() };
     let problem = Problem::error("syntax", says).at(&text.place(range));
+    if rule == Rule::expression && joins_places(before) {
+        return problem.help("in an expression places follow one another without `and`: `Y at wheelset 1 side R`");
+    }
     match expected.as_slice() {
         [] => problem,
         [..] if expected.len() <= 6 => problem.help(format!("expected {}", one_of(&expected))),
@@ -125,8 +78,8 @@ fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Pro
         "every",
         "quantities",
     ];
-    let digit = |c: char| c.is_ascii_digit();
-    if !before.trim_end().ends_with(digit) || FOLLOW.contains(&found) || !found.starts_with(char::is_alphabetic) {
+    let last = before.trim_end().rsplit(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.'))).next().unwrap_or("");
+    if last.parse::<f64>().is_err() || FOLLOW.contains(&found) || !found.starts_with(char::is_alphabetic) {
         return None;
     }
     let unknown = Unit::parse(found).err()?;
@@ -135,6 +88,12 @@ fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Pro
         Some(near) => problem.help(format!("did you mean `{near}`?")),
         None => problem.help("units are written like kN, m/s^2, km/h, mrad"),
     })
+}
+
+/// `Y at wheelset 1 and side`, before `R`.
+fn joins_places(before: &str) -> bool {
+    let words: Vec<&str> = before.split_whitespace().collect();
+    matches!(words.as_slice(), [.., "and", _]) && words.contains(&"at")
 }
 
 /// The word or sign a text begins with.
@@ -181,6 +140,9 @@ pub(super) fn is_keyword(rule: Rule) -> bool {
             | Rule::kw_every
             | Rule::kw_holds
             | Rule::then
+            | Rule::comma
+            | Rule::close_bar
+            | Rule::close_paren
     )
 }
 
@@ -250,6 +212,9 @@ fn in_words(rule: Rule) -> &'static str {
         Rule::kw_in => "`in`",
         Rule::kw_every => "`every`",
         Rule::kw_holds => "`hold`",
+        Rule::comma => "`,`",
+        Rule::close_bar => "`|`",
+        Rule::close_paren => "`)`",
         Rule::EOI => "the end",
         Rule::keyword | Rule::modifier | Rule::WHITESPACE | Rule::word_char | Rule::letter => "",
     }

@@ -1,0 +1,2 @@
+protocol variant "A variant of itself"
+  extends  "extends_itself.fp"

@@ -1,0 +1,2 @@
+protocol deep0 "A long line of ancestors"
+  extends  ancestor-1

@@ -1,0 +1,2 @@
+quantity x
+  limit  std 3 kN

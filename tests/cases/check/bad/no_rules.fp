@@ -1,0 +1,1 @@
+protocol empty "Nothing to compare"

@@ -1,0 +1,88 @@
+protocol small "A protocol for trials"
+  axis  distance in m
+  time  time in s
+
+place wheelset
+  members  1, 2
+
+place side
+  members  R, L
+  alias    outer is L when direction is right, R when direction is left
+
+place running_gear
+  members  I, II
+
+vehicle category "Vehicle category"
+  one of  passenger, freight
+
+vehicle Q0 "Static wheel force"
+  in  kN
+
+section zone "Test zone"
+  one of  zones
+
+section radius "Curve radius"
+  in  m
+
+section direction "Direction"
+  one of  right, left, straight
+
+channel Y "Guiding force"
+  in      kN
+  at      each wheelset and side
+  column  "Y_{wheelset}{side}"
+
+channel ay "Lateral acceleration"
+  in  m/s^2
+  at  each running_gear
+
+channel curvature "Curvature"
+  in      1/m
+  record  track
+
+filter LP20 "Low-pass filter"
+  step  low-pass 20 Hz, order 4
+
+zone 1 "Straight track"
+  where  direction is straight
+
+zone 2 "Curves"
+  where  direction is not straight
+
+sections
+  zone  zone
+
+quantity same_zone
+  of          Y at wheelset 1
+  value       median
+  difference  signed
+  limit       std 3 kN for zones 1, 2
+  limit       std 4 kN for zone 2
+
+quantity pooled_and_zone
+  of          Y at wheelset 1
+  value       median
+  difference  signed
+  limit       std 3 kN
+  limit       std 4 kN for zone 2
+
+quantity both_conditions
+  of          Y at wheelset 1
+  value       median
+  difference  signed
+  limit       std 3 kN only when category is freight
+  limit       std 4 kN only when Q0 > 100 kN
+
+quantity both_classes
+  of          Y at wheelset 1
+  value       median
+  difference  signed
+  limit       std 3 kN for sections where 300 m <= radius < 400 m
+  limit       std 4 kN for sections where 399 m < radius <= 500 m
+
+quantity each_and_one
+  of          Y at wheelset 1
+  value       median
+  difference  signed
+  limit       std 3 kN for each zone
+  limit       std 4 kN for zone 2

@@ -1,0 +1,98 @@
+protocol small "A protocol for trials"
+  axis  distance in m
+  time  time in s
+
+place wheelset
+  members  1, 2
+
+place side
+  members  R, L
+  alias    outer is L when direction is right, R when direction is left
+
+place running_gear
+  members  I, II
+
+vehicle category "Vehicle category"
+  one of  passenger, freight
+
+vehicle Q0 "Static wheel force"
+  in  kN
+
+section zone "Test zone"
+  one of  zones
+
+section radius "Curve radius"
+  in  m
+
+section direction "Direction"
+  one of  right, left, straight
+
+channel Y "Guiding force"
+  in      kN
+  at      each wheelset and side
+  column  "Y_{wheelset}{side}"
+
+channel ay "Lateral acceleration"
+  in  m/s^2
+  at  each running_gear
+
+channel curvature "Curvature"
+  in      1/m
+  record  track
+
+filter LP20 "Low-pass filter"
+  step  low-pass 20 Hz, order 4
+
+zone 1 "Straight track"
+  where  direction is straight
+
+zone 2 "Curves"
+  where  direction is not straight
+
+sections
+  zone  zone
+
+parameter share
+  default  2 m
+  range    1 to 3
+
+filter BAD "No such step"
+  step  low pass 20 Hz
+
+quantity a "Two faults"
+  of          Yz at wheelset 1
+  value       median
+  difference  signed
+  limit       std 3 kN for zone 9
+
+quantity b "Three faults"
+  of          Y at wheelset 8
+  filter      LP21
+  value       p50
+  difference  signed
+  limit       std 3 kN
+  where       radius > 3 kN
+
+quantity c "One fault"
+  of          Y at wheelset 1
+  value       p120
+  difference  signed
+  limit       std 3 kN
+
+quantity d "One fault"
+  of          Y at wheelset 1
+  value       median
+  difference  simulated - meassured
+  limit       std 3 kN
+
+quantity e "One fault"
+  of          Y at wheelset 1
+  value       median
+  difference  signed
+  limit       std 3 m
+
+quantity f "One fault"
+  of          Y at wheelset 1
+  value       median
+  difference  signed
+  limit       std 3 kn

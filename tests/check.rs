@@ -1,0 +1,376 @@
+//! What the checker refuses and how it is said, in both forms; what it accepts, and that it means what was written.
+//!
+//! Expected output lies beside each case as `<case>.out`; `UPDATE_EXPECT=1 cargo test` rewrites it. Every bad case is tried in YAML
+//! too, converted by the printer: the same faults must be found, at places in the YAML (`<case>.yaml.out`).
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use fishplate::check::diff::diff;
+use fishplate::check::family::{self, Family};
+use fishplate::check::plan::{Plan, SetBy};
+use fishplate::check::{self, Override, Overrides};
+use fishplate::graph;
+use fishplate::library;
+use fishplate::problem::{Problem, Problems, Severity};
+use fishplate::source::Source;
+use fishplate::syntax::document::Text;
+use fishplate::syntax::{self, print_text, print_yaml};
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Protocol files of a folder, in order of their names.
+fn files(folder: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(root().join(folder)).expect("a folder of cases");
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "fp"));
+    files.sort();
+    files
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().expect("a file").to_string_lossy().into_owned()
+}
+
+/// The text of a case under its bare name, so that messages do not hold folders of a machine.
+fn source(path: &Path) -> Arc<Source> {
+    Source::new(name(path), fs::read_to_string(path).expect("a readable case"))
+}
+
+/// Shipped protocols, cases beside a case, and an endless line of ancestors.
+fn find(name: &str, from: &Source) -> Result<Arc<Source>, Box<Problem>> {
+    if let Some(number) = name.strip_prefix("ancestor-").and_then(|number| number.parse::<usize>().ok()) {
+        return Ok(Source::new(name, format!("protocol {name} \"An ancestor\"\n  extends  ancestor-{}\n", number + 1)));
+    }
+    for folder in ["bad", "good"] {
+        let path = root().join("tests/cases/check").join(folder).join(name);
+        if path.is_file() {
+            return Ok(source(&path));
+        }
+    }
+    library::parent(name, from)
+}
+
+fn checked_with(source: &Arc<Source>, overrides: &Overrides) -> (Family, Option<Plan>, Problems) {
+    let mut problems = Problems::default();
+    let family = family::read(source, &find, &mut problems);
+    let plan = check::check(&family, overrides, &mut problems);
+    (family, plan, problems)
+}
+
+fn checked(source: &Arc<Source>) -> (Family, Option<Plan>, Problems) {
+    checked_with(source, &Overrides::new())
+}
+
+fn codes(problems: &Problems) -> Vec<&'static str> {
+    let mut codes: Vec<&str> = problems.0.iter().map(|problem| problem.code).collect();
+    codes.sort_unstable();
+    codes
+}
+
+#[track_caller]
+fn compare_or_update(case: &Path, found: &str) {
+    let mut out = case.as_os_str().to_owned();
+    out.push(".out");
+    let out = PathBuf::from(out);
+    if std::env::var_os("UPDATE_EXPECT").is_some() {
+        fs::write(&out, found).expect("a writable case");
+    } else {
+        let expected = fs::read_to_string(&out).unwrap_or_default();
+        assert!(expected == found, "{} differs from what is found:\n{found}", out.display());
+    }
+}
+
+#[test]
+fn bad_protocols_are_refused_in_words() {
+    for path in files("tests/cases/check/bad") {
+        let (_, plan, problems) = checked(&source(&path));
+        assert!(plan.is_none() && problems.any_error(), "{} is taken for good", path.display());
+        compare_or_update(&path, &problems.render(false));
+    }
+}
+
+/// The same fault in YAML: the same codes, each pointing at a place in the YAML.
+#[test]
+fn both_forms_name_a_fault_alike() {
+    let mut tried = 0;
+    for path in files("tests/cases/check/bad") {
+        let text = source(&path);
+        let mut syntax_problems = Problems::default();
+        let document = syntax::read(&text, &mut syntax_problems);
+        assert!(!syntax_problems.any_error(), "{}", syntax_problems.render(false));
+        if text.text.contains("extends  \"") {
+            continue;
+        }
+        let yaml = Source::new(name(&path).replace(".fp", ".yaml"), print_yaml(&document));
+        let (_, _, problems) = checked(&text);
+        let (_, plan, of_yaml) = checked(&yaml);
+        assert!(plan.is_none());
+        assert_eq!(codes(&of_yaml), codes(&problems), "{}", path.display());
+        for problem in &of_yaml.0 {
+            let at = problem.at.as_ref().expect("a place");
+            assert!(!at.source.name.ends_with(".fp") || at.source.name.starts_with("protocols/"), "{at} of {}", problem.code);
+        }
+        compare_or_update(&path.with_extension("yaml"), &of_yaml.render(false));
+        tried += 1;
+    }
+    assert!(tried >= 12, "{tried}");
+}
+
+/// Every code that the checker can give is given by some case.
+#[test]
+fn every_fault_has_a_case() {
+    let mut given: BTreeSet<String> = BTreeSet::new();
+    for path in files("tests/cases/check/bad") {
+        given.extend(checked(&source(&path)).2.0.iter().map(|problem| problem.code.to_string()));
+    }
+    // Faults of the program, which nothing written can bring about, and what needs a campaign or command line (tested below).
+    given.extend(["internal", "not-constant", "unknown-parameter"].map(String::from));
+    let mut missing = BTreeSet::new();
+    for entry in fs::read_dir(root().join("src/check")).expect("sources") {
+        let text = fs::read_to_string(entry.expect("an entry").path()).expect("a source");
+        for part in text.split("Problem::error(").chain(text.split("Problem::warning(")).skip(1) {
+            let code = part.trim_start().split('"').nth(1).filter(|_| part.trim_start().starts_with('"'));
+            missing.extend(code.map(String::from).filter(|code| !given.contains(code)));
+        }
+    }
+    assert!(missing.is_empty(), "no case for {missing:?}");
+}
+
+#[test]
+fn ten_faults_are_reported_in_one_go() {
+    let (_, _, problems) = checked(&source(&root().join("tests/cases/check/bad/ten_faults.fp")));
+    assert_eq!(problems.errors(), 11, "{}", problems.render(false));
+}
+
+/// No message says "you", ends in a full stop, or shows how a thing is called inside the program.
+#[test]
+fn messages_state_facts() {
+    for path in files("tests/cases/check/bad") {
+        for problem in checked(&source(&path)).2.0 {
+            for text in [Some(&problem.says), problem.help.as_ref(), problem.label.as_ref()].into_iter().flatten() {
+                let lower = text.to_lowercase().replace("did you mean", "");
+                assert!(!lower.split(|c: char| !c.is_alphabetic()).any(|word| word == "you" || word == "your"), "{text}");
+                assert!(!text.ends_with('.') || text.ends_with("..."), "{text}");
+                assert!(!text.contains("Some(") && !text.contains("Dimension") && !text.contains("None"), "{text}");
+            }
+        }
+    }
+}
+
+fn set(name: &str, value: &str) -> Overrides {
+    let campaign = Source::new("campaign.yaml", format!("parameters:\n  {name}: {value}\n"));
+    let start = campaign.text.rfind(value).expect("the value");
+    let span = campaign.span(start..start + value.len());
+    Overrides::from_iter([(name.to_string(), Override { text: Text { text: value.into(), span, exact: true }, set_by: SetBy::Campaign })])
+}
+
+#[test]
+fn parameters_of_a_campaign_are_checked_where_they_stand() {
+    let protocol = library::shipped("en14363-2016-annex-t").expect("a shipped protocol");
+    for (name, value, code, says) in [
+        ("lowpass_frequency", "20 m", "unit-mismatch", "parameter `lowpass_frequency` is a frequency, this is a length"),
+        ("lowpass_frequency", "25", "unit-mismatch", "parameter `lowpass_frequency` is a frequency, this is a plain number"),
+        ("lowpass_frequency", "90 Hz", "out-of-range", "`90 Hz` is outside the range of `lowpass_frequency`"),
+        ("lowpass_frequency", "20 Herz", "unknown-unit", "`Herz` is no unit"),
+        ("lowpas_frequency", "20 Hz", "unknown-parameter", "protocol `en14363-2016-annex-t` has no parameter `lowpas_frequency`"),
+        ("filter_phase", "zerophase", "unknown-choice", "`zerophase` is none of the choices of `filter_phase`"),
+        ("lowpass_order", "4 +", "syntax", "an expression ends too early"),
+    ] {
+        let (_, plan, problems) = checked_with(&protocol, &set(name, value));
+        assert!(plan.is_none());
+        let [problem] = problems.0.as_slice() else { panic!("{}", problems.render(false)) };
+        assert_eq!((problem.code, problem.says.as_str()), (code, says));
+        let at = problem.at.as_ref().expect("a place");
+        assert_eq!((at.source.name.as_str(), at.line()), ("campaign.yaml", 2));
+    }
+    let (_, plan, problems) = checked_with(&protocol, &set("lowpass_frequency", "0.025 kHz"));
+    assert!(problems.0.is_empty(), "{}", problems.render(false));
+    let plan = plan.expect("a plan");
+    assert!(plan.filters[0].steps[0].words.starts_with("low-pass 25 Hz"), "{}", plan.filters[0].steps[0].words);
+}
+
+// ---- good protocols
+
+#[test]
+fn good_protocols_are_accepted_as_meant() {
+    for path in files("tests/cases/check/good") {
+        let (_, plan, problems) = checked(&source(&path));
+        assert!(!problems.any_error(), "{}", problems.render(false));
+        let plan = plan.expect("a plan");
+        compare_or_update(&path, &(problems.render(false) + &described(&plan)));
+    }
+}
+
+/// What was understood, in a form that shows a change of meaning.
+fn described(plan: &Plan) -> String {
+    let mut out = format!("{}: {} zones, {}\n", plan.name, plan.zones.len(), plan.verdict.words);
+    for quantity in &plan.quantities {
+        let signals: Vec<&str> = quantity.signals.iter().map(|(name, _)| name.as_str()).collect();
+        out += &format!("quantity {} [{}] of {}\n", quantity.id, quantity.unit, signals.join(", "));
+        out += &format!("  {} | {} | {}\n", quantity.words.filter, quantity.words.processing, quantity.words.comparison);
+        for limit in &quantity.limits {
+            let bound = check::evaluate::shape(&limit.bound);
+            let least = if limit.at_least { " at least" } else { "" };
+            let scope = match &limit.scope {
+                check::plan::Scope::All => String::new(),
+                check::plan::Scope::Zones(zones) => format!(" for {}", zones.join(", ")),
+                check::plan::Scope::Where(_, words) => format!(" where {words}"),
+            };
+            out += &format!("  {}{least} {bound}{scope}\n", limit.statistic.name());
+        }
+    }
+    out
+}
+
+#[test]
+fn shipped_protocols_are_without_remarks_and_canonical() {
+    for shipped in library::SHIPPED {
+        let source = library::shipped(shipped.name).expect("a shipped protocol");
+        let (_, plan, problems) = checked(&source);
+        assert!(plan.is_some() && problems.0.is_empty(), "{}", problems.render(false));
+    }
+    for path in files("protocols") {
+        let text = fs::read_to_string(&path).expect("a readable protocol");
+        let document = syntax::read(&source(&path), &mut Problems::default());
+        assert!(print_text(&document) == text, "{} is not as `fishplate fmt` writes it", path.display());
+    }
+}
+
+/// Two surfaces, one meaning: plan and graph of a protocol and of what it is converted to are the same, places aside.
+#[test]
+fn both_forms_mean_the_same() {
+    for path in files("protocols").into_iter().chain(files("tests/cases/check/good")) {
+        let text = source(&path);
+        let document = syntax::read(&text, &mut Problems::default());
+        let yaml = Source::new(name(&path).replace(".fp", ".yaml"), print_yaml(&document));
+        let (a, plan_a, problems) = checked(&text);
+        let (b, plan_b, problems_b) = checked(&yaml);
+        assert_eq!(codes(&problems), codes(&problems_b));
+        let (plan_a, plan_b) = (plan_a.expect("a plan"), plan_b.expect("a plan"));
+        assert_eq!(described(&plan_a), described(&plan_b));
+        assert_eq!(graph_of(&plan_a), graph_of(&plan_b));
+        assert!(diff(&a.merged, &b.merged).is_empty(), "{}", path.display());
+    }
+}
+
+/// The YAML beside the text form is its conversion, and the program reads it as the same protocol.
+#[test]
+fn the_shipped_yaml_is_the_shipped_text() {
+    let path = root().join("protocols/en14363-2016-annex-t.fp");
+    let document = syntax::read(&source(&path), &mut Problems::default());
+    let yaml = path.with_extension("yaml");
+    let wanted = print_yaml(&document);
+    if std::env::var_os("UPDATE_EXPECT").is_some() {
+        fs::write(&yaml, &wanted).expect("a writable protocol");
+    }
+    assert_eq!(fs::read_to_string(&yaml).expect("the protocol in YAML"), wanted);
+}
+
+/// The nodes without the places they come from.
+fn graph_of(plan: &Plan) -> serde_json::Value {
+    let mut json = graph::json(&graph::from_plan(plan));
+    for node in json["nodes"].as_array_mut().expect("nodes") {
+        node.as_object_mut().expect("a node").remove("from");
+    }
+    json
+}
+
+// ---- variants and differences
+
+#[track_caller]
+fn variant(text: &str) -> (Family, Option<Plan>, Problems) {
+    checked(&Source::new("variant.fp", format!("protocol variant \"A variant\"\n  extends  en14363-2016-annex-t\n\n{text}")))
+}
+
+#[track_caller]
+fn deviations(text: &str) -> Vec<(String, Option<String>, Option<String>)> {
+    let (family, plan, problems) = variant(text);
+    assert!(plan.is_some(), "{}", problems.render(false));
+    let parent = family.parent.as_ref().expect("a parent");
+    diff(parent, &family.merged).into_iter().map(|deviation| (deviation.rule, deviation.before, deviation.after)).collect()
+}
+
+#[test]
+fn a_variant_overrides_field_by_field() {
+    let some = |text: &str| Some(text.to_string());
+    assert_eq!(
+        deviations("quantity ay_max\n  limit  std 0.28 m/s^2\n"),
+        [("quantity ay_max, limit std".into(), some("std 0.40 m/s^2, doubled when lighter_requirements"), some("std 0.28 m/s^2"))]
+    );
+    assert_eq!(
+        deviations("quantity ay_max \"Another title\"\n  filter  LP20\n"),
+        [
+            ("quantity ay_max, title".into(), some("Car body lateral acceleration, maximum"), some("Another title")),
+            ("quantity ay_max, filter".into(), some("BP"), some("LP20")),
+        ]
+    );
+    // A metric takes the place of value and difference.
+    let rules: Vec<String> =
+        deviations("quantity Y_max\n  metric  sprague-geers phase\n  limit   std 0.2\n").into_iter().map(|(rule, ..)| rule).collect();
+    assert_eq!(rules, ["quantity Y_max, value", "quantity Y_max, difference", "quantity Y_max, metric", "quantity Y_max, limit std"]);
+    assert_eq!(deviations("zone 1\n  minimum sections  5\n"), [("zone 1, minimum sections".into(), some("sections_per_zone"), some("5"))]);
+    assert_eq!(
+        deviations("remove\n  limit  az_max mean\n"),
+        [("quantity az_max, limit mean".into(), some("mean mean_limit_share of std"), None)]
+    );
+    let removed = deviations("remove\n  quantity  az_max\n");
+    assert_eq!((removed.len(), removed[0].0.as_str(), &removed[0].2), (1, "quantity az_max", &None));
+}
+
+/// What a committee asks for most: one more zone is one block.
+#[test]
+fn a_fifth_zone_is_one_block() {
+    let text = "zone 5 \"Curves below 250 m\"\n  where             150 m <= radius < 250 m\n  minimum sections  sections_per_zone\n  minimum length    50 m\n";
+    let (_, plan, problems) = variant(text);
+    let plan = plan.unwrap_or_else(|| panic!("{}", problems.render(false)));
+    assert_eq!(plan.zones.len(), 5);
+    let found = deviations(text);
+    assert_eq!((found.len(), found[0].0.as_str()), (1, "zone 5"));
+    // And one less is one line.
+    let (_, plan, problems) = variant("remove\n  zone  4\n");
+    assert_eq!(plan.unwrap_or_else(|| panic!("{}", problems.render(false))).zones.len(), 3);
+}
+
+/// Other ways of writing the same number, unit, place or order of conditions are no difference.
+#[test]
+fn the_same_meaning_is_no_difference() {
+    for text in [
+        "quantity ay_max\n  limit  std 0.4 m/s², doubled when lighter_requirements\n",
+        "quantity ay_max\n  limit  std 400 mm/s^2 doubled when lighter_requirements\n",
+        "quantity Y_max\n  of  Y at wheelset 1, 3\n",
+        "parameter lowpass_frequency\n  default  0.02 kHz\n",
+        "parameter admissible_speed\n  range  20 km/h  to 4e2 km/h\n",
+        "filter BP\n  step  band-pass 0.40 Hz to 10.0 Hz, order bandpass_order, filter_phase, filter_edge\n",
+        "channel ay\n  in  m/s²\n",
+        "zone 3\n  where  400 m ≤ radius ≤ 0.6 km\n",
+    ] {
+        assert_eq!(deviations(text), [], "{text}");
+    }
+}
+
+/// The variants that are shipped differ from their parents in what their titles say, and in nothing else.
+#[test]
+fn shipped_variants_differ_only_where_they_say() {
+    let rules = |name: &str| {
+        let (family, _, _) = checked(&library::shipped(name).expect("a shipped protocol"));
+        let found = diff(family.parent.as_ref().expect("a parent"), &family.merged);
+        found.into_iter().map(|deviation| deviation.rule).collect::<Vec<_>>()
+    };
+    assert_eq!(rules("en14363-2016-annex-t-population-deviation"), ["parameter variance_divisor, default"]);
+    let strict = rules("en14363-2016-annex-t-strict-acceleration");
+    assert!(strict.iter().all(|rule| rule.contains("limit std") || rule.contains("source")), "{strict:?}");
+    assert_eq!(strict.len(), 8);
+}
+
+#[test]
+fn a_warning_is_no_error() {
+    let protocol = "quantity Y_extra\n  of          Y at wheelset 1\n  value       median\n  difference  signed\n";
+    let (_, plan, problems) = variant(protocol);
+    assert!(plan.is_some());
+    assert_eq!(problems.0.iter().map(|problem| (problem.severity, problem.code)).collect::<Vec<_>>(), [(Severity::Warning, "no-limit")]);
+}
