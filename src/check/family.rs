@@ -193,7 +193,7 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, problems: &mut Problems) {
         _ => {
             let problem = Problem::error("remove", format!("what is to be removed is one {}", field.key.text)).at(&field.value.span);
             problems.push(problem.help(if is_limit {
-                "write the quantity, then the statistic: `limit az_max mean`"
+                "write the quantity, then the statistic: `limit <quantity> mean`"
             } else {
                 "write one name in each line"
             }));

@@ -1,0 +1,172 @@
+//! The program as called: exit codes, what is said where, and that nothing half-written is left.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Runs the program in the project's folder.
+fn run(arguments: &[&str]) -> (i32, String, String) {
+    let output: Output =
+        Command::new(env!("CARGO_BIN_EXE_fishplate")).args(arguments).current_dir(root()).output().expect("the program runs");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (output.status.code().unwrap_or(-1), text(&output.stdout), text(&output.stderr))
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+fn certify(campaign: &str, out: &Path, more: &[&str]) -> (i32, String, String) {
+    let out = out.display().to_string();
+    let mut arguments = vec!["certify", campaign, "--out", &out];
+    arguments.extend(more);
+    run(&arguments)
+}
+
+#[test]
+fn exit_codes_follow_the_verdict() {
+    let out = folder();
+    let (code, printed, _) = certify("examples/coach", &out.path().join("a"), &["--only", "results"]);
+    assert_eq!(code, 1);
+    assert!(printed.contains("Verdict: not validated"), "{printed}");
+    let (code, printed, _) = certify("examples/coach-good", &out.path().join("b"), &["--only", "results"]);
+    assert_eq!(code, 0);
+    assert!(printed.contains("Verdict: validated"), "{printed}");
+    let (code, _, said) = certify("examples/coach", &out.path().join("c"), &["--protocol", "sprague-gears"]);
+    assert_eq!(code, 2);
+    assert!(said.contains("did you mean `sprague-geers`?"), "{said}");
+    let (code, _, _) = certify("examples/nowhere", &out.path().join("c"), &[]);
+    assert_eq!(code, 2);
+    assert!(!out.path().join("c").exists(), "nothing is written where an input is wrong");
+    let (code, _, _) = run(&["certify"]);
+    assert_eq!(code, 2, "a command line without a campaign");
+    fs::write(out.path().join("file"), "in the way").expect("a file");
+    let (code, _, said) = certify("examples/coach", &out.path().join("file").join("below"), &["--only", "results"]);
+    assert_eq!(code, 3, "{said}");
+}
+
+#[test]
+fn the_same_input_gives_the_same_files() {
+    let out = folder();
+    let names = ["results.json", "report.pdf", "report.html", "tables/values.csv", "tables/summary.csv"];
+    certify("examples/coach", &out.path().join("one"), &["--jobs", "1", "--quiet"]);
+    let absolute = root().join("examples/coach").display().to_string();
+    certify(&absolute, &out.path().join("two"), &["--jobs", "2", "--quiet"]);
+    for name in names {
+        let [one, two] = ["one", "two"].map(|run| fs::read(out.path().join(run).join(name)).expect("a written file"));
+        assert!(one == two, "{name} differs");
+        let text = String::from_utf8_lossy(&one);
+        assert!(!text.contains(&root().display().to_string()), "{name} names a folder of this machine");
+        if name.ends_with("json") {
+            assert!(!text.contains("NaN") && !text.contains("inf"), "{name}");
+        }
+    }
+}
+
+#[test]
+fn results_have_the_keys_of_the_contract() {
+    let out = folder();
+    certify("examples/coach", out.path(), &["--only", "results", "--quiet"]);
+    let text = fs::read_to_string(out.path().join("results.json")).expect("results");
+    let results: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    for key in ["fishplate", "protocol", "campaign", "verdict", "reasons", "quantities", "sections"] {
+        assert!(results.get(key).is_some(), "{key}");
+    }
+    let ids: Vec<&str> = results["quantities"].as_array().expect("a list").iter().filter_map(|quantity| quantity["id"].as_str()).collect();
+    assert_eq!(
+        ids,
+        ["Y_qst", "Q_qst", "YQ_qst", "SigmaY_qst", "Y_max", "Q_max", "YQ_max", "SigmaY_max", "ay_rms", "az_rms", "ay_max", "az_max"]
+    );
+    for key in ["unit", "pairs", "mean", "std", "limit_mean", "limit_std", "normalised_mean", "normalised_std", "holds", "values"] {
+        assert!(results["quantities"][0].get(key).is_some(), "{key}");
+    }
+    for key in ["section", "zone", "signal", "simulated", "measured", "difference"] {
+        assert!(results["quantities"][0]["values"][0].get(key).is_some(), "{key}");
+    }
+    assert_eq!(results["sections"][0]["zone"], 1);
+    assert_eq!(results["sections"][0]["used"], true);
+}
+
+#[test]
+fn protocols_are_checked_formatted_converted_and_compared() {
+    let out = folder();
+    let (code, _, said) = run(&["check", "en14363-2016-annex-t", "protocols/en14363-2016-annex-t.yaml", "stationary-sway"]);
+    assert_eq!(code, 0, "{said}");
+    let broken = out.path().join("broken.fp");
+    fs::write(&broken, "protocol broken \"x\"\n  axis  distance in kN\n").expect("a file");
+    let (code, printed, said) = run(&["check", &broken.display().to_string()]);
+    assert_eq!(code, 2);
+    assert!(printed.is_empty() && said.contains("unit-mismatch") && said.contains("no-quantity"), "{said}");
+    let loose = out.path().join("loose.fp");
+    fs::write(&loose, "protocol   loose   \"x\"\n     extends en14363-2016-annex-t\n").expect("a file");
+    let loose = loose.display().to_string();
+    assert_eq!(run(&["fmt", "--check", &loose]).0, 1);
+    assert_eq!(run(&["fmt", &loose]).0, 0);
+    assert_eq!(run(&["fmt", "--check", &loose]).0, 0);
+    let yaml = out.path().join("annex.yaml").display().to_string();
+    assert_eq!(run(&["convert", "en14363-2016-annex-t", "--to", "yaml", "-o", &yaml]).0, 0);
+    let (code, printed, _) = run(&["diff", "en14363-2016-annex-t", &yaml]);
+    assert_eq!((code, printed.as_str()), (0, "no rule differs\n"));
+    let (_, printed, _) = run(&["convert", &yaml, "--to", "fp"]);
+    assert_eq!(printed, fs::read_to_string(root().join("protocols/en14363-2016-annex-t.fp")).expect("the protocol"));
+    let (_, printed, _) = run(&["diff", "en14363-2016-annex-t", "en14363-2016-annex-t-population-deviation"]);
+    assert!(printed.contains("parameter variance_divisor") && printed.lines().count() < 8, "{printed}");
+}
+
+#[test]
+fn every_stage_can_be_printed() {
+    for (stage, format, holds) in [
+        ("ast", "text", "quantity Y_qst"),
+        ("ast", "json", "\"blocks\""),
+        ("plan", "text", "quantity Y_qst [kN]"),
+        ("plan", "json", "\"quantities\""),
+        ("graph", "text", "low-pass 20 Hz"),
+        ("graph", "json", "\"nodes\""),
+        ("graph", "dot", "digraph"),
+        ("graph", "svg", "<svg"),
+    ] {
+        let (code, printed, said) = run(&["explain", "en14363-2016-annex-t", "--stage", stage, "--format", format]);
+        assert_eq!(code, 0, "{stage} {format}: {said}");
+        assert!(printed.contains(holds), "{stage} {format}");
+    }
+    assert_eq!(run(&["explain", "en14363-2016-annex-t", "--stage", "plan", "--format", "svg"]).0, 2);
+    let (code, printed, _) = run(&["explain"]);
+    assert_eq!(code, 0);
+    assert!(printed.contains("sprague-geers") && printed.contains("sliding mean"), "{printed}");
+}
+
+#[test]
+fn help_shows_an_example_and_the_rest_is_at_hand() {
+    for command in ["certify", "check", "fmt", "convert", "explain", "diff", "protocols", "schema", "completions", "man"] {
+        let (code, printed, _) = run(&[command, "--help"]);
+        assert_eq!(code, 0, "{command}");
+        assert!(printed.contains("Example") && printed.contains("--quiet") && printed.contains("--color"), "{command}: {printed}");
+    }
+    assert!(run(&["completions", "bash"]).1.contains("fishplate"));
+    let out = folder();
+    assert_eq!(run(&["man", "--out", &out.path().display().to_string()]).0, 0);
+    assert!(out.path().join("fishplate.1").is_file() && out.path().join("fishplate-certify.1").is_file());
+    let (_, printed, _) = run(&["protocols"]);
+    assert!(printed.lines().count() >= 6 && printed.contains("stationary-sway"));
+    let (_, printed, _) = run(&["schema"]);
+    assert_eq!(printed, fs::read_to_string(root().join("protocols/protocol.schema.json")).expect("the schema"));
+}
+
+#[test]
+fn settings_of_the_command_line_are_checked() {
+    let out = folder();
+    let said = |set: &str| {
+        let (code, _, said) = certify("examples/coach", &out.path().join("x"), &["--only", "results", "--set", set]);
+        assert_eq!(code, 2, "{set}");
+        said
+    };
+    assert!(said("lowpass_frequenzy=20 Hz").contains("did you mean `lowpass_frequency`?"));
+    assert!(said("lowpass_frequency=20 kN").contains("unit-mismatch"));
+    assert!(said("percentile_rule=hasen").contains("did you mean `hazen`?"));
+    assert!(said("lowpass_order=99").contains("out-of-range"));
+    assert!(said("nothing").contains("--set name=value"));
+}

@@ -1,0 +1,136 @@
+//! The structure stays as `docs/architecture.md` says: its table of imports is compared with the code, and rules stay out of the code.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Source files below `src`, each with the module it belongs to.
+fn sources() -> Vec<(String, PathBuf)> {
+    fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                walk(&path, found);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                found.push(path);
+            }
+        }
+    }
+    let mut files = Vec::new();
+    walk(&root().join("src"), &mut files);
+    files.sort();
+    let module = |path: &PathBuf| {
+        let inside = path.strip_prefix(root().join("src")).expect("below src");
+        let first = inside.components().next().expect("a part").as_os_str().to_string_lossy().into_owned();
+        first.trim_end_matches(".rs").to_string()
+    };
+    files.into_iter().map(|path| (module(&path), path)).collect()
+}
+
+/// Code without its unit tests, which may use anything.
+fn code(path: &Path) -> String {
+    let text = fs::read_to_string(path).expect("a source");
+    let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+}
+
+/// Modules named after `crate::`, in single and grouped imports.
+fn imports(code: &str) -> BTreeSet<String> {
+    code.split("crate::")
+        .skip(1)
+        .map(|rest| rest.chars().take_while(|c| c.is_ascii_lowercase() || *c == '_').collect::<String>())
+        .filter(|name| !name.is_empty())
+        .collect()
+}
+
+/// The table of `docs/architecture.md`, in the order of its rows.
+fn table() -> Vec<(String, BTreeSet<String>)> {
+    let text = fs::read_to_string(root().join("docs/architecture.md")).expect("the page");
+    let rows = text.lines().skip_while(|line| *line != "| module | imports |").skip(2).take_while(|line| line.starts_with('|'));
+    rows.map(|row| {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let imports = cells[2].split(',').map(|name| name.trim().to_string()).filter(|name| !name.is_empty());
+        (cells[1].to_string(), imports.collect())
+    })
+    .collect()
+}
+
+#[test]
+fn modules_import_what_the_table_says() {
+    let mut found: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for (module, path) in sources() {
+        let uses = found.entry(module.clone()).or_default();
+        uses.extend(imports(&code(&path)).into_iter().filter(|name| *name != module));
+        // The program is a crate of its own and names the library by its name.
+        if module == "main" {
+            uses.extend(
+                code(&path)
+                    .split("fishplate::")
+                    .skip(1)
+                    .map(|rest| rest.chars().take_while(|c| c.is_ascii_lowercase()).collect::<String>()),
+            );
+        }
+    }
+    let said: BTreeMap<String, BTreeSet<String>> = table().into_iter().collect();
+    assert!(said.len() > 10, "the table was not found");
+    assert_eq!(found.keys().collect::<Vec<_>>(), said.keys().collect::<Vec<_>>(), "modules");
+    for (module, uses) in &found {
+        assert_eq!(uses, &said[module], "imports of `{module}` (found, then said)");
+    }
+}
+
+#[test]
+fn imports_go_one_way() {
+    let rows = table();
+    let place = |name: &str| rows.iter().position(|(module, _)| module == name);
+    for (module, uses) in &rows {
+        for used in uses {
+            assert!(place(used) < place(module), "`{module}` imports `{used}`, which stands below it");
+        }
+    }
+}
+
+/// Quantities, channels, zones and limits are words of protocols.
+#[test]
+fn rules_live_in_protocols() {
+    let words = [
+        "Y_qst",
+        "Q_qst",
+        "YQ",
+        "SigmaY",
+        "ay_I",
+        "ay_max",
+        "ay_rms",
+        "az_I",
+        "az_max",
+        "guiding",
+        "wheelset",
+        "Y_1",
+        "bogies",
+        "freight",
+        "cant_deficiency",
+        "static_wheel_load",
+        "0.15",
+        "99.85",
+        "annex",
+        "14363",
+    ];
+    for (module, path) in sources() {
+        // The library lists the shipped protocols by name; keys and forms show examples of the language to its users.
+        if module == "library" || path.ends_with("syntax/keys.rs") || path.ends_with("tests.rs") {
+            continue;
+        }
+        let code = code(&path);
+        for word in words {
+            let place = code.lines().find(|line| line.contains(word));
+            let shown = place.is_some_and(|line| {
+                line.contains("after_help") || line.contains("default:") || line.contains("[default") || line.contains("help")
+            });
+            assert!(place.is_none() || shown, "{}: `{word}` in `{}`", path.display(), place.unwrap_or_default().trim());
+        }
+    }
+}
