@@ -8,18 +8,25 @@ const CHUNK: usize = 64;
 /// The places after each comma, line feed and quote of a stretch.
 #[derive(Debug, Default)]
 pub(super) struct Marks {
-    /// Begins with the start of the stretch.
-    pub after: Vec<usize>,
+    places: Vec<usize>,
+    count: usize,
     /// Up to where the text has been searched.
     pub end: usize,
 }
 
 impl Marks {
+    /// In order, beginning with the start of the stretch.
+    pub fn after(&self) -> &[usize] {
+        &self.places[..self.count]
+    }
+
     /// Searches the stretch that begins at `start`.
     pub fn find(&mut self, text: &[u8], start: usize) {
+        // One for the start and one for each byte, were all of them marks; whole chunks are written to.
+        self.places.resize(1 + STRETCH + CHUNK, 0);
+        self.places[0] = start;
+        self.count = 1;
         self.end = text.len().min(start + STRETCH);
-        self.after.clear();
-        self.after.push(start);
         let (chunks, rest) = text[start..self.end].as_chunks::<CHUNK>();
         let mut at = start;
         for chunk in chunks {
@@ -32,10 +39,14 @@ impl Marks {
     }
 
     fn push(&mut self, at: usize, mut bits: u64) {
+        let Some(places) = self.places[self.count..].first_chunk_mut::<CHUNK>() else { return };
+        let mut found = 0;
         while bits != 0 {
-            self.after.push(at + bits.trailing_zeros() as usize + 1);
+            places[found % CHUNK] = at + bits.trailing_zeros() as usize + 1;
+            found += 1;
             bits &= bits - 1;
         }
+        self.count += found;
     }
 }
 
@@ -63,7 +74,7 @@ mod tests {
             let mut marks = Marks::default();
             marks.find(&text, start);
             let expected = (start..text.len()).filter(|at| b",\n\"".contains(&text[*at])).map(|at| at + 1);
-            prop_assert_eq!(&marks.after, &[start].into_iter().chain(expected).collect::<Vec<_>>());
+            prop_assert_eq!(marks.after(), &[start].into_iter().chain(expected).collect::<Vec<_>>());
             prop_assert_eq!(marks.end, text.len());
         }
     }
@@ -73,6 +84,6 @@ mod tests {
         let text = vec![b','; 3 * STRETCH];
         let mut marks = Marks::default();
         marks.find(&text, 5);
-        assert_eq!((marks.after.len(), marks.end), (STRETCH + 1, 5 + STRETCH));
+        assert_eq!((marks.after().len(), marks.end), (STRETCH + 1, 5 + STRETCH));
     }
 }

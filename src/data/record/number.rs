@@ -22,26 +22,30 @@ fn general(text: &[u8], cell: Range<usize>) -> Option<f64> {
     fast_float2::parse(text.get(cell)?).ok().filter(|number: &f64| number.is_finite())
 }
 
-/// The number in a cell if it is plain, has few digits and does not end within the last bytes of the text.
+/// The number in a cell if it is plain, has few digits and stands away from both ends of the text.
 #[inline]
 fn plain(text: &[u8], cell: Range<usize>) -> Option<f64> {
     let sign = usize::from(text.get(cell.start) == Some(&b'-'));
     let start = cell.start + sign;
-    let head = eight_bytes(text, start)?;
-    let whole = first(head, b'.');
-    let point = start + whole;
-    let size = if point < cell.end {
-        if whole == MOST {
-            return None;
+    let head = eight_bytes(text, start)? ^ every(b'0');
+    let tail = eight_bytes(text, cell.end.checked_sub(MOST)?)? ^ every(b'0');
+    let whole = first(head, b'.' ^ b'0');
+    let decimals = cell.end.checked_sub(start + whole + 1);
+    let (digits, decimals) = match decimals {
+        None => (number(high_end(head, cell.end.checked_sub(start)?)?)?, 0),
+        Some(decimals @ 1..MOST) if whole + decimals <= MOST => {
+            // The digits before the point from the head, those after it from the tail.
+            let after = u64::MAX << (8 * (MOST - decimals));
+            let before = head << (8 * (MOST - decimals - whole));
+            (number(tail & after | before & !after)?, decimals)
         }
-        let decimals = cell.end - point - 1;
-        let tail = eight_bytes(text, point + 1)?;
         // At most fifteen digits, less than 2^53.
-        let mantissa = digits(head, whole)? * TENS.get(decimals)? + digits(tail, decimals)?;
-        mantissa as f64 / TENS[decimals] as f64
-    } else {
-        digits(head, cell.end.checked_sub(start)?)? as f64
+        Some(decimals @ 1..=MOST) if whole < MOST => {
+            (number(high_end(head, whole)?)? * TENS[decimals] + number(tail & u64::MAX << (8 * (MOST - decimals)))?, decimals)
+        }
+        Some(_) => return None,
     };
+    let size = digits as f64 / TENS[decimals] as f64;
     // Signs come as they please: a branch would be guessed wrong every other time.
     Some(f64::from_bits(size.to_bits() | (sign as u64) << 63))
 }
@@ -54,7 +58,7 @@ fn eight_bytes(text: &[u8], at: usize) -> Option<u64> {
 
 /// The same byte in every place.
 const fn every(byte: u8) -> u64 {
-    u64::from_le_bytes([byte; 8])
+    u64::from_le_bytes([byte; MOST])
 }
 
 /// Where a byte stands first among eight; 8 if nowhere.
@@ -66,14 +70,16 @@ fn first(bytes: u64, byte: u8) -> usize {
     zeros.trailing_zeros() as usize / 8
 }
 
-/// The whole number in the first bytes of eight, which must be digits; none is no number.
+/// The first bytes of eight moved to the high end, with zeros before them; `None` for no byte.
 #[inline]
-fn digits(bytes: u64, count: usize) -> Option<i64> {
-    if !(1..=MOST).contains(&count) {
-        return None;
-    }
-    // Digits become 0 to 9 and stand at the high end, with zeros before; 10 + 0x76 is the first sum to reach the high bit.
-    let digits = (bytes ^ every(b'0')) << (8 * (MOST - count));
+fn high_end(digits: u64, count: usize) -> Option<u64> {
+    if (1..=MOST).contains(&count) { Some(digits << (8 * (MOST - count))) } else { None }
+}
+
+/// The number that eight digits from 0 to 9 make; `None` if one of them is greater.
+#[inline]
+fn number(digits: u64) -> Option<i64> {
+    // 10 + 0x76 is the first sum to reach the high bit; a sum that carries has a high bit to begin with.
     if (digits.wrapping_add(every(0x76)) | digits) & every(0x80) != 0 {
         return None;
     }
@@ -98,18 +104,18 @@ mod tests {
     #[test]
     fn what_is_plain() {
         for (text, number) in
-            [("-12.34", -12.34), ("7", 7.0), ("007.50", 7.5), ("-12345678", -12_345_678.0), ("9999999.12345678", 9_999_999.123_456_78)]
+            [("-12.34", -12.34), ("7", 7.0), ("007.50", 7.5), (".5", 0.5), ("1234567.8", 1_234_567.8), ("-12345678", -12_345_678.0), ("9999999.12345678", 9_999_999.123_456_78)]
         {
             assert_eq!(plain_in_a_row(text), Some(number), "{text}");
         }
         assert!(plain_in_a_row("-0.00").is_some_and(|zero| zero == 0.0 && zero.is_sign_negative()));
         for text in
-            ["", "-", ".", "-.", "--1", "+1", "1e3", "1.5e-3", "1.2.3", "1 ", " 1", "\"1\"", "inf", "1\u{b2}", "1:", "1/", "12345678x9"]
+            ["", "-", ".", "-.", "--1", "+1", "1e3", "1.5e-3", "1.2.3", "1 ", " 1", "\"1\"", "inf", "1\u{b2}", "1:", "1/", "12345678x9", "1234x.5", "x.5", "1.x"]
         {
             assert_eq!(plain_in_a_row(text), None, "{text}");
         }
-        assert_eq!(plain(b"1,2", 0..1), None, "at the end of the text");
-        for text in ["123456789", "0.123456789", "12345678.9", "12.", ".5"] {
+        assert_eq!(plain(b"1,2", 0..1), None, "at an end of the text");
+        for text in ["123456789", "0.123456789", "12345678.9", ".12345678", "12."] {
             assert_eq!(plain_in_a_row(text), None, "{text}");
             assert_eq!(read(text.as_bytes(), 0..text.len()), text.parse().ok(), "{text}");
         }
@@ -121,10 +127,10 @@ mod tests {
 
         /// The standard library rounds correctly.
         #[test]
-        fn to_the_last_bit_as_the_standard_library(text in "-?[0-9]{1,9}(\\.[0-9]{0,9})?") {
+        fn to_the_last_bit_as_the_standard_library(text in "-?[0-9]{0,9}(\\.[0-9]{1,9})?") {
             match plain_in_a_row(&text) {
                 Some(number) => prop_assert_eq!(number.to_bits(), text.parse::<f64>().expect("a number").to_bits()),
-                None => prop_assert!(text.ends_with('.') || text.trim_start_matches('-').split('.').any(|digits| digits.len() > 7)),
+                None => prop_assert!(text.trim_start_matches('-').is_empty() || text.split('.').any(|digits| digits.len() > 7)),
             }
         }
 

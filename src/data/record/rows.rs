@@ -30,7 +30,7 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
     while at < end_of_rows {
         let stretch = at;
         marks.find(bytes, stretch);
-        let mut cells = marks.after.as_slice();
+        let mut cells = marks.after();
         while at < marks.end.min(end_of_rows) {
             if row(bytes, cells, width, &mut sinks).is_some() {
                 cells = &cells[width..];
