@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use super::{Graph, InputNode, Node, NodeId, Operation, QuantityNodes, SignalNodes};
 use crate::catalog::Metric;
 use crate::check::evaluate::{shape, words};
-use crate::check::plan::{Evaluation, Expr, Input, Kind, Operator, Plan, Quantity, Signal, SignalKind, Step, StepSpec};
+use crate::check::plan::{Evaluation, Expr, Input, Kind, Operator, Plan, Quantity, Scope, Signal, SignalKind, Step, StepSpec};
 use crate::source::Span;
 use crate::units::Dimension;
 
@@ -19,15 +19,14 @@ pub fn from_plan(plan: &Plan) -> Graph {
         let compares: Vec<NodeId> = quantities[index].signals.iter().map(|signal| signal.compare).collect();
         for (number, limit) in quantity.limits.iter().enumerate() {
             let aggregate = Operation::Aggregate { quantity: index, limit: number };
-            let label = format!("{}: {}", quantity.id, limit.statistic.title(limit.ddof));
+            let label = format!("{}: {}{}", quantity.id, limit.statistic.title(limit.ddof), of_sections(&limit.scope));
             let node = builder.add(aggregate, compares.clone(), quantity.unit.dimension, &limit.span, label, format!("aggregate {index}"));
             let label = format!("{}: {} {}", quantity.id, limit.statistic.name(), limit.words);
             let operation = Operation::Limit { quantity: index, limit: number };
             limits.push(builder.add(operation, vec![node], Dimension::ONE, &limit.span, label, format!("limit {index}")));
         }
     }
-    let from = plan.quantities.first().map_or_else(|| crate::source::Source::new("", "").whole(), |quantity| quantity.span.clone());
-    let verdict = builder.add(Operation::Verdict, limits, Dimension::ONE, &from, plan.verdict.words.clone(), "verdict".into());
+    let verdict = builder.add(Operation::Verdict, limits, Dimension::ONE, &plan.verdict.span, plan.verdict.words.clone(), "verdict".into());
     Graph { nodes: builder.nodes, quantities, checks, verdict }
 }
 
@@ -138,7 +137,7 @@ impl Builder {
 
     fn step(&mut self, node: NodeId, step: &Step) -> NodeId {
         let dimension = self.nodes[node].dimension;
-        let kind = format!("step {}", step.words);
+        let kind = format!("step {:?}", step.kind);
         self.add(Operation::Step(step.kind.clone()), vec![node], dimension, &step.span, step.words.clone(), kind)
     }
 
@@ -158,7 +157,7 @@ impl Builder {
         }
         for step in &chain[inside..] {
             let dimension = self.nodes[node].dimension;
-            let kind = format!("window {}", step.words);
+            let kind = format!("window {:?}", step.kind);
             node = self.add(Operation::Window(step.kind.clone()), vec![node], dimension, &step.span, step.words.clone(), kind);
         }
         (filtered, node)
@@ -221,6 +220,15 @@ impl Builder {
         let label = format!("{} {name}: {}", quantity.id, quantity.words.comparison);
         let operation = Operation::Compare { quantity: index, signal: number, metric };
         self.add(operation, of, quantity.unit.dimension, &quantity.span, label, format!("compare {index}"))
+    }
+}
+
+/// Which sections a statistic is taken over, where not over all.
+fn of_sections(scope: &Scope) -> String {
+    match scope {
+        Scope::All => String::new(),
+        Scope::Zones(zones) => format!(", zone{} {}", if zones.len() == 1 { "" } else { "s" }, zones.join(", ")),
+        Scope::Where(_, words) => format!(", where {words}"),
     }
 }
 
