@@ -80,6 +80,7 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
 fn time_protocols(rounds: usize) -> Outcome<()> {
     let mut protocols: Vec<PathBuf> =
         fs::read_dir(Path::new(ROOT).join("protocols"))?.map(|entry| Ok(entry?.path())).collect::<Outcome<_>>()?;
+    protocols.retain(|path| path.extension().is_some_and(|extension| extension == "fp" || extension == "yaml"));
     protocols.sort();
     println!("\ncheck");
     for protocol in protocols {

@@ -166,12 +166,22 @@ filter LP20 "Low-pass filter 20 Hz"
   step    low-pass lowpass_frequency, order lowpass_order, filter_phase, filter_edge
   source  "Table 1"
 
+filter RATIO "Low-pass filter 20 Hz of a ratio"
+  step    LP20 when ratio_from is unfiltered
+  source  "Table 1"
+  note    "A ratio of filtered forces is not filtered again."
+
 filter BP "Band-pass filter 0.4 to 10 Hz"
   step    band-pass 0.4 Hz to 10 Hz, order bandpass_order, filter_phase, filter_edge
   source  "Table 1"
 
 filter WINDOW "Sliding mean 2 m, step 0.5 m"
   step    LP20 when sliding_input is lowpassed
+  step    sliding mean 2 m every 0.5 m, window_ends
+  source  "Table 1"
+
+filter RATIO_WINDOW "Sliding mean 2 m, step 0.5 m, of a ratio"
+  step    RATIO when sliding_input is lowpassed
   step    sliding mean 2 m every 0.5 m, window_ends
   source  "Table 1"
 
@@ -249,7 +259,7 @@ quantity Q_qst "Quasi-static vertical wheel force"
 quantity YQ_qst "Quasi-static ratio Y/Q"
   symbol      "(Y/Q)_qst"
   of          YQ at wheelsets 1, 3
-  filter      LP20
+  filter      RATIO
   value       median
   difference  quasi_static_difference
   limit       std 0.07
@@ -291,7 +301,7 @@ quantity Q_max "Vertical wheel force, maximum"
 quantity YQ_max "Ratio Y/Q, maximum"
   symbol      "(Y/Q)_max"
   of          YQ at wheelsets 1, 3
-  filter      WINDOW
+  filter      RATIO_WINDOW
   value       extreme_value
   difference  magnitudes
   limit       std 0.10

@@ -41,7 +41,7 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
         campaign: CampaignInfo {
             name: campaign.name.clone(),
             files,
-            vehicle: vehicle_items(&compiled.plan, campaign),
+            vehicle: vehicle_items(&compiled.plan, campaign, outcome.vehicle),
             facts: campaign.facts.iter().map(fact_item).collect(),
         },
         verdict: outcome.verdict,
@@ -109,24 +109,17 @@ fn parameter_info(parameter: &Parameter) -> ParameterInfo {
 }
 
 fn fact_item(fact: &Fact) -> DataItem {
-    let name = if fact.group.is_empty() { fact.name.clone() } else { format!("{}: {}", fact.group.replace('_', " "), fact.name) };
+    let plain = fact.name.replace('_', " ");
+    let name = if fact.group.is_empty() { plain } else { format!("{}: {plain}", fact.group.replace('_', " ")) };
     DataItem { name, value: fact.text.clone(), unit: fact.unit.clone().filter(|unit| unit != "-"), used: false }
 }
 
 /// Values the protocol reads first, with their units, then all others of the file.
-fn vehicle_items(plan: &Plan, campaign: &Campaign) -> Vec<DataItem> {
-    let mut items: Vec<DataItem> = Vec::new();
-    let mut read: Vec<&str> = Vec::new();
-    for datum in &plan.vehicle {
-        let value = campaign.vehicle.lookup(&datum.key).and_then(Node::scalar_text).unwrap_or("").to_string();
-        let unit = if let crate::check::plan::DatumKind::Number(unit) = &datum.kind { Some(unit.text.clone()) } else { None };
-        items.push(DataItem { name: datum.title.clone(), value, unit, used: true });
-        read.push(&datum.key);
-    }
+fn vehicle_items(plan: &Plan, campaign: &Campaign, used: Vec<DataItem>) -> Vec<DataItem> {
     let mut rest = Vec::new();
     flatten("", &campaign.vehicle, &mut rest);
-    items.extend(rest.into_iter().filter(|item| !read.contains(&item.name.as_str())));
-    items
+    let unused = rest.into_iter().filter(|item| !plan.vehicle.iter().any(|datum| datum.key == item.name));
+    used.into_iter().chain(unused).collect()
 }
 
 fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {
@@ -145,11 +138,8 @@ fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {
     }
 }
 
-/// Reports name files without the folders of the machine they were made on.
+/// Reports name a protocol's file without its folders: they are the same wherever and however the program was called.
 fn file_name(path: &str) -> String {
-    if path.starts_with("protocols/") {
-        return path.to_string();
-    }
     std::path::Path::new(path).file_name().map_or_else(|| path.to_string(), |name| name.to_string_lossy().into_owned())
 }
 

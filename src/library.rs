@@ -29,6 +29,11 @@ pub const SHIPPED: &[Shipped] = shipped![
     "stationary-sway",
 ];
 
+/// Names of the shipped protocols.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    SHIPPED.iter().map(|shipped| shipped.name)
+}
+
 /// The text of a shipped protocol.
 pub fn shipped(name: &str) -> Option<Arc<Source>> {
     SHIPPED.iter().find(|shipped| shipped.name == name).map(|shipped| Source::new(format!("protocols/{name}.fp"), shipped.text))
@@ -45,7 +50,7 @@ pub fn find(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Box<Proble
     }
     shipped(name).ok_or_else(|| {
         let problem = Problem::error("no-such-protocol", format!("there is no file and no shipped protocol `{name}`"));
-        Box::new(problem.suggest(name, SHIPPED.iter().map(|shipped| shipped.name)))
+        Box::new(problem.suggest(name, names()))
     })
 }
 

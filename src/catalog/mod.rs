@@ -2,14 +2,23 @@
 //!
 //! Each entry has a name, a signature and a sentence; checker, engine, `explain`, and the language reference read the same tables.
 
+mod entries;
 mod forms;
 mod functions;
 mod reducers;
 mod steps;
 mod two_signals;
 
+pub use entries::{Entry, entries};
 pub use forms::{Choice, Form, Part};
 pub use functions::{FUNCTIONS, Function, Signature};
 pub use reducers::{REDUCERS, Reducer, ReducerEntry, STATISTICS, Statistic, StatisticEntry};
 pub use steps::{STEPS, StepEntry, StepKind};
 pub use two_signals::{METRICS, Metric, MetricEntry, Pair};
+
+/// Comparisons of a simulated and a measured value with a name, so that protocols need not spell them out.
+pub const DIFFERENCES: [(&str, &str); 3] = [
+    ("oriented", "sign(measured) * (simulated - measured)"),
+    ("magnitudes", "|simulated| - |measured|"),
+    ("signed", "simulated - measured"),
+];

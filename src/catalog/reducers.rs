@@ -92,6 +92,9 @@ pub enum Statistic {
     Named(&'static StatisticEntry),
 }
 
+/// Low and high end of a confidence interval of some values.
+pub type Interval = fn(&[f64]) -> Option<(f64, f64)>;
+
 #[derive(Debug)]
 pub struct StatisticEntry {
     pub name: &'static str,
@@ -99,7 +102,7 @@ pub struct StatisticEntry {
     /// From the differences and the divisor's n - `ddof`.
     pub run: fn(&[f64], usize) -> Option<f64>,
     /// 95 % confidence interval for independent normal values, where there is one.
-    pub interval: Option<fn(&[f64]) -> Option<(f64, f64)>>,
+    pub interval: Option<Interval>,
 }
 
 impl PartialEq for StatisticEntry {

@@ -1,5 +1,7 @@
 //! The value of a checked expression, given what its names stand for.
 
+use std::cell::RefCell;
+
 use super::plan::{Expr, Kind, Operator, Scalar};
 
 /// What the names of an expression stand for. Each answer may be missing, with the reason.
@@ -36,6 +38,49 @@ impl Values for Nothing {
     }
     fn limit_of(&self, statistic: &str) -> Result<f64, String> {
         Err(format!("the limit of {statistic} is not known here"))
+    }
+}
+
+/// The same values, and which columns of the section were asked for on the way.
+#[derive(Debug)]
+pub struct Watched<'a, V: Values> {
+    values: &'a V,
+    columns: RefCell<Vec<usize>>,
+}
+
+impl<'a, V: Values> Watched<'a, V> {
+    pub fn new(values: &'a V) -> Self {
+        Self { values, columns: RefCell::default() }
+    }
+
+    /// Indices of the columns asked for, in the order they were first.
+    pub fn columns(&self) -> Vec<usize> {
+        self.columns.borrow().clone()
+    }
+}
+
+impl<V: Values> Values for Watched<'_, V> {
+    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
+        self.values.vehicle(index)
+    }
+    fn column(&self, index: usize) -> Result<Scalar, String> {
+        let mut columns = self.columns.borrow_mut();
+        if !columns.contains(&index) {
+            columns.push(index);
+        }
+        self.values.column(index)
+    }
+    fn extent(&self) -> Result<(f64, f64), String> {
+        self.values.extent()
+    }
+    fn input(&self, index: usize) -> Result<f64, String> {
+        self.values.input(index)
+    }
+    fn sides(&self) -> Result<(f64, f64), String> {
+        self.values.sides()
+    }
+    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
+        self.values.limit_of(statistic)
     }
 }
 

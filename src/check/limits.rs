@@ -122,7 +122,7 @@ impl Checker<'_> {
             }
         };
         let bound = bound.filter(|_| ok)?;
-        let words = normalised(&text.text[written.statistic.range.end..]);
+        let words = self.with_values(&normalised(&text.text[written.statistic.range.end..]));
         Some(Limit {
             statistic,
             ddof: self.ddof,
@@ -134,6 +134,26 @@ impl Checker<'_> {
             words,
             span: text.span.clone(),
         })
+    }
+
+    /// The words of a limit with the values of parameters in place of their names: `2/3 of std`, not `share of std`.
+    fn with_values(&self, words: &str) -> String {
+        let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+        let mut out = String::new();
+        let mut rest = words;
+        while !rest.is_empty() {
+            let name = rest.find(|c| !is_name(c)).unwrap_or(rest.len());
+            if name == 0 {
+                let next = rest.find(is_name).unwrap_or(rest.len());
+                out.push_str(&rest[..next]);
+                rest = &rest[next..];
+                continue;
+            }
+            let word = &rest[..name];
+            out.push_str(self.names.parameters.get(word).map_or(word, |parameter| parameter.value_words.as_str()));
+            rest = &rest[name..];
+        }
+        out
     }
 
     fn suitable_bound(&mut self, bound: Expr, at_least: bool, common: &Common<'_>) -> Option<Expr> {

@@ -22,7 +22,6 @@ mod signals;
 mod steps;
 
 pub use names::normalised;
-pub use quantities::DIFFERENCES;
 
 use std::collections::BTreeSet;
 

@@ -266,6 +266,8 @@ pub struct Quantity {
     pub notes: Vec<String>,
     /// Unit in which values are printed.
     pub unit: Unit,
+    /// Unit in which its signals are plotted.
+    pub signal_unit: Unit,
     /// Each position with the name of its signal.
     pub signals: Vec<(String, Signal)>,
     pub chain: Vec<Step>,
@@ -290,8 +292,8 @@ pub struct QuantityWords {
 pub enum Evaluation {
     /// A number of each side, then their difference.
     Sides { value: Expr, inputs: Vec<Input>, difference: Expr },
-    /// One number of the two signals; `over` is the other signal its wording names, one for each position.
-    Metric { metric: Metric, over: Vec<Signal> },
+    /// One number of the two signals; `over` is the other signal its wording names, one for each position, with its name and unit.
+    Metric { metric: Metric, over: Vec<Signal>, over_axis: Option<Axis> },
 }
 
 #[derive(Clone, Debug)]

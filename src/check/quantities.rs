@@ -3,21 +3,15 @@
 use super::Checker;
 use super::evaluate::words;
 use super::names::{Assignment, bare_word, normalised};
-use super::plan::{Evaluation, Expr, Input, InputSide, Quantity, QuantityWords, Signal, Step};
+use super::plan::{Axis, Evaluation, Expr, Input, InputSide, Quantity, QuantityWords, Signal, Step};
 use super::scalars::Scope;
+use crate::catalog::DIFFERENCES;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Node};
 use crate::units::{Dimension, Unit};
-
-/// Comparisons with a name, so that protocols need not spell them out.
-pub const DIFFERENCES: [(&str, &str); 3] = [
-    ("oriented", "sign(measured) * (simulated - measured)"),
-    ("magnitudes", "|simulated| - |measured|"),
-    ("signed", "simulated - measured"),
-];
 
 /// What a quantity's value and difference, or its metric, come to.
 struct Compared {
@@ -72,6 +66,8 @@ impl Checker<'_> {
         let minimum_signals = self.count(block, "minimum signals", self.minimum_signals);
         let minimum_pairs = self.count(block, "minimum pairs", self.minimum_pairs);
         let (of, chain, signals, compared, unit) = (of?, chain?, signals?, compared?, unit?);
+        let signal_unit =
+            from_pest::of_places(&of, self.problems).map(|written| self.own_unit(&written.signal.node, signals[0].1.dimension))?;
         let text = |key: &str| block.field(key).map(|field| field.value.text.clone());
         let filter =
             if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") };
@@ -84,6 +80,7 @@ impl Checker<'_> {
             source: text("source"),
             notes: block.fields_named("note").map(|note| note.value.text.clone()).collect(),
             unit,
+            signal_unit,
             signals: signals.into_iter().map(|(name, signal, _)| (name, signal)).collect(),
             chain,
             evaluation: compared.evaluation,
@@ -105,6 +102,7 @@ impl Checker<'_> {
         chain: Option<&[Step]>,
     ) -> Option<Compared> {
         let (metric, over) = self.metric(&field.value)?;
+        let over_name = over.as_ref().and_then(|over| bare_word(&over.phrase)).map(str::to_string);
         let signals = signals?;
         let over = match over {
             None => Vec::new(),
@@ -121,10 +119,12 @@ impl Checker<'_> {
             );
             return None;
         }
+        let over_axis =
+            over_name.zip(over.first()).map(|(name, signal)| Axis { unit: self.own_unit(&name, signal.dimension), column: name });
         let words = normalised(&field.value.text);
         let (_, first, _) = signals.first()?;
         Some(Compared {
-            evaluation: Evaluation::Metric { metric, over },
+            evaluation: Evaluation::Metric { metric, over, over_axis },
             dimension: (metric.0.gives)(first.dimension),
             processing: words.clone(),
             comparison: words,
@@ -231,17 +231,18 @@ impl Checker<'_> {
             return Some(unit);
         }
         let signal = from_pest::of_places(of, self.problems)?.signal.node;
-        let own = self
-            .names
-            .channels
-            .get(&signal)
-            .map(|channel| channel.unit.clone())
-            .or_else(|| self.names.signals.get(&signal).and_then(|signal| signal.unit.clone()));
-        Some(match own {
+        Some(self.own_unit(&signal, dimension))
+    }
+
+    /// The unit of a channel or signal if it suits, else that of SI.
+    fn own_unit(&self, name: &str, dimension: Dimension) -> Unit {
+        let channel = self.names.channels.get(name).map(|channel| channel.unit.clone());
+        let own = channel.or_else(|| self.names.signals.get(name).and_then(|signal| signal.unit.clone()));
+        match own {
             Some(unit) if unit.dimension == dimension => unit,
             _ if dimension == Dimension::ONE => Unit::one(),
             _ => Unit { text: dimension.to_string(), factor: 1.0, dimension },
-        })
+        }
     }
 
     pub(super) fn section_condition(&mut self, field: &Field) -> Option<Expr> {

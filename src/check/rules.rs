@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::names::normalised;
-use super::plan::{Axis, Check, DatumKind, Expr, Kind, OnFault, Origin, Quantity, Rule, SectionRules, Type, VerdictRule, Zone};
+use super::plan::{Axis, Check, DatumKind, Expr, Input, Kind, OnFault, Origin, Quantity, Rule, SectionRules, Type, VerdictRule, Zone};
 use super::scalars::Scope;
 use crate::metrics::percentile::Method;
 use crate::problem::Problem;
@@ -70,6 +70,7 @@ impl Checker<'_> {
         let mut scope = Scope::reducing(None, axis);
         let require = self.expr(&phrase, &field.value, &mut scope)?;
         self.flag_type(&require)?;
+        self.inputs_of_one_record(&scope.inputs)?;
         let unless = match block.field("unless") {
             Some(field) => Some(self.section_condition(field)?),
             None => None,
@@ -85,6 +86,20 @@ impl Checker<'_> {
             otherwise,
             span: block.span().clone(),
         })
+    }
+
+    /// The track record is read for its own: a check cannot weigh it against simulation or measurement.
+    fn inputs_of_one_record(&mut self, inputs: &[Input]) -> Option<()> {
+        let track = |input: &Input| input.signal.as_ref().is_some_and(|signal| signal.track);
+        let Some(first) = inputs.first() else { return Some(()) };
+        let Some(other) = inputs.iter().find(|input| track(input) != track(first)) else { return Some(()) };
+        self.problems.push(
+            Problem::error("mixed-records", "a check uses either the track record, or simulation and measurement")
+                .at(&other.span)
+                .also(&first.span, "the other record")
+                .help("make two checks of it"),
+        );
+        None
     }
 
     fn on_fault(&mut self, block: &Block, key: &str) -> Option<OnFault> {

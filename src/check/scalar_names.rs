@@ -107,10 +107,10 @@ impl Checker<'_> {
                 _ => {}
             }
         }
-        if let Some((dimension, names)) = &scope.limits {
-            if names.iter().any(|name| name == path) {
-                return expr(Kind::LimitOf(path.to_string()), Type::Number(*dimension));
-            }
+        if let Some((dimension, names)) = &scope.limits
+            && names.iter().any(|name| name == path)
+        {
+            return expr(Kind::LimitOf(path.to_string()), Type::Number(*dimension));
         }
         if let Some(statistic) = Statistic::named(path).filter(|_| scope.limits.is_some()) {
             let says = format!("there is no other limit of the {} that this could refer to", statistic.title(self.ddof));

@@ -240,18 +240,15 @@ impl Checker<'_> {
         let own: Assignment =
             signal.places.iter().filter_map(|place| at.get(place).map(|member| (place.clone(), member.clone()))).collect();
         let found = self.inside("signal", name, span, |checker| checker.signal(&signal.is.phrase, &signal.is.text, &own))?;
-        if let Some(unit) = &signal.unit {
-            if unit.dimension != found.dimension {
-                self.problems.push(
-                    Problem::error(
-                        "unit-mismatch",
-                        format!("signal `{name}` is said to be in {unit}, but is {}", found.dimension.in_words()),
-                    )
+        if let Some(unit) = &signal.unit
+            && unit.dimension != found.dimension
+        {
+            self.problems.push(
+                Problem::error("unit-mismatch", format!("signal `{name}` is said to be in {unit}, but is {}", found.dimension.in_words()))
                     .at(&signal.span)
                     .also(&found.span, found.dimension.in_words()),
-                );
-                return None;
-            }
+            );
+            return None;
         }
         Some(found)
     }

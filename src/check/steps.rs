@@ -150,12 +150,11 @@ impl Checker<'_> {
                 }
             }
         }
-        if let [part] = written.parts.as_slice() {
-            if let [At { node: Item::Word(word), range }] = part.as_slice() {
-                if !STEPS.iter().any(|entry| entry.form.head == [Part::Word("magnitude")] && word == "magnitude") {
-                    return self.filter_named(word, &text.place(range.clone()));
-                }
-            }
+        if let [part] = written.parts.as_slice()
+            && let [At { node: Item::Word(word), range }] = part.as_slice()
+            && !STEPS.iter().any(|entry| entry.form.head == [Part::Word("magnitude")] && word == "magnitude")
+        {
+            return self.filter_named(word, &text.place(range.clone()));
         }
         let entry = self.find_form(&written, &span, "step", STEPS.iter().map(|entry| &entry.form))?;
         let entry = &STEPS[entry];

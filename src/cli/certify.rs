@@ -1,6 +1,7 @@
 //! `certify`: the main job.
 
-use std::path::PathBuf;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
@@ -12,6 +13,7 @@ use crate::certify::{Compiled, certify, compile};
 use crate::check::family::{self, Family};
 use crate::check::{Override, Overrides, plan::SetBy};
 use crate::data::Campaign;
+use crate::data::text::read_text;
 use crate::data::write::Outputs;
 use crate::library;
 use crate::problem::{Problem, Problems};
@@ -42,7 +44,7 @@ pub struct Certify {
     plots: usize,
     /// Records worked on at a time [default: one per core]
     #[arg(long, short)]
-    jobs: Option<usize>,
+    jobs: Option<NonZeroUsize>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
@@ -61,7 +63,7 @@ impl Certify {
     pub fn run(self, console: &Console) -> Exit {
         if let Some(jobs) = self.jobs {
             // Fails only if the pool was made before, which nothing does before here.
-            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global();
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
         }
         let mut problems = Problems::default();
         let prepared = self.prepare(&mut problems);
@@ -164,19 +166,27 @@ impl Certify {
     }
 }
 
-/// The protocol a campaign names: a shipped one, or a file inside the campaign.
+/// The protocol a campaign names: a shipped one, or a file inside the campaign, as are those it extends.
 fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mut Problems) -> Option<Family> {
-    let source = match library::shipped(&named.value) {
-        Some(source) => source,
-        None => match campaign.read_named(named) {
-            Ok((source, _)) => source,
-            Err(problem) => {
-                problems.push(problem.suggest(&named.value, library::SHIPPED.iter().map(|shipped| shipped.name)));
-                return None;
-            }
-        },
+    let inside = |named: &Spanned<String>| {
+        if let Some(shipped) = library::shipped(&named.value) {
+            return Ok(shipped);
+        }
+        let place = campaign.place(named)?;
+        read_text(&place.path, &place.shown).map(|(source, _)| source).map_err(|problem| {
+            let problem = if problem.at.is_some() { problem } else { problem.at(&named.span) };
+            if problem.code == "file-missing" { problem.suggest(&named.value, library::names()) } else { problem }
+        })
     };
-    Some(family::read(&source, &library::parent, problems))
+    let source = inside(named).map_err(|problem| problems.push(problem)).ok()?;
+    let parent = |name: &str, from: &Source| {
+        if let Some(shipped) = library::shipped(name) {
+            return Ok(shipped);
+        }
+        let beside = Path::new(campaign.inside(&from.name)).parent().unwrap_or(Path::new(""));
+        inside(&Spanned::new(beside.join(name).display().to_string(), source.whole())).map_err(Box::new)
+    };
+    Some(family::read(&source, &parent, problems))
 }
 
 fn progress_bar(console: &Console, sections: usize) -> Arc<ProgressBar> {

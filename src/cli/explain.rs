@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 
 use super::output::{Console, Exit};
 use super::protocols::load;
-use crate::catalog::{FUNCTIONS, METRICS, REDUCERS, STATISTICS, STEPS, Signature};
-use crate::check::{self, DIFFERENCES, Overrides, plan::Plan};
+use crate::catalog::entries;
+use crate::check::{self, Overrides, plan::Plan};
 use crate::graph;
 use crate::problem::{Problem, Problems};
 use crate::syntax::document::Document;
@@ -20,8 +20,9 @@ pub struct Explain {
     /// Path of a protocol, or the name of a shipped one; without it the registry is listed.
     #[arg(value_name = "PROTOCOL")]
     protocol: Option<String>,
-    #[arg(long, value_enum, default_value_t = Stage::Plan)]
-    stage: Stage,
+    /// [default: plan]
+    #[arg(long, value_enum, requires = "protocol")]
+    stage: Option<Stage>,
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// File to write; the terminal otherwise.
@@ -64,19 +65,22 @@ impl Explain {
     }
 
     fn stage_text(&self, name: &str, console: &Console) -> Result<String, Exit> {
-        if self.stage != Stage::Graph && matches!(self.format, Format::Dot | Format::Svg) {
+        let stage = self.stage.unwrap_or(Stage::Plan);
+        if stage != Stage::Graph && matches!(self.format, Format::Dot | Format::Svg) {
             return Err(console.fail(Problem::error("format", "only the graph is drawn: `--stage graph`"), Exit::Wrong));
         }
         let mut problems = Problems::default();
         let family = load(name, &mut problems);
-        let plan = family.as_ref().and_then(|family| check::check(family, &Overrides::new(), &mut problems));
+        // As written is as written: what a rule means is looked at for the later stages only.
+        let checked = family.as_ref().filter(|_| stage != Stage::Ast);
+        let plan = checked.and_then(|family| check::check(family, &Overrides::new(), &mut problems));
         console.problems(&problems);
-        let Some(family) = family else { return Err(Exit::Wrong) };
-        if self.stage == Stage::Ast {
+        let Some(family) = family.filter(|_| !problems.any_error()) else { return Err(Exit::Wrong) };
+        if stage == Stage::Ast {
             return Ok(if self.format == Format::Json { pretty(&document_json(&family.merged)) } else { document_text(&family.merged) });
         }
         let Some(plan) = plan else { return Err(Exit::Wrong) };
-        Ok(match (self.stage, self.format) {
+        Ok(match (stage, self.format) {
             (Stage::Graph, format) => {
                 let graph = graph::from_plan(&plan);
                 match format {
@@ -176,59 +180,12 @@ fn plan_json(plan: &Plan) -> Value {
     json!({"name": plan.name, "title": plan.title, "parameters": parameters, "zones": zones, "quantities": quantities, "verdict": plan.verdict.words})
 }
 
-fn signature(signature: Signature) -> &'static str {
-    match signature {
-        Signature::Same => "(D) -> D",
-        Signature::ToPlain => "(D) -> plain number",
-        Signature::Plain => "(plain number) -> plain number",
-        Signature::Root => "(D) -> square root of D",
-        Signature::PairSame => "(D, D) -> D",
-    }
-}
-
-/// Entries of the registry: what, wording, signature, about.
-pub fn entries() -> Vec<(&'static str, String, String, String)> {
-    let mut all = Vec::new();
-    for entry in STEPS {
-        let mut about = entry.about.to_string();
-        for (name, default) in entry.form.numbers {
-            let _ = write!(about, " Option `{name}` (default {default}).");
-        }
-        for choice in entry.form.choices {
-            let _ = write!(about, " Option {}.", choice.words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(" | "));
-        }
-        all.push(("step", entry.form.in_words(), "signal<D> -> signal<D>".into(), about));
-    }
-    all.push(("reducer", "p<number>".into(), "signal<D> -> D".into(), "The value below which so many per cent of the samples lie.".into()));
-    for entry in REDUCERS {
-        let gives = if entry.name == "slope" { "signal<D> -> D per axis" } else { "signal<D> -> D" };
-        all.push(("reducer", entry.name.into(), gives.into(), entry.about.into()));
-    }
-    for entry in METRICS {
-        let probe = crate::units::Dimension::TIME;
-        let gives = if (entry.gives)(probe) == probe { "(signal<D>, signal<D>) -> D" } else { "(signal<D>, signal<D>) -> plain number" };
-        all.push(("metric", entry.form.in_words(), gives.into(), format!("{} {}", entry.about, entry.source)));
-    }
-    for (name, expression) in DIFFERENCES {
-        all.push(("difference", name.into(), "(D, D) -> D".into(), format!("`{expression}`")));
-    }
-    for entry in STATISTICS {
-        all.push(("statistic", entry.name.into(), "pairs of D -> D".into(), format!("The {} of all pairs.", entry.title)));
-    }
-    all.push(("statistic", "p<number>".into(), "pairs of D -> D".into(), "A percentile of all pairs.".into()));
-    all.push(("statistic", "each".into(), "each pair of D".into(), "Every pair by itself; the worst decides.".into()));
-    for function in FUNCTIONS {
-        all.push(("function", function.name.into(), signature(function.signature).into(), function.about.into()));
-    }
-    all
-}
-
 fn registry(as_json: bool) -> String {
     let entries = entries();
     if as_json {
         let list: Vec<Value> = entries
             .iter()
-            .map(|(kind, name, signature, about)| json!({"kind": kind, "wording": name, "signature": signature, "about": about}))
+            .map(|entry| json!({"kind": entry.kind, "wording": entry.wording, "signature": entry.signature, "about": entry.in_words()}))
             .collect();
         let units: Vec<Value> =
             SYMBOLS.iter().map(|unit| json!({"symbol": unit.symbol, "name": unit.name, "dimension": unit.dimension.to_string()})).collect();
@@ -236,12 +193,12 @@ fn registry(as_json: bool) -> String {
     }
     let mut out = String::new();
     let mut last = "";
-    for (kind, name, signature, about) in &entries {
-        if *kind != last {
-            let _ = writeln!(out, "{}{kind}s", if last.is_empty() { "" } else { "\n" });
-            last = kind;
+    for entry in &entries {
+        if entry.kind != last {
+            let _ = writeln!(out, "{}{}s", if last.is_empty() { "" } else { "\n" }, entry.kind);
+            last = entry.kind;
         }
-        let _ = writeln!(out, "  {name}\n      {signature}. {about}");
+        let _ = writeln!(out, "  {}\n      {}. {}", entry.wording, entry.signature, entry.in_words());
     }
     let symbols: Vec<&str> = SYMBOLS.iter().map(|unit| unit.symbol).collect();
     let _ = writeln!(out, "\nunits\n  {}", symbols.join("  "));

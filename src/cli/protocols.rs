@@ -127,7 +127,7 @@ pub fn list(name: Option<&str>, console: &Console) -> Exit {
             Some(source) => console.print(&source.text),
             None => {
                 let problem = Problem::error("no-such-protocol", format!("no shipped protocol is called `{name}`"));
-                console.fail(problem.suggest(name, library::SHIPPED.iter().map(|shipped| shipped.name)), Exit::Wrong)
+                console.fail(problem.suggest(name, library::names()), Exit::Wrong)
             }
         },
         None => {

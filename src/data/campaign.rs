@@ -104,6 +104,11 @@ impl Campaign {
         let nowhere = Source::new(path.display().to_string(), "").whole();
         let place = folder.place(CAMPAIGN_FILE, &nowhere).map_err(|problem| problems.push(problem)).ok()?;
         let mut opening = Opening { folder, files: Vec::new(), problems };
+        if !place.path.is_file() {
+            let says = format!("there is no file `{}`", place.shown);
+            opening.problems.push(Problem::error("file-missing", says).help("a campaign is a folder with a file `campaign.yaml`"));
+            return None;
+        }
         let (source, tree) = opening.yaml(&place, None)?;
         if !matches!(tree.value, Value::Map(_)) {
             problems.push(
@@ -203,37 +208,42 @@ impl Campaign {
             return Ok(place);
         }
         if !folder.path.is_dir() {
-            return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.shown)).at(span));
+            return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside)).at(span));
         }
         let mut others: Vec<String> = std::fs::read_dir(&folder.path)
             .map(|entries| entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect())
             .unwrap_or_default();
+        // The record of another section is not what was meant.
+        others.retain(|name| !self.names.iter().any(|other| name.strip_suffix(".csv") == Some(&other.value)));
         others.sort();
-        Err(Problem::error("file-missing", format!("there is no file `{}`", place.shown))
+        Err(Problem::error("file-missing", format!("there is no file `{}`", place.inside))
             .at(&section.span)
             .suggest(&format!("{}.csv", section.value), others.iter().map(String::as_str)))
     }
 
-    /// Reads the wanted columns of a section's record.
+    /// Reads the wanted columns of a section's record. Its faults go into results, which must be the same wherever the campaign lies:
+    /// they name the record by its path inside the campaign.
     ///
     /// # Errors
     /// As [`Campaign::record_place`] and [`read_record`].
     pub fn read(&self, kind: RecordKind, section: &Cell, wanted: &[Wanted]) -> Result<(Record, ReadFile), Vec<Problem>> {
         let place = self.record_place(kind, section).map_err(|problem| vec![problem])?;
-        let record = read_record(&place.path, &place.shown, wanted)?;
+        let record = read_record(&place.path, &place.inside, wanted)?;
         let file = ReadFile { path: place.inside, sha256: record.sha256.clone(), bytes: record.bytes as u64 };
         Ok((record, file))
     }
 
-    /// A file that the campaign or its vehicle names, read as text.
+    /// The path inside the campaign of a file that a message names by the folder as it was given.
+    pub fn inside<'a>(&self, shown: &'a str) -> &'a str {
+        self.folder.inside(shown)
+    }
+
+    /// A file that the campaign or its vehicle names; it need not exist.
     ///
     /// # Errors
-    /// `path-outside`, `path-invalid` and those of [`read_text`].
-    pub fn read_named(&self, written: &Spanned<String>) -> Result<(Arc<Source>, ReadFile), Problem> {
-        let place = self.folder.place(&written.value, &written.span)?;
-        let (source, sha256) = read_text(&place.path, &place.shown).map_err(|problem| named_at(problem, Some(&written.span)))?;
-        let bytes = size(&place.path);
-        Ok((source, ReadFile { path: place.inside, sha256, bytes }))
+    /// `path-outside`, `path-invalid`.
+    pub fn place(&self, written: &Spanned<String>) -> Result<Place, Problem> {
+        self.folder.place(&written.value, &written.span)
     }
 }
 
@@ -303,7 +313,7 @@ impl Opening<'_> {
         let place = self.folder.place(&written.value, &written.span);
         let place = self.keep(place)?;
         let mut found = Problems::default();
-        let table = Table::read(&place.path, &place.shown, SECTION_KEY, &mut found);
+        let table = Table::read(&place.path, &place.shown, Some(SECTION_KEY), &mut found);
         for problem in found.0 {
             self.problems.push(named_at(problem, Some(&written.span)));
         }

@@ -96,7 +96,8 @@ impl Heading {
                 .help(format!("write the unit in square brackets: `{name} [...]`, or `{name} [-]` for a plain number")));
         };
         let unit = Unit::parse(&written.text).map_err(|unknown| {
-            let problem = Problem::error("unknown-unit", format!("`{}` is no known unit", unknown.word)).at(&written.span);
+            let problem = Problem::error("unknown-unit", format!("the unit of the column `{name}`: `{}` is no known unit", unknown.word))
+                .at(&written.span);
             match unknown.near {
                 Some(near) => problem.help(format!("did you mean `{near}`?")),
                 None => problem,
@@ -188,12 +189,11 @@ pub(super) fn ragged(line: &Span, cells: &[RawCell], columns: usize) -> Problem 
             .at(line)
             .help("write numbers with a point");
     }
-    // The first cell too many, or the place where the next one is missing.
-    let at = match cells.get(columns) {
-        Some(extra) => line.part(extra.place.start..line.end - line.start),
-        None => cells.last().map_or_else(|| line.clone(), |last| line.part(last.place.clone())),
+    let (at, label) = match cells.get(columns) {
+        Some(extra) => (line.part(extra.place.start..line.end - line.start), "beyond the last column"),
+        None => (cells.last().map_or_else(|| line.clone(), |last| line.part(last.place.clone())), "the last value"),
     };
-    Problem::error("ragged-row", counts).at(&at)
+    Problem::error("ragged-row", counts).at(&at).label(label)
 }
 
 /// A finite number as written in a cell.

@@ -285,7 +285,7 @@ mod tests {
         assert_eq!(check(twice, None).expect_err("stands")[0].0, "axis-not-increasing");
 
         let mut uneven = even(100, 200.0, 6);
-        uneven[50].0 = "0.251000".into();
+        uneven[50].0 = "0.251300".into();
         assert_eq!(check(uneven, None).expect_err("uneven")[0].0, "uneven-step");
         assert_eq!(check(even(2, 200.0, 3), None).expect_err("short")[0].0, "too-short");
     }

@@ -33,6 +33,11 @@ impl Folder {
         }
     }
 
+    /// What [`Place::shown`] says after the folder; other names as they are.
+    pub fn inside<'a>(&self, shown: &'a str) -> &'a str {
+        Path::new(shown).strip_prefix(&self.shown).ok().and_then(Path::to_str).unwrap_or(shown)
+    }
+
     /// A path written in the campaign, which must stay in the folder, also by way of symbolic links. It need not exist.
     pub fn place(&self, written: &str, at: &Span) -> Result<Place, Problem> {
         let outside = |how: &str| {

@@ -6,13 +6,14 @@
 //! | `campaign` | a campaign folder: `campaign.yaml`, the vehicle, the sections, where the records are |
 //! | `record` | one sampled record, the hot path |
 //! | `table` | a small table such as `sections.csv` |
-//! | `tree` | YAML with the place of every word |
+//! | `crate::yaml` | YAML with the place of every word |
 //! | `checks` | whether the samples of a record can be evaluated |
 //! | `write` | every file the program makes |
 
 pub mod campaign;
 mod cells;
 pub mod checks;
+mod faults;
 mod folder;
 pub mod hash;
 pub mod record;
@@ -23,5 +24,6 @@ pub mod write;
 pub use campaign::{Campaign, RecordKind};
 pub use cells::Heading;
 pub use checks::{Axis, check_axis};
+pub use folder::Place;
 pub use record::{Column, Record, Wanted, read_record};
 pub use table::Table;

@@ -4,11 +4,15 @@
 //! as it should be is looked at again, cell by cell, for what is wrong with it (`fault`).
 
 mod fault;
+mod marks;
+mod number;
 mod rows;
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use super::cells::{self, Heading};
+use super::faults::Faults;
 use super::hash::sha256;
 use super::text::{decode, read_large, read_line};
 use crate::problem::Problem;
@@ -80,7 +84,8 @@ impl Record {
 
     /// The line of the file that sample `row` (from 0) was read from, or the cell of one of its columns. The file is read again.
     pub fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
-        let bytes = read_large(&self.path, &self.shown).ok()?;
+        let mut bytes = Vec::new();
+        read_large(&self.path, &self.shown, &mut bytes).ok()?;
         let text = decode(&bytes, &self.shown).ok()?;
         // A record has no blank lines between its rows, so sample 0 is always in line 2.
         let line = text.split('\n').nth(row + 1)?.trim_end_matches('\r');
@@ -100,13 +105,30 @@ impl Record {
 /// `unknown-channel`, `unit-missing`, `unknown-unit`, `unit-mismatch`. Of a row: `ragged-row`, `truncated-row`, `blank-line`,
 /// `stray-quote`, `not-a-number`, `not-finite`, `decimal-comma`.
 pub fn read_record(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
-    let bytes = read_large(path, shown).map_err(|problem| vec![problem])?;
-    let text = decode(&bytes, shown).map_err(|problem| vec![problem])?;
+    let mut buffer = BUFFER.take();
+    let record = read_into(&mut buffer, path, shown, wanted);
+    if buffer.capacity() <= KEPT {
+        BUFFER.set(buffer);
+    }
+    record
+}
+
+/// A buffer up to this size stays with its thread.
+const KEPT: usize = 32 << 20;
+
+thread_local! {
+    /// Text of the record before, read over: fresh memory would cost about as much as the reading.
+    static BUFFER: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+}
+
+fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
+    read_large(path, shown, bytes).map_err(|problem| vec![problem])?;
+    let text = decode(bytes, shown).map_err(|problem| vec![problem])?;
     let (headings, body) = header(text, shown)?;
     let mut columns = find_columns(&headings, wanted, shown)?;
-    let rows = rows::read(&text[body..], headings.len(), &mut columns, shown)?;
+    let rows = rows::read(text, body, headings.len(), &mut columns, shown)?;
     let channels = headings.into_iter().map(|heading| heading.name).collect();
-    Ok(Record { shown: shown.to_string(), columns, channels, rows, sha256: sha256(&bytes), bytes: bytes.len(), path: path.to_path_buf() })
+    Ok(Record { shown: shown.to_string(), columns, channels, rows, sha256: sha256(bytes), bytes: bytes.len(), path: path.to_path_buf() })
 }
 
 /// The headings of a record, for a caller that wants to know what there is.
@@ -134,8 +156,8 @@ fn header(text: &str, shown: &str) -> Result<(Vec<Heading>, usize), Vec<Problem>
 }
 
 fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<Vec<Column>, Vec<Problem>> {
-    let mut columns = Vec::with_capacity(wanted.len());
-    let mut faults = fault::Faults::new(shown);
+    let mut columns: Vec<Column> = Vec::with_capacity(wanted.len());
+    let mut faults = Faults::new(shown);
     for wanted in wanted {
         let Some(position) = headings.iter().position(|heading| heading.name == wanted.name) else {
             if wanted.required {
@@ -144,6 +166,8 @@ fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<
             continue;
         };
         match headings[position].unit(wanted.dimension) {
+            // Asked for twice, a column is read once.
+            Ok(_) if columns.iter().any(|column| column.position == position) => {}
             Ok(unit) => columns.push(Column { name: wanted.name.clone(), unit, values: Vec::new(), position }),
             Err(problem) => faults.push(|| problem),
         }

@@ -5,12 +5,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::cells::{self, Heading, StrayQuote};
+use super::faults::Faults;
 use super::text::read_text;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span, Spanned};
 use crate::units::Dimension;
 
-/// A table that has a name in every row and the same number of cells in each.
+/// A table with the same number of cells in every row, and a name for each row if it was read with a key.
 #[derive(Clone, Debug)]
 pub struct Table {
     pub source: Arc<Source>,
@@ -19,19 +20,19 @@ pub struct Table {
     pub columns: Vec<Heading>,
     /// One cell per column, in the order of the file.
     pub rows: Vec<Vec<Cell>>,
-    /// The column that holds the names of the rows.
-    key: usize,
+    /// The column that holds the names of the rows, if they have names.
+    key: Option<usize>,
 }
 
 /// The text of a cell without quotes and blanks around it, and its place.
 pub type Cell = Spanned<String>;
 
 impl Table {
-    /// Reads a table whose rows are named by the column `key`, or, where there is none of that name, by the first column.
+    /// Reads a table. With a key, its rows are named by the column of that name, or, where there is none, by the first column.
     ///
     /// Problems: those of [`read_text`]; `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`; per row `blank-line`,
     /// `ragged-row`, `decimal-comma`, `name-missing`, `duplicate-name`; `no-rows`.
-    pub fn read(path: &Path, shown: &str, key: &str, problems: &mut Problems) -> Option<Self> {
+    pub fn read(path: &Path, shown: &str, key: Option<&str>, problems: &mut Problems) -> Option<Self> {
         match read_text(path, shown) {
             Ok((source, sha256)) => Self::parse(source, sha256, key, problems),
             Err(problem) => {
@@ -41,43 +42,50 @@ impl Table {
         }
     }
 
-    pub(super) fn parse(source: Arc<Source>, sha256: String, key: &str, problems: &mut Problems) -> Option<Self> {
-        let before = problems.errors();
+    pub(super) fn parse(source: Arc<Source>, sha256: String, key: Option<&str>, problems: &mut Problems) -> Option<Self> {
+        let name = source.name.clone();
+        let mut faults = Faults::new(&name);
         let mut lines = lines(&source);
         let mut found = Vec::new();
         let columns = lines.next().and_then(|line| cells::headings(&line, &mut found));
-        found.into_iter().for_each(|problem| problems.push(problem));
-        let columns = columns?;
-        let key = columns.iter().position(|column| column.name == key).unwrap_or(0);
-        let rows: Vec<Vec<Cell>> = lines.filter_map(|line| row(&line, &columns, problems)).collect();
-        if rows.is_empty() && problems.errors() == before {
-            problems.push(Problem::error("no-rows", "the table has a header and no rows").at(&columns[0].span));
+        found.into_iter().for_each(|problem| faults.push(|| problem));
+        let Some(columns) = columns else {
+            faults.add_to(problems);
+            return None;
+        };
+        let key = key.map(|key| columns.iter().position(|column| column.name == key).unwrap_or(0));
+        let rows: Vec<Vec<Cell>> = lines.filter_map(|line| row(&line, &columns, &mut faults)).collect();
+        if rows.is_empty() && faults.is_empty() {
+            faults.push(|| Problem::error("no-rows", "the table has a header and no rows").at(&columns[0].span));
         }
         let table = Self { source, sha256, columns, rows, key };
-        table.check_names(problems);
-        (problems.errors() == before).then_some(table)
+        table.check_names(&mut faults);
+        let good = faults.is_empty();
+        faults.add_to(problems);
+        good.then_some(table)
     }
 
-    fn check_names(&self, problems: &mut Problems) {
+    fn check_names(&self, faults: &mut Faults<'_>) {
+        let Some(column) = self.key.and_then(|key| self.columns.get(key)) else { return };
         let mut first: HashMap<&str, &Span> = HashMap::new();
         for name in self.names() {
             if name.value.is_empty() {
-                problems.push(Problem::error("name-missing", format!("the row has no `{}`", self.columns[self.key].name)).at(&name.span));
+                faults.push(|| Problem::error("name-missing", format!("the row has no `{}`", column.name)).at(&name.span));
             } else if let Some(before) = first.get(name.value.as_str()) {
-                problems.push(
+                faults.push(|| {
                     Problem::error("duplicate-name", format!("two rows are called `{}`", name.value))
                         .at(&name.span)
-                        .also(before, "the first of them"),
-                );
+                        .also(before, "the first of them")
+                });
             } else {
                 first.insert(&name.value, &name.span);
             }
         }
     }
 
-    /// The names of the rows, in the order of the file.
+    /// The names of the rows, in the order of the file; none if it was read without a key.
     pub fn names(&self) -> impl Iterator<Item = &Cell> {
-        self.rows.iter().filter_map(|row| row.get(self.key))
+        self.rows.iter().filter_map(|row| row.get(self.key?))
     }
 
     pub fn row_named(&self, name: &str) -> Option<usize> {
@@ -113,16 +121,16 @@ impl Table {
     pub fn numbers(&self, column: usize, dimension: Option<Dimension>) -> Result<Vec<Option<f64>>, Vec<Problem>> {
         let Some(heading) = self.columns.get(column) else { return Ok(Vec::new()) };
         let unit = heading.unit(dimension).map_err(|problem| vec![problem])?;
-        let mut problems = Vec::new();
+        let mut faults = Faults::new(&self.source.name);
         let mut values = Vec::with_capacity(self.rows.len());
         for cell in self.rows.iter().filter_map(|row| row.get(column)) {
             match cells::number(&cell.value) {
                 _ if cell.value.is_empty() => values.push(None),
                 Ok(number) => values.push(Some(unit.to_si(number))),
-                Err((code, says)) => problems.push(Problem::error(code, format!("`{}`: {says}", heading.name)).at(&cell.span)),
+                Err((code, says)) => faults.push(|| Problem::error(code, format!("`{}`: {says}", heading.name)).at(&cell.span)),
             }
         }
-        if problems.is_empty() { Ok(values) } else { Err(problems) }
+        faults.finish(values)
     }
 }
 
@@ -138,17 +146,17 @@ fn lines(source: &Arc<Source>) -> impl Iterator<Item = Span> {
     })
 }
 
-fn row(line: &Span, columns: &[Heading], problems: &mut Problems) -> Option<Vec<Cell>> {
+fn row(line: &Span, columns: &[Heading], faults: &mut Faults<'_>) -> Option<Vec<Cell>> {
     if line.text().trim().is_empty() {
-        problems.push(Problem::error("blank-line", "a blank line stands between the rows").at(line));
+        faults.push(|| Problem::error("blank-line", "a blank line stands between the rows").at(line));
         return None;
     }
     match cells::split(line.text()) {
-        Err(StrayQuote(place)) => problems.push(cells::stray_quote(&line.part(place))),
+        Err(StrayQuote(place)) => faults.push(|| cells::stray_quote(&line.part(place))),
         Ok(cells) if cells.len() == columns.len() => {
             return Some(cells.into_iter().map(|cell| Cell::new(cell.text, line.part(cell.place))).collect());
         }
-        Ok(cells) => problems.push(cells::ragged(line, &cells, columns.len())),
+        Ok(cells) => faults.push(|| cells::ragged(line, &cells, columns.len())),
     }
     None
 }
@@ -161,7 +169,7 @@ mod tests {
 
     fn parse(text: &str) -> (Option<Table>, Problems) {
         let mut problems = Problems::default();
-        let table = Table::parse(Source::new("t", text), String::new(), "section", &mut problems);
+        let table = Table::parse(Source::new("t", text), String::new(), Some("section"), &mut problems);
         (table, problems)
     }
 

@@ -19,7 +19,8 @@ const LARGE: u64 = 4 << 30;
 /// # Errors
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`, `encoding`.
 pub fn read_text(path: &Path, shown: &str) -> Result<(Arc<Source>, String), Problem> {
-    let bytes = read_bytes(path, shown, SMALL)?;
+    let mut bytes = Vec::new();
+    read_bytes(path, shown, SMALL, &mut bytes)?;
     let text = decode(&bytes, shown)?;
     if text.trim().is_empty() {
         return Err(empty(shown));
@@ -27,21 +28,23 @@ pub fn read_text(path: &Path, shown: &str) -> Result<(Arc<Source>, String), Prob
     Ok((Source::new(shown, text), sha256(&bytes)))
 }
 
-/// All bytes of a record file.
-pub(super) fn read_large(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
-    read_bytes(path, shown, LARGE)
+/// All bytes of a record file, in the place of what the buffer held.
+pub(super) fn read_large(path: &Path, shown: &str, buffer: &mut Vec<u8>) -> Result<(), Problem> {
+    read_bytes(path, shown, LARGE, buffer)
 }
 
 /// The first line of a record file.
 pub(super) fn read_line(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
-    let mut line = Vec::new();
     let unreadable = |error: std::io::Error| Problem::error("file-unreadable", format!("`{shown}` cannot be read: {error}"));
-    let file = File::open(path).map_err(unreadable)?;
-    BufReader::new(file.take(SMALL)).read_until(b'\n', &mut line).map_err(unreadable)?;
+    if !path.is_file() {
+        return Err(Problem::error("file-missing", format!("there is no file `{shown}`")));
+    }
+    let mut line = Vec::new();
+    BufReader::new(File::open(path).map_err(unreadable)?.take(SMALL)).read_until(b'\n', &mut line).map_err(unreadable)?;
     if line.is_empty() { Err(empty(shown)) } else { Ok(line) }
 }
 
-fn read_bytes(path: &Path, shown: &str, limit: u64) -> Result<Vec<u8>, Problem> {
+fn read_bytes(path: &Path, shown: &str, limit: u64, buffer: &mut Vec<u8>) -> Result<(), Problem> {
     let unreadable = |why: &dyn std::fmt::Display| Problem::error("file-unreadable", format!("`{shown}` cannot be read: {why}"));
     // What is no plain file is refused before it is opened: a pipe would wait for ever.
     let meta = std::fs::metadata(path).map_err(|error| match error.kind() {
@@ -57,10 +60,11 @@ fn read_bytes(path: &Path, shown: &str, limit: u64) -> Result<Vec<u8>, Problem> 
             format!("`{shown}` has {} MB; the most that is read is {} MB", meta.len() >> 20, limit >> 20),
         ));
     }
-    let mut bytes = Vec::with_capacity(usize::try_from(meta.len()).unwrap_or(0) + 1);
+    buffer.clear();
+    buffer.reserve(usize::try_from(meta.len()).unwrap_or(0) + 1);
     let file = File::open(path).map_err(|error| unreadable(&error))?;
-    file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| unreadable(&error))?;
-    if bytes.is_empty() { Err(empty(shown)) } else { Ok(bytes) }
+    file.take(limit + 1).read_to_end(buffer).map_err(|error| unreadable(&error))?;
+    if buffer.is_empty() { Err(empty(shown)) } else { Ok(()) }
 }
 
 fn empty(shown: &str) -> Problem {

@@ -203,7 +203,7 @@ impl Builder {
                     );
                     (inputs, None, vec![node], None)
                 }
-                Evaluation::Metric { metric, over } => {
+                Evaluation::Metric { metric, over, .. } => {
                     let over = over.get(number).map(|signal| self.processed(signal, &quantity.chain, &quantity.span).1);
                     let mut before = vec![processed];
                     before.extend(over);

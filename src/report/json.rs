@@ -24,8 +24,8 @@ pub fn results(found: &Certification) -> String {
     root.insert("verdict".into(), json!(found.verdict));
     root.insert("reasons".into(), json!(found.reasons));
     root.insert("quantities".into(), Value::Array(found.quantities.iter().map(quantity).collect()));
-    root.insert("sections".into(), json!(found.sections));
-    root.insert("zones".into(), json!(found.zones));
+    root.insert("sections".into(), Value::Array(found.sections.iter().map(|section| zone_as_number(json!(section))).collect()));
+    root.insert("zones".into(), Value::Array(found.zones.iter().map(|zone| zone_as_number(json!(zone))).collect()));
     root.insert("domain".into(), json!(found.domain));
     root.insert("notes".into(), json!(found.notes));
     // A tree of plain values always serialises.
@@ -64,7 +64,7 @@ fn quantity(quantity: &QuantityResult) -> Value {
     let values = quantity.values.iter().map(|pair| {
         let mut row = Map::new();
         row.insert("section".into(), json!(pair.section));
-        row.insert("zone".into(), zone(pair.zone.as_deref()));
+        row.insert("zone".into(), json!(pair.zone));
         row.insert("signal".into(), json!(pair.signal));
         if quantity.has_sides {
             row.insert("simulated".into(), json!(pair.simulated));
@@ -73,17 +73,19 @@ fn quantity(quantity: &QuantityResult) -> Value {
         } else {
             row.insert("value".into(), json!(pair.difference));
         }
-        Value::Object(row)
+        row.insert("samples".into(), json!(pair.samples));
+        zone_as_number(Value::Object(row))
     });
     entry.insert("values".into(), Value::Array(values.collect()));
     Value::Object(entry)
 }
 
-/// Zones that are numbers are written as numbers.
-fn zone(zone: Option<&str>) -> Value {
-    match zone.map(|zone| (zone, zone.parse::<i64>())) {
-        None => Value::Null,
-        Some((_, Ok(number))) => json!(number),
-        Some((name, Err(_))) => json!(name),
+/// A zone whose name is a whole number is written as one.
+fn zone_as_number(mut entry: Value) -> Value {
+    if let Some(zone) = entry.get_mut("zone")
+        && let Some(number) = zone.as_str().and_then(|zone| zone.parse::<i64>().ok().filter(|number| number.to_string() == zone))
+    {
+        *zone = json!(number);
     }
+    entry
 }

@@ -71,10 +71,11 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
                 number(pair.simulated),
                 number(pair.measured),
                 number(Some(pair.difference)),
+                pair.samples.to_string(),
             ]
         })
     });
-    add("values", &["quantity", "unit", "section", "zone", "signal", "simulated", "measured", "difference"], pairs.collect())?;
+    add("values", &["quantity", "unit", "section", "zone", "signal", "simulated", "measured", "difference", "samples"], pairs.collect())?;
     add("sections", &section_header(found), section_rows(found))?;
     let checks = found.sections.iter().flat_map(|section| {
         section.checks.iter().map(|check| {

@@ -4,6 +4,7 @@ use crate::check::evaluate::Values;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
 use crate::data::Campaign;
 use crate::problem::{Problem, Problems};
+use crate::result::DataItem;
 
 /// Values of the vehicle, one for each [`Plan::vehicle`].
 #[derive(Debug)]
@@ -17,6 +18,24 @@ impl Facts {
         let vehicle = plan.vehicle.iter().map(|datum| vehicle_datum(datum, campaign, problems).unwrap_or(Scalar::Number(0.0))).collect();
         Self { vehicle }
     }
+}
+
+/// A value as a report prints it, in the unit the protocol declares.
+pub fn item(datum: &Datum, value: Option<&Scalar>) -> DataItem {
+    let unit = if let DatumKind::Number(unit) = &datum.kind { Some(unit) } else { None };
+    let value = match value {
+        Some(Scalar::Number(value)) => trimmed(unit.map_or(*value, |unit| unit.from_si(*value))),
+        Some(Scalar::Word(word)) => word.clone(),
+        Some(Scalar::Flag(flag)) => flag.to_string(),
+        None => String::new(),
+    };
+    DataItem { name: datum.title.clone(), value, unit: unit.map(|unit| unit.text.clone()), used: true }
+}
+
+/// A number of a table without the tail that conversion between units leaves: `56.3`, not `56.300000000000004`.
+pub fn trimmed(value: f64) -> String {
+    let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
+    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
 fn vehicle_datum(datum: &Datum, campaign: &Campaign, problems: &mut Problems) -> Option<Scalar> {
@@ -80,13 +99,11 @@ pub struct Known<'a> {
     pub extent: Option<(f64, f64)>,
     pub inputs: &'a [Result<f64, String>],
     pub sides: Option<(f64, f64)>,
-    /// Limits of other statistics, by name.
-    pub limits: &'a [(String, f64)],
 }
 
 impl<'a> Known<'a> {
     pub fn vehicle(facts: &'a Facts) -> Self {
-        Self { facts, columns: None, extent: None, inputs: &[], sides: None, limits: &[] }
+        Self { facts, columns: None, extent: None, inputs: &[], sides: None }
     }
 }
 
@@ -115,10 +132,6 @@ impl Values for Known<'_> {
     }
 
     fn limit_of(&self, statistic: &str) -> Result<f64, String> {
-        self.limits
-            .iter()
-            .find(|(name, _)| name == statistic)
-            .map(|(_, value)| *value)
-            .ok_or_else(|| format!("{statistic} has no limit here"))
+        Err(format!("the limit of {statistic} is not known here"))
     }
 }

@@ -3,8 +3,10 @@
 mod domain;
 mod facts;
 mod judge;
+mod limits;
 mod pairs;
 mod record;
+mod requirements;
 mod sections;
 mod signal;
 mod traces;
@@ -15,7 +17,7 @@ use crate::check::plan::{OnFault, Plan};
 use crate::data::Campaign;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
-use crate::result::{FileHash, QuantityResult, SectionResult, Trace, Verdict, ZoneResult};
+use crate::result::{DataItem, FileHash, QuantityResult, SectionResult, Trace, Verdict, ZoneResult};
 
 pub use facts::Facts;
 use pairs::SectionValues;
@@ -31,6 +33,8 @@ pub struct Outcome {
     pub zones: Vec<ZoneResult>,
     pub domain: Vec<crate::result::DomainRange>,
     pub traces: Vec<Trace>,
+    /// The vehicle data that the protocol reads.
+    pub vehicle: Vec<DataItem>,
     pub notes: Vec<String>,
     /// Records in the order of the sections.
     pub files: Vec<FileHash>,
@@ -58,23 +62,22 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
         return Err(problems);
     }
     let mut notes = Vec::new();
-    let present = record::present_columns(graph, campaign, &units, &mut notes);
-    sections::check_data(plan, &facts, &mut units);
-    stop_on_fault(plan, &units)?;
+    let present = record::present_columns(graph, campaign, &facts, &units, &mut notes);
+    requirements::check_data(plan, &facts, &mut units);
+    stop_on_fault(plan, &units, &[])?;
     let work = record::Work { plan, graph, campaign, facts: &facts, present: &present };
     let values: Vec<SectionValues> = units
         .par_iter()
+        // Sections differ in length: shared out one by one, no worker is left with several while another has none.
+        .with_max_len(1)
         .map(|unit| {
-            if unit.fault.is_some() {
-                return SectionValues::default();
-            }
-            let values = pairs::of_section(&work, unit);
+            let values = if unit.fault.is_some() { SectionValues::default() } else { pairs::of_section(&work, unit) };
             progress(&unit.name);
             values
         })
         .collect();
-    sections::take_over(plan, &mut units, &values, &mut notes)?;
-    stop_on_fault(plan, &units)?;
+    requirements::take_over(plan, &mut units, &values, &mut notes)?;
+    stop_on_fault(plan, &units, &values)?;
     if units.iter().all(|unit| unit.fault.is_some()) {
         return Err(nothing_usable(&units, values));
     }
@@ -90,19 +93,25 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
         sections: sections::results(plan, units),
         domain,
         traces,
+        vehicle: plan.vehicle.iter().zip(&facts.vehicle).map(|(datum, value)| facts::item(datum, Some(value))).collect(),
         notes,
         files,
     })
 }
 
-/// A protocol may say that a fault in one section ends the run.
-fn stop_on_fault(plan: &Plan, units: &[Unit]) -> Result<(), Problems> {
+/// A protocol may say that a fault in one section ends the run. The problems of its records say where it is.
+fn stop_on_fault(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Result<(), Problems> {
     if plan.sections.faulty != OnFault::Stop {
         return Ok(());
     }
     let mut problems = Problems::default();
-    for unit in units.iter().filter(|unit| unit.faulty) {
-        let says = format!("section {} is faulty, and the protocol says to stop: {}", unit.name, unit.fault.clone().unwrap_or_default());
+    for (index, unit) in units.iter().enumerate().filter(|(_, unit)| unit.faulty) {
+        let told = values.get(index).map_or(&[][..], |values| &values.problems);
+        for problem in told {
+            problems.push(problem.clone());
+        }
+        let why = unit.fault.as_ref().filter(|_| told.is_empty()).map_or(String::new(), |fault| format!(": {fault}"));
+        let says = format!("section {} is faulty, and the protocol says to stop then{why}", unit.name);
         let problem = Problem::error("faulty-section", says);
         problems.push(match &unit.span {
             Some(span) => problem.at(span),

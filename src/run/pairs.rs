@@ -3,18 +3,19 @@
 use std::collections::BTreeSet;
 
 use super::facts::Known;
-use super::record::{Fault, Found, Opened, Work, columns, open};
+use super::record::{Fault, Found, Opened, Work, needed, open};
 use super::sections::Unit;
-use super::signal::Samples;
+use super::signal::{Extent, Samples};
 use crate::catalog::Pair;
-use crate::check::evaluate::{Values, flag, number};
-use crate::check::plan::{Evaluation, InputSide, Quantity, StepSpec};
+use crate::check::evaluate::{flag, number};
+use crate::check::plan::{Check, Evaluation, Input, InputSide, Quantity, StepSpec};
 use crate::data::RecordKind;
 use crate::graph::{InputNode, NodeId, Operation, SignalNodes};
 use crate::metrics::filter::Band;
 use crate::metrics::resample;
 use crate::problem::Problem;
 use crate::result::{CheckResult, FileHash};
+use crate::units::Dimension;
 
 /// What one section came to.
 #[derive(Debug, Default)]
@@ -23,6 +24,8 @@ pub struct SectionValues {
     pub pairs: Vec<Vec<Option<PairSi>>>,
     pub checks: Vec<CheckResult>,
     pub files: Vec<FileHash>,
+    /// What a whole record covers, as measured.
+    pub extent: Option<Extent>,
     /// Record beyond the section [s], where it is too little for a slow filter to settle.
     pub short_margin: Option<f64>,
     pub fault: Option<String>,
@@ -62,7 +65,9 @@ fn fill(work: &Work<'_>, unit: &Unit, values: &mut SectionValues) -> Result<(), 
     let wanted = wanted(work, &active);
     // The simulated record is reduced to numbers before the measured one is opened: one record in memory at a time.
     let (simulated, _) = side(work, unit, RecordKind::Simulation, &wanted, &known, values)?;
-    let (measured, _) = side(work, unit, RecordKind::Measurement, &wanted, &known, values)?;
+    let (measured, opened) = side(work, unit, RecordKind::Measurement, &wanted, &known, values)?;
+    values.extent = Some(opened.extent);
+    let sides = Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent };
     for (index, quantity) in work.plan.quantities.iter().enumerate() {
         let mut pairs = Vec::new();
         for (number, nodes) in work.graph.quantities[index].signals.iter().enumerate() {
@@ -70,12 +75,12 @@ fn fill(work: &Work<'_>, unit: &Unit, values: &mut SectionValues) -> Result<(), 
                 pairs.push(None);
                 continue;
             }
-            let pair = pair(quantity, number, nodes, &simulated, &measured, &known, unit);
+            let pair = sides.pair(work, quantity, nodes);
             pairs.push(Some(pair.map_err(|says| Fault::new(format!("{} {}: {says}", quantity.id, quantity.signals[number].0)))?));
         }
         values.pairs.push(pairs);
     }
-    record_checks(work, &known, &simulated, &measured, values);
+    record_checks(work, &sides, values);
     Ok(())
 }
 
@@ -110,7 +115,7 @@ fn side(
     known: &Known<'_>,
     values: &mut SectionValues,
 ) -> Result<(Evaluated, Opened), Fault> {
-    let needed = columns(work.graph, wanted, known).map_err(Fault::new)?;
+    let needed = needed(work.graph, wanted, known).map_err(Fault::new)?;
     let opened = open(work, unit, kind, &needed)?;
     values.files.push(opened.file.clone());
     let found = opened
@@ -158,7 +163,7 @@ fn note_margins(work: &Work<'_>, unit: &Unit, needed: &BTreeSet<NodeId>, opened:
 
 fn number_of(found: &Evaluated, node: NodeId) -> Result<f64, String> {
     match found.iter().find(|(id, _)| *id == node) {
-        Some((_, Found::Number(value))) => Ok(*value),
+        Some((_, Found::Number(value, _))) => Ok(*value),
         _ => Err("a value is missing".into()),
     }
 }
@@ -170,73 +175,77 @@ fn samples_of(found: &Evaluated, node: NodeId) -> Result<&Samples, String> {
     }
 }
 
-fn pair(
-    quantity: &Quantity,
-    number: usize,
-    nodes: &SignalNodes,
-    simulated: &Evaluated,
-    measured: &Evaluated,
-    known: &Known<'_>,
-    unit: &Unit,
-) -> Result<PairSi, String> {
-    let _ = number;
-    match &quantity.evaluation {
-        Evaluation::Sides { value, difference, .. } => {
-            let own = |side: InputSide| -> Result<f64, String> {
-                let inputs: Vec<Result<f64, String>> =
-                    nodes.inputs.iter().map(|input| input_value(input, side, simulated, measured)).collect();
-                self::number(value, &Known { inputs: &inputs, ..section(known) })
-            };
-            let (s, m) = (own(InputSide::Simulated)?, own(InputSide::Measured)?);
-            let difference = self::number(difference, &Known { sides: Some((s, m)), ..section(known) })?;
-            let samples = nodes.inputs.first().map_or(0, |input| sample_count(measured, input));
-            Ok(PairSi { simulated: Some(s), measured: Some(m), difference, samples })
+/// Both records of a section, evaluated.
+struct Sides<'a> {
+    simulated: &'a Evaluated,
+    measured: &'a Evaluated,
+    known: &'a Known<'a>,
+    extent: Option<Extent>,
+}
+
+impl Sides<'_> {
+    fn pair(&self, work: &Work<'_>, quantity: &Quantity, nodes: &SignalNodes) -> Result<PairSi, String> {
+        match &quantity.evaluation {
+            Evaluation::Sides { value, difference, .. } => {
+                let own = |side: InputSide| -> Result<f64, String> {
+                    let inputs: Vec<Result<f64, String>> = nodes.inputs.iter().map(|input| self.input(input, side)).collect();
+                    number(value, &Known { inputs: &inputs, ..section(self.known) })
+                };
+                let (s, m) = (own(InputSide::Simulated)?, own(InputSide::Measured)?);
+                let difference = number(difference, &Known { sides: Some((s, m)), ..section(self.known) })?;
+                Ok(PairSi { simulated: Some(s), measured: Some(m), difference, samples: self.samples(work, nodes) })
+            }
+            Evaluation::Metric { metric, .. } => {
+                let entry = metric.0;
+                let (s, m) = if entry.common_points {
+                    common(samples_of(self.simulated, nodes.filtered)?, samples_of(self.measured, nodes.filtered)?, self.extent)?
+                } else {
+                    let values = |found| samples_of(found, nodes.processed).map(|samples| samples.values.to_vec());
+                    (values(self.simulated)?, values(self.measured)?)
+                };
+                let over = match nodes.over {
+                    None => None,
+                    Some(node) => Some((samples_of(self.simulated, node)?, samples_of(self.measured, node)?)),
+                };
+                let over = over.map(|(s, m)| (s.values.as_slice(), m.values.as_slice()));
+                let difference = (entry.run)(&Pair { simulated: &s, measured: &m, over })?;
+                Ok(PairSi { simulated: None, measured: None, difference, samples: m.len() })
+            }
         }
-        Evaluation::Metric { metric, .. } => {
-            let entry = metric.0;
-            let (s, m) = if entry.common_points {
-                common(samples_of(simulated, nodes.filtered)?, samples_of(measured, nodes.filtered)?, unit)?
-            } else {
-                (samples_of(simulated, nodes.processed)?.values.to_vec(), samples_of(measured, nodes.processed)?.values.to_vec())
-            };
-            let over = match nodes.over {
-                None => None,
-                Some(node) => Some((samples_of(simulated, node)?, samples_of(measured, node)?)),
-            };
-            let over = over.map(|(s, m)| (s.values.as_slice(), m.values.as_slice()));
-            let difference = (entry.run)(&Pair { simulated: &s, measured: &m, over })?;
-            Ok(PairSi { simulated: None, measured: None, difference, samples: m.len() })
+    }
+
+    fn input(&self, input: &InputNode, side: InputSide) -> Result<f64, String> {
+        let of = if input.side.resolve(side) == InputSide::Measured { self.measured } else { self.simulated };
+        number_of(of, input.node)
+    }
+
+    /// How many samples or windows of the quantity's own signal the measured value was taken from.
+    fn samples(&self, work: &Work<'_>, nodes: &SignalNodes) -> usize {
+        let own = |input: &&InputNode| work.graph.nodes[input.node].inputs.contains(&nodes.processed);
+        let input = nodes.inputs.iter().find(own).or(nodes.inputs.first());
+        let found = input.and_then(|input| self.measured.iter().find(|(id, _)| *id == input.node));
+        match found {
+            Some((_, Found::Number(_, samples))) => *samples,
+            Some((_, Found::Samples(samples))) => samples.values.len(),
+            None => 0,
         }
     }
 }
 
 /// The same names with nothing yet for inputs and sides.
 fn section<'a>(known: &Known<'a>) -> Known<'a> {
-    Known { facts: known.facts, columns: known.columns, extent: known.extent, inputs: &[], sides: None, limits: &[] }
-}
-
-fn input_value(input: &InputNode, side: InputSide, simulated: &Evaluated, measured: &Evaluated) -> Result<f64, String> {
-    let of = if input.side.resolve(side) == InputSide::Measured { measured } else { simulated };
-    number_of(of, input.node)
-}
-
-/// How many samples or windows a value was taken from.
-fn sample_count(found: &Evaluated, input: &InputNode) -> usize {
-    found.iter().find_map(|(id, value)| if *id == input.node { Some(value) } else { None }).map_or(0, |value| match value {
-        Found::Number(_) => 0,
-        Found::Samples(samples) => samples.values.len(),
-    })
+    Known { facts: known.facts, columns: known.columns, extent: known.extent, inputs: &[], sides: None }
 }
 
 /// Both signals on the measured samples of the section; the simulated one is interpolated unless its samples lie there already.
-fn common(simulated: &Samples, measured: &Samples, unit: &Unit) -> Result<(Vec<f64>, Vec<f64>), String> {
-    let cut = |samples: &Samples| match unit.extent {
+fn common(simulated: &Samples, measured: &Samples, extent: Option<Extent>) -> Result<(Vec<f64>, Vec<f64>), String> {
+    let cut = |samples: &Samples| match extent {
         Some(extent) => samples.cut(extent),
         None => Ok(samples.clone()),
     };
     let (s, m) = (cut(simulated)?, cut(measured)?);
     let same = s.along.axis.len() == m.along.axis.len()
-        && s.along.axis.iter().zip(&m.along.axis).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
+        && s.along.axis.iter().zip(m.along.axis.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
     if same {
         return Ok((s.values.to_vec(), m.values.to_vec()));
     }
@@ -249,40 +258,33 @@ fn common(simulated: &Samples, measured: &Samples, unit: &Unit) -> Result<(Vec<f
 fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut SectionValues) -> Result<(), Fault> {
     let wanted: BTreeSet<NodeId> =
         work.graph.checks.iter().flatten().map(|input| input.node).filter(|&node| work.graph.nodes[node].track).collect();
-    let mut found = Vec::new();
-    let mut missing = None;
-    if !wanted.is_empty() {
-        let exists = work.campaign.has(RecordKind::Track) && work.campaign.record_place(RecordKind::Track, &unit.cell).is_ok();
-        if exists {
-            found = side(work, unit, RecordKind::Track, &wanted, known, values)?.0;
-        } else {
-            missing = Some("not checked: there is no track record".to_string());
-        }
-    }
+    let there = || work.campaign.has(RecordKind::Track) && work.campaign.record_place(RecordKind::Track, &unit.cell).is_ok();
+    let found = if !wanted.is_empty() && there() { side(work, unit, RecordKind::Track, &wanted, known, values)?.0 } else { Vec::new() };
     for (check, inputs) in work.plan.checks.iter().zip(&work.graph.checks) {
         if !inputs.is_empty() && !inputs.iter().all(|input| work.graph.nodes[input.node].track) {
             // Filled in once both records are evaluated.
-            values.checks.push(CheckResult { name: check.name.clone(), title: check.title.clone(), holds: None, says: String::new() });
+            let says = "not checked: the records could not be evaluated".into();
+            values.checks.push(CheckResult { name: check.name.clone(), title: check.title.clone(), holds: None, says });
             continue;
         }
-        let inputs: Vec<Result<f64, String>> = inputs.iter().map(|input| number_of(&found, input.node)).collect();
-        values.checks.push(checked(check, known, &inputs, missing.as_deref()));
+        let value = |input: &InputNode| number_of(&found, input.node).map_err(|_| "not checked: there is no track record".to_string());
+        let inputs: Vec<Result<f64, String>> = inputs.iter().map(value).collect();
+        values.checks.push(checked(work, check, known, &inputs));
     }
     Ok(())
 }
 
-fn record_checks(work: &Work<'_>, known: &Known<'_>, simulated: &Evaluated, measured: &Evaluated, values: &mut SectionValues) {
+fn record_checks(work: &Work<'_>, sides: &Sides<'_>, values: &mut SectionValues) {
     for (index, (check, inputs)) in work.plan.checks.iter().zip(&work.graph.checks).enumerate() {
         if inputs.is_empty() || inputs.iter().all(|input| work.graph.nodes[input.node].track) {
             continue;
         }
-        let inputs: Vec<Result<f64, String>> =
-            inputs.iter().map(|input| input_value(input, InputSide::Measured, simulated, measured)).collect();
-        values.checks[index] = checked(check, known, &inputs, None);
+        let inputs: Vec<Result<f64, String>> = inputs.iter().map(|input| sides.input(input, InputSide::Measured)).collect();
+        values.checks[index] = checked(work, check, sides.known, &inputs);
     }
 }
 
-fn checked(check: &crate::check::plan::Check, known: &Known<'_>, inputs: &[Result<f64, String>], missing: Option<&str>) -> CheckResult {
+fn checked(work: &Work<'_>, check: &Check, known: &Known<'_>, inputs: &[Result<f64, String>]) -> CheckResult {
     let result = |holds: Option<bool>, says: String| CheckResult { name: check.name.clone(), title: check.title.clone(), holds, says };
     let spared = check.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known));
     match spared {
@@ -290,12 +292,22 @@ fn checked(check: &crate::check::plan::Check, known: &Known<'_>, inputs: &[Resul
         Err(reason) => return result(None, reason),
         Ok(false) => {}
     }
-    if let Some(missing) = missing {
-        return result(None, missing.to_string());
-    }
-    match flag(&check.require, &Known { inputs, ..section(known) } as &dyn Values) {
+    match flag(&check.require, &Known { inputs, ..section(known) }) {
         Ok(true) => result(Some(true), check.words.clone()),
-        Ok(false) => result(Some(false), format!("not satisfied: {}", check.words)),
+        Ok(false) => result(Some(false), format!("not satisfied: {}, with {}", check.words, found_values(work, check, inputs))),
         Err(reason) => result(None, reason),
     }
+}
+
+/// `range of curvature 0.00021 1/m, mean of curvature 0.002 1/m`
+fn found_values(work: &Work<'_>, check: &Check, inputs: &[Result<f64, String>]) -> String {
+    let one = |(input, value): (&Input, &Result<f64, String>)| {
+        let value: f64 = format!("{:.3e}", value.as_ref().ok()?).parse().ok()?;
+        let signal = input.signal.as_ref()?;
+        let dimension = input.reducer.gives(signal.dimension, work.plan.axis.unit.dimension);
+        let unit = if dimension == Dimension::ONE { String::new() } else { format!(" {dimension}") };
+        let words = input.span.text().split_whitespace().collect::<Vec<_>>().join(" ");
+        Some(format!("{words} {value}{unit}"))
+    };
+    check.inputs.iter().zip(inputs).filter_map(one).collect::<Vec<_>>().join(", ")
 }

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use super::facts::{Facts, Known};
 use super::sections::Unit;
-use super::signal::{Along, Extent, Rate, Samples, Signal, apply, arithmetic};
+use super::signal::{Along, Cutter, Extent, Rate, Samples, Signal, apply, arithmetic, each};
 use crate::catalog::Reducer;
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Plan, StepSpec};
 use crate::data::checks::{Section, check_axis};
-use crate::data::record::{Record, Wanted, read_headings};
+use crate::data::record::{Wanted, read_headings};
 use crate::data::{Campaign, RecordKind};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::{Method, percentiles};
@@ -45,7 +45,8 @@ impl Fault {
 /// A record read and found fit for the section.
 #[derive(Debug)]
 pub struct Opened {
-    record: Record,
+    /// By name.
+    columns: Vec<(String, Arc<Vec<f64>>)>,
     along: Arc<Along>,
     pub extent: Extent,
     pub file: FileHash,
@@ -56,12 +57,13 @@ pub struct Opened {
 /// Value of a wanted node.
 #[derive(Clone, Debug)]
 pub enum Found {
-    Number(f64),
+    /// A reduced signal, and of how many samples or windows.
+    Number(f64, usize),
     Samples(Samples),
 }
 
-/// Columns that the wanted nodes of one section read.
-pub fn columns(graph: &Graph, wanted: &BTreeSet<NodeId>, known: &Known<'_>) -> Result<BTreeSet<NodeId>, String> {
+/// All nodes that the wanted ones need in one section: of the cases of a signal, the one that applies.
+pub fn needed(graph: &Graph, wanted: &BTreeSet<NodeId>, known: &Known<'_>) -> Result<BTreeSet<NodeId>, String> {
     let mut needed = BTreeSet::new();
     let mut open: Vec<NodeId> = wanted.iter().copied().collect();
     while let Some(id) = open.pop() {
@@ -102,40 +104,63 @@ pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<No
         wanted.push(Wanted::new(time.column.as_str(), time.unit.dimension));
     }
     for &id in needed {
-        if let Operation::Read { column } = &work.graph.nodes[id].operation {
-            if !wanted.iter().any(|known| known.name == *column) {
-                wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
-            }
+        if let Operation::Read { column } = &work.graph.nodes[id].operation
+            && !wanted.iter().any(|known| known.name == *column)
+        {
+            wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
         }
     }
-    let fault = |problems: Vec<Problem>| Fault { says: said(&problems), problems };
+    let fault = |problems: Vec<Problem>| Fault { says: said(work.campaign, &problems), problems };
     let (record, read) = work.campaign.read(kind, &unit.cell, &wanted).map_err(fault)?;
     let clock = time.map_or(axis.column.as_str(), |time| time.column.as_str());
     let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
     let checked = check_axis(&record, clock, &axis.column, section.as_ref()).map_err(fault)?;
     let file = FileHash { path: read.path, sha256: read.sha256, bytes: read.bytes };
-    let along_axis = record.column(&axis.column).map(|column| column.values.clone()).unwrap_or_default();
+    let columns: Vec<_> = record.columns.into_iter().map(|column| (column.name, Arc::new(column.values))).collect();
+    let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));
+    let along_axis = values(&axis.column).unwrap_or_default();
     let extent = unit.extent.unwrap_or_else(|| (along_axis.first().copied().unwrap_or(0.0), along_axis.last().copied().unwrap_or(0.0)));
     let in_time = time.is_some() || axis.unit.dimension == Dimension::TIME;
     let along = Arc::new(Along {
         axis: along_axis,
-        time: time.and_then(|time| record.column(&time.column)).map(|column| column.values.clone()),
+        time: time.and_then(|time| values(&time.column)),
         rate: if in_time { Rate::PerTime(checked.sampling_rate) } else { Rate::PerLength(checked.sampling_rate) },
+        // The header is row 1.
+        first_row: Some(2),
     });
     let margins = in_time.then_some((checked.before, checked.after));
-    Ok(Opened { record, along, extent, file, margins })
+    Ok(Opened { columns, along, extent, file, margins })
 }
 
-/// The facts of several problems in one line.
-fn said(problems: &[Problem]) -> String {
-    let all: Vec<String> = problems
-        .iter()
-        .map(|problem| match &problem.at {
-            Some(at) => format!("{} ({}, row {})", problem.says, at.source.name, at.line()),
+/// The facts of several problems in one line, each with its place unless the fact names it, and with its help.
+fn said(campaign: &Campaign, problems: &[Problem]) -> String {
+    let mut told: Vec<(&Problem, usize)> = Vec::new();
+    for problem in problems {
+        // The same fact in row after row is told once.
+        match told.iter_mut().find(|(first, _)| first.says == problem.says) {
+            Some((_, more)) => *more += 1,
+            None => told.push((problem, 0)),
+        }
+    }
+    let sentence = |(problem, more): &(&Problem, usize)| {
+        let fact = match &problem.at {
+            Some(at) => placed(&problem.says, campaign.inside(&at.source.name), at.line(), *more),
             None => problem.says.clone(),
-        })
-        .collect();
-    all.join("; ")
+        };
+        problem.help.as_ref().map_or(fact.clone(), |help| format!("{fact}: {help}"))
+    };
+    told.iter().map(sentence).collect::<Vec<_>>().join("; ")
+}
+
+/// A fact that names its file and row already needs no place; one that names its file only needs none in the header.
+fn placed(says: &str, file: &str, row: usize, more: usize) -> String {
+    let names_file = says.contains(&format!("`{file}`"));
+    let names_row = row == 1 || says.split(|c: char| !c.is_ascii_digit()).any(|word| word.parse() == Ok(row));
+    match more {
+        0 if names_file && names_row => says.to_string(),
+        0 => format!("{says} ({file}, row {row})"),
+        _ => format!("{says} ({file}, row {row} and {more} more)"),
+    }
 }
 
 impl Opened {
@@ -155,6 +180,7 @@ impl Opened {
             method,
             values: vec![None; graph.nodes.len()],
             uses: vec![0; graph.nodes.len()],
+            cutter: Cutter::new(self.extent),
             found: Vec::new(),
         };
         let mut level = vec![0_usize; graph.nodes.len()];
@@ -179,10 +205,9 @@ impl Opened {
                 }
             }
             for &id in &here {
-                if wanted.contains(&id) {
-                    if let Some(Signal::Samples(samples)) = &state.values[id] {
-                        state.found.push((id, Found::Samples(samples.clone())));
-                    }
+                if wanted.contains(&id) && state.values[id].is_some() {
+                    let samples = state.samples(id)?;
+                    state.found.push((id, Found::Samples(samples)));
                 }
                 state.release(id);
             }
@@ -199,6 +224,7 @@ struct State<'a> {
     values: Vec<Option<Signal>>,
     /// How many nodes still need a value.
     uses: Vec<usize>,
+    cutter: Cutter,
     found: Vec<(NodeId, Found)>,
 }
 
@@ -269,7 +295,7 @@ impl State<'_> {
                     let value = reducer.run(&samples.along.axis, &samples.values, self.method).filter(|value| value.is_finite());
                     let value =
                         value.ok_or_else(|| format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len()))?;
-                    self.found.push((id, Found::Number(value)));
+                    self.found.push((id, Found::Number(value, samples.values.len())));
                     continue;
                 }
             };
@@ -282,7 +308,7 @@ impl State<'_> {
             let samples = self.samples(input)?;
             let percents: Vec<f64> = members.iter().map(|(_, percent)| *percent).collect();
             let values = percentiles(&samples.values, &percents, self.method).map_err(|error| error.to_string())?;
-            self.found.extend(members.iter().zip(values).map(|((id, _), value)| (*id, Found::Number(value))));
+            self.found.extend(members.iter().zip(values).map(|((id, _), value)| (*id, Found::Number(value, samples.values.len()))));
         }
         Ok(())
     }
@@ -292,20 +318,24 @@ impl State<'_> {
         let input = |index: usize| self.signal(node.inputs[index]);
         match &node.operation {
             Operation::Read { column } => {
-                let values = self.opened.record.column(column).ok_or_else(|| format!("no column `{column}`"))?;
-                Ok(Signal::Samples(Samples { along: Arc::clone(&self.opened.along), values: Arc::new(values.values.clone()) }))
+                let found = self.opened.columns.iter().find(|(name, _)| name == column);
+                let (_, values) = found.ok_or_else(|| format!("no column `{column}`"))?;
+                Ok(Signal::Samples(Samples { along: Arc::clone(&self.opened.along), values: Arc::clone(values) }))
             }
             Operation::Constant(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
             Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?),
-            Operation::Negative => apply(&[input(0)?], &|of| -of[0]),
-            Operation::Power(exponent) => apply(&[input(0)?], &|of| of[0].powi(i32::from(*exponent))),
+            Operation::Negative => each(input(0)?, |value| -value),
+            Operation::Power(exponent) => each(input(0)?, |value| value.powi(i32::from(*exponent))),
             Operation::Apply(function) => {
                 let inputs = node.inputs.iter().map(|&input| self.signal(input)).collect::<Result<Vec<_>, _>>()?;
-                apply(&inputs, &function.run)
+                apply(&inputs, function.run)
             }
             Operation::Select(conditions) => Ok(input(chosen(conditions, &node.inputs, self.known)?)?.clone()),
             Operation::Step(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.stepped(spec)?)),
-            Operation::Cut => Ok(Signal::Samples(self.samples(node.inputs[0])?.cut(self.opened.extent)?)),
+            Operation::Cut => {
+                let samples = self.samples(node.inputs[0])?;
+                Ok(Signal::Samples(self.cutter.cut(&samples)?))
+            }
             Operation::Window(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.opened.extent)?)),
             _ => Err("this node joins records".into()),
         }
@@ -313,7 +343,7 @@ impl State<'_> {
 }
 
 /// Which signals of which quantities were recorded at all: a position missing from every record is left out, not a fault of each section.
-pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes: &mut Vec<String>) -> Vec<Vec<bool>> {
+pub fn present_columns(graph: &Graph, campaign: &Campaign, facts: &Facts, units: &[Unit], notes: &mut Vec<String>) -> Vec<Vec<bool>> {
     let mut seen: Vec<(RecordKind, BTreeSet<String>)> = Vec::new();
     for kind in [RecordKind::Measurement, RecordKind::Simulation] {
         let mut columns = BTreeSet::new();
@@ -333,7 +363,7 @@ pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes
                 .iter()
                 .map(|signal| {
                     let mut missing: Vec<(String, RecordKind)> = Vec::new();
-                    for column in reads(graph, signal.compare) {
+                    for column in reads(graph, signal.compare, facts, units) {
                         for (kind, columns) in &seen {
                             if !columns.contains(&column) {
                                 missing.push((column.clone(), *kind));
@@ -362,18 +392,16 @@ pub fn present_columns(graph: &Graph, campaign: &Campaign, units: &[Unit], notes
         .collect()
 }
 
-/// Columns below a node.
-fn reads(graph: &Graph, node: NodeId) -> BTreeSet<String> {
-    let mut columns = BTreeSet::new();
-    let mut open = vec![node];
-    let mut seen = BTreeSet::new();
-    while let Some(id) = open.pop() {
-        if seen.insert(id) {
+/// Columns below a node that some section needs.
+fn reads(graph: &Graph, node: NodeId, facts: &Facts, units: &[Unit]) -> BTreeSet<String> {
+    let mut read = BTreeSet::new();
+    for unit in units {
+        // Where it cannot be told which signal applies, the section is refused when it is evaluated.
+        for id in needed(graph, &BTreeSet::from([node]), &unit.known(facts)).unwrap_or_default() {
             if let Operation::Read { column } = &graph.nodes[id].operation {
-                columns.insert(column.clone());
+                read.insert(column.clone());
             }
-            open.extend(&graph.nodes[id].inputs);
         }
     }
-    columns
+    read
 }

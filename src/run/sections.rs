@@ -1,14 +1,12 @@
-//! Sections of the campaign: their data, the requirements on them, and why one is not used.
+//! Sections of the campaign: their data, and why one is not used.
 
-use super::facts::{Facts, Known, scalar};
-use super::pairs::SectionValues;
+use super::facts::{Facts, Known, item, scalar};
 use super::signal::Extent;
-use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Datum, DatumKind, OnFault, Plan, Scalar};
+use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
 use crate::data::Campaign;
-use crate::data::table::Cell;
+use crate::data::table::{Cell, Table};
 use crate::problem::{Problem, Problems};
-use crate::result::{CheckResult, DataItem, SectionResult};
+use crate::result::{CheckResult, SectionResult};
 use crate::source::Span;
 use crate::units::Unit as OfMeasure;
 
@@ -21,6 +19,8 @@ pub struct Unit {
     pub zone: Option<String>,
     /// `None` for a whole record.
     pub extent: Option<Extent>,
+    /// What a report says it covers: the section, or the measured record.
+    pub covered: Option<Extent>,
     /// One for each [`Plan::columns`].
     pub columns: Vec<Result<Scalar, String>>,
     pub checks: Vec<CheckResult>,
@@ -37,7 +37,8 @@ impl Unit {
         Known { columns: Some(&self.columns), extent: self.extent, ..Known::vehicle(facts) }
     }
 
-    fn refuse(&mut self, reason: String, faulty: bool) {
+    /// Notes the first reason not to use it.
+    pub fn refuse(&mut self, reason: String, faulty: bool) {
         if self.fault.is_none() {
             self.fault = Some(reason);
             self.faulty = faulty;
@@ -76,26 +77,34 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
     }
     let mut units = Vec::new();
     for row in 0..table.rows.len() {
-        let columns: Vec<Result<Scalar, String>> = plan.columns.iter().map(|datum| cell(datum, table, row)).collect();
-        let ends = [cell(&start, table, row), cell(&end, table, row)];
+        let row = Row { table, row, file: campaign.inside(&table.columns[0].span.source.name) };
+        let columns: Vec<Result<Scalar, CellFault>> = plan.columns.iter().map(|datum| row.cell(datum)).collect();
+        let ill_formed =
+            columns.iter().find_map(|cell| cell.as_ref().err().filter(|fault| fault.ill_formed).map(|fault| fault.says.clone()));
+        let columns: Vec<Result<Scalar, String>> = columns.into_iter().map(|cell| cell.map_err(|fault| fault.says)).collect();
+        let name = &campaign.names[row.row];
         let mut unit = Unit {
-            name: campaign.names[row].value.clone(),
-            cell: campaign.names[row].clone(),
+            name: name.value.clone(),
+            cell: name.clone(),
             zone: plan.sections.zone.and_then(|zone| match &columns[zone] {
                 Ok(Scalar::Word(word)) => Some(word.clone()),
                 _ => None,
             }),
             extent: None,
+            covered: None,
             columns,
             checks: Vec::new(),
             fault: None,
             faulty: false,
-            span: Some(campaign.names[row].span.clone()),
+            span: Some(name.span.clone()),
         };
-        match ends {
-            [Ok(Scalar::Number(start)), Ok(Scalar::Number(end))] if start < end => unit.extent = Some((start, end)),
-            [Ok(_), Ok(_)] => unit.refuse("its start is not before its end".into(), true),
-            [Err(reason), _] | [_, Err(reason)] => unit.refuse(reason, true),
+        match (row.cell(&start), row.cell(&end)) {
+            (Ok(Scalar::Number(start)), Ok(Scalar::Number(end))) if start < end => unit.extent = Some((start, end)),
+            (Ok(_), Ok(_)) => unit.refuse(row.placed("its start is not before its end"), true),
+            (Err(fault), _) | (_, Err(fault)) => unit.refuse(fault.says, true),
+        }
+        if let Some(reason) = ill_formed {
+            unit.refuse(reason, true);
         }
         units.push(unit);
     }
@@ -113,6 +122,7 @@ fn whole_record(plan: &Plan, name: &Cell) -> Unit {
         cell: name.clone(),
         zone: None,
         extent: None,
+        covered: None,
         columns,
         checks: Vec::new(),
         fault: None,
@@ -122,7 +132,7 @@ fn whole_record(plan: &Plan, name: &Cell) -> Unit {
 }
 
 /// A column that the protocol declares must be there, in a unit of its dimension.
-fn column_missing(datum: &Datum, table: &crate::data::table::Table, problems: &mut Problems) -> bool {
+fn column_missing(datum: &Datum, table: &Table, problems: &mut Problems) -> bool {
     let Some(index) = table.column(&datum.key) else {
         if datum.default.is_some() {
             return false;
@@ -147,102 +157,42 @@ fn column_missing(datum: &Datum, table: &crate::data::table::Table, problems: &m
     }
 }
 
-fn cell(datum: &Datum, table: &crate::data::table::Table, row: usize) -> Result<Scalar, String> {
-    let Some(index) = table.column(&datum.key) else {
-        return datum.default.clone().ok_or_else(|| format!("there is no column `{}`", datum.key));
-    };
-    let text = table.cell(row, index).map_or("", |cell| cell.value.trim());
-    if text.is_empty() {
-        return datum.default.clone().ok_or_else(|| format!("`{}` is empty", datum.key));
-    }
-    // Cells are in the unit of the column's header, which was found to be of the right dimension.
-    let of_column = match (&datum.kind, table.columns[index].unit(None)) {
-        (DatumKind::Number(_), Ok(unit)) => DatumKind::Number(unit),
-        (kind, _) => kind.clone(),
-    };
-    scalar(&of_column, text).map_err(|says| format!("`{}`: {says}", datum.key))
+/// A row of the table of sections.
+struct Row<'a> {
+    table: &'a Table,
+    row: usize,
+    /// Path of the table inside the campaign.
+    file: &'a str,
 }
 
-/// Requirements that need no record: the protocol's selection, the zone's condition, the length.
-pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
-    for unit in units.iter_mut() {
-        let mut verdicts: Vec<CheckResult> = Vec::new();
-        if let Some(index) = plan.sections.zone {
-            if let Err(reason) = &unit.columns[index] {
-                let reason = reason.clone();
-                unit.refuse(reason, true);
-            }
-        }
-        let known = unit.known(facts);
-        if let Some(only) = &plan.sections.only {
-            verdicts.push(outcome("selection", "Selection of sections", flag(only, &known), &plan.sections.only_words));
-        }
-        if let Some(zone) = unit.zone.as_ref().and_then(|name| plan.zones.iter().find(|zone| zone.name == *name)) {
-            if let Some(condition) = &zone.condition {
-                let title = format!("Zone {}", zone.name);
-                verdicts.push(outcome("zone", &title, flag(condition, &known), &zone.condition_words));
-            }
-            if let (Some(minimum), Some((start, end))) = (&zone.minimum_length, unit.extent) {
-                let unit = &plan.axis.unit;
-                let check = number(minimum, &known).map(|minimum| {
-                    // A length written with two decimals may fall short of the minimum by rounding alone.
-                    let holds = end - start >= minimum * (1.0 - 1e-9);
-                    (
-                        holds,
-                        format!("length {} {unit}, at least {} {unit}", trimmed(unit.from_si(end - start)), trimmed(unit.from_si(minimum))),
-                    )
-                });
-                verdicts.push(match check {
-                    Ok((holds, says)) => CheckResult { name: "length".into(), title: "Minimum length".into(), holds: Some(holds), says },
-                    Err(says) => CheckResult { name: "length".into(), title: "Minimum length".into(), holds: None, says },
-                });
-            }
-        }
-        for check in verdicts {
-            if check.holds != Some(true) {
-                let reason = if check.name == "zone" {
-                    format!("contradicts its zone: {}", check.says)
-                } else {
-                    format!("{}: {}", check.title.to_lowercase(), check.says)
-                };
-                unit.refuse(reason, false);
-            }
-            unit.checks.push(check);
-        }
-    }
+/// Why a cell has no value. An empty one is a fault where a rule asks for it; one that cannot be read is a fault in any case.
+struct CellFault {
+    says: String,
+    ill_formed: bool,
 }
 
-fn outcome(name: &str, title: &str, holds: Result<bool, String>, words: &str) -> CheckResult {
-    match holds {
-        Ok(true) => CheckResult { name: name.into(), title: title.into(), holds: Some(true), says: words.to_string() },
-        Ok(false) => CheckResult { name: name.into(), title: title.into(), holds: Some(false), says: format!("not satisfied: {words}") },
-        Err(reason) => CheckResult { name: name.into(), title: title.into(), holds: None, says: reason },
+impl Row<'_> {
+    fn cell(&self, datum: &Datum) -> Result<Scalar, CellFault> {
+        let nothing = |says: String| datum.default.clone().ok_or(CellFault { says, ill_formed: false });
+        let Some(index) = self.table.column(&datum.key) else {
+            return nothing(format!("there is no column `{}`", datum.key));
+        };
+        let text = self.table.cell(self.row, index).map_or("", |cell| cell.value.trim());
+        if text.is_empty() {
+            return nothing(self.placed(&format!("`{}` is empty", datum.key)));
+        }
+        // Cells are in the unit of the column's header, which was found to be of the right dimension.
+        let of_column = match (&datum.kind, self.table.columns[index].unit(None)) {
+            (DatumKind::Number(_), Ok(unit)) => DatumKind::Number(unit),
+            (kind, _) => kind.clone(),
+        };
+        scalar(&of_column, text).map_err(|says| CellFault { says: self.placed(&format!("`{}`: {says}", datum.key)), ill_formed: true })
     }
-}
 
-/// Results of the records back to the sections: faults, and the protocol's own checks.
-pub fn take_over(plan: &Plan, units: &mut [Unit], values: &[SectionValues], notes: &mut Vec<String>) -> Result<(), Problems> {
-    let mut stop = Problems::default();
-    for (unit, values) in units.iter_mut().zip(values) {
-        for (check, rule) in values.checks.iter().zip(&plan.checks) {
-            if check.holds == Some(false) {
-                match rule.otherwise {
-                    OnFault::NotUsed => unit.refuse(format!("{}: {}", check.title.to_lowercase(), check.says), false),
-                    OnFault::Note => notes.push(format!("section {}: {}: {}", unit.name, check.title.to_lowercase(), check.says)),
-                    OnFault::Stop => stop.push(
-                        Problem::error("section-check", format!("section {}: {}: {}", unit.name, check.title.to_lowercase(), check.says))
-                            .at(&rule.span),
-                    ),
-                }
-            }
-        }
-        unit.checks.extend(values.checks.iter().cloned());
-        if let Some(fault) = &values.fault {
-            unit.refuse(fault.clone(), true);
-        }
+    fn placed(&self, says: &str) -> String {
+        let line = self.table.cell(self.row, 0).map_or(self.row + 2, |cell| cell.span.line());
+        format!("{says} ({}, row {line})", self.file)
     }
-    notes.extend(super::pairs::margin_note(values));
-    if stop.any_error() { Err(stop) } else { Ok(()) }
 }
 
 pub fn results(plan: &Plan, units: Vec<Unit>) -> Vec<SectionResult> {
@@ -250,7 +200,7 @@ pub fn results(plan: &Plan, units: Vec<Unit>) -> Vec<SectionResult> {
     units
         .into_iter()
         .map(|unit| {
-            let (start, end) = unit.extent.unwrap_or((0.0, 0.0));
+            let (start, end) = unit.covered.or(unit.extent).unwrap_or((0.0, 0.0));
             SectionResult {
                 section: unit.name,
                 zone: unit.zone,
@@ -260,27 +210,9 @@ pub fn results(plan: &Plan, units: Vec<Unit>) -> Vec<SectionResult> {
                 start: axis.from_si(start),
                 end: axis.from_si(end),
                 axis_unit: axis.text.clone(),
-                columns: plan.columns.iter().zip(&unit.columns).map(|(datum, value)| item(datum, value)).collect(),
+                columns: plan.columns.iter().zip(&unit.columns).map(|(datum, value)| item(datum, value.as_ref().ok())).collect(),
                 checks: unit.checks,
             }
         })
         .collect()
-}
-
-fn item(datum: &Datum, value: &Result<Scalar, String>) -> DataItem {
-    let (value, unit) = match (value, &datum.kind) {
-        (Ok(Scalar::Number(value)), DatumKind::Number(unit)) => (trimmed(unit.from_si(*value)), Some(unit.text.clone())),
-        (Ok(Scalar::Number(value)), _) => (trimmed(*value), None),
-        (Ok(Scalar::Word(word)), _) => (word.clone(), None),
-        (Ok(Scalar::Flag(flag)), _) => (flag.to_string(), None),
-        (Err(_), DatumKind::Number(unit)) => (String::new(), Some(unit.text.clone())),
-        (Err(_), _) => (String::new(), None),
-    };
-    DataItem { name: datum.title.clone(), value, unit, used: true }
-}
-
-/// A number of a table without the tail that conversion between units leaves: `56.3`, not `56.300000000000004`.
-pub fn trimmed(value: f64) -> String {
-    let rounded = (value * 1e6).round() / 1e6;
-    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }

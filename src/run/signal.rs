@@ -1,5 +1,6 @@
 //! Signals along a record, and the operations of the graph on them.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::check::plan::{Operator, StepSpec};
@@ -7,12 +8,14 @@ use crate::metrics::filter::Filter;
 use crate::metrics::resample;
 use crate::metrics::window::{Kind, Sliding};
 
-/// What samples run along, in SI; the axis increases or decreases strictly.
+/// What samples run along, in SI; axis and time increase strictly.
 #[derive(Debug)]
 pub struct Along {
-    pub axis: Vec<f64>,
-    pub time: Option<Vec<f64>>,
+    pub axis: Arc<Vec<f64>>,
+    pub time: Option<Arc<Vec<f64>>>,
     pub rate: Rate,
+    /// Row of the file that the first sample was read from; `None` where samples are not those of the file.
+    pub first_row: Option<usize>,
 }
 
 /// Samples per second, or per metre after resampling over a length.
@@ -40,14 +43,58 @@ pub type Extent = (f64, f64);
 
 impl Along {
     /// The samples with start <= axis <= end.
-    pub fn inside(&self, (start, end): Extent) -> std::ops::Range<usize> {
+    pub fn inside(&self, (start, end): Extent) -> Range<usize> {
         let from = self.axis.partition_point(|&x| x < start);
         let to = self.axis.partition_point(|&x| x <= end);
         from..to.max(from)
     }
 
-    fn part(&self, range: std::ops::Range<usize>) -> Self {
-        Self { axis: self.axis[range.clone()].to_vec(), time: self.time.as_ref().map(|time| time[range].to_vec()), rate: self.rate }
+    fn part(&self, range: Range<usize>) -> Self {
+        let part = |of: &[f64]| Arc::new(of[range.clone()].to_vec());
+        Self {
+            axis: part(&self.axis),
+            time: self.time.as_deref().map(|time| part(time)),
+            rate: self.rate,
+            first_row: self.first_row.map(|row| row + range.start),
+        }
+    }
+
+    /// Where a sample is, in words.
+    fn place(&self, sample: usize) -> String {
+        match self.first_row {
+            Some(row) => format!("in row {}", row + sample),
+            None => format!("at {:.3} on the axis", self.axis[sample]),
+        }
+    }
+}
+
+/// Cuts to one section. Signals of a record run along the same samples, whose part is made once for all of them.
+#[derive(Debug)]
+pub struct Cutter {
+    extent: Extent,
+    known: Vec<(Arc<Along>, Range<usize>, Arc<Along>)>,
+}
+
+impl Cutter {
+    pub fn new(extent: Extent) -> Self {
+        Self { extent, known: Vec::new() }
+    }
+
+    pub fn cut(&mut self, samples: &Samples) -> Result<Samples, String> {
+        let cut = match self.known.iter().position(|(whole, ..)| Arc::ptr_eq(whole, &samples.along)) {
+            Some(known) => &self.known[known],
+            None => {
+                let range = samples.along.inside(self.extent);
+                if range.is_empty() {
+                    return Err(format!("no sample lies between {} and {}", self.extent.0, self.extent.1));
+                }
+                let part = Arc::new(samples.along.part(range.clone()));
+                self.known.push((Arc::clone(&samples.along), range, part));
+                &self.known[self.known.len() - 1]
+            }
+        };
+        let (_, range, part) = cut;
+        Ok(Samples { along: Arc::clone(part), values: Arc::new(samples.values[range.clone()].to_vec()) })
     }
 }
 
@@ -57,11 +104,7 @@ impl Samples {
     }
 
     pub fn cut(&self, extent: Extent) -> Result<Self, String> {
-        let range = self.along.inside(extent);
-        if range.is_empty() {
-            return Err(format!("no sample lies between {} and {}", extent.0, extent.1));
-        }
-        Ok(Self { along: Arc::new(self.along.part(range.clone())), values: Arc::new(self.values[range].to_vec()) })
+        Cutter::new(extent).cut(self)
     }
 
     pub fn designed(&self, spec: &StepSpec) -> Result<Filter, String> {
@@ -85,14 +128,14 @@ impl Samples {
     fn resampled(&self, step: f64, over_time: bool) -> Result<Self, String> {
         let error = |error: resample::ResampleError| error.to_string();
         let axis = &self.along.axis;
-        let along_time = if over_time { self.along.time.as_ref().or(Some(axis)) } else { None };
-        let over = along_time.unwrap_or(axis);
+        let over = if over_time { self.along.time.as_ref().unwrap_or(axis) } else { axis };
         let (grid, values) = resample::resample(over, &self.values, step).map_err(error)?;
         let along = if over_time {
-            Along { axis: resample::interpolate(over, axis, &grid).map_err(error)?, time: Some(grid), rate: Rate::PerTime(1.0 / step) }
+            let axis = resample::interpolate(over, axis, &grid).map_err(error)?;
+            Along { axis: Arc::new(axis), time: Some(Arc::new(grid)), rate: Rate::PerTime(1.0 / step), first_row: None }
         } else {
             let time = self.along.time.as_ref().map(|time| resample::interpolate(over, time, &grid)).transpose().map_err(error)?;
-            Along { axis: grid, time, rate: Rate::PerLength(1.0 / step) }
+            Along { axis: Arc::new(grid), time: time.map(Arc::new), rate: Rate::PerLength(1.0 / step), first_row: None }
         };
         Ok(Self { along: Arc::new(along), values: Arc::new(values) })
     }
@@ -113,9 +156,9 @@ impl Samples {
                 let middle: Vec<f64> = starts.iter().map(|start| start + width / 2.0).collect();
                 let along = if *over_time {
                     let axis = resample::interpolate(over, &self.along.axis, &middle).map_err(|error| error.to_string())?;
-                    Along { axis, time: Some(middle), rate: Rate::PerTime(1.0 / step) }
+                    Along { axis: Arc::new(axis), time: Some(Arc::new(middle)), rate: Rate::PerTime(1.0 / step), first_row: None }
                 } else {
-                    Along { axis: middle, time: None, rate: Rate::PerLength(1.0 / step) }
+                    Along { axis: Arc::new(middle), time: None, rate: Rate::PerLength(1.0 / step), first_row: None }
                 };
                 Ok(Self { along: Arc::new(along), values: Arc::new(values) })
             }
@@ -127,7 +170,7 @@ impl Samples {
         if !over_time {
             return Ok((&self.along.axis, extent));
         }
-        let time = self.along.time.as_deref().unwrap_or(&self.along.axis);
+        let time = self.along.time.as_ref().unwrap_or(&self.along.axis);
         let inside = self.along.inside(extent);
         let (Some(first), Some(last)) = (time.get(inside.start), time.get(inside.end.wrapping_sub(1))) else {
             return Err("no sample lies in the section".into());
@@ -141,46 +184,61 @@ impl Samples {
 /// # Errors
 /// Where the samples do not belong together or the result is not finite: which sample, and why.
 pub fn arithmetic(operator: Operator, left: &Signal, right: &Signal) -> Result<Signal, String> {
-    let run = match operator {
-        Operator::Add => |a: f64, b: f64| a + b,
-        Operator::Subtract => |a: f64, b: f64| a - b,
-        Operator::Multiply => |a: f64, b: f64| a * b,
-        _ => |a: f64, b: f64| a / b,
-    };
-    apply(&[left, right], &|of| run(of[0], of[1]))
+    match operator {
+        Operator::Add => each_pair(left, right, |a, b| a + b),
+        Operator::Subtract => each_pair(left, right, |a, b| a - b),
+        Operator::Multiply => each_pair(left, right, |a, b| a * b),
+        _ => each_pair(left, right, |a, b| a / b),
+    }
 }
 
-/// A function of up to two signals, sample by sample.
-pub fn apply(inputs: &[&Signal], run: &dyn Fn(&[f64]) -> f64) -> Result<Signal, String> {
-    let base = inputs.iter().find_map(|input| if let Signal::Samples(samples) = input { Some(samples) } else { None });
-    let Some(base) = base else {
-        let of: Vec<f64> = inputs.iter().map(|input| if let Signal::Constant(value) = input { *value } else { f64::NAN }).collect();
-        let value = run(&of);
-        return if value.is_finite() { Ok(Signal::Constant(value)) } else { Err("a number is not finite".into()) };
-    };
-    for input in inputs {
-        if let Signal::Samples(samples) = input {
-            if samples.values.len() != base.values.len() {
-                return Err("two signals of different length are combined".into());
+/// A function of one or two signals, sample by sample.
+///
+/// # Errors
+/// As [`arithmetic`].
+pub fn apply(inputs: &[&Signal], run: fn(&[f64]) -> f64) -> Result<Signal, String> {
+    match *inputs {
+        [of] => each(of, |value| run(&[value])),
+        [left, right] => each_pair(left, right, |a, b| run(&[a, b])),
+        _ => Err(format!("a function of {} signals is not known", inputs.len())),
+    }
+}
+
+/// Each sample by itself.
+///
+/// # Errors
+/// As [`arithmetic`].
+pub fn each(of: &Signal, run: impl Fn(f64) -> f64) -> Result<Signal, String> {
+    match of {
+        Signal::Constant(value) => constant(run(*value)),
+        Signal::Samples(samples) => finite(samples, samples.values.iter().map(|value| run(*value)).collect()),
+    }
+}
+
+// One loop for each operation, so that each becomes vector instructions.
+fn each_pair(left: &Signal, right: &Signal, run: impl Fn(f64, f64) -> f64) -> Result<Signal, String> {
+    match (left, right) {
+        (Signal::Constant(a), Signal::Constant(b)) => constant(run(*a, *b)),
+        (Signal::Samples(left), Signal::Constant(b)) => finite(left, left.values.iter().map(|a| run(*a, *b)).collect()),
+        (Signal::Constant(a), Signal::Samples(right)) => finite(right, right.values.iter().map(|b| run(*a, *b)).collect()),
+        (Signal::Samples(left), Signal::Samples(right)) => {
+            if !Arc::ptr_eq(&left.along, &right.along) && left.along.axis != right.along.axis {
+                return Err("signals of different sampling are combined; resample both alike".into());
             }
+            finite(left, left.values.iter().zip(right.values.iter()).map(|(a, b)| run(*a, *b)).collect())
         }
     }
-    let mut of = [0.0; 2];
-    let mut values = Vec::with_capacity(base.values.len());
-    for index in 0..base.values.len() {
-        for (slot, input) in of.iter_mut().zip(inputs) {
-            *slot = match input {
-                Signal::Samples(samples) => samples.values[index],
-                Signal::Constant(value) => *value,
-            };
-        }
-        values.push(run(&of[..inputs.len()]));
+}
+
+fn constant(value: f64) -> Result<Signal, String> {
+    if value.is_finite() { Ok(Signal::Constant(value)) } else { Err("a number is not finite".into()) }
+}
+
+fn finite(along: &Samples, values: Vec<f64>) -> Result<Signal, String> {
+    // All of them without a way out of the loop, which is faster than to stop at the first.
+    if values.iter().fold(true, |all, value| all & value.is_finite()) {
+        return Ok(Signal::Samples(along.with(values)));
     }
-    match values.iter().position(|value| !value.is_finite()) {
-        None => Ok(Signal::Samples(base.with(values))),
-        Some(at) => Err(format!(
-            "a computed signal is not finite at {:.3} on the axis (a division by zero, or a value a function is not defined for)",
-            base.along.axis[at]
-        )),
-    }
+    let at = values.iter().position(|value| !value.is_finite()).unwrap_or(0);
+    Err(format!("no finite number {}: a division by zero, or a value a function is not defined for", along.along.place(at)))
 }

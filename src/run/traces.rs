@@ -4,17 +4,20 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use super::record::{Found, Work, columns, open};
-use super::sections::Unit;
+use super::record::{Found, Work, needed, open};
+use super::sections::Unit as Section;
 use super::signal::Samples;
+use crate::check::plan::Evaluation;
 use crate::data::RecordKind;
+use crate::graph::NodeId;
 use crate::result::{Curve, QuantityResult, Trace};
+use crate::units::Unit;
 
 /// Points of a curve in a plot: each of so many stretches keeps its smallest and largest sample, so that no peak is lost.
 const STRETCHES: usize = 700;
 
 /// The pair with the largest difference of each quantity, measured by its limits; the worst first, each signal of a section once.
-pub fn traces(work: &Work<'_>, units: &[Unit], quantities: &[QuantityResult], most: usize) -> Vec<Trace> {
+pub fn traces(work: &Work<'_>, units: &[Section], quantities: &[QuantityResult], most: usize) -> Vec<Trace> {
     let mut picks: Vec<(f64, usize, usize, usize)> = Vec::new();
     for (index, quantity) in quantities.iter().enumerate() {
         let limit = quantity.statistics.iter().filter_map(|statistic| statistic.limit).fold(f64::NAN, f64::max);
@@ -34,58 +37,72 @@ pub fn traces(work: &Work<'_>, units: &[Unit], quantities: &[QuantityResult], mo
     picks.par_iter().filter_map(|(_, index, unit, signal)| trace(work, &units[*unit], *index, *signal)).collect()
 }
 
-fn trace(work: &Work<'_>, unit: &Unit, index: usize, signal: usize) -> Option<Trace> {
+/// What a plot runs over: the axis of the records, or the signal that the quantity's metric runs over.
+struct Over {
+    node: Option<NodeId>,
+    name: String,
+    unit: Unit,
+}
+
+fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Option<Trace> {
     let quantity = &work.plan.quantities[index];
-    let node = work.graph.quantities[index].signals[signal].filtered;
-    let wanted = BTreeSet::from([node]);
+    let nodes = &work.graph.quantities[index].signals[signal];
+    let axis = &work.plan.axis;
+    let over = match (&quantity.evaluation, nodes.over) {
+        (Evaluation::Metric { over_axis: Some(over), .. }, Some(node)) => {
+            Over { node: Some(node), name: over.column.clone(), unit: over.unit.clone() }
+        }
+        _ => Over { node: None, name: axis.column.clone(), unit: axis.unit.clone() },
+    };
+    // A loop is drawn from the signals it was compared by, everything else from the record around the section, too.
+    let node = if over.node.is_some() { nodes.processed } else { nodes.filtered };
+    let wanted: BTreeSet<NodeId> = [node].into_iter().chain(over.node).collect();
     let known = unit.known(work.facts);
     let curve = |kind: RecordKind| {
-        let needed = columns(work.graph, &wanted, &known).ok()?;
+        let needed = needed(work.graph, &wanted, &known).ok()?;
         let opened = open(work, unit, kind, &needed).ok()?;
         let found = opened.evaluate(work.graph, &needed, &wanted, &known, work.plan.sections.percentiles).ok()?;
-        match found.into_iter().next()? {
-            (_, Found::Samples(samples)) => Some((thinned(&samples, work, index), opened.extent)),
-            _ => None,
-        }
+        let of = |node: NodeId| {
+            found
+                .iter()
+                .find_map(|(id, found)| if let (true, Found::Samples(samples)) = (*id == node, found) { Some(samples) } else { None })
+        };
+        let samples = of(node)?;
+        let x: &[f64] = match over.node {
+            Some(node) => &of(node)?.values,
+            None => &samples.along.axis,
+        };
+        Some((thinned(samples, x, &quantity.signal_unit, &over.unit), opened.extent))
     };
     let (measured, extent) = curve(RecordKind::Measurement)?;
     let (simulated, _) = curve(RecordKind::Simulation)?;
-    let axis = &work.plan.axis;
+    let (start, end) = match over.node {
+        None => (over.unit.from_si(extent.0), over.unit.from_si(extent.1)),
+        Some(_) => measured.x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x))),
+    };
     Some(Trace {
         quantity: quantity.id.clone(),
         section: unit.name.clone(),
         zone: unit.zone.clone(),
         signal: quantity.signals[signal].0.clone(),
         why: format!("largest difference of {}", quantity.id),
-        unit: signal_unit(work, index).text,
-        axis: axis.column.clone(),
-        axis_unit: axis.unit.text.clone(),
-        start: axis.unit.from_si(extent.0),
-        end: axis.unit.from_si(extent.1),
+        unit: quantity.signal_unit.text.clone(),
+        axis: over.name,
+        axis_unit: over.unit.text,
+        start,
+        end,
         measured,
         simulated,
     })
 }
 
-/// The quantity's unit where the signal has its dimension (a metric's value may be a plain number), else SI.
-fn signal_unit(work: &Work<'_>, index: usize) -> crate::units::Unit {
-    let quantity = &work.plan.quantities[index];
-    let dimension = quantity.signals.first().map_or(quantity.unit.dimension, |(_, signal)| signal.dimension);
-    if dimension == quantity.unit.dimension {
-        return quantity.unit.clone();
-    }
-    crate::units::Unit { text: dimension.to_string(), factor: 1.0, dimension }
-}
-
-fn thinned(samples: &Samples, work: &Work<'_>, index: usize) -> Curve {
-    let unit = signal_unit(work, index);
-    let axis = &work.plan.axis.unit;
+fn thinned(samples: &Samples, x: &[f64], unit: &Unit, x_unit: &Unit) -> Curve {
     let mut curve = Curve::default();
     let mut keep = |at: usize| {
-        curve.x.push(axis.from_si(samples.along.axis[at]));
+        curve.x.push(x_unit.from_si(x[at]));
         curve.y.push(unit.from_si(samples.values[at]));
     };
-    let count = samples.values.len();
+    let count = samples.values.len().min(x.len());
     if count <= 2 * STRETCHES {
         (0..count).for_each(keep);
         return curve;

@@ -139,7 +139,7 @@ pub const KINDS: &[Kind] = &[
         about: "A column of the table of sections that rules refer to by its name.",
         keys: &[
             phrase("in", "Its unit, if it is a number.", "m"),
-            phrase("one of", "Its possible words, if it is one.", "right, left, straight"),
+            phrase("one of", "Its possible words, if it is one; `zones` stands for the names of all zones.", "right, left, straight"),
             text("column", "Its column header without the unit, if not its own name with blanks for underscores.", "cant deficiency"),
             phrase("default", "Its value where the cell is empty; without a default an empty cell is a missing value.", "0 mm"),
             NOTE,

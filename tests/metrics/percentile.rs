@@ -1,3 +1,5 @@
+use proptest::prelude::*;
+
 use fishplate::metrics::percentile::{Method, PercentileError, percentile, percentiles};
 
 use crate::{json, number, numbers, record};
@@ -49,4 +51,26 @@ fn refuses_rather_than_guesses() {
     assert_eq!(percentile(&[1.0], 100.1, Method::Linear), Err(PercentileError::Percent { percent: 100.1 }));
     assert!(percentiles(&[1.0], &[f64::NAN], Method::Linear).is_err());
     assert_eq!(percentiles(&[1.0], &[], Method::Linear), Ok(vec![]));
+}
+
+proptest! {
+    /// Definition: an order statistic is the value at its place in the sorted record, near an end, inside, and among equal values.
+    #[test]
+    fn order_statistics(values in prop::collection::vec(prop_oneof![-1e3..1e3, Just(1.0), Just(0.0)], 1..700), percent in 0.0..=100.0, edge in 0.0..=1.0) {
+        let mut sorted = values.clone();
+        sorted.sort_by(f64::total_cmp);
+        let last = (values.len() - 1) as f64;
+        for percent in [percent, edge, 100.0 - edge, 0.0, 100.0] {
+            let place = last * (percent / 100.0);
+            let expected = [(Method::Lower, place.floor()), (Method::Higher, place.ceil())];
+            for (method, place) in expected {
+                let expected = sorted[place as usize];
+                prop_assert_eq!(percentile(&values, percent, method), Ok(expected));
+                prop_assert_eq!(percentiles(&values, &[50.0, percent, 40.0], method).map(|all| all[1]), Ok(expected));
+            }
+            let (low, high) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
+            let linear = percentile(&values, percent, Method::Linear).expect("a value");
+            prop_assert!((linear - (low + (high - low) * place.fract())).abs() <= 1e-12 * (low.abs() + high.abs()));
+        }
+    }
 }

@@ -33,8 +33,9 @@ fn wanted_columns_in_si_and_in_the_order_asked_for() {
 
 #[test]
 fn an_optional_column_may_be_missing() {
-    let wanted = [Wanted::new("time", Dimension::TIME), Wanted::new("Z", FORCE).if_there()];
+    let wanted = [Wanted::new("time", Dimension::TIME), Wanted::new("Z", FORCE).if_there(), Wanted::new("time", Dimension::TIME)];
     assert_eq!(read(b"time [s]\n1", &wanted).map(|record| record.columns.len()).ok(), Some(1));
+    assert_eq!(read(b"time [s]\n1\n2\n", &[]).map(|record| record.rows).ok(), Some(2));
 }
 
 #[test]

@@ -161,6 +161,15 @@ mod tests {
         Text { text: words.to_string(), span: Source::new("test", words).whole(), exact: true }
     }
 
+    /// The numbers alone, which are in SI.
+    fn without_units(meaning: &str) -> String {
+        meaning
+            .split('{')
+            .enumerate()
+            .map(|(at, part)| if at == 0 { part } else { part.split_once('}').map_or(part, |(_, rest)| rest) })
+            .collect()
+    }
+
     #[test]
     fn expressions_group_as_an_engineer_reads_them() {
         for (words, want) in [
@@ -174,7 +183,7 @@ mod tests {
             ("(Y through LP20) / (Q through LP20)", "(Divide Y>LP20 Q>LP20)"),
             (
                 "250 m when zone is 1 and v <= 220 km/h, 500 m when zone is 1, otherwise 70 m",
-                "[250?(And (Is zone 1) (LessEqual v 61.111111111111114)), 500?(Is zone 1); 70]",
+                "[250?(And (Is zone 1) (LessEqual v 61.1111111111)), 500?(Is zone 1); 70]",
             ),
             ("range of curvature <= 5 % * |mean of curvature|", "(LessEqual range of curvature (Multiply 0.05 |mean of curvature|))"),
             ("-p0.15", "(neg p0.15)"),
@@ -182,7 +191,7 @@ mod tests {
         ] {
             let mut problems = Problems::default();
             let phrase = expression(&text(words), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
-            assert_eq!(phrase.meaning(), want, "{words}");
+            assert_eq!(without_units(&phrase.meaning()), want, "{words}");
         }
     }
 

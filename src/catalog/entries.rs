@@ -1,0 +1,110 @@
+//! The whole registry in words, for `explain` and the language reference.
+
+use std::fmt::Write;
+
+use super::{DIFFERENCES, FUNCTIONS, Form, METRICS, REDUCERS, STATISTICS, STEPS, Signature};
+use crate::units::Dimension;
+
+/// One thing the language can do with signals or numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// `step`, `reducer`, `metric`, `difference`, `statistic` or `function`.
+    pub kind: &'static str,
+    /// How it is written: `low-pass <cut-off: a frequency>`.
+    pub wording: String,
+    /// What it takes and gives; `D` is any dimension.
+    pub signature: &'static str,
+    pub about: String,
+    /// Words and numbers that may follow a comma, each with its default.
+    pub options: Vec<String>,
+    /// Where it is published, if it is.
+    pub source: Option<&'static str>,
+}
+
+impl Entry {
+    fn new(kind: &'static str, wording: impl Into<String>, signature: &'static str, about: impl Into<String>) -> Self {
+        Self { kind, wording: wording.into(), signature, about: about.into(), options: Vec::new(), source: None }
+    }
+
+    /// All that is said about it, in one line.
+    pub fn in_words(&self) -> String {
+        let mut text = self.about.clone();
+        for option in &self.options {
+            let _ = write!(text, " Option {option}.");
+        }
+        if let Some(source) = self.source {
+            let _ = write!(text, " {source}");
+        }
+        text
+    }
+}
+
+/// Everything in the registry, kind by kind.
+pub fn entries() -> Vec<Entry> {
+    let mut all = Vec::new();
+    for entry in STEPS {
+        all.push(Entry {
+            options: options(&entry.form),
+            ..Entry::new("step", entry.form.in_words(), "signal<D> -> signal<D>", entry.about)
+        });
+    }
+    all.push(Entry::new("reducer", "p<number>", "signal<D> -> D", "The value below which so many per cent of the samples lie."));
+    for entry in REDUCERS {
+        let probe = (entry.gives)(Dimension::ONE, Dimension::TIME);
+        let signature = if probe == Dimension::ONE { "signal<D> -> D" } else { "signal<D> -> D per axis" };
+        all.push(Entry::new("reducer", entry.name, signature, entry.about));
+    }
+    for entry in METRICS {
+        let probe = Dimension::TIME;
+        let signature =
+            if (entry.gives)(probe) == probe { "(signal<D>, signal<D>) -> D" } else { "(signal<D>, signal<D>) -> plain number" };
+        all.push(Entry { source: Some(entry.source), ..Entry::new("metric", entry.form.in_words(), signature, entry.about) });
+    }
+    for (name, expression) in DIFFERENCES {
+        all.push(Entry::new("difference", name, "(D, D) -> D", format!("`{expression}`")));
+    }
+    for entry in STATISTICS {
+        all.push(Entry::new("statistic", entry.name, "pairs of D -> D", format!("The {} of all pairs.", entry.title)));
+    }
+    all.push(Entry::new("statistic", "p<number>", "pairs of D -> D", "A percentile of all pairs, linear between two of them."));
+    all.push(Entry::new("statistic", "each", "each pair of D", "Every pair by itself; the worst decides."));
+    for function in FUNCTIONS {
+        all.push(Entry::new("function", function.name, signature(function.signature), function.about));
+    }
+    all
+}
+
+fn options(form: &Form) -> Vec<String> {
+    let numbers = form.numbers.iter().map(|(name, default)| format!("`{name}` (default {default})"));
+    let choices = form.choices.iter().map(|choice| {
+        let words: Vec<String> = choice.words.iter().map(|word| format!("`{word}`")).collect();
+        words.join(" | ")
+    });
+    numbers.chain(choices).collect()
+}
+
+fn signature(signature: Signature) -> &'static str {
+    match signature {
+        Signature::Same => "(D) -> D",
+        Signature::ToPlain => "(D) -> plain number",
+        Signature::Plain => "(plain number) -> plain number",
+        Signature::Root => "(D) -> square root of D",
+        Signature::PairSame => "(D, D) -> D",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_wording_stands_once_and_is_explained() {
+        let mut seen = BTreeSet::new();
+        for entry in entries() {
+            assert!(seen.insert((entry.kind, entry.wording.clone())), "{entry:?}");
+            assert!(entry.about.len() > 5, "{entry:?}");
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! Requirements on sections: what is asked of their data and of their records, and what comes of one that is not met.
+
+use super::facts::{Facts, item, trimmed};
+use super::pairs::SectionValues;
+use super::sections::Unit;
+use crate::check::evaluate::{Watched, flag, number};
+use crate::check::plan::{Expr, OnFault, Plan, Zone};
+use crate::problem::{Problem, Problems};
+use crate::result::CheckResult;
+
+/// Requirements that need no record: the protocol's selection, the zone's condition, the length.
+pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
+    for unit in units.iter_mut() {
+        if let Some(index) = plan.sections.zone
+            && let Err(reason) = &unit.columns[index]
+        {
+            let reason = reason.clone();
+            unit.refuse(reason, true);
+        }
+        let mut checks = Vec::new();
+        if let Some(only) = &plan.sections.only {
+            checks.push(condition(plan, facts, unit, "selection", "Selection of sections", only, &plan.sections.only_words));
+        }
+        if let Some(zone) = unit.zone.as_ref().and_then(|name| plan.zones.iter().find(|zone| zone.name == *name)) {
+            if let Some(of_zone) = &zone.condition {
+                let title = format!("Zone {}", zone.name);
+                checks.push(condition(plan, facts, unit, "zone", &title, of_zone, &zone.condition_words));
+            }
+            checks.extend(length(plan, facts, unit, zone));
+        }
+        for check in checks {
+            if check.holds != Some(true) {
+                let subject = match (check.name.as_str(), check.holds) {
+                    ("zone", Some(_)) => format!("contradicts its zone {}", unit.zone.as_deref().unwrap_or_default()),
+                    ("zone", None) => format!("whether it is of zone {} cannot be told", unit.zone.as_deref().unwrap_or_default()),
+                    _ => check.title.to_lowercase(),
+                };
+                unit.refuse(format!("{subject}: {}", check.says), false);
+            }
+            unit.checks.push(check);
+        }
+    }
+}
+
+/// A condition on the section's data. What is not met is told with the data it was read from.
+fn condition(plan: &Plan, facts: &Facts, unit: &Unit, name: &str, title: &str, expr: &Expr, words: &str) -> CheckResult {
+    let known = unit.known(facts);
+    let watched = Watched::new(&known);
+    let (holds, says) = match flag(expr, &watched) {
+        Ok(true) => (Some(true), words.to_string()),
+        Ok(false) => {
+            let read: Vec<String> = watched
+                .columns()
+                .iter()
+                .map(|&index| item(&plan.columns[index], unit.columns[index].as_ref().ok()))
+                .map(|item| {
+                    format!("{} {}{}", item.name.to_lowercase(), item.value, item.unit.map_or(String::new(), |unit| format!(" {unit}")))
+                })
+                .collect();
+            let by = if read.is_empty() { String::new() } else { format!(", with {}", read.join(", ")) };
+            (Some(false), format!("not satisfied: {words}{by}"))
+        }
+        Err(reason) => (None, reason),
+    };
+    CheckResult { name: name.into(), title: title.into(), holds, says }
+}
+
+fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckResult> {
+    let (minimum, (start, end)) = (zone.minimum_length.as_ref()?, unit.extent?);
+    let axis = &plan.axis.unit;
+    let shown = |length: f64| format!("{} {axis}", trimmed(axis.from_si(length)));
+    let (holds, says) = match number(minimum, &unit.known(facts)) {
+        // A length written with two decimals may fall short of the minimum by rounding alone.
+        Ok(minimum) => {
+            (Some(end - start >= minimum * (1.0 - 1e-9)), format!("length {}, at least {} needed", shown(end - start), shown(minimum)))
+        }
+        Err(reason) => (None, reason),
+    };
+    Some(CheckResult { name: "length".into(), title: "Minimum length".into(), holds, says })
+}
+
+/// Results of the records back to the sections: faults, and the protocol's own checks.
+///
+/// # Errors
+/// `section-check` for each check that is not met and says `otherwise stop`.
+pub fn take_over(plan: &Plan, units: &mut [Unit], values: &[SectionValues], notes: &mut Vec<String>) -> Result<(), Problems> {
+    let mut stop = Problems::default();
+    for (unit, values) in units.iter_mut().zip(values) {
+        for (check, rule) in values.checks.iter().zip(&plan.checks).filter(|(check, _)| check.holds == Some(false)) {
+            let says = format!("{}: {}", check.title.to_lowercase(), check.says);
+            match rule.otherwise {
+                OnFault::NotUsed => unit.refuse(says, false),
+                OnFault::Note => notes.push(format!("Section {}: {says}.", unit.name)),
+                OnFault::Stop => stop.push(Problem::error("section-check", format!("section {}: {says}", unit.name)).at(&rule.span)),
+            }
+        }
+        unit.covered = unit.extent.or(values.extent);
+        unit.checks.extend(values.checks.iter().cloned());
+        if let Some(fault) = &values.fault {
+            unit.refuse(fault.clone(), true);
+        }
+    }
+    notes.extend(unchecked(units));
+    notes.extend(super::pairs::margin_note(values));
+    if stop.any_error() { Err(stop) } else { Ok(()) }
+}
+
+/// One note for each requirement that could not be checked on sections that are used all the same.
+fn unchecked(units: &[Unit]) -> Vec<String> {
+    let mut found: Vec<(&str, &str, Vec<&str>)> = Vec::new();
+    for unit in units.iter().filter(|unit| unit.fault.is_none()) {
+        for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
+            match found.iter_mut().find(|(title, says, _)| *title == check.title && *says == check.says) {
+                Some((_, _, names)) => names.push(&unit.name),
+                None => found.push((&check.title, &check.says, vec![&unit.name])),
+            }
+        }
+    }
+    let sentence = |(title, says, names): (&str, &str, Vec<&str>)| {
+        let of = match names.len() {
+            all if all == units.len() => "all sections".to_string(),
+            1 => format!("section {}", names[0]),
+            _ => format!("sections {}", names.join(", ")),
+        };
+        format!("{title}: {says} ({of}).")
+    };
+    found.into_iter().map(sentence).collect()
+}

@@ -1,0 +1,211 @@
+//! The parts of the documentation that are made from the program's own tables.
+
+use std::path::Path;
+
+use clap::CommandFactory;
+use fishplate::catalog::{self, STEPS};
+use fishplate::cli::Arguments;
+use fishplate::library::SHIPPED;
+use fishplate::metrics::percentile::Method;
+use fishplate::problem::Problems;
+use fishplate::source::Source;
+use fishplate::syntax::keys::{KINDS, Kind, Sort};
+use fishplate::syntax::read_text;
+use fishplate::units::{Dimension, SYMBOLS};
+use serde_json::Value;
+
+/// The part of a name such as `block quantity` or `registry step`.
+pub fn part(name: &str) -> String {
+    match name.split_once(' ').unwrap_or((name, "")) {
+        ("block", word) => block(KINDS.iter().find(|kind| kind.word == word).unwrap_or_else(|| panic!("no block `{word}`"))),
+        ("blocks", "") => blocks(),
+        ("registry", "step") => steps(),
+        ("registry", kind) => registry(kind),
+        ("units", "") => units(),
+        ("percentile", "rules") => percentile_rules(),
+        ("protocols", "") => protocols(),
+        ("commands", "") => commands(),
+        ("results.json", "") => results(),
+        _ => panic!("nothing is generated as `{name}`"),
+    }
+}
+
+/// Parts that some page must have, so that nothing new in the tables stays undescribed.
+pub fn wanted() -> Vec<String> {
+    let mut all: Vec<String> = KINDS.iter().map(|kind| format!("block {}", kind.word)).collect();
+    for entry in catalog::entries() {
+        let name = format!("registry {}", entry.kind);
+        if !all.contains(&name) {
+            all.push(name);
+        }
+    }
+    all.extend(["blocks", "units", "percentile rules", "protocols", "commands", "results.json"].map(str::to_string));
+    all
+}
+
+fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(|cell| cell.replace('|', "\\|")).collect::<Vec<_>>().join(" | "));
+    let header: Vec<String> = header.iter().map(|cell| (*cell).to_string()).collect();
+    let rule = format!("|{}\n", "---|".repeat(header.len()));
+    let rows: String = rows.into_iter().map(|row| line(&row)).collect();
+    format!("\n{}{rule}{rows}\n", line(&header))
+}
+
+fn code(text: &str) -> String {
+    format!("`{text}`")
+}
+
+fn blocks() -> String {
+    let head = |kind: &Kind| if kind.named { format!("{} *name*", code(kind.word)) } else { code(kind.word) };
+    let count = |kind: &Kind| if kind.single { "one" } else { "any number" }.to_string();
+    table(
+        &["block", "in YAML", "how many", "what it is"],
+        KINDS.iter().map(|kind| vec![head(kind), code(kind.group), count(kind), kind.about.into()]),
+    )
+}
+
+fn block(kind: &Kind) -> String {
+    let rows = kind.keys.iter().map(|key| {
+        let example =
+            if key.sort == Sort::Text { format!("{} \"{}\"", key.word, key.example) } else { format!("{} {}", key.word, key.example) };
+        let about = if key.many { format!("{} May be repeated.", key.about) } else { key.about.to_string() };
+        vec![code(key.word), about, code(&example)]
+    });
+    format!("\n{}\n{}", kind.about, table(&["field", "what it says", "for example"], rows))
+}
+
+fn steps() -> String {
+    let rows = STEPS.iter().map(|entry| {
+        let numbers = entry.form.numbers.iter().map(|(name, default)| format!("{} (unless said: {default})", code(&format!("{name} …"))));
+        let choices = entry.form.choices.iter().map(|choice| choice.words.iter().map(|word| code(word)).collect::<Vec<_>>().join(" or "));
+        vec![code(&entry.form.in_words()), entry.about.to_string(), numbers.chain(choices).collect::<Vec<_>>().join("; ")]
+    });
+    let mut seen = Vec::new();
+    let mut notes = String::new();
+    for choice in STEPS.iter().flat_map(|entry| entry.form.choices) {
+        if !seen.contains(&choice.words) {
+            seen.push(choice.words);
+            notes += &format!("- {}: {}\n", choice.words.iter().map(|word| code(word)).collect::<Vec<_>>().join(", "), choice.about);
+        }
+    }
+    format!(
+        "{}The first word of an option is what holds unless another is said:\n\n{notes}\n",
+        table(&["step", "what it does", "options"], rows)
+    )
+}
+
+fn registry(kind: &str) -> String {
+    let entries: Vec<_> = catalog::entries().into_iter().filter(|entry| entry.kind == kind).collect();
+    assert!(!entries.is_empty(), "nothing in the registry is a {kind}");
+    let sourced = entries.iter().any(|entry| entry.source.is_some());
+    let rows = entries.iter().map(|entry| {
+        let mut row = vec![code(&entry.wording), entry.signature.to_string(), entry.about.clone()];
+        if sourced {
+            row.push(entry.source.unwrap_or_default().to_string());
+        }
+        row
+    });
+    let header = [kind, "takes and gives", "what it is", "source"];
+    table(&header[..if sourced { 4 } else { 3 }], rows)
+}
+
+/// Units that measure the same in one row.
+fn units() -> String {
+    let mut dimensions: Vec<Dimension> = Vec::new();
+    for symbol in SYMBOLS {
+        if !dimensions.contains(&symbol.dimension) {
+            dimensions.push(symbol.dimension);
+        }
+    }
+    let rows = dimensions.into_iter().map(|dimension| {
+        let of = SYMBOLS.iter().filter(|symbol| symbol.dimension == dimension);
+        let symbols: Vec<String> = of.map(|symbol| format!("{} {}", code(symbol.symbol), symbol.name)).collect();
+        vec![dimension.in_words(), dimension.to_string(), symbols.join(", ")]
+    });
+    table(&["measures", "in SI base units", "symbols"], rows)
+}
+
+fn percentile_rules() -> String {
+    let names: Vec<String> = Method::ALL.iter().map(|method| code(method.name())).collect();
+    format!("\n{}\n\n", names.join(", "))
+}
+
+fn protocols() -> String {
+    let rows = SHIPPED.iter().map(|shipped| {
+        let document = read_text(&Source::new(shipped.name, shipped.text), &mut Problems::default());
+        let head = document.blocks.iter().find(|block| block.kind.text == "protocol").expect("a protocol says what it is");
+        let title = head.title.as_ref().map_or(String::new(), |title| title.text.clone());
+        vec![format!("[`{0}`](protocols/{0}.fp)", shipped.name), title]
+    });
+    table(&["name", "what it is"], rows)
+}
+
+fn commands() -> String {
+    let mut command = Arguments::command();
+    command.build();
+    let rows = command.get_subcommands().filter(|sub| sub.get_name() != "help").map(|sub| {
+        let about = sub.get_about().map_or(String::new(), ToString::to_string);
+        let arguments: Vec<String> = sub
+            .get_positionals()
+            .map(|argument| {
+                let name = argument
+                    .get_value_names()
+                    .and_then(|names| names.first())
+                    .map_or_else(|| argument.get_id().to_string(), ToString::to_string);
+                let name = if argument.is_required_set() { name } else { format!("[{name}]") };
+                let many = argument.get_num_args().is_some_and(|range| range.max_values() > 1);
+                if many { format!("{name}…") } else { name }
+            })
+            .collect();
+        vec![code(format!("{} {}", sub.get_name(), arguments.join(" ")).trim()), about]
+    });
+    table(&["command", "does"], rows)
+}
+
+/// Keys of the result of a real run, nested as they are, each with what stands there first.
+fn results() -> String {
+    let temp = tempfile::tempdir().expect("a temporary folder");
+    let out = temp.path().join("out");
+    let status = std::process::Command::new(env!("CARGO_BIN_EXE_fishplate"))
+        .current_dir(super::page::root())
+        .args(["certify", "examples/coach", "--only", "results", "--quiet", "--set", "sections_per_zone=3", "--out"])
+        .arg(&out)
+        .status()
+        .expect("the program runs");
+    assert_eq!(status.code(), Some(1));
+    format!("\n```text\n{}```\n\n", outline(&out.join("results.json")))
+}
+
+fn outline(path: &Path) -> String {
+    let text = std::fs::read_to_string(path).expect("a result");
+    let value: Value = serde_json::from_str(&text).expect("JSON");
+    let mut out = String::new();
+    keys(&value, 0, &mut out);
+    out
+}
+
+fn keys(value: &Value, depth: usize, out: &mut String) {
+    let Value::Object(entries) = value else { return };
+    for (key, value) in entries {
+        let (what, inner) = match value {
+            Value::Array(items) => ("list of", items.first()),
+            value => ("", Some(value)),
+        };
+        let sort = match inner {
+            None => "",
+            Some(Value::Null) => "null",
+            Some(Value::Bool(_)) => "true or false",
+            Some(Value::Number(_)) => "number",
+            Some(Value::String(_)) => "text",
+            Some(Value::Array(_)) => "lists",
+            Some(Value::Object(_)) => "keys",
+        };
+        let sort = if sort == "keys" { String::new() } else { sort.to_string() };
+        let says = format!("{what} {sort}").trim().to_string();
+        let says = if says.is_empty() { String::new() } else { format!(": {}", says.trim_end_matches(" of")) };
+        out.push_str(&format!("{}{key}{says}\n", "  ".repeat(depth)));
+        if let Some(inner @ Value::Object(_)) = inner {
+            keys(inner, depth + 1, out);
+        }
+    }
+}
