@@ -91,17 +91,17 @@ impl Builder {
             SignalKind::Scalar(expr) => self.constant(expr, dimension),
             SignalKind::Binary(operator, left, right) => {
                 let inputs = vec![self.signal(left), self.signal(right)];
-                let label = self.joined(&inputs, symbol(*operator));
+                let label = self.arithmetic_label(*operator, inputs[0], inputs[1]);
                 self.add(Operation::Arithmetic(*operator), inputs, dimension, from, label, format!("{operator:?}"))
             }
             SignalKind::Negative(inner) => {
                 let inner = self.signal(inner);
-                let label = format!("-{}", self.nodes[inner].label);
+                let label = format!("-{}", self.grouped(inner));
                 self.add(Operation::Negative, vec![inner], dimension, from, label, "negative".into())
             }
             SignalKind::Power(inner, exponent) => {
                 let inner = self.signal(inner);
-                let label = format!("({})^{exponent}", self.nodes[inner].label);
+                let label = format!("{}^{exponent}", self.grouped(inner));
                 self.add(Operation::Power(*exponent), vec![inner], dimension, from, label, format!("power {exponent}"))
             }
             SignalKind::Call(function, arguments) => {
@@ -132,7 +132,32 @@ impl Builder {
     }
 
     fn joined(&self, nodes: &[NodeId], between: &str) -> String {
-        nodes.iter().map(|&node| self.nodes[node].label.as_str()).collect::<Vec<_>>().join(between)
+        nodes.iter().map(|&node| self.named(node)).collect::<Vec<_>>().join(between)
+    }
+
+    /// What a signal is called inside an expression: a filter by what it filters.
+    fn named(&self, node: NodeId) -> String {
+        match (&self.nodes[node].operation, self.nodes[node].inputs.first()) {
+            (Operation::Step(_), Some(&input)) => format!("{} filtered", self.grouped(input)),
+            _ => self.nodes[node].label.clone(),
+        }
+    }
+
+    /// In parentheses where it is made of parts.
+    fn grouped(&self, node: NodeId) -> String {
+        match self.nodes[node].operation {
+            Operation::Arithmetic(_) | Operation::Negative | Operation::Power(_) => format!("({})", self.named(node)),
+            _ => self.named(node),
+        }
+    }
+
+    fn arithmetic_label(&self, operator: Operator, left: NodeId, right: NodeId) -> String {
+        let is_sum = |node: NodeId| matches!(self.nodes[node].operation, Operation::Arithmetic(Operator::Add | Operator::Subtract));
+        let product = matches!(operator, Operator::Multiply | Operator::Divide);
+        let left = if product && is_sum(left) { self.grouped(left) } else { self.named(left) };
+        let is_part = matches!(self.nodes[right].operation, Operation::Arithmetic(_) | Operation::Negative);
+        let right = if is_part && (product || is_sum(right)) { self.grouped(right) } else { self.named(right) };
+        format!("{left}{}{right}", symbol(operator))
     }
 
     fn step(&mut self, node: NodeId, step: &Step) -> NodeId {
