@@ -2,7 +2,7 @@
 
 use super::evaluate::words;
 use super::names::normalised;
-use super::plan::{Expr, Kind, Limit, Scalar, Scope as LimitScope};
+use super::plan::{Expr, Kind, Limit, Scalar, Scope as LimitScope, Type};
 use super::scalars::{Scope, in_words};
 use super::{Checker, overlap};
 use crate::catalog::{STATISTICS, Statistic};
@@ -150,7 +150,15 @@ impl Checker<'_> {
                 continue;
             }
             let word = &rest[..name];
-            out.push_str(self.names.parameters.get(word).map_or(word, |parameter| parameter.value_words.as_str()));
+            // Right after a number it is a unit.
+            let unit = out.trim_end().ends_with(|c: char| c.is_ascii_digit());
+            match self.names.parameters.get(word).filter(|_| !unit) {
+                Some(parameter) if parameter.value_words.contains([' ', '+']) && matches!(parameter.ty, Type::Number(Dimension::ONE)) => {
+                    out.push_str(&format!("({})", parameter.value_words));
+                }
+                Some(parameter) => out.push_str(&parameter.value_words),
+                None => out.push_str(word),
+            }
             rest = &rest[name..];
         }
         out

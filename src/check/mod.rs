@@ -46,7 +46,7 @@ pub type Overrides = IndexMap<String, Override>;
 /// How deep expressions, definitions and signals may lie inside each other, all together: what the stack surely holds.
 const DEEPEST: usize = 80;
 /// How many parts of expressions are looked at before a protocol is refused whose definitions double each other up.
-const MOST_WORK: usize = 1_000_000;
+const MOST_WORK: usize = 200_000;
 
 struct Checker<'a> {
     blocks: Vec<Block>,

@@ -36,7 +36,11 @@ impl Checker<'_> {
             None => None,
             Some(field) => {
                 let phrase = from_pest::expression(&field.value, self.problems)?;
-                let expr = self.expr(&phrase, &field.value, &mut Scope::section())?;
+                self.assumed.extend(condition.clone());
+                let mut scope = Scope { zone: Some(block.name_text().to_string()), ..Scope::section() };
+                let expr = self.expr(&phrase, &field.value, &mut scope);
+                self.assumed.clear();
+                let expr = expr?;
                 let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
                 if self.number_type(&expr)? != axis {
                     self.problems.push(

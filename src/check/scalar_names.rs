@@ -181,13 +181,14 @@ impl Checker<'_> {
             if scope.section {
                 return Some(Some(Expr { kind: Kind::Column(index), ty, span: span.clone() }));
             }
-            let problem =
-                Problem::error("no-section", format!("`{path}` differs from section to section, and one number is needed here")).at(span);
-            self.problems.push(match (&scope.limits, is_zone) {
-                (Some(_), true) => problem.help("a limit that depends on the zone ends with `for each zone`"),
-                (Some(_), false) => problem
+            let says = format!("`{path}` differs from section to section, and this holds for all of them at once");
+            let problem = Problem::error("no-section", says).at(span);
+            // Only limits know the vehicle and not the section.
+            self.problems.push(match (scope.vehicle, is_zone) {
+                (true, true) => problem.help("a limit that depends on the zone ends with `for each zone`"),
+                (true, false) => problem
                     .help("a limit of some sections ends with `for sections where ...`; a limit of `each` value may depend on its section"),
-                _ => problem,
+                (false, _) => problem,
             });
             return Some(None);
         }

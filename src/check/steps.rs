@@ -418,5 +418,7 @@ fn show_number(value: f64, dimension: Dimension) -> String {
         _ if dimension == Dimension::ONE / Dimension::LENGTH => " 1/m",
         _ => "",
     };
-    format!("{value}{unit}")
+    // Six digits: the third of a metre need not fill the line.
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    format!("{rounded}{unit}")
 }

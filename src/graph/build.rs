@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use super::{Graph, InputNode, Node, NodeId, Operation, QuantityNodes, SignalNodes};
 use crate::catalog::Metric;
 use crate::check::evaluate::{shape, words};
-use crate::check::plan::{Evaluation, Expr, Input, Kind, Operator, Plan, Quantity, Signal, SignalKind, Step, StepSpec};
+use crate::check::plan::{Evaluation, Expr, Input, Kind, Operator, Plan, Quantity, Scope, Signal, SignalKind, Step, StepSpec};
 use crate::source::Span;
 use crate::units::Dimension;
 
@@ -19,15 +19,14 @@ pub fn from_plan(plan: &Plan) -> Graph {
         let compares: Vec<NodeId> = quantities[index].signals.iter().map(|signal| signal.compare).collect();
         for (number, limit) in quantity.limits.iter().enumerate() {
             let aggregate = Operation::Aggregate { quantity: index, limit: number };
-            let label = format!("{}: {}", quantity.id, limit.statistic.title(limit.ddof));
+            let label = format!("{}: {}{}", quantity.id, limit.statistic.title(limit.ddof), of_sections(&limit.scope));
             let node = builder.add(aggregate, compares.clone(), quantity.unit.dimension, &limit.span, label, format!("aggregate {index}"));
             let label = format!("{}: {} {}", quantity.id, limit.statistic.name(), limit.words);
             let operation = Operation::Limit { quantity: index, limit: number };
             limits.push(builder.add(operation, vec![node], Dimension::ONE, &limit.span, label, format!("limit {index}")));
         }
     }
-    let from = plan.quantities.first().map_or_else(|| crate::source::Source::new("", "").whole(), |quantity| quantity.span.clone());
-    let verdict = builder.add(Operation::Verdict, limits, Dimension::ONE, &from, plan.verdict.words.clone(), "verdict".into());
+    let verdict = builder.add(Operation::Verdict, limits, Dimension::ONE, &plan.verdict.span, plan.verdict.words.clone(), "verdict".into());
     Graph { nodes: builder.nodes, quantities, checks, verdict }
 }
 
@@ -92,17 +91,17 @@ impl Builder {
             SignalKind::Scalar(expr) => self.constant(expr, dimension),
             SignalKind::Binary(operator, left, right) => {
                 let inputs = vec![self.signal(left), self.signal(right)];
-                let label = self.joined(&inputs, symbol(*operator));
+                let label = self.arithmetic_label(*operator, inputs[0], inputs[1]);
                 self.add(Operation::Arithmetic(*operator), inputs, dimension, from, label, format!("{operator:?}"))
             }
             SignalKind::Negative(inner) => {
                 let inner = self.signal(inner);
-                let label = format!("-{}", self.nodes[inner].label);
+                let label = format!("-{}", self.grouped(inner));
                 self.add(Operation::Negative, vec![inner], dimension, from, label, "negative".into())
             }
             SignalKind::Power(inner, exponent) => {
                 let inner = self.signal(inner);
-                let label = format!("({})^{exponent}", self.nodes[inner].label);
+                let label = format!("{}^{exponent}", self.grouped(inner));
                 self.add(Operation::Power(*exponent), vec![inner], dimension, from, label, format!("power {exponent}"))
             }
             SignalKind::Call(function, arguments) => {
@@ -133,12 +132,37 @@ impl Builder {
     }
 
     fn joined(&self, nodes: &[NodeId], between: &str) -> String {
-        nodes.iter().map(|&node| self.nodes[node].label.as_str()).collect::<Vec<_>>().join(between)
+        nodes.iter().map(|&node| self.named(node)).collect::<Vec<_>>().join(between)
+    }
+
+    /// What a signal is called inside an expression: a filter by what it filters.
+    fn named(&self, node: NodeId) -> String {
+        match (&self.nodes[node].operation, self.nodes[node].inputs.first()) {
+            (Operation::Step(_), Some(&input)) => format!("{} filtered", self.grouped(input)),
+            _ => self.nodes[node].label.clone(),
+        }
+    }
+
+    /// In parentheses where it is made of parts.
+    fn grouped(&self, node: NodeId) -> String {
+        match self.nodes[node].operation {
+            Operation::Arithmetic(_) | Operation::Negative | Operation::Power(_) => format!("({})", self.named(node)),
+            _ => self.named(node),
+        }
+    }
+
+    fn arithmetic_label(&self, operator: Operator, left: NodeId, right: NodeId) -> String {
+        let is_sum = |node: NodeId| matches!(self.nodes[node].operation, Operation::Arithmetic(Operator::Add | Operator::Subtract));
+        let product = matches!(operator, Operator::Multiply | Operator::Divide);
+        let left = if product && is_sum(left) { self.grouped(left) } else { self.named(left) };
+        let is_part = matches!(self.nodes[right].operation, Operation::Arithmetic(_) | Operation::Negative);
+        let right = if is_part && (product || is_sum(right)) { self.grouped(right) } else { self.named(right) };
+        format!("{left}{}{right}", symbol(operator))
     }
 
     fn step(&mut self, node: NodeId, step: &Step) -> NodeId {
         let dimension = self.nodes[node].dimension;
-        let kind = format!("step {}", step.words);
+        let kind = format!("step {:?}", step.kind);
         self.add(Operation::Step(step.kind.clone()), vec![node], dimension, &step.span, step.words.clone(), kind)
     }
 
@@ -158,7 +182,7 @@ impl Builder {
         }
         for step in &chain[inside..] {
             let dimension = self.nodes[node].dimension;
-            let kind = format!("window {}", step.words);
+            let kind = format!("window {:?}", step.kind);
             node = self.add(Operation::Window(step.kind.clone()), vec![node], dimension, &step.span, step.words.clone(), kind);
         }
         (filtered, node)
@@ -221,6 +245,15 @@ impl Builder {
         let label = format!("{} {name}: {}", quantity.id, quantity.words.comparison);
         let operation = Operation::Compare { quantity: index, signal: number, metric };
         self.add(operation, of, quantity.unit.dimension, &quantity.span, label, format!("compare {index}"))
+    }
+}
+
+/// Which sections a statistic is taken over, where not over all.
+fn of_sections(scope: &Scope) -> String {
+    match scope {
+        Scope::All => String::new(),
+        Scope::Zones(zones) => format!(", zone{} {}", if zones.len() == 1 { "" } else { "s" }, zones.join(", ")),
+        Scope::Where(_, words) => format!(", where {words}"),
     }
 }
 

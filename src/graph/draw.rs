@@ -77,7 +77,9 @@ fn label(graph: &Graph, members: &[NodeId]) -> String {
         Operation::Read { .. } | Operation::Arithmetic(_) => shortened(&labels.join(", ")),
         Operation::Aggregate { .. } | Operation::Limit { .. } => {
             let (quantity, _) = labels[0].split_once(": ").unwrap_or(("", labels[0]));
-            let rest: Vec<&str> = labels.iter().map(|label| label.split_once(": ").map_or(*label, |(_, rest)| rest)).collect();
+            let mut rest: Vec<&str> = labels.iter().map(|label| label.split_once(": ").map_or(*label, |(_, rest)| rest)).collect();
+            // One limit `for each zone` is one line.
+            rest.dedup();
             format!("{quantity}: {}", rest.join("; "))
         }
         Operation::Compare { .. } => {

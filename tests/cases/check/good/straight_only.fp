@@ -1,0 +1,59 @@
+protocol straight-only "A quantity of straight track, divisor n"
+  axis  distance in m
+  time  time in s
+
+place wheelset
+  members  1, 2
+
+place side
+  members  R, L
+  alias    outer is L when direction is right, R when direction is left
+
+vehicle category "Vehicle category"
+  one of  passenger, freight
+
+vehicle Q0 "Static wheel force"
+  in  kN
+
+section zone "Test zone"
+  one of  zones
+
+section radius "Curve radius"
+  in  m
+
+section direction "Direction"
+  one of  right, left, straight
+
+section cant_deficiency "Cant deficiency"
+  in  mm
+
+section speed "Speed"
+  in  km/h
+
+channel Y "Guiding force"
+  in      kN
+  at      each wheelset and side
+  column  "Y_{wheelset}{side}"
+
+zone 1 "Straight track"
+  where             direction is straight
+  minimum sections  1
+
+zone 2 "Curves"
+  where             direction is not straight
+  minimum sections  2
+
+sections
+  zone  zone
+
+quantity straight "Straight track only"
+  of          Y at wheelset 1
+  value       rms
+  difference  signed
+  limit       std 5 kN
+  limit       p95 6 kN
+  where       direction is straight
+
+verdict
+  validated           when at least 1 quantity holds
+  standard deviation  n

@@ -1,0 +1,268 @@
+//! The test protocols of `cases/check/good` run on a small campaign of straight lines, whose every value follows by hand.
+//!
+//! A channel of section `s` is `offset + slope * (x - 30 m)`, in kN; simulation and measurement differ in the offset only.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use fishplate::certify::{certify, compile};
+use fishplate::check::{Override, Overrides, family, plan::SetBy};
+use fishplate::data::Campaign;
+use fishplate::library;
+use fishplate::problem::Problems;
+use fishplate::result::{Certification, QuantityResult, StatisticResult, Verdict};
+use fishplate::run::Settings;
+use fishplate::source::Source;
+use fishplate::syntax::document::Text;
+
+struct Section {
+    name: &'static str,
+    zone: u8,
+    direction: &'static str,
+    radius: &'static str,
+    deficiency: f64,
+    speed: f64,
+    /// Measured offset of `Y_1R` and `Y_1L`, and how much larger the simulated ones are [kN].
+    right: (f64, f64),
+    left: (f64, f64),
+}
+
+/// Rise of every channel over the distance [kN/m].
+const SLOPE: f64 = 0.01;
+const START: f64 = 30.0;
+const END: f64 = 150.0;
+
+const SECTIONS: [Section; 4] = [
+    Section { name: "S1", zone: 1, direction: "straight", radius: "", deficiency: 0.0, speed: 72.0, right: (1.0, 0.5), left: (-2.0, 0.25) },
+    Section {
+        name: "S2",
+        zone: 2,
+        direction: "right",
+        radius: "500",
+        deficiency: 100.0,
+        speed: 72.0,
+        right: (4.0, 1.0),
+        left: (-20.0, 2.0),
+    },
+    Section {
+        name: "S3",
+        zone: 2,
+        direction: "left",
+        radius: "450",
+        deficiency: 50.0,
+        speed: 90.0,
+        right: (22.0, -1.0),
+        left: (-5.0, 0.5),
+    },
+    Section {
+        name: "S4",
+        zone: 2,
+        direction: "right",
+        radius: "400",
+        deficiency: 80.0,
+        speed: 90.0,
+        right: (3.0, -2.0),
+        left: (-25.0, -3.0),
+    },
+];
+
+/// Records at 200 Hz and 20 m/s, 30 m more than the section at both ends.
+fn write_campaign(folder: &Path) {
+    let write = |name: &str, text: String| {
+        let path = folder.join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, text).expect("a file");
+    };
+    let paths = "vehicle: vehicle.yaml\nsections: sections.csv\nmeasurement: measurement\nsimulation: simulation\n";
+    write("campaign.yaml", format!("name: straight lines\n{paths}sampling_rate [Hz]: 200\n"));
+    write("vehicle.yaml", "name: none\ncategory: passenger\nQ0: 60\n".into());
+    let mut table = "section,zone [-],start [m],end [m],radius [m],direction,cant [mm],cant deficiency [mm],speed [km/h]\n".to_string();
+    for section in &SECTIONS {
+        let Section { name, zone, direction, radius, deficiency, speed, .. } = section;
+        writeln!(table, "{name},{zone},{START},{END},{radius},{direction},0,{deficiency},{speed}").expect("a string");
+        for (kind, more) in [("measurement", 0.0), ("simulation", 1.0)] {
+            let mut record = "time [s],distance [m],Y_1R [kN],Y_1L [kN],Y_2R [kN],Y_2L [kN]\n".to_string();
+            for sample in 0..=1800 {
+                let (time, x) = (f64::from(sample) * 0.005, f64::from(sample) * 0.1);
+                let rise = SLOPE * (x - START);
+                let value = |(offset, difference): (f64, f64)| offset + more * difference + rise;
+                writeln!(record, "{time},{x},{r},{l},{r},{l}", r = value(section.right), l = value(section.left)).expect("a string");
+            }
+            write(&format!("{kind}/{name}.csv"), record);
+        }
+    }
+    write("sections.csv", table);
+}
+
+fn run(protocol: &str, set: &[(&str, &str)]) -> Certification {
+    let folder = tempfile::tempdir().expect("a folder");
+    write_campaign(folder.path());
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/cases/check/good").join(protocol);
+    let source = Source::new(protocol, fs::read_to_string(path).expect("a readable case"));
+    let mut problems = Problems::default();
+    let family = family::read(&source, &library::parent, &mut problems);
+    let overrides: Overrides = set
+        .iter()
+        .map(|(name, value)| {
+            let text = Text { text: (*value).to_string(), span: Source::new("--set", *value).whole(), exact: true };
+            ((*name).to_string(), Override { text, set_by: SetBy::CommandLine })
+        })
+        .collect();
+    let compiled = compile(family, &overrides, &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+    let campaign = Campaign::open(folder.path(), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+    certify(&compiled, &campaign, Settings { traces: 0 }, &|_| {}).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
+}
+
+#[track_caller]
+fn quantity<'a>(found: &'a Certification, id: &str) -> &'a QuantityResult {
+    found.quantities.iter().find(|quantity| quantity.id == id).expect("the quantity")
+}
+
+#[track_caller]
+fn statistic<'a>(found: &'a Certification, id: &str, name: &str, scope: &str) -> &'a StatisticResult {
+    let quantity = quantity(found, id);
+    let same = |statistic: &&StatisticResult| statistic.name == name && statistic.scope == scope;
+    quantity.statistics.iter().find(same).unwrap_or_else(|| panic!("{:?}", quantity.statistics))
+}
+
+#[track_caller]
+fn near(found: Option<f64>, wanted: f64) {
+    let found = found.expect("a value");
+    assert!((found - wanted).abs() <= 1e-9 * (1.0 + wanted.abs()), "{found} is not {wanted}");
+}
+
+fn values(found: &Certification, id: &str) -> Vec<(String, String, f64)> {
+    let mut values: Vec<_> =
+        quantity(found, id).values.iter().map(|value| (value.section.clone(), value.signal.clone(), value.difference)).collect();
+    values.sort_by(|a, b| (&a.0, &a.1).cmp(&(&b.0, &b.1)));
+    values
+}
+
+fn deviation(of: &[f64], divisor: f64) -> f64 {
+    let mean = of.iter().sum::<f64>() / of.len() as f64;
+    (of.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (of.len() as f64 - divisor)).sqrt()
+}
+
+#[test]
+fn the_outer_wheel_is_the_left_one_in_right_hand_curves() {
+    let found = run("outer_wheel.fp", &[]);
+    // S2, S4 right: left wheel; S3 left: right wheel. Oriented: measured values are negative on the left.
+    let wanted: Vec<(String, String, f64)> =
+        [("S2", -2.0), ("S3", -1.0), ("S4", 3.0)].map(|(section, difference)| (section.into(), "Y_1outer".into(), difference)).into();
+    let outer = values(&found, "leading_outer");
+    assert_eq!(
+        outer.iter().map(|value| (&value.0, &value.1)).collect::<Vec<_>>(),
+        wanted.iter().map(|value| (&value.0, &value.1)).collect::<Vec<_>>()
+    );
+    for (found, wanted) in outer.iter().zip(&wanted) {
+        near(Some(found.2), wanted.2);
+    }
+    let outside: Vec<f64> = values(&found, "towards_outside").iter().map(|value| value.2).collect();
+    for (found, wanted) in outside.iter().zip([-2.0, -1.0, 3.0]) {
+        near(Some(*found), wanted);
+    }
+}
+
+#[test]
+fn limits_follow_the_zone() {
+    let found = run("limits_by_zone.fp", &[("share", "1/2")]);
+    let zone_2 = [1.0, 2.0, -1.0, 0.5, -2.0, -3.0];
+    for (zone, limit, differences) in [("zone 1", 5.0, &[0.5, 0.25][..]), ("zone 2", 7.0, &zone_2[..])] {
+        let std = statistic(&found, "table", "std", zone);
+        near(std.value, deviation(differences, 1.0));
+        near(std.limit, limit);
+        near(statistic(&found, "table", "mean", zone).limit, limit / 2.0);
+    }
+    assert_eq!(quantity(&found, "table").statistics.len(), 5);
+    // A passenger vehicle with Q0 = 60 kN: one of the three limits applies.
+    let [only] = quantity(&found, "by_condition").statistics.as_slice() else { panic!("one limit applies") };
+    near(only.limit, 4.0);
+}
+
+#[test]
+fn limits_follow_the_section() {
+    let found = run("limits_by_speed.fp", &[]);
+    // Worst of |difference| / limit: S4 left, 3 kN of 1.5 * 4 kN (90 km/h, zone 2) against S2 left, 2 kN of 1.5 * 3 kN.
+    let each = statistic(&found, "each_section", "each", "all");
+    near(each.normalised, 3.0 / 6.0);
+    near(each.limit, 6.0);
+    near(statistic(&found, "by_class", "std", "speed <= 80 km/h").value, deviation(&[0.5, 0.25, 1.0, 2.0], 1.0));
+    near(statistic(&found, "by_class", "mean", "speed <= 80 km/h").limit, 2.0);
+    let found = run("bound_by_section.fp", &[]);
+    // Bounds 3, 2 and 2.6 kN in S2 to S4.
+    let each = statistic(&found, "bounded", "each", "all");
+    near(each.normalised, 3.0 / 2.6);
+    assert_eq!((each.holds, found.verdict), (Some(false), Verdict::NotValidated));
+}
+
+#[test]
+fn lower_limits_hold_from_above() {
+    let found = run("correlation_at_least.fp", &[]);
+    // Parallel lines are fully correlated.
+    let quantity = quantity(&found, "likeness");
+    assert_eq!(quantity.statistics.len(), 3);
+    for statistic in &quantity.statistics {
+        near(statistic.value, 1.0);
+        assert_eq!(statistic.holds, Some(true));
+    }
+}
+
+#[test]
+fn the_slope_is_that_of_the_line() {
+    let found = run("regression_slope.fp", &[]);
+    let drift = quantity(&found, "drift");
+    assert_eq!(drift.unit, "N/m");
+    for value in &drift.values {
+        near(value.simulated, 1e3 * SLOPE);
+        assert!(value.difference.abs() < 1e-6);
+    }
+}
+
+#[test]
+fn a_quantity_may_be_of_straight_track_only() {
+    let found = run("straight_only.fp", &[]);
+    let straight = quantity(&found, "straight");
+    assert!(straight.values.iter().all(|value| value.section == "S1") && straight.values.len() == 2);
+    let differences: Vec<f64> = straight.values.iter().map(|value| value.difference).collect();
+    // Divisor n.
+    near(statistic(&found, "straight", "std", "all").value, deviation(&differences, 0.0));
+    assert_eq!(found.verdict, Verdict::Validated);
+}
+
+#[test]
+fn the_side_of_a_percentile_is_chosen() {
+    // Section values rise by 1.2 kN; linear percentiles over the 1201 samples of 0.1 m.
+    let percentile = |offset: f64, percent: f64| offset + SLOPE * (END - START) * percent / 100.0;
+    let found = run("side_of_percentile.fp", &[]);
+    for value in &quantity(&found, "extreme").values {
+        let section = SECTIONS.iter().find(|section| section.name == value.section).expect("a section");
+        let (measured, more) = if value.signal == "Y_1R" { section.right } else { section.left };
+        // The side larger in the measurement: upper where the values are positive.
+        let percent = if percentile(measured, 99.85).abs() >= percentile(measured, 0.15).abs() { 99.85 } else { 0.15 };
+        near(value.measured, percentile(measured, percent).abs());
+        near(value.simulated, percentile(measured + more, percent).abs());
+    }
+    let found = run("side_of_percentile.fp", &[("rule", "curve")]);
+    for id in ["extreme", "extreme_by_curve"] {
+        let s2 = quantity(&found, id).values.iter().find(|value| value.section == "S2" && value.signal == "Y_1R").expect("a value");
+        near(s2.measured, percentile(4.0, 0.15).abs());
+        let s3 = quantity(&found, id).values.iter().find(|value| value.section == "S3" && value.signal == "Y_1R").expect("a value");
+        near(s3.measured, percentile(22.0, 99.85).abs());
+    }
+}
+
+#[test]
+fn spatial_filters_and_sliding_windows_run() {
+    // A straight line has no waves of 3 to 25 m; what the ends of the record leave in the section is small.
+    let found = run("spatial_filters.fp", &[]);
+    assert!(
+        quantity(&found, "long_waves").values.iter().all(|value| value.simulated.is_some_and(|value| value < 0.05)),
+        "{:?}",
+        quantity(&found, "long_waves").values
+    );
+    let found = run("instability.fp", &[("frequency", "4 Hz")]);
+    let rms = quantity(&found, "SigmaY_rms");
+    assert_eq!(rms.values.len(), 8);
+    near(statistic(&found, "SigmaY_rms", "std", "all").limit, 0.1 * (10.0 + 2.0 / 3.0 * 60.0));
+}
