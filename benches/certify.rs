@@ -8,6 +8,7 @@
 //!   are not counted (see `peer.py`); those of `fishplate` are. Its synthetic campaign of 33 sections is timed too. A library
 //!   below it may use more threads than `jobs` asks for (polars reads with all; `POLARS_MAX_THREADS=1` holds it to one).
 //! - `FISHPLATE_PYTHON`: the interpreter, `python3` by default.
+//! - `FISHPLATE_QUIET`: longest wait in s before each round until the machine is idle, 0 by default; for machines that others use.
 //! - `FISHPLATE_ROUNDS`: rounds that count, 7 by default. One more goes before them, to warm up caches.
 //!
 //! Both take turns in each round, so that a change in the load of the machine meets both.
@@ -19,7 +20,7 @@ use std::ffi::OsStr;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
@@ -57,6 +58,7 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
     for jobs in counts {
         let (mut here, mut there) = (Vec::new(), Vec::new());
         for round in 0..=rounds {
+            wait_until_idle();
             let ours = seconds(&results, jobs)?;
             let theirs = peer.as_mut().map(|peer| peer.run(campaign, jobs)).transpose()?;
             if round > 0 {
@@ -118,7 +120,12 @@ fn peak_memory(words: &[&OsStr], jobs: usize) -> Outcome<Option<f64>> {
 
 fn repeat(rounds: usize, mut run: impl FnMut() -> Outcome<f64>) -> Outcome<Vec<f64>> {
     run()?;
-    (0..rounds).map(|_| run()).collect()
+    (0..rounds)
+        .map(|_| {
+            wait_until_idle();
+            run()
+        })
+        .collect()
 }
 
 /// An evaluation in Python that stays up between requests.
@@ -200,6 +207,28 @@ fn folder_size(folder: &Path) -> Outcome<u64> {
 
 fn threads() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Returns once less than a tenth of the processors' time is used by others, or `FISHPLATE_QUIET` seconds have passed.
+fn wait_until_idle() {
+    let patience = env::var("FISHPLATE_QUIET").ok().and_then(|text| text.parse().ok()).map_or(Duration::ZERO, Duration::from_secs);
+    let start = Instant::now();
+    while start.elapsed() < patience {
+        let before = processor_time();
+        thread::sleep(Duration::from_millis(200));
+        let (Some((idle, all)), Some((idle_after, all_after))) = (before, processor_time()) else { return };
+        if (idle_after - idle) as f64 > 0.9 * (all_after - all) as f64 {
+            return;
+        }
+    }
+}
+
+/// Idle time and all time of all processors since they started, in ticks; the kernel of Linux tells.
+fn processor_time() -> Option<(u64, u64)> {
+    let text = fs::read_to_string("/proc/stat").ok()?;
+    // user, nice, system, idle, waiting for input, and what interrupts and other machines took.
+    let ticks: Vec<u64> = text.lines().next()?.split_whitespace().skip(1).take(8).filter_map(|word| word.parse().ok()).collect();
+    Some((ticks.get(3)? + ticks.get(4)?, ticks.iter().sum()))
 }
 
 fn load() -> String {

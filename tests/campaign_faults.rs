@@ -224,7 +224,7 @@ fn one_faulty_section_is_not_used() {
         ),
     ];
     for (case, change, reason) in cases {
-        let found = with(|campaign| change(campaign));
+        let found = with(change);
         assert_eq!(found.ran.code, 1, "{case}: {}{}", found.ran.stdout, found.ran.stderr);
         assert_eq!(found.reason("S01").as_deref(), Some(*reason), "{case}");
         let results = found.results();
@@ -568,7 +568,7 @@ fn unusable_campaigns() {
         ),
     ];
     for (case, change, parts) in cases {
-        let found = with(|campaign| change(campaign));
+        let found = with(change);
         assert_eq!(found.ran.code, 2, "{case}: {}{}", found.ran.stdout, found.ran.stderr);
         for part in *parts {
             assert!(found.ran.stderr.contains(part), "{case}: no `{part}` in\n{}", found.ran.stderr);
