@@ -20,6 +20,7 @@ pub mod data;
 pub mod graph;
 pub mod library;
 pub mod metrics;
+pub mod model;
 pub mod problem;
 pub mod report;
 pub mod result;
