@@ -189,7 +189,7 @@ fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mu
     Some(family::read(&source, &parent, problems))
 }
 
-fn progress_bar(console: &Console, sections: usize) -> Arc<ProgressBar> {
+pub fn progress_bar(console: &Console, sections: usize) -> Arc<ProgressBar> {
     let bar = ProgressBar::new(sections as u64);
     if console.quiet {
         bar.set_draw_target(ProgressDrawTarget::hidden());

@@ -1,9 +1,11 @@
 //! The command line: arguments to stages to an exit code.
 
 mod certify;
+mod effects;
 mod explain;
 mod output;
 mod protocols;
+mod simulate;
 
 use std::path::PathBuf;
 
@@ -38,6 +40,14 @@ enum Command {
     /// Run a protocol over a campaign and write the report.
     #[command(after_help = "Example:\n  fishplate certify examples/coach --out target/coach-report")]
     Certify(certify::Certify),
+    /// Simulate one section, or every section of a campaign, with the reference vehicle model; effects can be added.
+    #[command(
+        after_help = "Example:\n  fishplate simulate examples/coach --effect friction=0.5 --out target/coach-wet\n  fishplate simulate --vehicle examples/coach/vehicle.yaml --track examples/coach/track/S13.csv --speed '70 km/h' -o S13.csv"
+    )]
+    Simulate(simulate::Simulate),
+    /// List the effects that can be added to a simulation, or print a shipped catalogue.
+    #[command(after_help = "Example:\n  fishplate effects\n  fishplate effects --text > mine.yaml")]
+    Effects(effects::Effects),
     /// Check protocols: every problem with its place.
     #[command(after_help = "Example:\n  fishplate check protocols/en14363-2016-annex-t.fp my-variant.yaml")]
     Check {
@@ -121,6 +131,8 @@ pub fn run() -> Exit {
     let console = Console::new(arguments.quiet, arguments.color);
     match arguments.command {
         Command::Certify(certify) => certify.run(&console),
+        Command::Simulate(simulate) => simulate.run(&console),
+        Command::Effects(effects) => effects.run(&console),
         Command::Check { protocols } => protocols::check(&protocols, &console),
         Command::Fmt { protocols, check } => protocols::fmt(&protocols, check, &console),
         Command::Convert { protocol, to, output } => protocols::convert(&protocol, matches!(to, Form::Yaml), output.as_deref(), &console),
