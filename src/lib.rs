@@ -17,6 +17,7 @@ pub mod certify;
 pub mod check;
 pub mod cli;
 pub mod data;
+pub mod diagnose;
 pub mod effects;
 pub mod graph;
 pub mod library;

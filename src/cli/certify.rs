@@ -66,7 +66,7 @@ impl Certify {
             let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
         }
         let mut problems = Problems::default();
-        let prepared = self.prepare(&mut problems);
+        let prepared = prepare(&self.campaign, self.protocol.as_deref(), &self.set, &mut problems);
         console.problems(&problems);
         let Some((compiled, campaign)) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
         let bar = progress_bar(console, campaign.names.len());
@@ -102,41 +102,6 @@ impl Certify {
         if found.verdict == Verdict::Validated { Exit::Done } else { Exit::DoesNotHold }
     }
 
-    fn prepare(&self, problems: &mut Problems) -> Option<(Compiled, Campaign)> {
-        let campaign = Campaign::open(&self.campaign, problems)?;
-        let family = match (&self.protocol, &campaign.protocol) {
-            (Some(name), _) => load(name, problems),
-            (None, Some(named)) => campaign_protocol(&campaign, named, problems),
-            (None, None) => load(library::SHIPPED[0].name, problems),
-        }?;
-        let overrides = self.overrides(&campaign, problems)?;
-        let compiled = compile(family, &overrides, problems)?;
-        Some((compiled, campaign))
-    }
-
-    /// Parameters of the campaign, and over them those of the command line.
-    fn overrides(&self, campaign: &Campaign, problems: &mut Problems) -> Option<Overrides> {
-        let mut overrides = Overrides::new();
-        for parameter in &campaign.parameters {
-            let value = &parameter.value;
-            let text = Text { text: value.raw.clone(), span: value.span.clone(), exact: value.exact };
-            overrides.insert(parameter.name.text.clone(), Override { text, set_by: SetBy::Campaign });
-        }
-        for set in &self.set {
-            let Some((name, value)) = set.split_once('=') else {
-                problems.push(Problem::error("set", format!("`--set {set}` has no `=`")).help("write `--set name=value`"));
-                return None;
-            };
-            let source = Source::new("--set", set.clone());
-            let span = source.span(name.len() + 1..set.len());
-            overrides.insert(
-                name.trim().to_string(),
-                Override { text: Text { text: value.to_string(), span, exact: true }, set_by: SetBy::CommandLine },
-            );
-        }
-        Some(overrides)
-    }
-
     /// All files of the report, by path below the output folder.
     fn files(&self, found: &Certification) -> Result<Vec<(String, Vec<u8>)>, Problems> {
         let results = json::results(found);
@@ -164,6 +129,42 @@ impl Certify {
         files.push(("results.json".into(), results.into_bytes()));
         Ok(files)
     }
+}
+
+/// A campaign, and the protocol to run on it, ready to run.
+pub fn prepare(folder: &Path, protocol: Option<&str>, set: &[String], problems: &mut Problems) -> Option<(Compiled, Campaign)> {
+    let campaign = Campaign::open(folder, problems)?;
+    let family = match (protocol, &campaign.protocol) {
+        (Some(name), _) => load(name, problems),
+        (None, Some(named)) => campaign_protocol(&campaign, named, problems),
+        (None, None) => load(library::SHIPPED[0].name, problems),
+    }?;
+    let overrides = overrides(set, &campaign, problems)?;
+    let compiled = compile(family, &overrides, problems)?;
+    Some((compiled, campaign))
+}
+
+/// Parameters of the campaign, and over them those of the command line.
+fn overrides(set: &[String], campaign: &Campaign, problems: &mut Problems) -> Option<Overrides> {
+    let mut overrides = Overrides::new();
+    for parameter in &campaign.parameters {
+        let value = &parameter.value;
+        let text = Text { text: value.raw.clone(), span: value.span.clone(), exact: value.exact };
+        overrides.insert(parameter.name.text.clone(), Override { text, set_by: SetBy::Campaign });
+    }
+    for set in set {
+        let Some((name, value)) = set.split_once('=') else {
+            problems.push(Problem::error("set", format!("`--set {set}` has no `=`")).help("write `--set name=value`"));
+            return None;
+        };
+        let source = Source::new("--set", set.clone());
+        let span = source.span(name.len() + 1..set.len());
+        overrides.insert(
+            name.trim().to_string(),
+            Override { text: Text { text: value.to_string(), span, exact: true }, set_by: SetBy::CommandLine },
+        );
+    }
+    Some(overrides)
 }
 
 /// The protocol a campaign names: a shipped one, or a file inside the campaign, as are those it extends.

@@ -1,6 +1,7 @@
 //! The command line: arguments to stages to an exit code.
 
 mod certify;
+mod diagnose;
 mod effects;
 mod explain;
 mod output;
@@ -45,6 +46,9 @@ enum Command {
         after_help = "Example:\n  fishplate simulate examples/coach --effect friction=0.5 --out target/coach-wet\n  fishplate simulate --vehicle examples/coach/vehicle.yaml --track examples/coach/track/S13.csv --speed '70 km/h' -o S13.csv"
     )]
     Simulate(simulate::Simulate),
+    /// Say where simulation and measurement differ, which effect causes it, and how far the gap shrinks once it is added.
+    #[command(after_help = "Example:\n  fishplate diagnose examples/coach --out target/coach-diagnosis")]
+    Diagnose(diagnose::Diagnose),
     /// List the effects that can be added to a simulation, or print a shipped catalogue.
     #[command(after_help = "Example:\n  fishplate effects\n  fishplate effects --text > mine.yaml")]
     Effects(effects::Effects),
@@ -132,6 +136,7 @@ pub fn run() -> Exit {
     match arguments.command {
         Command::Certify(certify) => certify.run(&console),
         Command::Simulate(simulate) => simulate.run(&console),
+        Command::Diagnose(diagnose) => diagnose.run(&console),
         Command::Effects(effects) => effects.run(&console),
         Command::Check { protocols } => protocols::check(&protocols, &console),
         Command::Fmt { protocols, check } => protocols::fmt(&protocols, check, &console),

@@ -9,13 +9,13 @@ use rayon::prelude::*;
 use super::certify::progress_bar;
 use super::output::{Console, Exit};
 use crate::data::text::read_text;
-use crate::data::write::{Entry, Outputs, campaign_yaml, write_whole};
-use crate::data::{Campaign, RecordKind};
+use crate::data::Campaign;
+use crate::data::write::write_whole;
 use crate::effects::{self, Applied, Catalogue};
 use crate::library;
 use crate::model::CHANNELS;
 use crate::problem::{Problem, Problems};
-use crate::simulate::{Builtin, Plan, Section, Simulator, model_parameters, record_text, sections, simulate, single};
+use crate::simulate::{Builtin, Plan, Section, Simulator, model_parameters, record_text, sections, simulate, single, write_campaign};
 use crate::units::{Dimension, Unit};
 use crate::yaml;
 
@@ -183,21 +183,4 @@ fn speed(written: Option<&str>) -> Result<f64, Problem> {
         return Err(wrong(format!("a speed of {speed:.1} m/s is outside what the model is for: 1 to 150 m/s")));
     }
     Ok(speed)
-}
-
-/// A campaign like another, with other simulated records. Everything that the other has is copied beside them.
-pub fn write_campaign(out: &Path, campaign: &Campaign, records: impl Iterator<Item = (impl AsRef<str>, String)>) -> Result<(), Problem> {
-    let mut outputs = Outputs::new(out);
-    for (name, text) in records {
-        outputs.add(&format!("simulation/{}.csv", name.as_ref()), text.as_bytes())?;
-    }
-    let entries = campaign.tree.entries().iter().filter(|(key, _)| !["simulation", "simulation_ran_on"].contains(&key.text.as_str()));
-    let mut lines: Vec<(&str, Entry<'_>)> = entries.map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
-    lines.push(("simulation", Entry::Text("simulation")));
-    lines.push(("simulation_ran_on", Entry::Text("measured track")));
-    outputs.add("campaign.yaml", campaign_yaml(&lines).as_bytes())?;
-    for (inside, bytes) in campaign.other_files(RecordKind::Simulation)? {
-        outputs.add(&inside, &bytes)?;
-    }
-    outputs.commit()
 }

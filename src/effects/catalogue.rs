@@ -87,6 +87,8 @@ pub struct Parameter {
     pub low: f64,
     pub high: f64,
     pub meaning: String,
+    /// Whether there is no effect towards the upper end, however large the parameter.
+    pub vanishes_high: bool,
     /// The parameter of the model that it sets, and the factor to its unit.
     pub model: Option<(String, f64)>,
     /// The parameters of other simulators that it sets: simulator, parameter, factor.

@@ -25,7 +25,7 @@ const EFFECT: [&str; 13] = [
     "settled by",
     "tolerance",
 ];
-const PARAMETER: [&str; 8] = ["unit", "neutral", "default", "range", "trials", "means", "model", "simulators"];
+const PARAMETER: [&str; 9] = ["unit", "neutral", "default", "range", "trials", "means", "model", "simulators", "vanishes"];
 /// What stands for a channel in the name of a parameter.
 pub const CHANNEL: &str = "<channel>";
 
@@ -332,7 +332,8 @@ impl Reader<'_> {
             simulators.push((simulator.text.clone(), text, factor));
         }
         let meaning = self.text(node, "means").unwrap_or_default();
-        Some((Parameter { name: name.to_string(), unit, neutral, default, low, high, meaning, model, simulators }, trials))
+        let vanishes_high = self.text(node, "vanishes").as_deref() == Some("high");
+        Some((Parameter { name: name.to_string(), unit, neutral, default, low, high, meaning, vanishes_high, model, simulators }, trials))
     }
 
     fn unit(&mut self, text: &str, node: &Node) -> Option<Unit> {

@@ -154,6 +154,8 @@ parameters! {
     roundness_amplitude "out_of_roundness.amplitude" ["m"] NotNegative = 0.0, "amplitude of the radius deviation";
     roundness_harmonic "out_of_roundness.harmonic" ["-"] NotNegative = 1.0, "waves per revolution";
     irregularity_scale "track.irregularity_scale" ["-"] NotNegative = 1.0, "factor of all track irregularities";
+    curvature_scale "track.curvature_scale" ["-"] Positive = 1.0, "factor of the curvature";
+    gauge_error "track.gauge_error" ["mm"] Any = 0.0, "gauge widening added everywhere";
     cant_error "track.cant_error" ["mm"] Any = 0.0, "cant added in curves, at full curvature";
 }
 

@@ -39,6 +39,8 @@ pub struct Track {
     level: Spline,
     cross_level: Spline,
     gauge: Spline,
+    /// In m.
+    gauge_error: f64,
 }
 
 /// The line at a body: curvature in 1/m, cant angle in rad, heading in rad, lateral position in m.
@@ -68,7 +70,7 @@ impl Track {
     #[must_use]
     pub fn new(table: &TrackTable, vehicle: &Vehicle) -> Self {
         let distance = table.distance.clone();
-        let curvature = table.curvature.clone();
+        let curvature: Vec<f64> = table.curvature.iter().map(|kappa| kappa * vehicle.curvature_scale).collect();
         let sharpest = curvature.iter().fold(0.0_f64, |most, kappa| most.max(kappa.abs()));
         let error = |kappa: f64| if sharpest > 0.0 { vehicle.cant_error * kappa / sharpest } else { 0.0 };
         let cant =
@@ -86,7 +88,7 @@ impl Track {
             |values: &[f64]| Spline::new(&distance, values.iter().map(|value| value * 1e-3 * vehicle.irregularity_scale).collect());
         let (alignment, level) = (spline(&table.alignment), spline(&table.level));
         let (cross_level, gauge) = (spline(&table.cross_level), spline(&table.gauge));
-        Self { distance, curvature, cant, heading, lateral, alignment, level, cross_level, gauge }
+        Self { distance, curvature, cant, heading, lateral, alignment, level, cross_level, gauge, gauge_error: vehicle.gauge_error * 1e-3 }
     }
 
     /// Distance of the first point in m.
@@ -153,7 +155,7 @@ impl Track {
         let slope = |k: f64| fade * (level_slope + k * 0.5 * cross_slope) + fading * rail(k);
         Irregularity {
             alignment: fade * self.alignment.at(i, width, share).0,
-            gauge: fade * self.gauge.at(i, width, share).0,
+            gauge: fade * (self.gauge.at(i, width, share).0 + self.gauge_error),
             height: [fade * rail(1.0), fade * rail(-1.0)],
             slope: [slope(1.0), slope(-1.0)],
         }

@@ -6,11 +6,13 @@ mod add;
 mod builtin;
 mod campaign;
 mod section;
+mod write;
 
 pub use add::{Plan, Simulated, simulate};
 pub use builtin::{Builtin, model_parameters, single};
 pub use campaign::{Units, read_signals, record_text, recorded};
 pub use section::{Section, sections};
+pub use write::write_campaign;
 
 use crate::effects::Signals;
 use crate::problem::Problem;

@@ -1,0 +1,163 @@
+//! `diagnose`: where the gap lies, which effect causes it, how far it shrinks.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::certify::prepare;
+use super::output::{Console, Exit};
+use super::simulate::load_catalogue;
+use crate::data::Campaign;
+use crate::data::write::Outputs;
+use crate::diagnose::result::Diagnosis;
+use crate::diagnose::run::Inputs;
+use crate::diagnose::settings::Settings;
+use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
+use crate::library;
+use crate::problem::{Problem, Problems};
+use crate::simulate::{Builtin, Simulator, sections};
+
+#[derive(Debug, Args)]
+pub struct Diagnose {
+    /// Folder of the campaign.
+    campaign: PathBuf,
+    /// Path of a protocol, or the name of a shipped one [default: what campaign.yaml names, else en14363-2016-annex-t]
+    #[arg(long, short)]
+    protocol: Option<String>,
+    /// Catalogue of effects: a path, or the name of a shipped one.
+    #[arg(long = "effects", value_name = "CATALOGUE", default_value = library::CATALOGUES[0].name)]
+    catalogue: String,
+    /// Folder to write to; made if missing.
+    #[arg(long, short)]
+    out: PathBuf,
+    /// Folder for the simulation with the named effects added, as a campaign.
+    #[arg(long, value_name = "DIR")]
+    write_improved: Option<PathBuf>,
+    /// Folder in which runs are kept, so that an interrupted diagnosis goes on where it was.
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    /// Seed of every random draw.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Sections worked on at a time [default: one per core]
+    #[arg(long, short)]
+    jobs: Option<NonZeroUsize>,
+}
+
+impl Diagnose {
+    pub fn run(self, console: &Console) -> Exit {
+        if let Some(jobs) = self.jobs {
+            // Fails only if the pool was made before, which nothing does before here.
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
+        }
+        let bar = ProgressBar::new_spinner();
+        if console.quiet {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
+            bar.set_style(style);
+        }
+        let trying = |what: &str| {
+            bar.set_message(what.to_string());
+            bar.tick();
+        };
+        let mut problems = Problems::default();
+        let outcome = diagnosed(&self.campaign, self.protocol.as_deref(), &self.catalogue, self.cache.as_deref(), self.seed, &trying, &mut problems);
+        bar.finish_and_clear();
+        console.problems(&problems);
+        let Some((campaign, outcome)) = outcome else { return Exit::Wrong };
+        match self.write(&campaign, &outcome) {
+            Ok(()) => {}
+            Err(problem) => return console.fail(problem, Exit::Unfinished),
+        }
+        if !console.quiet {
+            console.print(&summary(&outcome.diagnosis));
+            console.say(&format!("written: {}", self.out.display()));
+        }
+        exit(&outcome.diagnosis)
+    }
+
+    fn write(&self, campaign: &Campaign, outcome: &Outcome) -> Result<(), Problem> {
+        let mut outputs = Outputs::new(&self.out);
+        outputs.add("diagnosis.json", json(&outcome.diagnosis).as_bytes())?;
+        outputs.commit()?;
+        if let Some(folder) = &self.write_improved {
+            if outcome.improved.is_empty() {
+                let records: Vec<_> = outcome.found.seen.sections.iter().map(|observed| observed.simulated.clone()).collect();
+                return write_improved(folder, campaign, &outcome.found, &records, &outcome.units);
+            }
+            write_improved(folder, campaign, &outcome.found, &outcome.improved, &outcome.units)?;
+        }
+        Ok(())
+    }
+}
+
+/// The text of `diagnosis.json`: the time it took is not in it unless asked for, so that the same input gives the same bytes.
+pub fn json(diagnosis: &Diagnosis) -> String {
+    serde_json::to_string_pretty(diagnosis).unwrap_or_default() + "\n"
+}
+
+/// 0 where the question is answered and nothing is open.
+pub fn exit(diagnosis: &Diagnosis) -> Exit {
+    match diagnosis.verdict {
+        "explained" | "no significant gap" => Exit::Done,
+        _ => Exit::DoesNotHold,
+    }
+}
+
+/// Opens everything and diagnoses.
+pub fn diagnosed(
+    folder: &Path, protocol: Option<&str>, catalogue: &str, cache: Option<&Path>, seed: u64, trying: &(dyn Fn(&str) + Sync), problems: &mut Problems,
+) -> Option<(Campaign, Outcome)> {
+    let (compiled, campaign) = prepare(folder, protocol, &[], problems)?;
+    let catalogue = load_catalogue(catalogue, problems)?;
+    let settings = Settings::read(&catalogue, problems)?;
+    let sections = sections(&campaign, problems);
+    let mut lacking = Problems::default();
+    let model = Builtin::new(&campaign, &mut lacking);
+    let simulator: Option<&dyn Simulator> = model.as_ref().map(|model| model as &dyn Simulator);
+    for problem in lacking.0 {
+        problems.push(Problem { severity: crate::problem::Severity::Warning, ..problem });
+    }
+    let cache = cache.map(|cache| {
+        let files: String = campaign.files.iter().map(|file| file.sha256.as_str()).collect();
+        Cache::new(cache, format!("{} {files} {:?} {:?}", env!("CARGO_PKG_VERSION"), settings.edges, settings.groups))
+    });
+    let inputs = Inputs { campaign: &campaign, catalogue: &catalogue, settings: &settings, simulator, cache, seed, trying };
+    match diagnose(&inputs, &compiled, sections) {
+        Ok(outcome) => Some((campaign, outcome)),
+        Err(found) => {
+            found.0.into_iter().for_each(|problem| problems.push(problem));
+            None
+        }
+    }
+}
+
+fn summary(diagnosis: &Diagnosis) -> String {
+    use std::fmt::Write;
+    let mut out = format!("{}\n\nVerdict: {}\n", diagnosis.campaign, diagnosis.verdict);
+    for line in &diagnosis.says {
+        let _ = writeln!(out, "  {line}");
+    }
+    out += "\nWhere:\n";
+    for place in diagnosis.r#where.iter().take(6) {
+        let mark = if place.significant { "" } else { "  (not significant)" };
+        let _ = writeln!(out, "  {:4.0} %  {}{mark}", 100.0 * place.share_of_gap, place.says);
+    }
+    if diagnosis.causes.len() > 1 {
+        out += "\nRivals:\n";
+        for cause in diagnosis.causes.iter().skip(1) {
+            let mark = if cause.in_ambiguity_set { "  cannot be told apart" } else { "" };
+            let _ = writeln!(out, "  {:5.1} %  {}{mark}", 100.0 * cause.probability, cause.says);
+        }
+    }
+    for vetoed in &diagnosis.vetoed {
+        let _ = writeln!(out, "\nRefused: {}", vetoed.says);
+    }
+    if let Some(measure) = &diagnosis.discriminating_measurement {
+        let _ = writeln!(out, "\nTo settle it, measure: {measure}");
+    }
+    out
+}

@@ -1,0 +1,95 @@
+//! The diagnosis of a campaign: find, add, run the protocol again, say.
+
+use std::time::Instant;
+
+use super::result::Diagnosis;
+use super::run::{Found, Inputs, find};
+use super::shrink::{applied, compare, folds, improved, shares, trained};
+use crate::certify::{Compiled, certify};
+use crate::data::Campaign;
+use crate::effects::{Applied, Signals};
+use crate::problem::{Problem, Problems};
+use crate::result::Certification;
+use crate::run::Settings as RunSettings;
+use crate::simulate::{Section, Units, record_text, recorded, write_campaign};
+use crate::units::Unit;
+
+/// The answer with what it was made of.
+#[derive(Debug)]
+pub struct Outcome {
+    pub diagnosis: Diagnosis,
+    pub found: Found,
+    /// The protocol on the campaign as it is.
+    pub before: Certification,
+    /// With the effects added to sections that the fit did not see; absent where no effect is named.
+    pub after: Option<Certification>,
+    /// Records with the effects as all sections ask for them, one per section of `found`.
+    pub improved: Vec<Signals>,
+    /// Units of their channels.
+    pub units: Units,
+}
+
+/// Diagnoses a campaign with a protocol.
+///
+/// # Errors
+/// The campaign cannot be compared or evaluated; a simulation fails.
+pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, sections: Vec<Section>) -> Result<Outcome, Problems> {
+    let start = Instant::now();
+    let mut problems = Problems::default();
+    let (_, units, _) = match sections.first() {
+        Some(first) => recorded(inputs.campaign, crate::data::RecordKind::Simulation, first).map_err(Problems)?,
+        None => return Err(Problems(vec![Problem::error("no-sections", "the campaign has no sections")])),
+    };
+    let Some(found) = find(inputs, sections, &mut problems) else { return Err(problems) };
+    (inputs.trying)("the protocol");
+    let quiet = |_: &str| {};
+    let settings = RunSettings { traces: 0 };
+    let before = certify(compiled, inputs.campaign, settings, &quiet)?;
+    let mut after = None;
+    let mut shrink = None;
+    let mut records = Vec::new();
+    if !found.chosen.members.is_empty() {
+        (inputs.trying)("adding the effects");
+        let one = |problem: Problem| Problems(vec![problem]);
+        let folds = folds(&found.strata);
+        let fitted: Vec<Vec<Applied>> = folds.iter().map(|fold| applied(&found, &trained(&found, fold))).collect();
+        let of = |at: usize| folds.iter().position(|fold| fold.contains(&at)).map_or_else(Vec::new, |fold| fitted[fold].clone());
+        let unseen = improved(&found, inputs.catalogue, inputs.simulator, &of).map_err(one)?;
+        let all = applied(&found, &found.chosen.members);
+        records = improved(&found, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
+        (inputs.trying)("the protocol with the effects");
+        let made = evaluated(inputs.campaign, compiled, &found, &unseen, &units, settings)?;
+        shrink = Some(compare(&before, &made, inputs.seed, shares(&found)));
+        after = Some(made);
+    }
+    let diagnosis = super::words::diagnosis(inputs, &found, shrink, start.elapsed().as_secs_f64());
+    Ok(Outcome { diagnosis, found, before, after, improved: records, units })
+}
+
+/// The protocol on a copy of the campaign with other simulated records.
+fn evaluated(
+    campaign: &Campaign, compiled: &Compiled, found: &Found, records: &[Signals], units: &Units, settings: RunSettings,
+) -> Result<Certification, Problems> {
+    let one = |problem: Problem| Problems(vec![problem]);
+    let folder = tempfile::tempdir().map_err(|error| one(Problem::error("unwritable", format!("no temporary folder: {error}"))))?;
+    write_improved(folder.path(), campaign, found, records, units).map_err(one)?;
+    let mut problems = Problems::default();
+    let Some(copy) = Campaign::open(folder.path(), &mut problems) else { return Err(problems) };
+    certify(compiled, &copy, settings, &|_| {})
+}
+
+/// Writes a campaign like another with other simulated records.
+///
+/// # Errors
+/// Of writing.
+pub fn write_improved(out: &std::path::Path, campaign: &Campaign, found: &Found, records: &[Signals], units: &Units) -> Result<(), Problem> {
+    let unit = |name: &str| units.iter().find(|(known, _)| known == name).map_or_else(Unit::one, |(_, unit)| unit.clone());
+    let texts: Result<Vec<(&str, String)>, Problem> = found
+        .seen
+        .sections
+        .iter()
+        .zip(records)
+        .map(|(observed, signals)| Ok((observed.section.name(), record_text(signals, &unit)?)))
+        .collect();
+    write_campaign(out, campaign, texts?.into_iter())
+}

@@ -1,0 +1,290 @@
+//! What may have caused a gap: for every effect of the catalogue, how the features change with its size.
+
+use rayon::prelude::*;
+
+use super::cache::Cache;
+use super::observe::Observations;
+use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Signals};
+use crate::problem::Problem;
+use crate::simulate::{Simulator, Task};
+
+/// A path of changes with the size of an effect: from none through the sizes that were simulated.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    pub effect: String,
+    /// What it acts on, if it is an operator.
+    pub channels: Vec<String>,
+    /// The parameter that is its size, and the range that is plausible.
+    pub size: String,
+    pub range: (f64, f64),
+    /// Other parameters, fixed.
+    pub fixed: Vec<(String, f64)>,
+    /// In increasing order of the size; where nothing changes, `change` is empty.
+    pub nodes: Vec<Node>,
+    /// There or not: nothing between nodes.
+    pub discrete: bool,
+    pub confinable: bool,
+    /// The declared tolerance that it is the blown form of.
+    pub tolerance: Option<String>,
+    /// How many candidates of the effect there are: what looking at all of them costs.
+    pub alternatives: usize,
+}
+
+impl Candidate {
+    /// Whether it exchanges two channels.
+    #[must_use]
+    pub fn effect_is_swap(&self) -> bool {
+        self.discrete && self.channels.len() == 2 && self.nodes.len() == 2 && !self.size.contains(crate::effects::CHANNEL)
+    }
+}
+
+/// A size and what it changes.
+#[derive(Clone, Debug)]
+pub struct Node {
+    pub size: f64,
+    /// Change of all features; empty where nothing changes.
+    pub change: Vec<f64>,
+}
+
+/// Runs that were made, and those that failed.
+#[derive(Clone, Debug, Default)]
+pub struct Runs {
+    pub made: usize,
+    pub failed: Vec<String>,
+}
+
+/// Called with what is being tried.
+pub type Trying<'a> = &'a (dyn Fn(&str) + Sync);
+
+/// Everything that the candidates are made with.
+pub struct Workshop<'a> {
+    pub seen: &'a Observations,
+    pub catalogue: &'a Catalogue,
+    pub bench: Option<&'a Bench<'a>>,
+    /// Features of the simulator without any effect.
+    pub base: Vec<f64>,
+    /// Features of the campaign's simulation.
+    pub simulated: Vec<f64>,
+    /// Neutral values of simulator parameters.
+    pub neutral: &'a (dyn Fn(&str) -> Option<f64> + Sync),
+    pub trying: Trying<'a>,
+}
+
+impl std::fmt::Debug for Workshop<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Workshop").field("sections", &self.seen.sections.len()).finish_non_exhaustive()
+    }
+}
+
+/// A simulator whose runs become features, and are kept.
+pub struct Bench<'a> {
+    pub seen: &'a Observations,
+    pub simulator: &'a dyn Simulator,
+    pub cache: Option<Cache>,
+}
+
+impl std::fmt::Debug for Bench<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Bench").field("simulator", &self.simulator.name()).finish_non_exhaustive()
+    }
+}
+
+impl Bench<'_> {
+    /// Features of the simulator with settings, all sections.
+    ///
+    /// # Errors
+    /// The first section that fails.
+    pub fn features(&self, settings: &[(String, f64)]) -> Result<Vec<f64>, Problem> {
+        if let Some(known) = self.cache.as_ref().and_then(|cache| cache.get(settings, self.seen.len())) {
+            return Ok(known);
+        }
+        let each = |at: usize| {
+            let signals = self.simulator.run(&Task { section: &self.seen.sections[at].section, settings, shift: 0.0 })?;
+            Ok(self.seen.of(at, &signals, true))
+        };
+        let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.seen.sections.len()).into_par_iter().map(each).collect();
+        let features = parts?.concat();
+        if let Some(cache) = &self.cache {
+            cache.put(settings, &features);
+        }
+        Ok(features)
+    }
+}
+
+impl Workshop<'_> {
+    /// All candidates of the catalogue.
+    #[must_use]
+    pub fn candidates(&self, runs: &mut Runs) -> Vec<Candidate> {
+        let mut all = Vec::new();
+        for effect in self.catalogue.effects.iter().filter(|effect| effect.candidate) {
+            (self.trying)(&effect.title);
+            let mut found = match &effect.action {
+                Action::Simulator => self.simulated(effect, runs),
+                Action::Signals(operator, channels) => self.operated(effect, *operator, channels),
+            };
+            let alternatives = found.len();
+            found.iter_mut().for_each(|candidate| candidate.alternatives = alternatives);
+            all.extend(found);
+        }
+        all
+    }
+
+    fn simulated(&self, effect: &Effect, runs: &mut Runs) -> Vec<Candidate> {
+        let Some(bench) = self.bench else { return Vec::new() };
+        let mut found = Vec::new();
+        for fit in &effect.fits {
+            let Some(((size, sizes), others)) = fit.axes.split_first() else { continue };
+            let parameter = &effect.parameters[*size];
+            let neutral = parameter.neutral.or_else(|| parameter.model.as_ref().and_then(|(key, factor)| Some((self.neutral)(key)? / factor)));
+            for fixed in combinations(others) {
+                let fixed: Vec<(String, f64)> = fixed.into_iter().map(|(at, value)| (effect.parameters[at].name.clone(), value)).collect();
+                let mut nodes = Vec::new();
+                for size in sizes.iter().filter(|size| neutral != Some(**size)) {
+                    let mut values = fixed.clone();
+                    values.push((parameter.name.clone(), *size));
+                    match self.run(bench, &applied(effect, values)) {
+                        Ok(change) => nodes.push(Node { size: *size, change }),
+                        Err(problem) => runs.failed.push(format!("{} = {size}: {}", parameter.name, problem.says)),
+                    }
+                    runs.made += self.seen.sections.len();
+                }
+                let none = match parameter.vanishes_high {
+                    true => f64::INFINITY,
+                    false => neutral.unwrap_or(0.0),
+                };
+                nodes.push(Node { size: none, change: Vec::new() });
+                nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+                found.push(Candidate {
+                    effect: effect.name.clone(),
+                    channels: Vec::new(),
+                    size: parameter.name.clone(),
+                    range: (parameter.low, parameter.high),
+                    fixed,
+                    nodes,
+                    discrete: false,
+                    confinable: effect.confinable,
+                    tolerance: effect.tolerance.clone(),
+                    alternatives: 1,
+                });
+            }
+        }
+        found
+    }
+
+    /// How the features change with an effect on the simulator.
+    ///
+    /// # Errors
+    /// A section fails, or the catalogue does not say how this simulator adds the effect.
+    pub fn run(&self, bench: &Bench<'_>, applied: &Applied) -> Result<Vec<f64>, Problem> {
+        let effects = std::slice::from_ref(applied);
+        let plan = crate::simulate::Plan::new(self.catalogue, effects, &self.seen.sections[0].section, bench.simulator.catalogue_name())?;
+        let made = bench.features(&plan.settings)?;
+        Ok(made.iter().zip(&self.base).map(|(made, base)| made - base).collect())
+    }
+
+    fn operated(&self, effect: &Effect, operator: Operator, channels: &[String]) -> Vec<Candidate> {
+        let present = |name: &String| self.seen.layout.channels.iter().any(|channel| channel.name == *name);
+        let lists: Vec<Vec<String>> = if operator == Operator::Swap {
+            self.pairs(channels)
+        } else {
+            effect.fits.iter().flat_map(|fit| fit.channels.clone()).collect()
+        };
+        let parameter = &effect.parameters[0];
+        let trials: Vec<f64> = if operator == Operator::Swap {
+            vec![1.0]
+        } else {
+            effect.fits.first().and_then(|fit| fit.axes.first()).map_or(Vec::new(), |(_, trials)| trials.clone())
+        };
+        let discrete = matches!(operator, Operator::Swap | Operator::Polarity);
+        let make = |list: Vec<String>| {
+            let list: Vec<String> = if operator == Operator::Crosstalk { list } else { list.into_iter().filter(present).collect() };
+            if list.is_empty() {
+                return None;
+            }
+            let reach = if operator == Operator::Offset { self.reach(&list) } else { f64::INFINITY };
+            let mut nodes = vec![Node { size: parameter.neutral.unwrap_or(0.0), change: Vec::new() }];
+            for size in trials.iter().filter(|size| size.abs() <= reach) {
+                if let Some(change) = self.operate(operator, *size, &list) {
+                    nodes.push(Node { size: *size, change });
+                }
+            }
+            nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+            let low = nodes.first().map_or(parameter.low, |node| if operator == Operator::Offset { node.size } else { parameter.low });
+            let high = nodes.last().map_or(parameter.high, |node| if operator == Operator::Offset { node.size } else { parameter.high });
+            Some(Candidate {
+                effect: effect.name.clone(),
+                channels: list,
+                size: parameter.name.clone(),
+                range: (low, high),
+                fixed: Vec::new(),
+                nodes,
+                discrete,
+                confinable: effect.confinable,
+                tolerance: effect.tolerance.clone(),
+                alternatives: 1,
+            })
+        };
+        lists.into_par_iter().filter_map(make).collect()
+    }
+
+    /// Channels of one group that could be exchanged.
+    fn pairs(&self, channels: &[String]) -> Vec<Vec<String>> {
+        let of = &self.seen.layout.channels;
+        let mut pairs = Vec::new();
+        for (i, a) in of.iter().enumerate() {
+            for b in &of[i + 1..] {
+                if a.group == b.group && channels.contains(&a.name) && channels.contains(&b.name) {
+                    pairs.push(vec![a.name.clone(), b.name.clone()]);
+                }
+            }
+        }
+        pairs
+    }
+
+    /// The largest magnitude that channels reach in the simulation: no offset is larger.
+    fn reach(&self, channels: &[String]) -> f64 {
+        let all = self.seen.sections.iter().flat_map(|observed| channels.iter().filter_map(|name| observed.simulated.channel(name)));
+        all.flat_map(|channel| channel.values.iter()).fold(0.0, |most, value| value.abs().max(most))
+    }
+
+    /// How the features change with an operator on the simulated signals; nothing where it cannot be applied.
+    #[must_use]
+    pub fn operate(&self, operator: Operator, size: f64, channels: &[String]) -> Option<Vec<f64>> {
+        let seen = self.seen;
+        let touched = |name: &str| operator == Operator::Shift || channels.iter().any(|channel| channel == name);
+        let mut change = Vec::with_capacity(seen.len());
+        for (at, observed) in seen.sections.iter().enumerate() {
+            let mut signals = Signals {
+                axis: observed.simulated.axis.clone(),
+                rate: observed.simulated.rate,
+                channels: observed.simulated.channels.iter().filter(|channel| touched(&channel.name)).cloned().collect(),
+            };
+            signals.apply(operator, size, channels, 0).ok()?;
+            for (number, channel) in seen.layout.channels.iter().enumerate() {
+                let from = change.len();
+                let wanted = seen.features.iter().filter(|feature| feature.channel == number).count();
+                if touched(&channel.name) {
+                    seen.of_channel(at, &signals, number, true, &mut change);
+                    for (offset, value) in change[from..].iter_mut().enumerate() {
+                        *value -= self.simulated[from + offset];
+                    }
+                } else {
+                    change.resize(from + wanted, 0.0);
+                }
+            }
+        }
+        Some(change)
+    }
+}
+
+/// An effect with values, everywhere.
+#[must_use]
+pub fn applied(effect: &Effect, values: Vec<(String, f64)>) -> Applied {
+    Applied { effect: effect.name.clone(), values, channels: Vec::new(), confined: None }
+}
+
+fn combinations(axes: &[(usize, Vec<f64>)]) -> Vec<Vec<(usize, f64)>> {
+    axes.iter().fold(vec![Vec::new()], |known, (at, values)| {
+        known.iter().flat_map(|one| values.iter().map(move |value| [one.clone(), vec![(*at, *value)]].concat())).collect()
+    })
+}

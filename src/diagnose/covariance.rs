@@ -1,0 +1,220 @@
+//! What may differ without any effect: noise, declared tolerances, and what the simulation is allowed to be wrong in.
+
+use super::features::Kind;
+use super::observe::{Observations, piece};
+use super::settings::{Discrepancy, FeatureKind, Moves, Over, Settings, Times};
+use super::whiten::Covariance;
+use crate::effects::Gauss;
+
+/// Blocks of the difference of levels are at least this long, in s.
+const BLOCK: f64 = 1.0;
+/// Draws of the block bootstrap.
+const DRAWS: usize = 60;
+
+/// How the simulated features change with a tolerated parameter, per standard deviation.
+#[derive(Clone, Debug)]
+pub struct Sensitivity {
+    pub tolerance: String,
+    pub column: Vec<f64>,
+    pub per_section: bool,
+    pub shared: bool,
+}
+
+/// The covariance of `measured - simulated` without any effect. `simulated` are the features of the campaign's simulation.
+#[must_use]
+pub fn covariance(
+    seen: &Observations, settings: &Settings, simulated: &[f64], sensitivities: &[Sensitivity], declared: &dyn Fn(&str) -> Option<f64>,
+    with_discrepancies: bool,
+) -> Covariance {
+    let size = seen.features.len();
+    let mut covariance = Covariance { diagonal: diagonal(seen, settings), inside: Vec::new(), shared: Vec::new(), size };
+    for sensitivity in sensitivities {
+        if sensitivity.shared {
+            covariance.shared.push(sensitivity.column.clone());
+        }
+        if sensitivity.per_section {
+            for section in 0..seen.sections.len() {
+                covariance.inside.push((section, sensitivity.column[section * size..(section + 1) * size].to_vec()));
+            }
+        }
+    }
+    for channel in 0..seen.layout.channels.len() {
+        covariance.shared.extend(calibration(seen, settings, simulated, channel, declared));
+    }
+    if with_discrepancies {
+        for discrepancy in &settings.discrepancies {
+            discrepant(seen, settings, discrepancy, &mut covariance);
+        }
+    }
+    covariance
+}
+
+/// Gain and offset of a channel, as declared.
+fn calibration(seen: &Observations, settings: &Settings, simulated: &[f64], channel: usize, declared: &dyn Fn(&str) -> Option<f64>) -> Vec<Vec<f64>> {
+    let group = &settings.groups[seen.layout.channels[channel].group];
+    let size = seen.features.len();
+    let mut columns = Vec::new();
+    let mut push = |of: &dyn Fn(usize, Kind) -> f64| {
+        let mut column = vec![0.0; seen.len()];
+        for section in 0..seen.sections.len() {
+            for (at, feature) in seen.features.iter().enumerate().filter(|(_, feature)| feature.channel == channel) {
+                column[section * size + at] = of(section * size + at, feature.kind);
+            }
+        }
+        columns.push(column);
+    };
+    if let Some(sd) = group.gain.as_deref().and_then(declared).or(group.gain.as_ref().map(|_| 0.02)) {
+        push(&|at, kind| match kind {
+            Kind::Level => sd * simulated[at],
+            Kind::Band(_) | Kind::Gain => sd,
+            Kind::Lag => 0.0,
+        });
+    }
+    if let Some(sd) = group.offset.as_deref().and_then(declared) {
+        push(&|_, kind| if kind == Kind::Level { sd } else { 0.0 });
+    }
+    columns
+}
+
+/// Scatter of single features.
+fn diagonal(seen: &Observations, settings: &Settings) -> Vec<f64> {
+    let mut variances = Vec::with_capacity(seen.len());
+    for (at, observed) in seen.sections.iter().enumerate() {
+        let (_, length) = seen.extent(at);
+        for feature in &seen.features {
+            let of = &seen.layout.channels[feature.channel];
+            let group = &settings.groups[of.group];
+            variances.push(match feature.kind {
+                Kind::Level => {
+                    let (measured, simulated) = (piece(&observed.measured, &of.name, &observed.section), piece(&observed.simulated, &of.name, &observed.section));
+                    let own = measured.zip(simulated).map_or(0.0, |(m, s)| {
+                        let difference: Vec<f64> = m.values.iter().zip(&s.values).map(|(m, s)| m - s).collect();
+                        bootstrap(&difference, m.rate, at as u64)
+                    });
+                    own + group.level_sd * group.level_sd
+                }
+                Kind::Band(band) => {
+                    // Of the logarithm of an rms over a band of width B in a time T: 1 / (4 B T) for each of two records, half of it common.
+                    let width = seen.layout.edges[band + 1] - seen.layout.edges[band];
+                    0.25 / (width * length).max(0.5) + group.band_sd * group.band_sd
+                }
+                Kind::Gain => group.gain_sd * group.gain_sd + 0.1 / length.max(1.0),
+                Kind::Lag => group.lag_sd * group.lag_sd,
+            });
+        }
+    }
+    variances
+}
+
+/// Variance of the mean by moving blocks (Künsch 1989).
+fn bootstrap(values: &[f64], rate: f64, seed: u64) -> f64 {
+    let block = ((BLOCK * rate) as usize).clamp(1, values.len().max(1));
+    if values.len() <= block {
+        return 0.0;
+    }
+    let mut sums = vec![0.0];
+    values.iter().for_each(|value| sums.push(sums[sums.len() - 1] + value));
+    let count = values.len().div_ceil(block);
+    let mut random = Gauss::new(seed.wrapping_mul(0x5851_F42D_4C95_7F2D) ^ values.len() as u64);
+    let mut means = Vec::with_capacity(DRAWS);
+    for _ in 0..DRAWS {
+        let total: f64 = (0..count)
+            .map(|_| {
+                let from = random.below(values.len() - block + 1);
+                sums[from + block] - sums[from]
+            })
+            .sum();
+        means.push(total / (count * block) as f64);
+    }
+    let mean = means.iter().sum::<f64>() / DRAWS as f64;
+    means.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (DRAWS - 1) as f64
+}
+
+/// Columns of a discrepancy.
+fn discrepant(seen: &Observations, settings: &Settings, discrepancy: &Discrepancy, covariance: &mut Covariance) {
+    let size = seen.features.len();
+    let bands = seen.layout.edges.len().saturating_sub(1);
+    // Kinds that move together.
+    let kinds: Vec<Vec<Kind>> = match discrepancy.feature {
+        FeatureKind::Level => vec![vec![Kind::Level]],
+        FeatureKind::Bands => (0..bands).map(|band| vec![Kind::Band(band)]).collect(),
+        FeatureKind::Amplitude => vec![(0..bands).map(Kind::Band).collect()],
+        FeatureKind::Gain => vec![vec![Kind::Gain]],
+        FeatureKind::Lag => vec![vec![Kind::Lag]],
+    };
+    let sd = |at: usize| discrepancy.sd.get(at).or(discrepancy.sd.last()).copied().unwrap_or(0.0);
+    for (at, kinds) in kinds.iter().enumerate() {
+        for members in members(seen, discrepancy) {
+            let value = |section: usize| {
+                let mut values = vec![0.0; size];
+                let times = times(seen, settings, discrepancy.times, section);
+                for (channel, weight) in &members {
+                    for feature in kinds.iter().filter_map(|kind| seen.find(*channel, *kind)) {
+                        values[feature] = weight * sd(at) * times;
+                    }
+                }
+                values
+            };
+            match discrepancy.over {
+                Over::Sections => covariance.inside.extend((0..seen.sections.len()).map(|section| (section, value(section)))),
+                Over::All => covariance.shared.push((0..seen.sections.len()).flat_map(value).collect()),
+                Over::Strata => {
+                    for stratum in strata(seen, settings) {
+                        let mut column = vec![0.0; seen.len()];
+                        for section in stratum {
+                            column[section * size..(section + 1) * size].copy_from_slice(&value(section));
+                        }
+                        covariance.shared.push(column);
+                    }
+                }
+            }
+        }
+    }
+    covariance.shared.retain(|column| column.iter().any(|x| *x != 0.0));
+    covariance.inside.retain(|(_, column)| column.iter().any(|x| *x != 0.0));
+}
+
+/// Sections by stratum, in the order in which strata first appear.
+#[must_use]
+pub fn strata(seen: &Observations, settings: &Settings) -> Vec<Vec<usize>> {
+    let mut found: Vec<(String, Vec<usize>)> = Vec::new();
+    for (at, observed) in seen.sections.iter().enumerate() {
+        let value = settings.stratum.as_deref().and_then(|column| observed.section.fact(column)).unwrap_or("").to_string();
+        match found.iter_mut().find(|(known, _)| *known == value) {
+            Some((_, sections)) => sections.push(at),
+            None => found.push((value, vec![at])),
+        }
+    }
+    found.into_iter().map(|(_, sections)| sections).collect()
+}
+
+/// Channels that move together, with their weights.
+fn members(seen: &Observations, discrepancy: &Discrepancy) -> Vec<Vec<(usize, f64)>> {
+    let number = |name: &str| seen.layout.channels.iter().position(|channel| channel.name == name);
+    let all: Vec<(usize, f64)> = discrepancy.channels.iter().filter_map(|(name, weight)| Some((number(name)?, *weight))).collect();
+    match discrepancy.moves {
+        Moves::All => vec![all],
+        Moves::Channel => all.into_iter().map(|one| vec![one]).collect(),
+        Moves::Group => {
+            let mut groups: Vec<usize> = all.iter().map(|(channel, _)| seen.layout.channels[*channel].group).collect();
+            groups.dedup();
+            let of = |group: usize| all.iter().copied().filter(|(channel, _)| seen.layout.channels[*channel].group == group).collect();
+            groups.into_iter().map(of).collect()
+        }
+    }
+}
+
+fn times(seen: &Observations, settings: &Settings, times: Times, section: usize) -> f64 {
+    let section = &seen.sections[section].section;
+    let side = match &settings.mirror {
+        Some((column, value)) if section.fact(column) == Some(value) => -1.0,
+        _ => 1.0,
+    };
+    let over = |number: f64| section.number("radius").filter(|radius| *radius > 0.0).map_or(0.0, |radius| (number / radius).min(2.0));
+    match times {
+        Times::One => 1.0,
+        Times::Side => if section.number("radius").is_some() { side } else { 0.0 },
+        Times::Over(number) => side * over(number),
+        Times::Unsigned(number) => over(number),
+    }
+}

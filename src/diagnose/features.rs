@@ -1,0 +1,239 @@
+//! What is compared: a record reduced to levels, band powers, gains and lags of its channels.
+//!
+//! Features of a channel depend on that channel alone (and on the reference that gains and lags refer to), so that an operation on
+//! one channel changes the features of one channel.
+
+use realfft::RealFftPlanner;
+
+/// Band edges and channels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    pub channels: Vec<ChannelFeatures>,
+    /// Edges of the bands in Hz, increasing; one band fewer than edges.
+    pub edges: Vec<f64>,
+    /// Band in Hz over which gain and lag are taken.
+    pub alike: (f64, f64),
+}
+
+/// What is taken of one channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelFeatures {
+    pub name: String,
+    /// Number of the group of channels that it belongs to.
+    pub group: usize,
+    /// Whether its median is a feature.
+    pub level: bool,
+    /// How many of the bands are features, from the lowest.
+    pub bands: usize,
+    /// Whether its gain and lag against the simulation are.
+    pub alike: bool,
+}
+
+/// What a feature is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kind {
+    /// Median, in the unit of the channel.
+    Level,
+    /// Natural logarithm of the rms in a band.
+    Band(usize),
+    /// Regression of the record on the simulation, 1 where they are alike.
+    Gain,
+    /// Where the record lies behind the simulation, in the unit of the axis.
+    Lag,
+}
+
+/// A feature of the layout: channel by number, kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Feature {
+    pub channel: usize,
+    pub kind: Kind,
+}
+
+impl Layout {
+    /// All features of a section, channel by channel.
+    #[must_use]
+    pub fn features(&self) -> Vec<Feature> {
+        let mut features = Vec::new();
+        for (channel, of) in self.channels.iter().enumerate() {
+            let mut push = |kind| features.push(Feature { channel, kind });
+            if of.level {
+                push(Kind::Level);
+            }
+            (0..of.bands).for_each(|band| push(Kind::Band(band)));
+            if of.alike {
+                push(Kind::Gain);
+                push(Kind::Lag);
+            }
+        }
+        features
+    }
+}
+
+/// A section's signal of one channel, ready for features.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// Inside the section, at a constant rate.
+    pub values: Vec<f64>,
+    /// Samples per s.
+    pub rate: f64,
+    /// Distance of two samples on the axis.
+    pub step: f64,
+}
+
+/// The spectrum of a piece without its mean, in a taper.
+#[derive(Clone, Debug)]
+pub struct Spectrum {
+    lines: Vec<(f64, f64)>,
+    /// Hz between lines.
+    width: f64,
+    /// Sum of squares of a line to power.
+    scale: f64,
+    padded: usize,
+}
+
+/// Median; `None` of nothing.
+#[must_use]
+pub fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    let middle = sorted.len().checked_sub(1)? / 2;
+    let (_, low, above) = sorted.select_nth_unstable_by(middle, f64::total_cmp);
+    let low = *low;
+    let high = above.iter().copied().fold(f64::INFINITY, f64::min);
+    Some(if values.len().is_multiple_of(2) { 0.5 * (low + high) } else { low })
+}
+
+impl Spectrum {
+    /// With Hann's taper, padded to a power of two at least twice as long, so that correlations do not wrap around.
+    #[must_use]
+    pub fn new(piece: &Piece) -> Self {
+        let n = piece.values.len();
+        let padded = (2 * n.max(8)).next_power_of_two();
+        let mean = piece.values.iter().sum::<f64>() / n.max(1) as f64;
+        // A straight line through the piece does not belong to its bands.
+        let middle = 0.5 * (n.max(1) - 1) as f64;
+        let (mut up, mut down) = (0.0, 0.0);
+        for (i, value) in piece.values.iter().enumerate() {
+            let x = i as f64 - middle;
+            up += x * (value - mean);
+            down += x * x;
+        }
+        let slope = if down > 0.0 { up / down } else { 0.0 };
+        let mut input = vec![0.0; padded];
+        let mut power = 0.0;
+        for (i, value) in piece.values.iter().enumerate() {
+            let taper = (std::f64::consts::PI * (i as f64 + 0.5) / n as f64).sin().powi(2);
+            input[i] = (value - mean - slope * (i as f64 - middle)) * taper;
+            power += taper * taper;
+        }
+        let transform = RealFftPlanner::<f64>::new().plan_fft_forward(padded);
+        let mut output = transform.make_output_vec();
+        // The lengths are those of the plan: it cannot fail.
+        let _ = transform.process(&mut input, &mut output);
+        let lines = output.into_iter().map(|line| (line.re, line.im)).collect();
+        Self { lines, width: piece.rate / padded as f64, scale: 2.0 / (power.max(1e-300) * padded as f64), padded }
+    }
+
+    fn range(&self, low: f64, high: f64) -> std::ops::Range<usize> {
+        let from = (low / self.width).ceil().max(1.0) as usize;
+        let to = (high / self.width).ceil() as usize;
+        from.min(self.lines.len())..to.clamp(from, self.lines.len().max(from)).min(self.lines.len())
+    }
+
+    /// Mean square between two frequencies in Hz.
+    #[must_use]
+    pub fn power(&self, low: f64, high: f64) -> f64 {
+        self.lines[self.range(low, high)].iter().map(|(re, im)| re * re + im * im).sum::<f64>() * self.scale
+    }
+
+    /// Regression of `self` on `reference` over a band: where the correlation is largest, that gain and the lag in samples.
+    #[must_use]
+    pub fn alike(&self, reference: &Self, (low, high): (f64, f64), furthest: usize) -> (f64, f64) {
+        if self.padded != reference.padded {
+            return (0.0, 0.0);
+        }
+        let range = reference.range(low, high);
+        let mut planner = RealFftPlanner::<f64>::new();
+        let inverse = planner.plan_fft_inverse(self.padded);
+        let mut cross = inverse.make_input_vec();
+        let mut own = 0.0;
+        for i in range {
+            let ((a, b), (c, d)) = (self.lines[i], reference.lines[i]);
+            cross[i].re = a * c + b * d;
+            cross[i].im = b * c - a * d;
+            own += c * c + d * d;
+        }
+        let mut correlation = inverse.make_output_vec();
+        let _ = inverse.process(&mut cross, &mut correlation);
+        // The transform of one-sided lines: the correlation is half the sum.
+        let at = |lag: i64| correlation[lag.rem_euclid(self.padded as i64) as usize] * 0.5;
+        let gain = |lag: i64| at(lag) / own.max(1e-300);
+        let furthest = (furthest as i64).min(self.padded as i64 / 2 - 2);
+        let best = (-furthest..=furthest).max_by(|a, b| at(*a).total_cmp(&at(*b))).unwrap_or(0);
+        let (left, middle, right) = (at(best - 1), at(best), at(best + 1));
+        let bend = left - 2.0 * middle + right;
+        let part = if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 };
+        (gain(0), best as f64 + part)
+    }
+}
+
+/// Features of one channel, in the order of [`Layout::features`].
+///
+/// `reference` is the spectrum of the simulated channel; `noise` the standard deviation of white noise per sample that is added to
+/// the powers, in the unit of the channel; `shift` where the piece's own axis lies behind that of the reference.
+pub fn of_channel(layout: &Layout, of: &ChannelFeatures, piece: &Piece, reference: Option<&Spectrum>, noise: f64, out: &mut Vec<f64>) {
+    if of.level {
+        out.push(median(&piece.values).unwrap_or(0.0));
+    }
+    if of.bands == 0 && !of.alike {
+        return;
+    }
+    let spectrum = Spectrum::new(piece);
+    for band in 0..of.bands {
+        let (low, high) = (layout.edges[band], layout.edges[band + 1]);
+        let white = noise * noise * (high - low) / (0.5 * piece.rate);
+        out.push(0.5 * (spectrum.power(low, high) + white + 1e-12).ln());
+    }
+    if of.alike {
+        let (gain, lag) = match reference {
+            Some(reference) => spectrum.alike(reference, layout.alike, (50.0 / piece.step.max(1e-9)) as usize),
+            None => (1.0, 0.0),
+        };
+        out.push(gain);
+        out.push(lag * piece.step);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sine(frequency: f64, amplitude: f64, delay: usize) -> Piece {
+        let values = (0..2000).map(|n| amplitude * (std::f64::consts::TAU * frequency * (n as f64 - delay as f64) / 200.0).sin() + 3.0);
+        Piece { values: values.collect(), rate: 200.0, step: 0.1 }
+    }
+
+    /// A sine of amplitude 2 has a mean square of 2, all of it in its band.
+    #[test]
+    fn power_of_a_sine() {
+        let spectrum = Spectrum::new(&sine(3.0, 2.0, 0));
+        assert!((spectrum.power(2.0, 4.0) - 2.0).abs() < 0.01, "{}", spectrum.power(2.0, 4.0));
+        assert!(spectrum.power(6.0, 20.0) < 1e-6);
+    }
+
+    #[test]
+    fn gain_and_lag_of_a_delayed_copy() {
+        let (a, b) = (Spectrum::new(&sine(3.0, 2.0, 0)), Spectrum::new(&sine(3.0, 3.0, 7)));
+        let (_, lag) = b.alike(&a, (1.0, 8.0), 30);
+        assert!((lag - 7.0).abs() < 0.05, "{lag}");
+        let (gain, lag) = Spectrum::new(&sine(3.0, -3.0, 0)).alike(&a, (1.0, 8.0), 3);
+        assert!((gain + 1.5).abs() < 1e-3, "{gain}");
+        assert!(lag.abs() <= 3.0);
+    }
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), Some(2.5));
+        assert_eq!(median(&[]), None);
+    }
+}

@@ -1,0 +1,24 @@
+//! Diagnosis: where simulation and measurement differ, which effect causes it, how far the gap shrinks once it is added.
+
+#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap)]
+
+mod cache;
+mod campaign;
+pub mod candidates;
+pub mod covariance;
+pub mod features;
+pub mod fit;
+pub mod guards;
+mod locate;
+pub mod observe;
+pub mod result;
+pub mod run;
+pub mod search;
+pub mod sensitivity;
+pub mod settings;
+pub mod shrink;
+pub mod whiten;
+mod words;
+
+pub use cache::Cache;
+pub use campaign::{Outcome, diagnose, write_improved};

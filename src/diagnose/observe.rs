@@ -1,0 +1,172 @@
+//! A campaign as features: what was measured, what was simulated, section by section.
+
+use rayon::prelude::*;
+
+use super::features::{ChannelFeatures, Feature, Kind, Layout, Piece, Spectrum, of_channel};
+use super::settings::Settings;
+use crate::data::{Campaign, RecordKind};
+use crate::effects::{Catalogue, Signals};
+use crate::problem::{Problem, Problems};
+use crate::simulate::{Section, recorded};
+
+/// One section with its records.
+#[derive(Debug)]
+pub struct Observed {
+    pub section: Section,
+    /// The campaign's simulation, and what was measured.
+    pub simulated: Signals,
+    pub measured: Signals,
+    /// Spectra of the simulated channels of the layout.
+    pub references: Vec<Option<Spectrum>>,
+}
+
+/// All sections of a campaign that have both records.
+#[derive(Debug)]
+pub struct Observations {
+    pub layout: Layout,
+    pub features: Vec<Feature>,
+    pub sections: Vec<Observed>,
+    /// Standard deviation of white noise per sample, by channel of the layout.
+    pub noise: Vec<f64>,
+    /// Sections that could not be used, with the reason.
+    pub left_out: Vec<(String, String)>,
+}
+
+impl Observations {
+    /// Reads the records of a campaign and finds which channels both sides have.
+    ///
+    /// Problems: no section can be read; no channel of the catalogue is in the records.
+    pub fn read(
+        campaign: &Campaign, sections: Vec<Section>, catalogue: &Catalogue, settings: &Settings, declared: &dyn Fn(&str) -> Option<f64>,
+        problems: &mut Problems,
+    ) -> Option<Self> {
+        type Both = (Section, Result<(Signals, Signals), String>);
+        let read: Vec<Both> = sections
+            .into_par_iter()
+            .map(|section| {
+                let side = |kind| recorded(campaign, kind, &section).map(|(signals, ..)| signals).map_err(|problems| first(&problems));
+                let both = side(RecordKind::Simulation).and_then(|simulated| Ok((simulated, side(RecordKind::Measurement)?)));
+                (section, both)
+            })
+            .collect();
+        let mut left_out = Vec::new();
+        let mut good = Vec::new();
+        for (section, both) in read {
+            match both {
+                Ok((simulated, measured)) => good.push((section, simulated, measured)),
+                Err(reason) => left_out.push((section.name().to_string(), reason)),
+            }
+        }
+        if good.is_empty() {
+            let reason = left_out.first().map_or(String::new(), |(section, reason)| format!("; section `{section}`: {reason}"));
+            problems.push(Problem::error("no-sections", format!("no section of the campaign can be compared{reason}")));
+            return None;
+        }
+        let mut layout = Layout { channels: Vec::new(), edges: settings.edges.clone(), alike: settings.alike };
+        let mut noise = Vec::new();
+        for (at, group) in settings.groups.iter().enumerate() {
+            for name in catalogue.channels(&group.name).unwrap_or_default() {
+                let there = good.iter().all(|(_, simulated, measured)| simulated.channel(&name).is_some() && measured.channel(&name).is_some());
+                if there {
+                    noise.push(group.noise.as_deref().and_then(declared).unwrap_or(0.0));
+                    let bands = group.bands.min(settings.edges.len().saturating_sub(1));
+                    layout.channels.push(ChannelFeatures { name, group: at, level: group.level, bands, alike: group.alike });
+                }
+            }
+        }
+        if layout.channels.is_empty() {
+            let known: Vec<String> = catalogue.groups.iter().flat_map(|group| group.channels.clone()).collect();
+            let says = format!("no channel of the catalogue `{}` is in both records of every section", catalogue.name);
+            problems.push(Problem::error("no-channels", says).help(format!("it knows {}", known.join(", "))));
+            return None;
+        }
+        let features = layout.features();
+        let sections = good
+            .into_par_iter()
+            .map(|(section, simulated, measured)| {
+                let references = layout.channels.iter().map(|of| piece(&simulated, &of.name, &section).map(|piece| Spectrum::new(&piece)));
+                let references = references.collect();
+                Observed { section, simulated, measured, references }
+            })
+            .collect();
+        Some(Self { layout, features, sections, noise, left_out })
+    }
+
+    /// Number of features of all sections.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.sections.len() * self.features.len()
+    }
+
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Features of signals of a section; `noisy` adds the power of the declared noise, which a simulation has not.
+    #[must_use]
+    pub fn of(&self, at: usize, signals: &Signals, noisy: bool) -> Vec<f64> {
+        let mut out = Vec::with_capacity(self.features.len());
+        for channel in 0..self.layout.channels.len() {
+            self.of_channel(at, signals, channel, noisy, &mut out);
+        }
+        out
+    }
+
+    /// Features of one channel of a section.
+    pub fn of_channel(&self, at: usize, signals: &Signals, channel: usize, noisy: bool, out: &mut Vec<f64>) {
+        let observed = &self.sections[at];
+        let of = &self.layout.channels[channel];
+        let before = out.len();
+        if let Some(piece) = piece(signals, &of.name, &observed.section) {
+            let noise = if noisy { self.noise[channel] } else { 0.0 };
+            of_channel(&self.layout, of, &piece, observed.references[channel].as_ref(), noise, out);
+        }
+        let wanted = self.features.iter().filter(|feature| feature.channel == channel).count();
+        out.resize(before + wanted, 0.0);
+    }
+
+    /// Features of every section, one after the other.
+    #[must_use]
+    pub fn all(&self, noisy: bool, signals: impl Fn(&Observed) -> &Signals + Sync) -> Vec<f64> {
+        let each = |at: usize| self.of(at, signals(&self.sections[at]), noisy);
+        (0..self.sections.len()).into_par_iter().flat_map_iter(each).collect()
+    }
+
+    /// Place of a feature of a section in the list of all.
+    #[must_use]
+    pub fn place(&self, section: usize, feature: usize) -> usize {
+        section * self.features.len() + feature
+    }
+
+    /// Samples per s and length in s of a section.
+    #[must_use]
+    pub fn extent(&self, at: usize) -> (f64, f64) {
+        let observed = &self.sections[at];
+        let inside = observed.measured.axis.iter().filter(|x| **x >= observed.section.start && **x <= observed.section.end).count();
+        (observed.measured.rate, inside as f64 / observed.measured.rate)
+    }
+
+    /// The channel's features by kind.
+    #[must_use]
+    pub fn find(&self, channel: usize, kind: Kind) -> Option<usize> {
+        self.features.iter().position(|feature| *feature == Feature { channel, kind })
+    }
+}
+
+/// The part of a channel inside its section.
+#[must_use]
+pub fn piece(signals: &Signals, name: &str, section: &Section) -> Option<Piece> {
+    let channel = signals.channel(name)?;
+    let from = signals.axis.partition_point(|x| *x < section.start);
+    let to = signals.axis.partition_point(|x| *x <= section.end);
+    if to < from + 16 {
+        return None;
+    }
+    let step = (signals.axis[to - 1] - signals.axis[from]) / (to - from - 1) as f64;
+    Some(Piece { values: channel.values[from..to].to_vec(), rate: signals.rate, step })
+}
+
+fn first(problems: &[Problem]) -> String {
+    problems.first().map_or(String::new(), |problem| problem.says.clone())
+}

@@ -1,0 +1,140 @@
+//! What a diagnosis found: plain data, in the form of `diagnosis.json`.
+
+use indexmap::IndexMap;
+use serde::Serialize;
+
+/// The answer.
+#[derive(Clone, Debug, Serialize)]
+pub struct Diagnosis {
+    pub fishplate: &'static str,
+    pub campaign: String,
+    /// `explained`, `ambiguous`, `unexplained` or `no significant gap`.
+    pub verdict: &'static str,
+    /// The verdict in a sentence or two.
+    pub says: Vec<String>,
+    pub r#where: Vec<Where>,
+    pub causes: Vec<Cause>,
+    pub vetoed: Vec<Vetoed>,
+    pub shrink: Option<Shrink>,
+    /// Share of the gap beyond what is allowed for that the answer leaves.
+    pub unexplained_share: f64,
+    pub discriminating_measurement: Option<String>,
+    /// Per effect, the smallest size that would have been seen.
+    pub detectable: Vec<Detectable>,
+    pub how: How,
+    pub notes: Vec<String>,
+    pub simulations_run: usize,
+    pub seconds: f64,
+}
+
+/// A place where the gap lies.
+#[derive(Clone, Debug, Serialize)]
+pub struct Where {
+    pub quantity: String,
+    pub signals: Vec<String>,
+    pub zones: Vec<String>,
+    pub sections: Vec<String>,
+    pub wavelength_or_band: String,
+    /// Mean difference, measured - simulated, in the unit (levels) or as a ratio of rms less one (bands).
+    pub difference: f64,
+    pub unit: String,
+    pub share_of_gap: f64,
+    pub p_value: f64,
+    /// Below the limit of the false discovery rate.
+    pub significant: bool,
+    pub says: String,
+}
+
+/// Effects that together may be the cause.
+#[derive(Clone, Debug, Serialize)]
+pub struct Cause {
+    pub rank: usize,
+    pub effects: Vec<NamedEffect>,
+    pub probability: f64,
+    pub in_ambiguity_set: bool,
+    /// Twice the logarithm of the Bayes factor against no effect.
+    pub evidence: f64,
+    pub says: String,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct NamedEffect {
+    pub name: String,
+    pub title: String,
+    pub parameters: IndexMap<String, Value>,
+    pub confined_to: Option<IndexMap<String, serde_json::Value>>,
+    /// How it was added: by which simulator, or an operation on the signals.
+    pub added_by: String,
+}
+
+/// A parameter with its interval (90 %).
+#[derive(Clone, Debug, Serialize)]
+pub struct Value {
+    pub value: serde_json::Value,
+    pub unit: String,
+    pub low: Option<f64>,
+    pub high: Option<f64>,
+}
+
+/// An effect that improves something and contradicts something else.
+#[derive(Clone, Debug, Serialize)]
+pub struct Vetoed {
+    pub name: String,
+    pub size: f64,
+    pub parameter: String,
+    pub evidence: f64,
+    pub says: String,
+}
+
+/// How far the gap shrinks on sections that the fit did not see.
+#[derive(Clone, Debug, Serialize)]
+pub struct Shrink {
+    pub measure: String,
+    pub before: f64,
+    pub after: f64,
+    pub fraction_removed: f64,
+    /// 90 %, by resampling sections.
+    pub low: f64,
+    pub high: f64,
+    pub held_out: bool,
+    pub quantities: Vec<QuantityShrink>,
+    pub verdict_before: String,
+    pub verdict_after: String,
+    /// Share of the whitened excess that each effect removes, if several act.
+    pub shares: Vec<(String, f64)>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct QuantityShrink {
+    pub id: String,
+    pub normalised_std_before: Option<f64>,
+    pub normalised_std_after: Option<f64>,
+    pub normalised_mean_before: Option<f64>,
+    pub normalised_mean_after: Option<f64>,
+    /// Of the sum of squared differences, the share removed.
+    pub variance_explained: Option<f64>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct Detectable {
+    pub effect: String,
+    pub parameter: String,
+    pub unit: String,
+    /// Change from neutral at which the whitened change is 5 long; nothing if the range ends before.
+    pub smallest: Option<f64>,
+}
+
+/// With what the answer was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct How {
+    pub catalogue: String,
+    pub simulator: String,
+    pub mode: String,
+    pub tolerances: String,
+    pub sections: usize,
+    pub features: usize,
+    pub seed: u64,
+    pub threshold: f64,
+    pub chi_squared_before: f64,
+    pub chi_squared_after: f64,
+}

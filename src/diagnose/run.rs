@@ -1,0 +1,273 @@
+//! The diagnosis from end to end: features, candidates, search, guards, verdict.
+
+use super::cache::Cache;
+use super::candidates::{Bench, Candidate, Runs, Trying, Workshop};
+use super::covariance::{Sensitivity, covariance, strata};
+use super::features::Kind;
+use super::fit::{Fitted, Fitter, Mask, less};
+use super::guards::{View, contradiction, families, lack_of_fit};
+use super::observe::Observations;
+use super::search::{Bars, Chosen, Refused, chi_squared, refit, rivals, search};
+use super::sensitivity::sensitivities;
+use super::settings::Settings;
+use super::whiten::{Covariance, Whitener, dot};
+use crate::data::Campaign;
+use crate::effects::{Catalogue, Gauss};
+use crate::model::parameter;
+use crate::problem::Problems;
+use crate::simulate::{Section, Simulator};
+
+/// What a diagnosis is made of.
+pub struct Inputs<'a> {
+    pub campaign: &'a Campaign,
+    pub catalogue: &'a Catalogue,
+    pub settings: &'a Settings,
+    pub simulator: Option<&'a dyn Simulator>,
+    pub cache: Option<Cache>,
+    pub seed: u64,
+    pub trying: Trying<'a>,
+}
+
+impl std::fmt::Debug for Inputs<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Inputs").field("campaign", &self.campaign.name).finish_non_exhaustive()
+    }
+}
+
+/// What was found, before it is put in words.
+#[derive(Debug)]
+pub struct Found {
+    pub seen: Observations,
+    pub candidates: Vec<Candidate>,
+    pub masks: Vec<Mask>,
+    pub covariance: Covariance,
+    /// Noise and tolerances alone.
+    pub tolerated: Covariance,
+    pub whitener: Whitener,
+    /// Measured - simulated.
+    pub difference: Vec<f64>,
+    pub simulated: Vec<f64>,
+    pub chosen: Chosen,
+    pub refused: Vec<Refused>,
+    /// Other candidates in the place of a member: member, fit, how much less evidence.
+    pub rivals: Vec<(usize, Fitted, f64)>,
+    /// Channels and kinds where what is left, and what was there, is more than is allowed for.
+    pub lack_before: Vec<(String, Kind, f64, f64)>,
+    pub lack_after: Vec<(String, Kind, f64, f64)>,
+    pub threshold: f64,
+    pub runs: Runs,
+    pub strata: Vec<Vec<usize>>,
+}
+
+/// Draws for the threshold.
+const DRAWS: usize = 60;
+/// Evidence below which no cause is named: real discrepancies are not those of the covariance.
+const FLOOR: f64 = 30.0;
+/// Lack of fit, in standard deviations of chi-squared of a channel, beyond which something is not explained.
+pub const LACK: f64 = 5.0;
+
+/// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
+#[must_use]
+pub fn value_of(campaign: &Campaign, key: &str) -> Option<f64> {
+    campaign.vehicle.lookup(key).and_then(crate::yaml::Node::number).or_else(|| parameter(key)?.neutral)
+}
+
+/// A tolerance that the campaign declares.
+#[must_use]
+pub fn declared(campaign: &Campaign, name: &str) -> Option<f64> {
+    let fact = campaign.facts.iter().find(|fact| fact.group == "declared_tolerances" && fact.name == name)?;
+    fact.text.parse().ok()
+}
+
+/// Finds what explains the difference of measurement and simulation.
+///
+/// Problems: of reading; nothing to compare.
+pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems) -> Option<Found> {
+    let declared = |name: &str| declared(inputs.campaign, name);
+    let value = |key: &str| value_of(inputs.campaign, key);
+    let settings = inputs.settings;
+    (inputs.trying)("reading records");
+    let seen = Observations::read(inputs.campaign, sections, inputs.catalogue, settings, &declared, problems)?;
+    let simulated = seen.all(true, |observed| &observed.simulated);
+    let measured = seen.all(false, |observed| &observed.measured);
+    let difference = less(&measured, &simulated);
+    let mut runs = Runs::default();
+    let bench = inputs.simulator.map(|simulator| Bench { seen: &seen, simulator, cache: inputs.cache.clone() });
+    (inputs.trying)("simulation without effects");
+    let base = match &bench {
+        Some(bench) => match bench.features(&[]) {
+            Ok(base) => base,
+            Err(problem) => {
+                problems.push(problem);
+                return None;
+            }
+        },
+        None => simulated.clone(),
+    };
+    (inputs.trying)("what the tolerances change");
+    let sensitivities: Vec<Sensitivity> = match &bench {
+        Some(bench) => sensitivities(bench, settings, &base, &value, &declared, &mut runs),
+        None => Vec::new(),
+    };
+    let workshop =
+        Workshop { seen: &seen, catalogue: inputs.catalogue, bench: bench.as_ref(), base, simulated: simulated.clone(), neutral: &value, trying: inputs.trying };
+    let mut candidates = workshop.candidates(&mut runs);
+    (inputs.trying)("weighing");
+    let whole = covariance(&seen, settings, &simulated, &sensitivities, &declared, true);
+    let tolerated = covariance(&seen, settings, &simulated, &sensitivities, &declared, false);
+    let whitener = whole.whitener();
+    let masks = masks(&seen, settings);
+    let z = whitener.apply(&difference);
+    let strata = strata(&seen, settings);
+    let families = families(&seen, &strata);
+    let far = |candidate: &Candidate, size: f64| deviations(candidate, size, &value, &declared);
+    let mut refused = Vec::new();
+    let mut chosen;
+    let threshold;
+    // Twice: the sizes that were found are simulated themselves, and the search is made again.
+    {
+        let fitter = Fitter::new(&whitener, &candidates, masks.clone(), seen.features.len());
+        threshold = limit(&fitter, z.len(), inputs.seed).max(FLOOR);
+        let bars = bars(threshold);
+        let guard = |fit: &Fitted, rest: &[f64]| guard(&whole, &families, &fitter, &difference, z.as_slice(), rest, fit);
+        chosen = search(&fitter, &z, &bars, &far, &guard, &mut refused);
+    }
+    if let Some(bench) = &bench {
+        polish(&workshop, bench, &mut candidates, &chosen, &mut runs);
+    }
+    let fitter = Fitter::new(&whitener, &candidates, masks.clone(), seen.features.len());
+    // Nodes may have come between: the members are fitted again.
+    refit(&fitter, &z, &mut chosen, 6);
+    let rivals = rivals(&fitter, &z, &chosen);
+    let rest = left(&fitter, &difference, &chosen);
+    let lack_before = lack_of_fit(&whole, &seen, &difference);
+    let lack_after = lack_of_fit(&whole, &seen, &rest);
+    drop(fitter);
+    drop(bench);
+    Some(Found {
+        candidates,
+        masks,
+        covariance: whole,
+        tolerated,
+        whitener,
+        difference,
+        simulated,
+        chosen,
+        refused,
+        rivals,
+        lack_before,
+        lack_after,
+        threshold,
+        runs,
+        strata,
+        seen,
+    })
+}
+
+fn bars(threshold: f64) -> Bars {
+    Bars { first: threshold, next: 1.25 * threshold, confined: 15.0, tolerance_sd: 3.0, share: 0.06, most: 3 }
+}
+
+/// What the members leave of the difference, in the features' own units.
+#[must_use]
+pub fn left(fitter: &Fitter<'_>, difference: &[f64], chosen: &Chosen) -> Vec<f64> {
+    chosen.members.iter().fold(difference.to_vec(), |rest, member| less(&rest, &fitter.change(member)))
+}
+
+/// The whole campaign, the values of the columns that an effect may be confined to, and pairs of neighbouring strata.
+fn masks(seen: &Observations, settings: &Settings) -> Vec<Mask> {
+    let all = seen.sections.len();
+    let mut masks = vec![Mask { confined: None, sections: vec![true; all] }];
+    for column in &settings.confine {
+        let mut values: Vec<String> = Vec::new();
+        for observed in &seen.sections {
+            if let Some(value) = observed.section.fact(column)
+                && !values.iter().any(|known| known == value)
+            {
+                values.push(value.to_string());
+            }
+        }
+        let mut push = |values: Vec<String>| {
+            let inside = |at: &super::observe::Observed| at.section.fact(column).is_some_and(|value| values.iter().any(|one| one == value));
+            let sections: Vec<bool> = seen.sections.iter().map(inside).collect();
+            let some = sections.iter().filter(|inside| **inside).count();
+            if some > 0 && some < all && !masks.iter().any(|mask| mask.sections == sections) {
+                masks.push(Mask { confined: Some((column.clone(), values)), sections });
+            }
+        };
+        values.iter().for_each(|value| push(vec![value.clone()]));
+        values.windows(2).for_each(|pair| push(pair.to_vec()));
+    }
+    masks
+}
+
+/// How many declared standard deviations a size is from neutral; many for an effect that is no tolerance.
+fn deviations(candidate: &Candidate, size: f64, value: &dyn Fn(&str) -> Option<f64>, declared: &dyn Fn(&str) -> Option<f64>) -> f64 {
+    let Some(sd) = candidate.tolerance.as_deref().and_then(declared) else { return f64::INFINITY };
+    let neutral = candidate.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size).or_else(|| value(&candidate.size));
+    match neutral {
+        Some(neutral) if sd > 0.0 => (size - neutral).abs() / sd,
+        _ => f64::INFINITY,
+    }
+}
+
+/// The evidence that the best candidate reaches by chance: 99 % of draws from the covariance stay below.
+fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
+    use rayon::prelude::*;
+    let mut most: Vec<f64> = (0..DRAWS)
+        .into_par_iter()
+        .map(|draw| {
+            let mut random = Gauss::new(seed ^ (draw as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+            let z: Vec<f64> = (0..features).map(|_| random.next()).collect();
+            (0..fitter.candidates.len()).filter_map(|at| fitter.fit(&z, at, 0)).map(|fit| fit.evidence).fold(0.0, f64::max)
+        })
+        .collect();
+    most.sort_by(f64::total_cmp);
+    most.last().copied().unwrap_or(0.0) + 3.0
+}
+
+/// Refuses a member that views contradict, or that a single section carries.
+fn guard(covariance: &Covariance, families: &[Vec<View>], fitter: &Fitter<'_>, difference: &[f64], z: &[f64], rest: &[f64], fit: &Fitted) -> Option<String> {
+    let change = fitter.change(fit);
+    // What other members explain is taken away in whitened form only: the guard looks at the whole difference for the first.
+    let _ = (z, rest);
+    for family in families {
+        if let Some(says) = contradiction(covariance, family, &change, difference) {
+            return Some(says);
+        }
+    }
+    None
+}
+
+/// Simulates the sizes that were found, so that nothing rests on interpolation.
+fn polish(workshop: &Workshop<'_>, bench: &Bench<'_>, candidates: &mut [Candidate], chosen: &Chosen, runs: &mut Runs) {
+    for member in &chosen.members {
+        let candidate = &mut candidates[member.candidate];
+        let Some(effect) = workshop.catalogue.effect(&candidate.effect) else { continue };
+        if candidate.channels.is_empty() && member.size.is_finite() && candidate.nodes.iter().all(|node| node.size.to_bits() != member.size.to_bits()) {
+            let mut values = candidate.fixed.clone();
+            values.push((candidate.size.clone(), member.size));
+            runs.made += workshop.seen.sections.len();
+            match workshop.run(bench, &super::candidates::applied(effect, values)) {
+                Ok(change) => candidate.nodes.push(super::candidates::Node { size: member.size, change }),
+                Err(problem) => runs.failed.push(problem.says),
+            }
+            candidate.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+        }
+    }
+}
+
+/// Whitened size of a change.
+#[must_use]
+pub fn length(whitener: &Whitener, change: &[f64]) -> f64 {
+    let z = whitener.apply(change);
+    dot(&z, &z).sqrt()
+}
+
+/// Chi-squared per feature before and after.
+#[must_use]
+pub fn chi(found: &Found) -> (f64, f64) {
+    let before = found.whitener.apply(&found.difference);
+    let n = before.len().max(1) as f64;
+    (chi_squared(&before) / n, chi_squared(&found.chosen.rest) / n)
+}

@@ -1,0 +1,149 @@
+//! Forward search for a set of effects, each of which must earn its place.
+
+use super::candidates::Candidate;
+use super::fit::{Fitted, Fitter, less};
+use super::whiten::dot;
+
+/// What a member must bring.
+#[derive(Clone, Copy, Debug)]
+pub struct Bars {
+    /// Least evidence of the first member.
+    pub first: f64,
+    /// Of every further one.
+    pub next: f64,
+    /// Extra evidence that a confinement must bring over the whole campaign.
+    pub confined: f64,
+    /// A size that is a declared tolerance must be so many standard deviations from neutral.
+    pub tolerance_sd: f64,
+    /// Share of the fall of the first member that a further one must bring.
+    pub share: f64,
+    pub most: usize,
+}
+
+/// A set of effects with the difference that is left.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    pub members: Vec<Fitted>,
+    /// What is left, whitened.
+    pub rest: Vec<f64>,
+}
+
+/// Says why a member is refused, or nothing if it may stay.
+pub type Guard<'a> = &'a (dyn Fn(&Fitted, &[f64]) -> Option<String> + Sync);
+
+/// A refused member and why.
+#[derive(Clone, Debug)]
+pub struct Refused {
+    pub fitted: Fitted,
+    pub reason: String,
+}
+
+impl Chosen {
+    #[must_use]
+    pub fn evidence(&self) -> f64 {
+        self.members.iter().map(|member| member.evidence).sum()
+    }
+}
+
+/// Searches. `z` is the whitened difference; `far` says how many declared standard deviations a size is from neutral.
+pub fn search(
+    fitter: &Fitter<'_>, z: &[f64], bars: &Bars, far: &(dyn Fn(&Candidate, f64) -> f64 + Sync), guard: Guard<'_>, refused: &mut Vec<Refused>,
+) -> Chosen {
+    let mut chosen = Chosen { members: Vec::new(), rest: z.to_vec() };
+    let mut barred: Vec<usize> = Vec::new();
+    while chosen.members.len() < bars.most {
+        let bar = if chosen.members.is_empty() { bars.first } else { bars.next };
+        let mut fits = fitter.all(&chosen.rest);
+        fits.iter_mut().for_each(|fit| unconfine(fitter, &chosen.rest, fit, bars));
+        fits.retain(|fit| fit.evidence >= bar && !barred.contains(&fit.candidate) && !taken(fitter, &chosen, fit));
+        fits.retain(|fit| far(&fitter.candidates[fit.candidate], fit.size) >= bars.tolerance_sd);
+        if let Some(first) = chosen.members.first() {
+            let least = bars.share * first.fall;
+            fits.retain(|fit| fit.fall >= least);
+        }
+        fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        let Some(best) = fits.into_iter().next() else { break };
+        if let Some(reason) = guard(&best, &chosen.rest) {
+            barred.push(best.candidate);
+            refused.push(Refused { fitted: best, reason });
+            continue;
+        }
+        chosen.members.push(best);
+        refit(fitter, z, &mut chosen, 4);
+        // A member that the others have made needless goes.
+        if let Some(weak) = chosen.members.iter().position(|member| member.evidence < bars.next.min(bars.first)) {
+            barred.push(chosen.members[weak].candidate);
+            chosen.members.remove(weak);
+            refit(fitter, z, &mut chosen, 4);
+        }
+    }
+    chosen
+}
+
+/// A confinement must earn what it costs over the same candidate everywhere.
+fn unconfine(fitter: &Fitter<'_>, rest: &[f64], fit: &mut Fitted, bars: &Bars) {
+    if fit.mask == 0 {
+        return;
+    }
+    let Some(whole) = fitter.fit(rest, fit.candidate, 0) else { return };
+    if fit.evidence < whole.evidence + bars.confined {
+        *fit = whole;
+    }
+}
+
+/// Whether a like cause is a member already: another size of the same effect on the same channels.
+fn taken(fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> bool {
+    let of = &fitter.candidates[fit.candidate];
+    chosen.members.iter().any(|member| {
+        let known = &fitter.candidates[member.candidate];
+        known.effect == of.effect && (known.channels == of.channels || of.channels.is_empty())
+    })
+}
+
+/// Fits every member to what the others leave, in turns.
+pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen, sweeps: usize) {
+    for _ in 0..sweeps {
+        for at in 0..chosen.members.len() {
+            let mut rest = z.to_vec();
+            for (other, member) in chosen.members.iter().enumerate() {
+                if other != at {
+                    rest = less(&rest, &member.whitened);
+                }
+            }
+            let (candidate, mask) = (chosen.members[at].candidate, chosen.members[at].mask);
+            if let Some(fitted) = fitter.fit(&rest, candidate, mask) {
+                chosen.members[at] = fitted;
+            }
+        }
+    }
+    chosen.rest = z.to_vec();
+    for member in &chosen.members {
+        chosen.rest = less(&chosen.rest, &member.whitened);
+    }
+}
+
+/// For every candidate, the best evidence of the set in which it takes the place of a member.
+#[must_use]
+pub fn rivals(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, Fitted, f64)> {
+    let mut found = Vec::new();
+    for at in 0..chosen.members.len() {
+        let mut rest = z.to_vec();
+        for (other, member) in chosen.members.iter().enumerate() {
+            if other != at {
+                rest = less(&rest, &member.whitened);
+            }
+        }
+        for fit in fitter.all(&rest) {
+            let fall = chosen.members[at].evidence - fit.evidence;
+            found.push((at, fit, fall));
+        }
+    }
+    found.sort_by(|a, b| a.2.total_cmp(&b.2));
+    found
+}
+
+/// Chi-squared of a whitened difference.
+#[must_use]
+pub fn chi_squared(z: &[f64]) -> f64 {
+    dot(z, z)
+}

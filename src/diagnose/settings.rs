@@ -1,0 +1,340 @@
+//! What a catalogue says about diagnosing: features, tolerances, and what the simulation is allowed to be wrong in.
+
+use crate::effects::Catalogue;
+use crate::problem::{Problem, Problems};
+use crate::yaml::{Node, Value};
+
+/// The `diagnosis` part of a catalogue.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// Edges of the bands in Hz.
+    pub edges: Vec<f64>,
+    /// Band in Hz for gains and lags.
+    pub alike: (f64, f64),
+    pub groups: Vec<GroupFeatures>,
+    pub tolerances: Vec<Tolerance>,
+    pub discrepancies: Vec<Discrepancy>,
+    /// Columns of the section table whose values an effect may be confined to.
+    pub confine: Vec<String>,
+    /// The column whose sign folds left and right, and the value that is mirrored.
+    pub mirror: Option<(String, String)>,
+    /// The column that sections are stratified by.
+    pub stratum: Option<String>,
+    pub positions: Vec<Position>,
+}
+
+/// Features of a group of channels.
+#[derive(Clone, Debug)]
+pub struct GroupFeatures {
+    pub name: String,
+    pub level: bool,
+    pub bands: usize,
+    pub alike: bool,
+    /// Standard deviation of a level beyond what the record itself shows, in the unit of the channels.
+    pub level_sd: f64,
+    /// Of the logarithm of a band's rms.
+    pub band_sd: f64,
+    pub gain_sd: f64,
+    pub lag_sd: f64,
+    /// Names of the declared tolerances of these channels.
+    pub noise: Option<String>,
+    pub offset: Option<String>,
+    pub gain: Option<String>,
+    /// Which axis of motion: groups of one axis share discrepancies.
+    pub axis: String,
+    /// What an engineer calls it.
+    pub says: String,
+}
+
+/// Something that the test engineer admits not to know.
+#[derive(Clone, Debug)]
+pub struct Tolerance {
+    /// As in `declared_tolerances`, without unit.
+    pub name: String,
+    /// One standard deviation where the campaign declares none.
+    pub default: f64,
+    /// Parameters that are scaled, each on its own.
+    pub scales: Vec<String>,
+    /// Parameters that are added to: the factor from the declared unit to theirs.
+    pub adds: Vec<(String, f64)>,
+    /// Whether each section has its own.
+    pub per_section: bool,
+    /// Whether all sections share one.
+    pub shared: bool,
+}
+
+/// What the simulation may be wrong in without an effect being missing: one standard deviation.
+#[derive(Clone, Debug)]
+pub struct Discrepancy {
+    pub feature: FeatureKind,
+    /// Weights by channel for levels; all channels of the groups otherwise.
+    pub channels: Vec<(String, f64)>,
+    /// In the unit of the channel, or of the logarithm; one number, or one per band.
+    pub sd: Vec<f64>,
+    pub moves: Moves,
+    pub over: Over,
+    pub times: Times,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FeatureKind {
+    Level,
+    /// Each band on its own.
+    Bands,
+    /// All bands alike.
+    Amplitude,
+    Gain,
+    Lag,
+}
+
+/// Which channels move together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moves {
+    All,
+    Group,
+    Channel,
+}
+
+/// Which sections move together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    All,
+    Strata,
+    Sections,
+}
+
+/// What it grows with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Times {
+    One,
+    /// The number in a column over this number; and its sign by the mirrored column.
+    Over(f64),
+    /// 1, or -1 in mirrored sections.
+    Side,
+    /// As `Over`, without the sign.
+    Unsigned(f64),
+}
+
+/// A position as an engineer speaks of it: channels where the section is not mirrored, and where it is.
+#[derive(Clone, Debug)]
+pub struct Position {
+    pub name: String,
+    pub straight: Vec<String>,
+    pub mirrored: Vec<String>,
+}
+
+const TOP: [&str; 9] = ["bands", "alike", "groups", "tolerances", "discrepancies", "confine to", "mirrored", "strata", "positions"];
+const GROUP: [&str; 12] = ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says"];
+const TOLERANCE: [&str; 5] = ["default", "scales", "adds", "each section", "shared"];
+const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
+
+impl Settings {
+    /// Reads them; a catalogue without any cannot be used for a diagnosis.
+    ///
+    /// Problems: `key-missing`, `unknown-key`, `wrong-kind`, `unknown-channel`.
+    pub fn read(catalogue: &Catalogue, problems: &mut Problems) -> Option<Self> {
+        let before = problems.errors();
+        let Some(node) = &catalogue.diagnosis else {
+            let says = format!("the catalogue `{}` has no `diagnosis`: which features are compared", catalogue.name);
+            problems.push(Problem::error("key-missing", says).at(&catalogue.source.span(0..0)));
+            return None;
+        };
+        let mut reader = Reader { catalogue, problems };
+        let settings = reader.settings(node);
+        (problems.errors() == before).then_some(settings)
+    }
+}
+
+struct Reader<'a> {
+    catalogue: &'a Catalogue,
+    problems: &'a mut Problems,
+}
+
+impl Reader<'_> {
+    fn wrong(&mut self, says: impl Into<String>, at: &Node) {
+        self.problems.push(Problem::error("wrong-kind", says).at(&at.span));
+    }
+
+    fn keys(&mut self, node: &Node, known: &[&str]) {
+        for (key, _) in node.entries() {
+            if !known.contains(&key.text.as_str()) {
+                let problem = Problem::error("unknown-key", format!("there is no key `{}` here", key.text)).at(&key.span);
+                self.problems.push(problem.suggest(&key.text, known.iter().copied()));
+            }
+        }
+    }
+
+    fn numbers(&mut self, node: &Node) -> Vec<f64> {
+        if let Some(number) = node.number() {
+            return vec![number];
+        }
+        let numbers: Option<Vec<f64>> = node.items().iter().map(Node::number).collect();
+        numbers.unwrap_or_else(|| {
+            self.wrong("a number or a list of numbers is needed", node);
+            Vec::new()
+        })
+    }
+
+    fn number(&mut self, node: &Node, key: &str, default: f64) -> f64 {
+        match node.get(key) {
+            None => default,
+            Some(found) => found.number().unwrap_or_else(|| {
+                self.wrong(format!("`{key}` is a number"), found);
+                default
+            }),
+        }
+    }
+
+    fn flag(&mut self, node: &Node, key: &str) -> bool {
+        match node.get(key) {
+            None => false,
+            Some(Node { value: Value::Bool(flag), .. }) => *flag,
+            Some(found) => {
+                self.wrong(format!("`{key}` is true or false"), found);
+                false
+            }
+        }
+    }
+
+    fn words(&self, node: Option<&Node>) -> Vec<String> {
+        let Some(node) = node else { return Vec::new() };
+        match node.scalar_text() {
+            Some(text) => vec![text.to_string()],
+            None => node.items().iter().filter_map(|item| Some(item.scalar_text()?.to_string())).collect(),
+        }
+    }
+
+    fn channels(&mut self, node: &Node) -> Vec<String> {
+        let mut found = Vec::new();
+        for name in self.words(Some(node)) {
+            match self.catalogue.channels(&name) {
+                Some(channels) => found.extend(channels),
+                None => {
+                    let problem = Problem::error("unknown-channel", format!("`{name}` is no group and no channel of one")).at(&node.span);
+                    self.problems.push(problem.suggest(&name, self.catalogue.groups.iter().map(|group| group.name.as_str())));
+                }
+            }
+        }
+        found
+    }
+
+    fn settings(&mut self, node: &Node) -> Settings {
+        self.keys(node, &TOP);
+        let alike = node.get("alike").map_or(Vec::new(), |alike| self.numbers(alike));
+        let text = |key: &str| node.get(key).and_then(Node::scalar_text).map(str::to_string);
+        let mirror = node.get("mirrored").and_then(|map| map.entries().first());
+        let mut settings = Settings {
+            edges: node.get("bands").map_or(Vec::new(), |bands| self.numbers(bands)),
+            alike: (alike.first().copied().unwrap_or(0.5), alike.get(1).copied().unwrap_or(8.0)),
+            confine: self.words(node.get("confine to")),
+            mirror: mirror.map(|(key, value)| (key.text.clone(), value.raw.clone())),
+            stratum: text("strata"),
+            ..Settings::default()
+        };
+        for (key, node) in node.get("groups").map_or(&[][..], Node::entries) {
+            self.keys(node, &GROUP);
+            if self.catalogue.group(&key.text).is_none() {
+                let problem = Problem::error("unknown-channel", format!("there is no group `{}`", key.text)).at(&key.span);
+                self.problems.push(problem.suggest(&key.text, self.catalogue.groups.iter().map(|group| group.name.as_str())));
+                continue;
+            }
+            let text = |key: &str| node.get(key).and_then(Node::scalar_text).map(str::to_string);
+            settings.groups.push(GroupFeatures {
+                name: key.text.clone(),
+                level: self.flag(node, "level"),
+                bands: self.number(node, "bands", 0.0) as usize,
+                alike: self.flag(node, "alike"),
+                level_sd: self.number(node, "level sd", 0.1),
+                band_sd: self.number(node, "band sd", 0.1),
+                gain_sd: self.number(node, "gain sd", 0.1),
+                lag_sd: self.number(node, "lag sd", 1.0),
+                noise: text("noise"),
+                offset: text("offset"),
+                gain: text("gain"),
+                axis: text("axis").unwrap_or_default(),
+                says: text("says").unwrap_or_else(|| key.text.clone()),
+            });
+        }
+        for (key, node) in node.get("tolerances").map_or(&[][..], Node::entries) {
+            self.keys(node, &TOLERANCE);
+            let adds = node.get("adds").map_or(&[][..], Node::entries).iter();
+            let adds = adds.map(|(key, node)| (key.text.clone(), node.number().unwrap_or(1.0))).collect();
+            let per_section = self.flag(node, "each section");
+            let shared = node.get("shared").is_none() && !per_section || self.flag(node, "shared");
+            settings.tolerances.push(Tolerance {
+                name: key.text.clone(),
+                default: self.number(node, "default", 0.0),
+                scales: self.words(node.get("scales")),
+                adds,
+                per_section,
+                shared,
+            });
+        }
+        for node in node.get("discrepancies").map_or(&[][..], Node::items) {
+            if let Some(discrepancy) = self.discrepancy(node) {
+                settings.discrepancies.push(discrepancy);
+            }
+        }
+        for (key, node) in node.get("positions").map_or(&[][..], Node::entries) {
+            let (straight, mirrored) = match node.get("mirrored") {
+                Some(mirrored) => (self.words(node.get("channels")), self.words(Some(mirrored))),
+                None => (self.words(Some(node)), self.words(Some(node))),
+            };
+            settings.positions.push(Position { name: key.text.clone(), straight, mirrored });
+        }
+        settings
+    }
+
+    fn discrepancy(&mut self, node: &Node) -> Option<Discrepancy> {
+        self.keys(node, &DISCREPANCY);
+        let word = |key: &str| node.get(key).and_then(Node::scalar_text).unwrap_or_default().to_string();
+        let feature = match word("of").as_str() {
+            "level" => FeatureKind::Level,
+            "bands" => FeatureKind::Bands,
+            "amplitude" => FeatureKind::Amplitude,
+            "gain" => FeatureKind::Gain,
+            "lag" => FeatureKind::Lag,
+            other => {
+                self.wrong(format!("a discrepancy is `of` level, bands, amplitude, gain or lag, not `{other}`"), node);
+                return None;
+            }
+        };
+        let channels = node.get("channels")?;
+        let channels = if channels.entries().is_empty() {
+            self.channels(channels).into_iter().map(|channel| (channel, 1.0)).collect()
+        } else {
+            channels.entries().iter().map(|(key, node)| (key.text.clone(), node.number().unwrap_or(1.0))).collect()
+        };
+        let moves = match word("together").as_str() {
+            "" | "all" => Moves::All,
+            "group" => Moves::Group,
+            "channel" => Moves::Channel,
+            other => {
+                self.wrong(format!("`together` is all, group or channel, not `{other}`"), node);
+                return None;
+            }
+        };
+        let over = match word("sections").as_str() {
+            "" | "all" => Over::All,
+            "strata" => Over::Strata,
+            "each" => Over::Sections,
+            other => {
+                self.wrong(format!("`sections` is all, strata or each, not `{other}`"), node);
+                return None;
+            }
+        };
+        let times = word("times");
+        let times = match times.split_once(" / radius") {
+            _ if times.is_empty() => Times::One,
+            _ if times == "side" => Times::Side,
+            Some((number, "")) => Times::Over(number.trim().parse().unwrap_or(1.0)),
+            Some((number, " unsigned")) => Times::Unsigned(number.trim().parse().unwrap_or(1.0)),
+            _ => {
+                self.wrong(format!("`times` is side, `400 / radius` or `400 / radius unsigned`, not `{times}`"), node);
+                return None;
+            }
+        };
+        let sd = node.get("sd").map_or(Vec::new(), |sd| self.numbers(sd));
+        Some(Discrepancy { feature, channels, sd, moves, over, times })
+    }
+}

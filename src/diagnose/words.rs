@@ -1,0 +1,315 @@
+//! The answer in words and numbers: verdict, causes, rivals, what to measure next.
+
+use indexmap::IndexMap;
+use serde_json::json;
+
+use super::features::Kind;
+use super::fit::Fitted;
+use super::result::{Cause, Detectable, Diagnosis, How, NamedEffect, Shrink, Value, Vetoed};
+use super::run::{Found, Inputs, LACK, chi, length};
+use crate::effects::{Action, Effect};
+
+/// Whitened length of a change that can be identified.
+const SEEN: f64 = 5.0;
+/// Evidence is divided by this before it becomes a probability: real discrepancies are not those of the covariance.
+const TEMPERATURE: f64 = 4.0;
+
+/// Puts what was found into an answer.
+#[must_use]
+pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>, seconds: f64) -> Diagnosis {
+    let (before, after) = chi(found);
+    let excess = |lack: &[(String, Kind, f64, f64)]| lack.iter().map(|(.., excess)| excess.max(0.0)).sum::<f64>();
+    let (gap, rest) = (excess(&found.lack_before), excess(&found.lack_after));
+    let most = |lack: &[(String, Kind, f64, f64)]| lack.iter().map(|(_, _, sigma, _)| *sigma).fold(f64::NEG_INFINITY, f64::max);
+    let lacking = most(&found.lack_after) > LACK;
+    let unexplained_share = if gap > 0.0 { (rest / gap).clamp(0.0, 1.0) } else { 0.0 };
+    let ambiguous = ambiguity(inputs, found);
+    let named = !found.chosen.members.is_empty();
+    let worsened = shrink.as_ref().is_some_and(|shrink| shrink.fraction_removed < 0.0);
+    let verdict = match () {
+        () if !named && !lacking => "no significant gap",
+        () if !named => "unexplained",
+        () if lacking && (unexplained_share > 0.5 || worsened || most(&found.lack_after) > 3.0 * LACK) => "unexplained",
+        () if ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
+        () => "explained",
+    };
+    let mut causes = vec![];
+    if named {
+        causes.push(cause(inputs, found, &found.chosen.members, 1));
+        causes.extend(ambiguous);
+    }
+    probabilities(&mut causes, verdict);
+    let discriminating_measurement = discriminating(inputs, &causes, verdict);
+    let says = says(inputs, found, verdict, &causes, shrink.as_ref(), unexplained_share);
+    let noted = found.runs.failed.iter().map(|failed| format!("a run failed and was left out: {failed}"));
+    let left_out = found.seen.left_out.iter().map(|(section, reason)| format!("section {section} was left out: {reason}"));
+    let mut notes: Vec<String> = noted.chain(left_out).collect();
+    let tolerances = if inputs.campaign.facts.iter().any(|fact| fact.group == "declared_tolerances") {
+        "declared by the campaign"
+    } else {
+        notes.push("the campaign declares no tolerances: documented defaults were taken, and the verdict is the weaker for it".into());
+        "documented defaults"
+    };
+    if inputs.simulator.is_none() {
+        notes.push("no simulator could be run: only effects of the measuring chain were tried".into());
+    }
+    Diagnosis {
+        fishplate: env!("CARGO_PKG_VERSION"),
+        campaign: inputs.campaign.name.clone(),
+        verdict,
+        says,
+        r#where: super::locate::locate(inputs.settings, found),
+        causes,
+        vetoed: vetoed(inputs, found),
+        shrink,
+        unexplained_share,
+        discriminating_measurement,
+        detectable: detectable(inputs, found),
+        how: How {
+            catalogue: inputs.catalogue.name.clone(),
+            simulator: inputs.simulator.map_or("none".into(), |simulator| simulator.name().to_string()),
+            mode: "increments on the recorded simulation".into(),
+            tolerances: tolerances.into(),
+            sections: found.seen.sections.len(),
+            features: found.seen.len(),
+            seed: inputs.seed,
+            threshold: found.threshold,
+            chi_squared_before: before,
+            chi_squared_after: after,
+        },
+        notes,
+        simulations_run: found.runs.made,
+        seconds,
+    }
+}
+
+fn cause(inputs: &Inputs<'_>, found: &Found, members: &[Fitted], rank: usize) -> Cause {
+    let effects: Vec<NamedEffect> = members.iter().map(|member| named(inputs, found, member)).collect();
+    let says = effects.iter().map(in_words).collect::<Vec<_>>().join("; and ");
+    Cause { rank, effects, probability: 0.0, in_ambiguity_set: true, evidence: members.iter().map(|member| member.evidence).sum(), says }
+}
+
+fn in_words(effect: &NamedEffect) -> String {
+    let values = effect.parameters.iter().map(|(name, value)| {
+        let interval = match (value.low, value.high) {
+            (Some(low), Some(high)) => format!(" ({} to {})", short(low), short(high)),
+            _ => String::new(),
+        };
+        let number = value.value.as_f64().map_or_else(|| value.value.to_string(), short);
+        let unit = if value.unit == "-" { String::new() } else { format!(" {}", value.unit) };
+        format!("{name} {number}{unit}{interval}")
+    });
+    let confined = effect.confined_to.as_ref().map_or(String::new(), |confined| {
+        let parts: Vec<String> = confined.iter().map(|(column, values)| format!("{column} {values}")).collect();
+        format!(", only in {}", parts.join(", "))
+    });
+    format!("{}: {}{confined}", effect.title, values.collect::<Vec<_>>().join(", "))
+}
+
+/// Four significant digits.
+fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 9) as usize;
+    format!("{value:.digits$}")
+}
+
+fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
+    let of = &found.candidates[member.candidate];
+    let effect = inputs.catalogue.effect(&of.effect);
+    let mut parameters = IndexMap::new();
+    let unit = |name: &str| {
+        let known = effect.and_then(|effect| effect.parameters.iter().find(|parameter| parameter.name == name));
+        known.map_or("-".to_string(), |parameter| parameter.unit.text.clone())
+    };
+    // Uncertainty of the fit, and of what lies between the nodes.
+    let error = if member.slope > 0.0 { 1.645 * (1.0 / member.slope).hypot(0.02 * member.size.abs().min(1e12)) } else { 0.0 };
+    let interval = (!of.discrete && member.size.is_finite())
+        .then(|| ((member.size - error).max(of.range.0), (member.size + error).min(of.range.1)));
+    let mut push = |name: String, value: serde_json::Value, interval: Option<(f64, f64)>| {
+        let unit = unit(&of.size);
+        parameters.insert(name, Value { value, unit, low: interval.map(|(low, _)| low), high: interval.map(|(_, high)| high) });
+    };
+    if of.effect_is_swap() {
+        push(of.size.clone(), json!([of.channels]), None);
+    } else if of.size.contains(crate::effects::CHANNEL) {
+        for channel in &of.channels {
+            push(of.size.replace(crate::effects::CHANNEL, channel), json!(member.size), interval);
+        }
+    } else {
+        push(of.size.clone(), json!(member.size), interval);
+        let every = effect.is_some_and(|effect| matches!(&effect.action, Action::Signals(_, all) if all.len() > of.channels.len()));
+        if every {
+            parameters.insert(
+                format!("{}_channels", of.size),
+                Value { value: json!(of.channels), unit: "-".into(), low: None, high: None },
+            );
+        }
+    }
+    for (name, value) in &of.fixed {
+        parameters.insert(name.clone(), Value { value: json!(value), unit: unit(name), low: None, high: None });
+    }
+    NamedEffect {
+        name: of.effect.clone(),
+        title: effect.map_or_else(|| of.effect.clone(), |effect| effect.title.clone()),
+        parameters,
+        confined_to: found.masks[member.mask].confined.as_ref().map(|(column, values)| confined(column, values)),
+        added_by: match effect.map(|effect| &effect.action) {
+            Some(Action::Signals(operator, _)) => format!("an operation on the signals: {}", operator.name()),
+            _ => inputs.simulator.map_or(String::new(), |simulator| format!("increments of the {}", simulator.name())),
+        },
+    }
+}
+
+/// `zones` and `sections` are lists, a direction is one word.
+fn confined(column: &str, values: &[String]) -> IndexMap<String, serde_json::Value> {
+    let numbers: Option<Vec<i64>> = values.iter().map(|value| value.parse().ok()).collect();
+    let list = numbers.map_or_else(|| json!(values), |numbers| json!(numbers));
+    IndexMap::from([match column {
+        "zone" => ("zones".to_string(), list),
+        "section" => ("sections".to_string(), list),
+        other if values.len() == 1 => (other.to_string(), json!(values[0])),
+        other => (other.to_string(), list),
+    }])
+}
+
+/// Sets in which another effect takes the place of a member, and that the data cannot tell from the answer.
+fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
+    let best = found.chosen.evidence();
+    let mut causes: Vec<Cause> = Vec::new();
+    let own = |at: usize| &found.candidates[found.chosen.members[at].candidate];
+    for (at, fit, fall) in &found.rivals {
+        let of = &found.candidates[fit.candidate];
+        if of.effect == own(*at).effect || found.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect) {
+            continue;
+        }
+        if causes.len() >= 5 || causes.iter().any(|cause| cause.effects.iter().any(|effect| effect.name == of.effect)) {
+            continue;
+        }
+        let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(8.0) && fit.evidence > found.threshold;
+        let mut members = found.chosen.members.clone();
+        members[*at] = fit.clone();
+        let mut cause = cause(inputs, found, &members, causes.len() + 2);
+        cause.in_ambiguity_set = near;
+        cause.evidence = best - fall;
+        causes.push(cause);
+    }
+    causes
+}
+
+fn probabilities(causes: &mut [Cause], verdict: &str) {
+    let best = causes.iter().map(|cause| cause.evidence).fold(f64::NEG_INFINITY, f64::max);
+    let weights: Vec<f64> = causes.iter().map(|cause| ((cause.evidence - best) / (2.0 * TEMPERATURE)).exp()).collect();
+    // Something outside the catalogue is possible as well; more so where something is left.
+    let outside = if verdict == "unexplained" { 4.0 } else { 0.05 };
+    let all = weights.iter().sum::<f64>() + outside;
+    causes.iter_mut().zip(weights).for_each(|(cause, weight)| cause.probability = weight / all);
+    if verdict == "unexplained" {
+        causes.iter_mut().for_each(|cause| cause.in_ambiguity_set = false);
+    }
+}
+
+fn discriminating(inputs: &Inputs<'_>, causes: &[Cause], verdict: &str) -> Option<String> {
+    if verdict != "ambiguous" {
+        return None;
+    }
+    let effects = causes.iter().filter(|cause| cause.in_ambiguity_set).flat_map(|cause| &cause.effects);
+    let mut measurements: Vec<String> = Vec::new();
+    for effect in effects {
+        let known: Option<&Effect> = inputs.catalogue.effect(&effect.name);
+        if let Some(settled) = known.and_then(|known| known.settled_by.clone())
+            && !measurements.contains(&settled)
+        {
+            measurements.push(settled);
+        }
+    }
+    (!measurements.is_empty()).then(|| measurements.join("; or "))
+}
+
+fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
+    let one = |refused: &super::search::Refused| {
+        let of = &found.candidates[refused.fitted.candidate];
+        let title = inputs.catalogue.effect(&of.effect).map_or(of.effect.as_str(), |effect| effect.title.as_str());
+        let on = if of.channels.is_empty() || of.channels.len() > 2 { String::new() } else { format!(" ({})", of.channels.join(", ")) };
+        Vetoed {
+            name: of.effect.clone(),
+            size: refused.fitted.size,
+            parameter: of.size.clone(),
+            evidence: refused.fitted.evidence,
+            says: format!("{title}{on} improves the fit as a whole, but contradicts itself: {}", refused.reason),
+        }
+    };
+    found.refused.iter().map(one).collect()
+}
+
+fn detectable(inputs: &Inputs<'_>, found: &Found) -> Vec<Detectable> {
+    let mut list: Vec<Detectable> = Vec::new();
+    for candidate in found.candidates.iter().filter(|candidate| !candidate.discrete && candidate.fixed.is_empty()) {
+        if list.iter().any(|known| known.effect == candidate.effect && known.parameter == candidate.size) {
+            continue;
+        }
+        let Some(neutral) = candidate.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size) else { continue };
+        // Linear from neutral to the first size on either side that is long enough.
+        let mut smallest: Option<f64> = None;
+        let mut nodes: Vec<(f64, f64)> = candidate
+            .nodes
+            .iter()
+            .filter(|node| !node.change.is_empty())
+            .map(|node| (node.size - neutral, length(&found.whitener, &node.change)))
+            .collect();
+        nodes.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+        if let Some((away, long)) = nodes.iter().find(|(_, long)| *long >= SEEN) {
+            smallest = Some(away * SEEN / long);
+        }
+        let unit = inputs.catalogue.effect(&candidate.effect).and_then(|effect| {
+            effect.parameters.iter().find(|parameter| parameter.name == candidate.size).map(|parameter| parameter.unit.text.clone())
+        });
+        list.push(Detectable {
+            effect: candidate.effect.clone(),
+            parameter: candidate.size.clone(),
+            unit: unit.unwrap_or_else(|| "-".into()),
+            smallest,
+        });
+    }
+    list
+}
+
+fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shrink: Option<&Shrink>, unexplained: f64) -> Vec<String> {
+    let mut lines = Vec::new();
+    match verdict {
+        "no significant gap" => lines.push("What differs is within noise, declared tolerances and what a model of this kind is allowed to be wrong in.".into()),
+        "explained" => lines.push(format!("{}.", causes[0].says)),
+        "ambiguous" => {
+            let set: Vec<&str> = causes.iter().filter(|cause| cause.in_ambiguity_set).map(|cause| cause.says.as_str()).collect();
+            lines.push(format!("The data cannot tell apart: {}.", set.join(" | ")));
+        }
+        _ => {
+            let mut worst: Vec<_> = found.lack_after.iter().filter(|(_, _, sigma, _)| *sigma > LACK).collect();
+            worst.sort_by(|a, b| b.2.total_cmp(&a.2));
+            let named: Vec<String> = worst
+                .iter()
+                .take(4)
+                .map(|(channel, kind, ..)| format!("{channel} ({})", if *kind == Kind::Level { "quasi-static" } else { "dynamic" }))
+                .collect();
+            lines.push(format!("No effect of the catalogue `{}` explains the gap. It is left in {}.", inputs.catalogue.name, named.join(", ")));
+            if let Some(first) = causes.first() {
+                lines.push(format!("Explained in part: {}; {:.0} % of the excess is left.", first.says, 100.0 * unexplained));
+            }
+            if let Some(says) = super::locate::covariate(inputs.settings, found) {
+                lines.push(says);
+            }
+        }
+    }
+    if let Some(shrink) = shrink {
+        lines.push(format!(
+            "On sections kept out of the fit the gap falls from {:.3} to {:.3}: {:.0} % is removed ({:.0} to {:.0} %).",
+            shrink.before,
+            shrink.after,
+            100.0 * shrink.fraction_removed,
+            100.0 * shrink.low,
+            100.0 * shrink.high
+        ));
+    }
+    lines
+}
