@@ -6,6 +6,7 @@ mod explain;
 mod output;
 mod protocols;
 mod simulate;
+mod simulator;
 
 use std::path::PathBuf;
 

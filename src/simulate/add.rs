@@ -36,6 +36,10 @@ impl Plan {
             }
             for parameter in &effect.parameters {
                 let Some(value) = applied.value(&parameter.name) else { continue };
+                // The simulator is told even what is neutral: the vehicle file may say otherwise. A signal is left as it is.
+                if parameter.neutral == Some(value) && effect.action != Action::Simulator {
+                    continue;
+                }
                 match (&effect.action, simulator) {
                     (Action::Signals(operator, _), _) => plan.operators.push((*operator, value, applied.channels.clone())),
                     (Action::Simulator, None) => {
@@ -79,6 +83,32 @@ impl Plan {
         }
         Ok(())
     }
+}
+
+/// What effects are confined to must be there: a column that no section has, or a value that none has in it, is a slip.
+///
+/// # Errors
+/// `no-such-section`, with the nearest value.
+pub fn check_confined(effects: &[Applied], sections: &[Section]) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for applied in effects {
+        let Some(confined) = &applied.confined else { continue };
+        for value in &confined.values {
+            if sections.iter().any(|section| section.fact(&confined.column) == Some(value)) {
+                continue;
+            }
+            let says = format!("`{}` is confined to the {} `{value}`, which no section has", applied.effect, confined.column);
+            let mut known: Vec<&str> = sections.iter().filter_map(|section| section.fact(&confined.column)).collect();
+            known.sort_unstable();
+            known.dedup();
+            problems.push(Problem::error("no-such-section", says).suggest(value, known));
+        }
+        if confined.values.is_empty() {
+            let says = format!("`{}` is confined to no {}", applied.effect, confined.column);
+            problems.push(Problem::error("no-such-section", says).help("write `in zones 3, 4` or `in sections S01, S02`"));
+        }
+    }
+    problems
 }
 
 fn unsaid(effect: &str, parameter: &str, simulator: &str) -> Problem {
@@ -128,7 +158,7 @@ pub fn incremented(recorded: &Signals, with: &Signals, without: &Signals) -> Sig
 }
 
 /// Linear between samples, constant beyond the ends; `at` is where the last look was.
-fn interpolated(axis: &[f64], values: &[f64], x: f64, at: &mut usize) -> f64 {
+pub(super) fn interpolated(axis: &[f64], values: &[f64], x: f64, at: &mut usize) -> f64 {
     let last = axis.len().min(values.len()).saturating_sub(1);
     while *at + 1 < last && axis[*at + 1] <= x {
         *at += 1;
