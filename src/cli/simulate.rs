@@ -97,7 +97,7 @@ impl Simulate {
         let prepared = campaign.as_ref().and_then(|campaign| {
             let sections = sections(campaign, &mut problems);
             let chosen = self.simulator.open(campaign, &mut problems)?;
-            for problem in unusable(catalogue, effects, &sections, chosen.simulator().catalogue_name()) {
+            for problem in unusable(catalogue, effects, &sections, &chosen) {
                 problems.push(problem);
             }
             Some((campaign, chosen, sections))
@@ -200,9 +200,26 @@ impl Simulate {
 }
 
 /// What is wrong with effects for these sections, whatever the simulator makes of them.
-fn unusable(catalogue: &Catalogue, effects: &[Applied], sections: &[Section], simulator: Option<&str>) -> Vec<Problem> {
+fn unusable(catalogue: &Catalogue, effects: &[Applied], sections: &[Section], chosen: &Chosen<'_>) -> Vec<Problem> {
     let mut problems = check_confined(effects, sections);
-    problems.extend(sections.iter().filter_map(|section| Plan::new(catalogue, effects, section, simulator).err()));
+    let simulator = chosen.simulator().catalogue_name();
+    for section in sections {
+        match Plan::new(catalogue, effects, section, simulator) {
+            Err(problem) => problems.push(problem),
+            Ok(plan) if !plan.formulas.is_empty() => {
+                let differs = |(channel, unit): &&(String, Unit)| {
+                    let found = chosen.unit(section, channel);
+                    found.dimension == unit.dimension && found.factor != unit.factor
+                };
+                problems.extend(catalogue.units.iter().find(differs).map(|(channel, unit)| {
+                    let says =
+                        format!("`{channel}` is recorded in {}, and the catalogue takes it in {unit}", chosen.unit(section, channel));
+                    Problem::error("unit-mismatch", says).help("give `units` of the catalogue as the records have them")
+                }));
+            }
+            Ok(_) => {}
+        }
+    }
     problems
 }
 

@@ -1,7 +1,7 @@
 //! Adds effects to a section: what the simulator is told, and what is done to its signals.
 
 use super::{Section, Simulator, Task};
-use crate::effects::{Action, Applied, Catalogue, Operator, Signals};
+use crate::effects::{Action, Applied, Catalogue, Formula, Operator, Parameter, Signals};
 use crate::problem::Problem;
 
 /// What effects mean for one section.
@@ -9,6 +9,8 @@ use crate::problem::Problem;
 pub struct Plan {
     /// Parameters of the simulator, in its units.
     pub settings: Vec<(String, f64)>,
+    /// Before the measuring chain, in the order chosen: formulas of an effect and the values of all its parameters.
+    pub formulas: Vec<(Vec<Formula>, Vec<f64>)>,
     /// In the order of the measuring chain.
     pub operators: Vec<(Operator, f64, Vec<String>)>,
 }
@@ -34,6 +36,15 @@ impl Plan {
             if !applied.confined.as_ref().is_none_or(here) {
                 continue;
             }
+            if let Action::Formulas(formulas) = &effect.action {
+                let neutral = |one: &Parameter| one.neutral.unwrap_or(one.default);
+                let values: Vec<f64> =
+                    effect.parameters.iter().map(|one| applied.value(&one.name).unwrap_or_else(|| neutral(one))).collect();
+                if values.iter().zip(&effect.parameters).any(|(value, one)| *value != neutral(one)) {
+                    plan.formulas.push((formulas.clone(), values));
+                }
+                continue;
+            }
             for parameter in &effect.parameters {
                 let Some(value) = applied.value(&parameter.name) else { continue };
                 // The simulator is told even what is neutral: the vehicle file may say otherwise. A signal is left as it is.
@@ -41,6 +52,7 @@ impl Plan {
                     continue;
                 }
                 match (&effect.action, simulator) {
+                    (Action::Formulas(_), _) => {}
                     (Action::Signals(operator, _), _) => plan.operators.push((*operator, value, applied.channels.clone())),
                     (Action::Simulator, None) => {
                         let (key, factor) =
@@ -76,6 +88,11 @@ impl Plan {
     /// An operator cannot be applied, with the section.
     pub fn operate(&self, signals: &mut Signals, section: &Section) -> Result<(), Problem> {
         let seed = section.name().bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3));
+        for (formulas, values) in &self.formulas {
+            signals
+                .compute(formulas, values)
+                .map_err(|says| Problem::error("operator", format!("section `{}`: {says}", section.name())).at(&section.cell.span))?;
+        }
         for (operator, value, channels) in &self.operators {
             signals.apply(*operator, *value, channels, seed).map_err(|says| {
                 Problem::error("operator", format!("section `{}`: {}: {says}", section.name(), operator.name())).at(&section.cell.span)
