@@ -232,6 +232,10 @@ impl Reader<'_> {
             }
         }
         if parameters.is_empty() {
+            // Where all are faulty, that is said already.
+            if node.get("parameters").is_some_and(|node| !node.entries().is_empty()) {
+                return None;
+            }
             self.problems.push(Problem::error("key-missing", format!("the effect `{name}` has no parameters")).at(&key.span));
             return None;
         }

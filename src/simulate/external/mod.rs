@@ -176,7 +176,7 @@ impl<'a> External<'a> {
             if self.program.channels.is_empty() { known.iter().map(|one| one.name.as_str()).collect() } else { channels.collect() };
         for name in wanted {
             let Some(heading) = made.iter().find(|one| one.name == name) else {
-                let problem = Problem::error("missing-channel", format!("{shown} has no column `{name}`"));
+                let problem = Problem::error("unknown-channel", format!("{shown} has no column `{name}`"));
                 return Err(problem.suggest(name, made.iter().map(|one| one.name.as_str())));
             };
             heading.unit(unit_in(&known, name).map(|unit| unit.dimension))?;
