@@ -247,7 +247,8 @@ impl<'a> External<'a> {
 
 impl Simulator for External<'_> {
     fn name(&self) -> &str {
-        &self.program.title
+        let Program { title, .. } = &self.program;
+        title
     }
 
     fn catalogue_name(&self) -> Option<&str> {
