@@ -52,7 +52,7 @@ impl SimulatorChoice {
         let cache = match (&self.cache, self.no_cache) {
             (_, true) => Ok(Cache::none()),
             (Some(folder), _) => Cache::at(folder),
-            (None, _) => Cache::at(&Cache::default_folder()),
+            (None, _) => Cache::temporary(),
         };
         let made = cache.and_then(|cache| External::new(campaign, program, cache));
         made.map_err(|problem| problems.push(problem)).ok().map(|external| Chosen::External(Box::new(external)))

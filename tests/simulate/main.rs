@@ -3,7 +3,6 @@
 //! The physics of the model is tested elsewhere; here stand effects, files, other simulators and messages.
 
 #[path = "../common/program.rs"]
-#[allow(dead_code)]
 mod program;
 
 mod campaign;

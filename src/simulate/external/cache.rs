@@ -30,10 +30,22 @@ impl Cache {
         Self { folder: None }
     }
 
-    /// The folder that is used unless another is named.
-    #[must_use]
-    pub fn default_folder() -> PathBuf {
-        std::env::temp_dir().join("fishplate-cache")
+    /// The cache that is used unless another is named: `fishplate-cache` in the system's folder for temporary files.
+    ///
+    /// # Errors
+    /// `write-failed`: it cannot be made, or belongs to another user, who could put records there.
+    pub fn temporary() -> Result<Self, Problem> {
+        let cache = Self::at(&std::env::temp_dir().join("fishplate-cache"))?;
+        #[cfg(unix)]
+        if let Some(folder) = &cache.folder {
+            use std::os::unix::fs::MetadataExt;
+            let owner = std::fs::metadata(folder).map(|meta| meta.uid());
+            if owner.is_ok_and(|owner| owner != rustix::process::getuid().as_raw()) {
+                let says = format!("the cache `{}` belongs to another user", folder.display());
+                return Err(Problem::error("write-failed", says).help("name a folder with `--cache DIR`, or keep none with `--no-cache`"));
+            }
+        }
+        Ok(cache)
     }
 
     /// The file of a key, whether it is there or not.
