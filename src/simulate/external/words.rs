@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn parameters_repeat_their_words() {
-        let command = words("[run, --to={out}, '{set}', '{{x}}']", &Hole::OF_COMMAND).expect("right");
+        let command = words("[run, '--to={out}', '{set}', '{{x}}']", &Hole::OF_COMMAND).expect("right");
         let set = words("[-p, '{name}={value}']", &Hole::OF_SET).expect("right");
         let settings = [("mu".to_string(), 0.5), ("m".to_string(), -3e4)];
         let with = |hole: Hole| hole.name().to_uppercase();
