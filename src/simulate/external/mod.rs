@@ -1,6 +1,7 @@
 //! A simulator that is a program: one call makes one record.
 
 mod cache;
+mod content;
 mod process;
 mod read;
 mod words;
@@ -20,11 +21,12 @@ use crate::data::record::read_headings;
 use crate::data::{Campaign, Heading, RecordKind};
 use crate::effects::Signals;
 use crate::problem::Problem;
-use crate::source::{Source, Spanned};
+use crate::source::Source;
 use crate::units::Unit;
 use cache::Key;
+use content::{absolute, basis, vehicle_file};
 use process::{Call, Fault};
-use words::{Hole, Word, fill};
+use words::{Hole, fill};
 
 /// A program with the vehicle and the tracks of a campaign.
 #[derive(Debug)]
@@ -283,37 +285,6 @@ impl Simulator for External<'_> {
 
 fn unit_in(headings: &[Heading], name: &str) -> Option<Unit> {
     headings.iter().find(|heading| heading.name == name)?.unit(None).ok()
-}
-
-fn vehicle_file(campaign: &Campaign) -> Result<Option<PathBuf>, Problem> {
-    let Some(node) = campaign.tree.get("vehicle") else { return Ok(None) };
-    let written = Spanned::new(node.scalar_text().unwrap_or_default().to_string(), node.span.clone());
-    Ok(Some(absolute(&campaign.place(&written)?.path)))
-}
-
-/// What all records of a program depend on: its description, the files that its command and the description name, the vehicle and what
-/// that names.
-fn basis(campaign: &Campaign, program: &Program, vehicle: Option<&Path>) -> Result<Key, Problem> {
-    let mut key = Key::default();
-    key.add("simulator", &program.source.text);
-    for file in program.command.iter().filter_map(Word::plain).map(|word| program.folder.join(word)).filter(|path| path.is_file()) {
-        key.add_file("program", &file)?;
-    }
-    for file in &program.inputs {
-        key.add_file("input", file)?;
-    }
-    if let Some(vehicle) = vehicle {
-        key.add_file("vehicle", vehicle)?;
-        for place in campaign.vehicle_files()? {
-            key.add("file", &place.inside);
-            key.add_file("content", &place.path)?;
-        }
-    }
-    Ok(key)
-}
-
-fn absolute(path: &Path) -> PathBuf {
-    std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf())
 }
 
 fn first(problems: Vec<Problem>) -> Problem {
