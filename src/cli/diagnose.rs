@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::certify::prepare;
 use super::output::{Console, Exit};
 use super::simulate::load_catalogue;
+use super::simulator::{Chosen, SimulatorChoice};
 use crate::data::Campaign;
 use crate::data::write::Outputs;
 use crate::diagnose::result::Diagnosis;
@@ -16,7 +17,7 @@ use crate::diagnose::run::Inputs;
 use crate::diagnose::settings::Settings;
 use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
 use crate::library;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, Severity};
 use crate::simulate::{Builtin, Simulator, sections};
 
 #[derive(Debug, Args)]
@@ -35,9 +36,11 @@ pub struct Diagnose {
     /// Folder for the simulation with the named effects added, as a campaign.
     #[arg(long, value_name = "DIR")]
     write_improved: Option<PathBuf>,
-    /// Folder in which runs are kept, so that an interrupted diagnosis goes on where it was.
+    #[command(flatten)]
+    simulator: SimulatorChoice,
+    /// Folder in which what was simulated is kept, so that an interrupted diagnosis goes on where it was.
     #[arg(long, value_name = "DIR")]
-    cache: Option<PathBuf>,
+    resume: Option<PathBuf>,
     /// Seed of every random draw.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -46,7 +49,29 @@ pub struct Diagnose {
     jobs: Option<NonZeroUsize>,
 }
 
+/// What is diagnosed, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'a> {
+    pub folder: &'a Path,
+    pub protocol: Option<&'a str>,
+    pub catalogue: &'a str,
+    pub simulator: Option<&'a SimulatorChoice>,
+    pub resume: Option<&'a Path>,
+    pub seed: u64,
+}
+
 impl Diagnose {
+    fn asked(&self) -> Asked<'_> {
+        Asked {
+            folder: &self.campaign,
+            protocol: self.protocol.as_deref(),
+            catalogue: &self.catalogue,
+            simulator: Some(&self.simulator),
+            resume: self.resume.as_deref(),
+            seed: self.seed,
+        }
+    }
+
     pub fn run(self, console: &Console) -> Exit {
         if let Some(jobs) = self.jobs {
             // Fails only if the pool was made before, which nothing does before here.
@@ -64,7 +89,7 @@ impl Diagnose {
             bar.tick();
         };
         let mut problems = Problems::default();
-        let outcome = diagnosed(&self.campaign, self.protocol.as_deref(), &self.catalogue, self.cache.as_deref(), self.seed, &trying, &mut problems);
+        let outcome = diagnosed(&self.asked(), &trying, &mut problems);
         bar.finish_and_clear();
         console.problems(&problems);
         let Some((campaign, outcome)) = outcome else { return Exit::Wrong };
@@ -108,19 +133,24 @@ pub fn exit(diagnosis: &Diagnosis) -> Exit {
 }
 
 /// Opens everything and diagnoses.
-pub fn diagnosed(
-    folder: &Path, protocol: Option<&str>, catalogue: &str, cache: Option<&Path>, seed: u64, trying: &(dyn Fn(&str) + Sync), problems: &mut Problems,
-) -> Option<(Campaign, Outcome)> {
-    let (compiled, campaign) = prepare(folder, protocol, &[], problems)?;
-    let catalogue = load_catalogue(catalogue, problems)?;
+pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &mut Problems) -> Option<(Campaign, Outcome)> {
+    let (compiled, campaign) = prepare(asked.folder, asked.protocol, &[], problems)?;
+    let catalogue = load_catalogue(asked.catalogue, problems)?;
     let settings = Settings::read(&catalogue, problems)?;
     let sections = sections(&campaign, problems);
     let mut lacking = Problems::default();
-    let model = Builtin::new(&campaign, &mut lacking);
-    let simulator: Option<&dyn Simulator> = model.as_ref().map(|model| model as &dyn Simulator);
+    let external = asked.simulator.is_some_and(SimulatorChoice::external);
+    let chosen = match asked.simulator {
+        Some(choice) if external => Some(choice.open(&campaign, problems)?),
+        _ => Builtin::new(&campaign, &mut lacking).map(|model| Chosen::Builtin(Box::new(model))),
+    };
+    // Without a model that can run, what can be done is done.
     for problem in lacking.0 {
-        problems.push(Problem { severity: crate::problem::Severity::Warning, ..problem });
+        problems.push(Problem { severity: Severity::Warning, ..problem });
     }
+    let simulator: Option<&dyn Simulator> = chosen.as_ref().map(Chosen::simulator);
+    let cache = asked.resume;
+    let seed = asked.seed;
     let cache = cache.map(|cache| {
         let files: String = campaign.files.iter().map(|file| file.sha256.as_str()).collect();
         Cache::new(cache, format!("{} {files} {:?} {:?}", env!("CARGO_PKG_VERSION"), settings.edges, settings.groups))

@@ -35,6 +35,7 @@ fn list(catalogue: &Catalogue) -> String {
     for effect in &catalogue.effects {
         let how = match &effect.action {
             Action::Simulator => "simulated".to_string(),
+            Action::Formulas(_) => "signals: expressions".to_string(),
             Action::Signals(operator, _) => format!("signals: {}", operator.name()),
         };
         let _ = write!(out, "\n{}  ({}, {how})\n  {}: {}\n", effect.name, effect.acts.in_words(), effect.title, effect.means);

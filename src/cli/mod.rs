@@ -7,6 +7,7 @@ mod explain;
 mod output;
 mod protocols;
 mod simulate;
+mod simulator;
 
 use std::path::PathBuf;
 
@@ -41,9 +42,9 @@ enum Command {
     /// Run a protocol over a campaign and write the report.
     #[command(after_help = "Example:\n  fishplate certify examples/coach --out target/coach-report")]
     Certify(certify::Certify),
-    /// Simulate one section, or every section of a campaign, with the reference vehicle model; effects can be added.
+    /// Simulate one section, or every section of a campaign, with the reference vehicle model or another simulator; effects can be added.
     #[command(
-        after_help = "Example:\n  fishplate simulate examples/coach --effect friction=0.5 --out target/coach-wet\n  fishplate simulate --vehicle examples/coach/vehicle.yaml --track examples/coach/track/S13.csv --speed '70 km/h' -o S13.csv"
+        after_help = "Example:\n  fishplate simulate examples/coach --effect friction=0.5 --out target/coach-wet\n  fishplate simulate examples/coach --simulator sim.yaml --increment --effect friction=0.5 --out target/coach-wet\n  fishplate simulate --vehicle examples/coach/vehicle.yaml --track examples/coach/track/S13.csv --speed '70 km/h' -o S13.csv"
     )]
     Simulate(simulate::Simulate),
     /// Say where simulation and measurement differ, which effect causes it, and how far the gap shrinks once it is added.

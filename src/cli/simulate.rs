@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::certify::progress_bar;
 use super::output::{Console, Exit};
+use super::simulator::{Chosen, SimulatorChoice};
 use crate::data::text::read_text;
 use crate::data::Campaign;
 use crate::data::write::write_whole;
@@ -15,7 +16,9 @@ use crate::effects::{self, Applied, Catalogue};
 use crate::library;
 use crate::model::CHANNELS;
 use crate::problem::{Problem, Problems};
-use crate::simulate::{Builtin, Plan, Section, Simulator, model_parameters, record_text, sections, simulate, single, write_campaign};
+use crate::simulate::{
+    Deviation, Plan, Section, check_confined, model_parameters, record_text, sections, simulate, single, write_campaign,
+};
 use crate::units::{Dimension, Unit};
 use crate::yaml;
 
@@ -25,7 +28,7 @@ pub struct Simulate {
     #[arg(required_unless_present = "vehicle", conflicts_with_all = ["vehicle", "track", "speed", "output"])]
     campaign: Option<PathBuf>,
     /// A vehicle file; its contact profile stands beside it.
-    #[arg(long, requires_all = ["track", "output"])]
+    #[arg(long, requires_all = ["track", "output"], conflicts_with = "simulator")]
     vehicle: Option<PathBuf>,
     /// A track file.
     #[arg(long)]
@@ -43,6 +46,14 @@ pub struct Simulate {
     /// Folder to write the simulated campaign to; made if missing.
     #[arg(long, required_unless_present = "vehicle")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    simulator: SimulatorChoice,
+    /// Add effects to the campaign's own simulation: what it recorded + (simulator with effects - simulator without).
+    #[arg(long, requires = "campaign")]
+    increment: bool,
+    /// First compare the simulator without effects with the campaign's simulation, and say how far off it is.
+    #[arg(long, requires = "campaign")]
+    baseline: bool,
     /// File to write the record to.
     #[arg(long, short)]
     output: Option<PathBuf>,
@@ -87,17 +98,30 @@ impl Simulate {
         let campaign = Campaign::open(folder, &mut problems);
         let prepared = campaign.as_ref().and_then(|campaign| {
             let sections = sections(campaign, &mut problems);
-            Some((campaign, Builtin::new(campaign, &mut problems)?, sections))
+            let chosen = self.simulator.open(campaign, &mut problems)?;
+            for problem in unusable(catalogue, effects, &sections, &chosen) {
+                problems.push(problem);
+            }
+            Some((campaign, chosen, sections))
         });
         console.problems(&problems);
-        let (Some((campaign, model, sections)), Some(out)) = (prepared.filter(|_| !problems.any_error()), &self.out) else {
+        let (Some((campaign, chosen, sections)), Some(out)) = (prepared.filter(|_| !problems.any_error()), &self.out) else {
             return Exit::Wrong;
         };
+        if self.baseline {
+            match chosen.baseline(campaign, &sections) {
+                Ok((deviations, warning)) => say_baseline(console, &chosen, &deviations, warning),
+                Err(failed) => {
+                    console.problems(&Problems(failed));
+                    return Exit::Unfinished;
+                }
+            }
+        }
         let bar = progress_bar(console, sections.len());
         let made: Vec<Result<String, Problem>> = sections
             .par_iter()
             .map(|section| {
-                let text = record(&model, catalogue, effects, section);
+                let text = self.record(&chosen, campaign, catalogue, effects, section);
                 bar.set_message(section.name().to_string());
                 bar.inc(1);
                 text
@@ -112,11 +136,30 @@ impl Simulate {
         let records = sections.iter().map(Section::name).zip(made.into_iter().flatten());
         match write_campaign(out, campaign, records) {
             Ok(()) => {
-                console.say(&format!("written: {} sections to {}", sections.len(), out.display()));
+                console.say(&format!("written: {} sections to {}{}", sections.len(), out.display(), chosen.effort()));
                 Exit::Done
             }
             Err(problem) => console.fail(problem, Exit::Unfinished),
         }
+    }
+
+    /// The text of a section's record.
+    fn record(
+        &self,
+        chosen: &Chosen<'_>,
+        campaign: &Campaign,
+        catalogue: &Catalogue,
+        effects: &[Applied],
+        section: &Section,
+    ) -> Result<String, Problem> {
+        if !self.increment {
+            let made = simulate(chosen.simulator(), catalogue, effects, section, None)?;
+            return record_text(&made.signals, &|channel| chosen.unit(section, channel));
+        }
+        let (recorded, units) = chosen.recorded(campaign, section)?;
+        let made = simulate(chosen.simulator(), catalogue, effects, section, Some(&recorded))?;
+        let unit = |channel: &str| units.iter().find(|(name, _)| name == channel).map_or_else(Unit::one, |(_, unit)| unit.clone());
+        record_text(&made.signals, &unit)
     }
 
     /// One vehicle on one track.
@@ -131,6 +174,10 @@ impl Simulate {
         console.problems(&problems);
         let (Some(tree), Ok(speed)) = (tree, speed) else { return Exit::Wrong };
         let nowhere = Section::nowhere();
+        if let Some(confined) = effects.iter().find(|applied| applied.confined.is_some()) {
+            let says = format!("`{}` is confined to some sections, and there is but one record", confined.effect);
+            return console.fail(Problem::error("no-such-section", says), Exit::Wrong);
+        }
         let plan = match Plan::new(catalogue, effects, &nowhere, None) {
             Ok(plan) => plan,
             Err(problem) => return console.fail(problem, Exit::Wrong),
@@ -154,9 +201,42 @@ impl Simulate {
     }
 }
 
-fn record(simulator: &dyn Simulator, catalogue: &Catalogue, effects: &[Applied], section: &Section) -> Result<String, Problem> {
-    let made = simulate(simulator, catalogue, effects, section, None)?;
-    record_text(&made.signals, &unit)
+/// What is wrong with effects for these sections, whatever the simulator makes of them.
+fn unusable(catalogue: &Catalogue, effects: &[Applied], sections: &[Section], chosen: &Chosen<'_>) -> Vec<Problem> {
+    let mut problems = check_confined(effects, sections);
+    let simulator = chosen.simulator().catalogue_name();
+    for section in sections {
+        match Plan::new(catalogue, effects, section, simulator) {
+            Err(problem) => problems.push(problem),
+            Ok(plan) if !plan.formulas.is_empty() => {
+                let differs = |(channel, unit): &&(String, Unit)| {
+                    let found = chosen.unit(section, channel);
+                    found.dimension == unit.dimension && found.factor != unit.factor
+                };
+                problems.extend(catalogue.units.iter().find(differs).map(|(channel, unit)| {
+                    let says =
+                        format!("`{channel}` is recorded in {}, and the catalogue takes it in {unit}", chosen.unit(section, channel));
+                    Problem::error("unit-mismatch", says).help("give `units` of the catalogue as the records have them")
+                }));
+            }
+            Ok(_) => {}
+        }
+    }
+    problems
+}
+
+fn say_baseline(console: &Console, chosen: &Chosen<'_>, deviations: &[Deviation], warning: Option<Problem>) {
+    let largest = deviations.iter().max_by(|a, b| a.share().total_cmp(&b.share()));
+    if let Some(worst) = largest {
+        console.say(&format!(
+            "baseline: {} is off from the campaign's simulation by {:.2} % at most (`{}` of section `{}`)",
+            chosen.simulator().name(),
+            100.0 * worst.share(),
+            worst.channel,
+            worst.section
+        ));
+    }
+    console.problems(&Problems(warning.into_iter().collect()));
 }
 
 /// The unit of a channel of the model.

@@ -245,13 +245,8 @@ impl Campaign {
                 inside.push(self.record_place(kind, name)?.inside);
             }
         }
-        // Files that the vehicle names, as far as they are there.
-        let mut named = vec!["profile.csv".to_string(), "profile_worn.csv".to_string()];
-        let maps = self.vehicle.entries().iter().flat_map(|(_, node)| node.entries());
-        named.extend(maps.filter_map(|(_, node)| Some(node.scalar_text()?.to_string())).filter(|text| text.ends_with(".csv")));
-        for written in named {
-            let place = self.folder.place(&written, &self.tree.span.part(0..0))?;
-            if place.path.is_file() && !inside.contains(&place.inside) {
+        for place in self.vehicle_files()? {
+            if !inside.contains(&place.inside) {
                 inside.push(place.inside);
             }
         }
@@ -261,6 +256,24 @@ impl Campaign {
             Ok((inside, bytes))
         };
         inside.into_iter().map(read).collect()
+    }
+
+    /// Files that the vehicle names, as far as they are there.
+    ///
+    /// # Errors
+    /// A name leads outside.
+    pub fn vehicle_files(&self) -> Result<Vec<Place>, Problem> {
+        let mut named = vec!["profile.csv".to_string(), "profile_worn.csv".to_string()];
+        let maps = self.vehicle.entries().iter().flat_map(|(_, node)| node.entries());
+        named.extend(maps.filter_map(|(_, node)| Some(node.scalar_text()?.to_string())).filter(|text| text.ends_with(".csv")));
+        let mut found: Vec<Place> = Vec::new();
+        for written in named {
+            let place = self.folder.place(&written, &self.tree.span.part(0..0))?;
+            if place.path.is_file() && !found.contains(&place) {
+                found.push(place);
+            }
+        }
+        Ok(found)
     }
 
     /// The path inside the campaign of a file that a message names by the folder as it was given.

@@ -121,6 +121,7 @@ impl Workshop<'_> {
             let mut found = match &effect.action {
                 Action::Simulator => self.simulated(effect, runs),
                 Action::Signals(operator, channels) => self.operated(effect, *operator, channels),
+                Action::Formulas(_) => self.expressed(effect),
             };
             let alternatives = found.len();
             found.iter_mut().for_each(|candidate| candidate.alternatives = alternatives);
@@ -225,6 +226,53 @@ impl Workshop<'_> {
             })
         };
         lists.into_par_iter().filter_map(make).collect()
+    }
+
+    /// Effects by expressions on the signals: each set of sizes is applied to the campaign's simulation.
+    fn expressed(&self, effect: &Effect) -> Vec<Candidate> {
+        let mut found = Vec::new();
+        for fit in &effect.fits {
+            let Some(((size, sizes), others)) = fit.axes.split_first() else { continue };
+            let parameter = &effect.parameters[*size];
+            let neutral = parameter.neutral.unwrap_or(0.0);
+            for fixed in combinations(others) {
+                let fixed: Vec<(String, f64)> = fixed.into_iter().map(|(at, value)| (effect.parameters[at].name.clone(), value)).collect();
+                let mut nodes = vec![Node { size: neutral, change: Vec::new() }];
+                for size in sizes.iter().filter(|size| **size != neutral) {
+                    let mut values = fixed.clone();
+                    values.push((parameter.name.clone(), *size));
+                    if let Ok(change) = self.expression(&applied(effect, values)) {
+                        nodes.push(Node { size: *size, change });
+                    }
+                }
+                nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+                found.push(Candidate {
+                    effect: effect.name.clone(),
+                    channels: Vec::new(),
+                    size: parameter.name.clone(),
+                    range: (parameter.low, parameter.high),
+                    fixed,
+                    nodes,
+                    discrete: false,
+                    confinable: effect.confinable,
+                    tolerance: effect.tolerance.clone(),
+                    alternatives: 1,
+                });
+            }
+        }
+        found
+    }
+
+    fn expression(&self, applied: &Applied) -> Result<Vec<f64>, Problem> {
+        let effects = std::slice::from_ref(applied);
+        let each = |at: usize| {
+            let observed = &self.seen.sections[at];
+            let mut signals = observed.simulated.clone();
+            crate::simulate::Plan::new(self.catalogue, effects, &observed.section, None)?.operate(&mut signals, &observed.section)?;
+            Ok(self.seen.of(at, &signals, true))
+        };
+        let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.seen.sections.len()).into_par_iter().map(each).collect();
+        Ok(parts?.concat().iter().zip(&self.simulated).map(|(made, simulated)| made - simulated).collect())
     }
 
     /// Channels of one group that could be exchanged.

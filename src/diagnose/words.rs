@@ -157,6 +157,7 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
         confined_to: found.masks[member.mask].confined.as_ref().map(|(column, values)| confined(column, values)),
         added_by: match effect.map(|effect| &effect.action) {
             Some(Action::Signals(operator, _)) => format!("an operation on the signals: {}", operator.name()),
+            Some(Action::Formulas(_)) => "expressions on the signals".into(),
             _ => inputs.simulator.map_or(String::new(), |simulator| format!("increments of the {}", simulator.name())),
         },
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::expression::Formula;
 use super::operators::Operator;
 use crate::source::{Source, Span};
 use crate::units::Unit;
@@ -15,6 +16,8 @@ pub struct Catalogue {
     pub source: Arc<Source>,
     /// Named groups of channels.
     pub groups: Vec<Group>,
+    /// Units of channels that expressions use.
+    pub units: Vec<(String, Unit)>,
     pub effects: Vec<Effect>,
     /// What the diagnosis needs to know: features, tolerances, discrepancies. Read by the diagnosis.
     pub diagnosis: Option<Node>,
@@ -102,6 +105,8 @@ pub enum Action {
     Simulator,
     /// By an operation on the signals; channels it may act on.
     Signals(Operator, Vec<String>),
+    /// Channels computed anew from channels of the same record.
+    Formulas(Vec<Formula>),
 }
 
 /// A set of parameters that a fit varies, with the values that are tried.

@@ -2,6 +2,7 @@
 //! `friction=0.2 in zones 3, 4`.
 
 use super::catalogue::{Action, Catalogue, Effect, Parameter};
+use super::operators::Operator;
 use super::read::CHANNEL;
 use crate::problem::Problem;
 use crate::source::{Source, Span};
@@ -116,7 +117,7 @@ fn one(catalogue: &Catalogue, text: &str, source: &std::sync::Arc<Source>) -> Re
         return Err(Box::new(Problem::error("range", says).at(&place(rest))));
     }
     let mut channels: Vec<String> = channel.into_iter().collect();
-    if let Action::Signals(_, allowed) = &effect.action {
+    if let Action::Signals(operator, allowed) = &effect.action {
         for name in on.map_or(Vec::new(), |on| on.split(',').map(str::trim).collect()) {
             let found = catalogue.channels(name).filter(|found| found.iter().all(|channel| allowed.contains(channel)));
             channels.extend(found.ok_or_else(|| {
@@ -125,6 +126,10 @@ fn one(catalogue: &Catalogue, text: &str, source: &std::sync::Arc<Source>) -> Re
                 Box::new(problem.suggest(name, allowed.iter().map(String::as_str).chain(groups)))
             })?);
         }
+        channels = in_pairs(*operator, channels, allowed).map_err(|says| {
+            let problem = Problem::error("channel-missing", format!("`{}` {says}", effect.name)).at(&place(rest));
+            Box::new(problem.help(format!("write `{rest} on {}, {}`", allowed[0], allowed.get(1).unwrap_or(&allowed[0]))))
+        })?;
         if channels.is_empty() {
             if parameter.name.contains(CHANNEL) {
                 let says = format!("`{}` acts on one channel or a group: say which", effect.name);
@@ -139,6 +144,18 @@ fn one(catalogue: &Catalogue, text: &str, source: &std::sync::Arc<Source>) -> Re
         return Err(Box::new(Problem::error("unknown-channel", says).at(&place(on))));
     }
     Ok(Applied { effect: name.to_string(), values: vec![(parameter.name.clone(), value)], channels, confined })
+}
+
+/// Channels as an operator on pairs takes them: a swap needs two, of a crosstalk either one names the pair.
+fn in_pairs(operator: Operator, named: Vec<String>, allowed: &[String]) -> Result<Vec<String>, &'static str> {
+    match operator {
+        Operator::Swap if named.len() != 2 || named[0] == named[1] => Err("exchanges two channels: say which"),
+        Operator::Crosstalk => {
+            let chosen = allowed.chunks_exact(2).filter(|pair| pair.iter().any(|channel| named.contains(channel)));
+            Ok(chosen.flatten().cloned().collect())
+        }
+        _ => Ok(named),
+    }
 }
 
 /// The parameter a text names, wholly or by its last words, and the channel that stands in its name.

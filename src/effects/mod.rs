@@ -4,10 +4,13 @@
 
 mod catalogue;
 mod choose;
+mod expression;
+mod formulas;
 pub mod operators;
 mod read;
 
 pub use catalogue::{Action, Acts, Catalogue, Effect, Fit, Group, Parameter};
 pub use choose::{Applied, Confined, choose};
+pub use expression::Formula;
 pub use operators::{Channel, Gauss, Operator, Signals};
 pub use read::{CHANNEL, Find, ModelParameters, read};

@@ -1,5 +1,6 @@
 //! Effects of the measuring chain: exact operations on recorded signals.
 
+use super::expression::Formula;
 use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
 
 /// A record as it goes through the chain. Values are in the unit of their channel.
@@ -77,6 +78,25 @@ impl Signals {
     #[must_use]
     pub fn channel(&self, name: &str) -> Option<&Channel> {
         self.channels.iter().find(|channel| channel.name == name)
+    }
+
+    /// Computes channels anew, all from the record as it was; formulas whose channels the record has not are passed over.
+    ///
+    /// # Errors
+    /// A value is not finite, in words.
+    pub fn compute(&mut self, formulas: &[Formula], parameters: &[f64]) -> Result<(), String> {
+        let mut made = Vec::new();
+        for formula in formulas {
+            if let Some(values) = formula.values(self, parameters) {
+                made.push((self.position(&formula.channel), values?));
+            }
+        }
+        for (at, values) in made {
+            if let Some(at) = at {
+                self.channels[at].values = values;
+            }
+        }
+        Ok(())
     }
 
     fn position(&self, name: &str) -> Option<usize> {

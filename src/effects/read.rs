@@ -9,13 +9,14 @@ use crate::source::Source;
 use crate::units::Unit;
 use crate::yaml::{self, Node, Value};
 
-const TOP: [&str; 6] = ["catalogue", "title", "extends", "groups", "effects", "diagnosis"];
-const EFFECT: [&str; 13] = [
+const TOP: [&str; 7] = ["catalogue", "title", "extends", "groups", "units", "effects", "diagnosis"];
+const EFFECT: [&str; 14] = [
     "title",
     "means",
     "acts on",
     "parameters",
     "operator",
+    "signals",
     "channels",
     "together",
     "each",
@@ -37,7 +38,8 @@ pub type Find<'a> = &'a dyn Fn(&str, &Source) -> Result<Arc<Source>, Box<Problem
 /// `known` says whether the built-in model has a parameter, and suggests names.
 ///
 /// Problems: `yaml`, `unknown-key`, `key-missing`, `wrong-kind`, `unknown-unit`, `unit-mismatch`, `range`, `unknown-operator`,
-/// `unknown-channel`, `unknown-parameter`, `extends-loop`.
+/// `unknown-channel`, `unknown-parameter`, `extends-loop`; those of expressions: `unit-missing`, `unknown-name`, `not-here`,
+/// `contradiction`.
 pub fn read(source: &Arc<Source>, find: Find<'_>, known: &ModelParameters<'_>, problems: &mut Problems) -> Option<Catalogue> {
     read_below(source, find, known, problems, 0)
 }
@@ -54,7 +56,7 @@ fn read_below(
 ) -> Option<Catalogue> {
     let before = problems.errors();
     let tree = yaml::load(source, problems)?;
-    let mut reader = Reader { known, problems, groups: Vec::new() };
+    let mut reader = Reader { known, problems, groups: Vec::new(), units: Vec::new() };
     reader.keys(&tree, &TOP, "a catalogue");
     let mut base = None;
     if let Some(named) = reader.text(&tree, "extends") {
@@ -78,6 +80,7 @@ fn read_below(
         title: String::new(),
         source: Arc::clone(source),
         groups: Vec::new(),
+        units: Vec::new(),
         effects: Vec::new(),
         diagnosis: None,
     });
@@ -93,6 +96,10 @@ fn read_below(
         catalogue.diagnosis = Some(node.clone());
     }
     reader.groups.clone_from(&catalogue.groups);
+    if let Some(node) = tree.get("units") {
+        reader.units(node, &mut catalogue.units);
+    }
+    reader.units.clone_from(&catalogue.units);
     for (key, node) in tree.get("effects").map_or(&[][..], Node::entries) {
         catalogue.effects.retain(|effect| effect.name != key.text);
         if node.scalar_text() == Some("remove") {
@@ -105,14 +112,15 @@ fn read_below(
     (problems.errors() == before).then_some(catalogue)
 }
 
-struct Reader<'a> {
+pub(super) struct Reader<'a> {
     known: &'a ModelParameters<'a>,
-    problems: &'a mut Problems,
+    pub problems: &'a mut Problems,
     groups: Vec<Group>,
+    pub units: Vec<(String, Unit)>,
 }
 
 impl Reader<'_> {
-    fn fault(&mut self, code: &'static str, says: impl Into<String>, at: Option<&Node>) {
+    pub fn fault(&mut self, code: &'static str, says: impl Into<String>, at: Option<&Node>) {
         let problem = Problem::error(code, says);
         self.problems.push(match at {
             Some(node) => problem.at(&node.span),
@@ -189,7 +197,7 @@ impl Reader<'_> {
     }
 
     /// Groups and channels by name.
-    fn channels(&mut self, node: &Node) -> Vec<String> {
+    pub fn channels(&mut self, node: &Node) -> Vec<String> {
         let mut channels = Vec::new();
         for name in self.list(node) {
             if let Some(group) = self.groups.iter().find(|group| group.name == name) {
@@ -224,10 +232,14 @@ impl Reader<'_> {
             }
         }
         if parameters.is_empty() {
+            // Where all are faulty, that is said already.
+            if node.get("parameters").is_some_and(|node| !node.entries().is_empty()) {
+                return None;
+            }
             self.problems.push(Problem::error("key-missing", format!("the effect `{name}` has no parameters")).at(&key.span));
             return None;
         }
-        let action = self.action(node)?;
+        let action = self.action(node, &parameters)?;
         let fits = self.fits(node, &parameters, &trials, &action);
         Some(Effect {
             name: name.to_string(),
@@ -245,7 +257,10 @@ impl Reader<'_> {
         })
     }
 
-    fn action(&mut self, node: &Node) -> Option<Action> {
+    fn action(&mut self, node: &Node, parameters: &[Parameter]) -> Option<Action> {
+        if let Some(signals) = node.get("signals") {
+            return self.formulas(node, signals, parameters);
+        }
         let Some(name) = self.text(node, "operator") else { return Some(Action::Simulator) };
         let Some(operator) = Operator::ALL.into_iter().find(|known| known.name() == name) else {
             let problem = Problem::error("unknown-operator", format!("there is no operator `{name}`"));
@@ -336,7 +351,7 @@ impl Reader<'_> {
         Some((Parameter { name: name.to_string(), unit, neutral, default, low, high, meaning, vanishes_high, model, simulators }, trials))
     }
 
-    fn unit(&mut self, text: &str, node: &Node) -> Option<Unit> {
+    pub fn unit(&mut self, text: &str, node: &Node) -> Option<Unit> {
         Unit::parse(text)
             .map_err(|unknown| {
                 let problem = Problem::error("unknown-unit", format!("`{}` is no unit", unknown.word)).at(&node.span);

@@ -1,7 +1,7 @@
 //! Adds effects to a section: what the simulator is told, and what is done to its signals.
 
 use super::{Section, Simulator, Task};
-use crate::effects::{Action, Applied, Catalogue, Operator, Signals};
+use crate::effects::{Action, Applied, Catalogue, Formula, Operator, Parameter, Signals};
 use crate::problem::Problem;
 
 /// What effects mean for one section.
@@ -9,6 +9,8 @@ use crate::problem::Problem;
 pub struct Plan {
     /// Parameters of the simulator, in its units.
     pub settings: Vec<(String, f64)>,
+    /// Before the measuring chain, in the order chosen: formulas of an effect and the values of all its parameters.
+    pub formulas: Vec<(Vec<Formula>, Vec<f64>)>,
     /// In the order of the measuring chain.
     pub operators: Vec<(Operator, f64, Vec<String>)>,
 }
@@ -34,9 +36,23 @@ impl Plan {
             if !applied.confined.as_ref().is_none_or(here) {
                 continue;
             }
+            if let Action::Formulas(formulas) = &effect.action {
+                let neutral = |one: &Parameter| one.neutral.unwrap_or(one.default);
+                let values: Vec<f64> =
+                    effect.parameters.iter().map(|one| applied.value(&one.name).unwrap_or_else(|| neutral(one))).collect();
+                if values.iter().zip(&effect.parameters).any(|(value, one)| *value != neutral(one)) {
+                    plan.formulas.push((formulas.clone(), values));
+                }
+                continue;
+            }
             for parameter in &effect.parameters {
                 let Some(value) = applied.value(&parameter.name) else { continue };
+                // The simulator is told even what is neutral: the vehicle file may say otherwise. A signal is left as it is.
+                if parameter.neutral == Some(value) && effect.action != Action::Simulator {
+                    continue;
+                }
                 match (&effect.action, simulator) {
+                    (Action::Formulas(_), _) => {}
                     (Action::Signals(operator, _), _) => plan.operators.push((*operator, value, applied.channels.clone())),
                     (Action::Simulator, None) => {
                         let (key, factor) =
@@ -72,6 +88,11 @@ impl Plan {
     /// An operator cannot be applied, with the section.
     pub fn operate(&self, signals: &mut Signals, section: &Section) -> Result<(), Problem> {
         let seed = section.name().bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3));
+        for (formulas, values) in &self.formulas {
+            signals
+                .compute(formulas, values)
+                .map_err(|says| Problem::error("operator", format!("section `{}`: {says}", section.name())).at(&section.cell.span))?;
+        }
         for (operator, value, channels) in &self.operators {
             signals.apply(*operator, *value, channels, seed).map_err(|says| {
                 Problem::error("operator", format!("section `{}`: {}: {says}", section.name(), operator.name())).at(&section.cell.span)
@@ -79,6 +100,32 @@ impl Plan {
         }
         Ok(())
     }
+}
+
+/// What effects are confined to must be there: a column that no section has, or a value that none has in it, is a slip.
+///
+/// # Errors
+/// `no-such-section`, with the nearest value.
+pub fn check_confined(effects: &[Applied], sections: &[Section]) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for applied in effects {
+        let Some(confined) = &applied.confined else { continue };
+        for value in &confined.values {
+            if sections.iter().any(|section| section.fact(&confined.column) == Some(value)) {
+                continue;
+            }
+            let says = format!("`{}` is confined to the {} `{value}`, which no section has", applied.effect, confined.column);
+            let mut known: Vec<&str> = sections.iter().filter_map(|section| section.fact(&confined.column)).collect();
+            known.sort_unstable();
+            known.dedup();
+            problems.push(Problem::error("no-such-section", says).suggest(value, known));
+        }
+        if confined.values.is_empty() {
+            let says = format!("`{}` is confined to no {}", applied.effect, confined.column);
+            problems.push(Problem::error("no-such-section", says).help("write `in zones 3, 4` or `in sections S01, S02`"));
+        }
+    }
+    problems
 }
 
 fn unsaid(effect: &str, parameter: &str, simulator: &str) -> Problem {
@@ -128,7 +175,7 @@ pub fn incremented(recorded: &Signals, with: &Signals, without: &Signals) -> Sig
 }
 
 /// Linear between samples, constant beyond the ends; `at` is where the last look was.
-fn interpolated(axis: &[f64], values: &[f64], x: f64, at: &mut usize) -> f64 {
+pub(super) fn interpolated(axis: &[f64], values: &[f64], x: f64, at: &mut usize) -> f64 {
     let last = axis.len().min(values.len()).saturating_sub(1);
     while *at + 1 < last && axis[*at + 1] <= x {
         *at += 1;

@@ -62,6 +62,25 @@ fn signals(record: &Record) -> Result<(Signals, Units), Vec<Problem>> {
     Ok((Signals { axis: axis.values.clone(), rate: (record.rows - 1) as f64 / span, channels }, units))
 }
 
+/// Turns channels into other units; those for which `to` has none stay in their own.
+///
+/// # Errors
+/// `unit-mismatch`: a channel is another quantity than it should be.
+pub fn in_units(signals: &mut Signals, units: &Units, to: &dyn Fn(&str) -> Option<Unit>) -> Result<(), Problem> {
+    for channel in &mut signals.channels {
+        let from = units.iter().find(|(name, _)| *name == channel.name).map(|(_, unit)| unit);
+        let (Some(from), Some(to)) = (from, to(&channel.name)) else { continue };
+        if from.dimension != to.dimension {
+            let says = format!("the channel `{}` is in {from}, which is another quantity than {to}", channel.name);
+            return Err(Problem::error("unit-mismatch", says));
+        }
+        if from.factor != to.factor {
+            channel.values.iter_mut().for_each(|value| *value = to.from_si(from.to_si(*value)));
+        }
+    }
+    Ok(())
+}
+
 /// A record as text: time from 0, distance, channels; forces in kN to 0.01, accelerations in m/s^2 to 0.0001.
 ///
 /// # Errors

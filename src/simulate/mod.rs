@@ -5,12 +5,16 @@
 mod add;
 mod builtin;
 mod campaign;
+mod compare;
+mod external;
 mod section;
 mod write;
 
-pub use add::{Plan, Simulated, simulate};
+pub use add::{Plan, Simulated, check_confined, simulate};
 pub use builtin::{Builtin, model_parameters, single};
-pub use campaign::{Units, read_signals, record_text, recorded};
+pub use campaign::{Units, in_units, read_signals, record_text, recorded};
+pub use compare::{Deviation, baseline_warning, deviations};
+pub use external::{Cache, External, Program, read_program};
 pub use section::{Section, sections};
 pub use write::write_campaign;
 

@@ -5,9 +5,11 @@ use std::path::Path;
 use clap::CommandFactory;
 use fishplate::catalog::{self, STEPS};
 use fishplate::cli::Arguments;
-use fishplate::library::SHIPPED;
+use fishplate::effects::{Acts, Effect, Parameter};
+use fishplate::library::{CATALOGUES, SHIPPED, parent_catalogue};
 use fishplate::metrics::percentile::Method;
 use fishplate::problem::Problems;
+use fishplate::simulate::model_parameters;
 use fishplate::source::Source;
 use fishplate::syntax::keys::{KINDS, Kind, Sort};
 use fishplate::syntax::read_text;
@@ -26,6 +28,7 @@ pub fn part(name: &str) -> String {
         ("protocols", "") => protocols(),
         ("commands", "") => commands(),
         ("results.json", "") => results(),
+        ("effects", acts) => effects(acts),
         _ => panic!("nothing is generated as `{name}`"),
     }
 }
@@ -40,6 +43,7 @@ pub fn wanted() -> Vec<String> {
         }
     }
     all.extend(["blocks", "units", "percentile rules", "protocols", "commands", "results.json"].map(str::to_string));
+    all.extend(Acts::ALL.map(|acts| format!("effects {}", acts.in_words())));
     all
 }
 
@@ -138,6 +142,20 @@ fn protocols() -> String {
         vec![format!("[`{0}`](protocols/{0}.fp)", shipped.name), title]
     });
     table(&["name", "what it is"], rows)
+}
+
+/// The effects of the first shipped catalogue that act on something.
+fn effects(acts: &str) -> String {
+    let shipped = &CATALOGUES[0];
+    let source = Source::new(shipped.name, shipped.text);
+    let catalogue = fishplate::effects::read(&source, &parent_catalogue, &model_parameters(), &mut Problems::default());
+    let parameter = |one: &Parameter| format!("{} {} to {}{}", code(&one.name), one.low, one.high, one.unit.suffix());
+    let row = |effect: &Effect| {
+        let parameters: Vec<String> = effect.parameters.iter().map(parameter).collect();
+        vec![code(&effect.name), format!("{}: {}", effect.title, effect.means), parameters.join(", ")]
+    };
+    let found = catalogue.expect("right").effects;
+    table(&["effect", "what it is", "parameters"], found.iter().filter(|effect| effect.acts.in_words() == acts).map(row))
 }
 
 fn commands() -> String {

@@ -185,6 +185,11 @@ fn run(line: &str, folder: &Path, code: &mut i32, at: &str) -> String {
     assert_eq!(words.next(), Some("fishplate"), "{at}: only the program itself is run");
     let mut command = Command::new(env!("CARGO_BIN_EXE_fishplate"));
     command.current_dir(folder).args(words);
+    // A page may call the program by its name in a file of its own.
+    let program = Path::new(env!("CARGO_BIN_EXE_fishplate")).parent().expect("a folder");
+    let others = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(std::iter::once(program.to_path_buf()).chain(std::env::split_paths(&others)));
+    command.env("PATH", path.expect("folders without separators"));
     if line.contains(" certify ") && !line.contains("--only") {
         command.args(["--only", "results"]);
     }

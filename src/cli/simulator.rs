@@ -1,0 +1,125 @@
+//! Which simulator makes the records: the reference vehicle model, or a program that a file describes.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rayon::prelude::*;
+
+use crate::data::text::read_text;
+use crate::data::{Campaign, RecordKind};
+use crate::effects::Signals;
+use crate::model::CHANNELS;
+use crate::problem::{Problem, Problems};
+use crate::simulate::{
+    Builtin, Cache, Deviation, External, Section, Simulator, Task, baseline_warning, deviations, in_units, read_program, recorded,
+};
+use crate::units::Unit;
+
+/// The arguments that choose a simulator.
+#[derive(Debug, Args)]
+pub struct SimulatorChoice {
+    /// A file that describes another simulator, a program that makes one record per call; else the reference vehicle model.
+    #[arg(long, value_name = "SIM.YAML")]
+    simulator: Option<PathBuf>,
+    /// Folder where records of another simulator are kept, so that no call is made twice
+    /// [default: fishplate-cache in the system's folder for temporary files]
+    #[arg(long, value_name = "DIR", requires = "simulator")]
+    cache: Option<PathBuf>,
+    /// Keep no records of another simulator, and use none.
+    #[arg(long, requires = "simulator", conflicts_with = "cache")]
+    no_cache: bool,
+}
+
+/// A simulator, ready for a campaign.
+#[derive(Debug)]
+pub enum Chosen<'a> {
+    Builtin(Box<Builtin<'a>>),
+    External(Box<External<'a>>),
+}
+
+/// How far the reference vehicle model may be from the campaign's simulation without a warning.
+const TOLERANCE: f64 = 0.05;
+
+impl SimulatorChoice {
+    /// Whether it is another than the reference vehicle model.
+    pub fn external(&self) -> bool {
+        self.simulator.is_some()
+    }
+
+    /// The simulator for a campaign; `None`, with the reasons, if it cannot be used.
+    pub fn open<'a>(&self, campaign: &'a Campaign, problems: &mut Problems) -> Option<Chosen<'a>> {
+        let Some(file) = &self.simulator else {
+            return Some(Chosen::Builtin(Box::new(Builtin::new(campaign, problems)?)));
+        };
+        let (source, _) = read_text(file, &file.display().to_string()).map_err(|problem| problems.push(problem)).ok()?;
+        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let program = read_program(&source, folder, problems)?;
+        let cache = match (&self.cache, self.no_cache) {
+            (_, true) => Ok(Cache::none()),
+            (Some(folder), _) => Cache::at(folder),
+            (None, _) => Cache::temporary(),
+        };
+        let made = cache.and_then(|cache| External::new(campaign, program, cache));
+        made.map_err(|problem| problems.push(problem)).ok().map(|external| Chosen::External(Box::new(external)))
+    }
+}
+
+impl Chosen<'_> {
+    pub fn simulator(&self) -> &dyn Simulator {
+        match self {
+            Self::Builtin(model) => &**model,
+            Self::External(program) => &**program,
+        }
+    }
+
+    /// The unit of a channel of a section's record.
+    pub fn unit(&self, section: &Section, channel: &str) -> Unit {
+        match self {
+            Self::Builtin(..) => model_unit(channel).unwrap_or_else(Unit::one),
+            Self::External(program) => program.unit(section, channel),
+        }
+    }
+
+    /// The campaign's simulation of a section in the units of the simulator, with the unit of each channel.
+    pub fn recorded(&self, campaign: &Campaign, section: &Section) -> Result<(Signals, Vec<(String, Unit)>), Problem> {
+        let none = || Problem::error("unreadable", "the record cannot be read");
+        let found = recorded(campaign, RecordKind::Simulation, section);
+        let (mut signals, mut units, _) = found.map_err(|problems| problems.into_iter().next().unwrap_or_else(none))?;
+        if let Self::Builtin(..) = self {
+            in_units(&mut signals, &units, &model_unit)?;
+            units.iter_mut().for_each(|(name, unit)| *unit = model_unit(name).unwrap_or_else(|| unit.clone()));
+        }
+        Ok((signals, units))
+    }
+
+    /// Whether the simulator without effects makes the campaign's simulation: every deviation, and a warning if one is too large.
+    pub fn baseline(&self, campaign: &Campaign, sections: &[Section]) -> Result<(Vec<Deviation>, Option<Problem>), Vec<Problem>> {
+        let one = |section: &Section| match self {
+            Self::External(program) => program.baseline(section),
+            Self::Builtin(model) => {
+                let (recorded, _) = self.recorded(campaign, section)?;
+                deviations(&model.run(&Task { section, settings: &[], shift: 0.0 })?, &recorded, section)
+            }
+        };
+        let all: Vec<Result<Vec<Deviation>, Problem>> = sections.par_iter().map(one).collect();
+        let failed: Vec<Problem> = all.iter().filter_map(|one| one.as_ref().err().cloned()).collect();
+        if !failed.is_empty() {
+            return Err(failed);
+        }
+        let all: Vec<Deviation> = all.into_iter().flatten().flatten().collect();
+        let tolerance = if let Self::External(program) = self { program.program().tolerance } else { TOLERANCE };
+        let warning = baseline_warning(self.simulator(), tolerance, &all);
+        Ok((all, warning))
+    }
+
+    /// What the program was asked to do: ` (3 calls, 13 records were there)`; nothing for the model.
+    pub fn effort(&self) -> String {
+        let Self::External(program) = self else { return String::new() };
+        let (calls, found) = program.effort();
+        format!(" ({calls} calls of {}, {found} records from the cache)", program.program().name)
+    }
+}
+
+fn model_unit(channel: &str) -> Option<Unit> {
+    CHANNELS.iter().find(|(known, _)| *known == channel).and_then(|(_, unit)| Unit::parse(unit).ok())
+}

@@ -1,0 +1,76 @@
+//! How far a simulator is from a record that was made elsewhere.
+
+use super::add::interpolated;
+use super::{Section, Simulator};
+use crate::effects::Signals;
+use crate::problem::Problem;
+
+/// How far one channel of one section is off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Deviation {
+    pub section: String,
+    pub channel: String,
+    /// Root mean square of the difference over the section, in the unit of the channel.
+    pub rms: f64,
+    /// Root mean square of the recorded channel.
+    pub of: f64,
+}
+
+impl Deviation {
+    /// The difference as a share of the channel; 0 where both are nothing.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        if self.rms == 0.0 { 0.0 } else { self.rms / self.of }
+    }
+}
+
+/// The deviations of all channels that both have, in the order of the record. Both must be in the same units.
+///
+/// # Errors
+/// `too-short`: fewer than two samples of the section lie in both.
+pub fn deviations(made: &Signals, recorded: &Signals, section: &Section) -> Result<Vec<Deviation>, Problem> {
+    let ends = |signals: &Signals| signals.axis.first().copied().zip(signals.axis.last().copied());
+    let (from, to) = match (ends(made), ends(recorded)) {
+        (Some(a), Some(b)) => (a.0.max(b.0).max(section.start), a.1.min(b.1).min(section.end)),
+        _ => (0.0, -1.0),
+    };
+    let inside: Vec<usize> = (0..recorded.axis.len()).filter(|at| (from..=to).contains(&recorded.axis[*at])).collect();
+    if inside.len() < 2 {
+        let says = format!("section `{}`: the simulator's record and the campaign's have no place in common", section.name());
+        return Err(Problem::error("too-short", says).at(&section.cell.span));
+    }
+    let mut found = Vec::new();
+    for channel in &recorded.channels {
+        let Some(mine) = made.channel(&channel.name) else { continue };
+        let mut at = 0;
+        let (mut off, mut all) = (0.0, 0.0);
+        for n in &inside {
+            let difference = interpolated(&made.axis, &mine.values, recorded.axis[*n], &mut at) - channel.values[*n];
+            off += difference * difference;
+            all += channel.values[*n] * channel.values[*n];
+        }
+        let rms = |sum: f64| (sum / inside.len() as f64).sqrt();
+        found.push(Deviation { section: section.name().to_string(), channel: channel.name.clone(), rms: rms(off), of: rms(all) });
+    }
+    Ok(found)
+}
+
+/// Says how far a simulator without effects is from the campaign's simulation, if it is further than the tolerance anywhere.
+#[must_use]
+pub fn baseline_warning(simulator: &dyn Simulator, tolerance: f64, deviations: &[Deviation]) -> Option<Problem> {
+    let beyond: Vec<&Deviation> = deviations.iter().filter(|one| one.share() > tolerance).collect();
+    let worst = beyond.iter().max_by(|a, b| a.share().total_cmp(&b.share()))?;
+    let says = format!(
+        "{} without effects is not the campaign's simulation: `{}` of section `{}` is off by {:.1} % (rms of the difference over rms of \
+         the channel); {} of {} channels are off by more than {} %",
+        simulator.name(),
+        worst.channel,
+        worst.section,
+        100.0 * worst.share(),
+        beyond.len(),
+        deviations.len(),
+        100.0 * tolerance
+    );
+    let help = "compare the vehicle and the tracks that both ran on, or add effects to the campaign's own records with `--increment`";
+    Some(Problem::warning("baseline", says).help(help))
+}

@@ -1,0 +1,292 @@
+//! A simulator that is a program: one call makes one record.
+
+mod cache;
+mod content;
+mod process;
+mod read;
+mod words;
+
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+pub use cache::Cache;
+pub use read::{Program, read_program};
+
+use super::campaign::{Units, in_units, read_signals, recorded};
+use super::compare::{Deviation, deviations};
+use super::{Section, Simulator, Task};
+use crate::data::record::read_headings;
+use crate::data::{Campaign, Heading, RecordKind};
+use crate::effects::Signals;
+use crate::problem::Problem;
+use crate::source::Source;
+use crate::units::Unit;
+use cache::Key;
+use content::{absolute, basis, vehicle_file};
+use process::{Call, Fault};
+use words::{Hole, fill};
+
+/// A program with the vehicle and the tracks of a campaign.
+#[derive(Debug)]
+pub struct External<'a> {
+    campaign: &'a Campaign,
+    program: Program,
+    cache: Cache,
+    /// Path of the vehicle file, if the campaign names one.
+    vehicle: Option<PathBuf>,
+    /// What all its records depend on.
+    basis: Key,
+    /// Units of channels that the campaign does not know, by section.
+    units: Mutex<Vec<(String, Units)>>,
+    calls: AtomicUsize,
+    found: AtomicUsize,
+}
+
+impl<'a> External<'a> {
+    /// The program for a campaign.
+    ///
+    /// # Errors
+    /// The campaign lacks a file that the command asks for: `key-missing`, `file-unreadable`.
+    pub fn new(campaign: &'a Campaign, program: Program, cache: Cache) -> Result<Self, Problem> {
+        let lacks = |key: &str| {
+            let says = format!("the campaign has no `{key}`, which the command of `{}` asks for", program.name);
+            Problem::error("key-missing", says).at(&campaign.tree.span.part(0..0)).also(&program.span, "here")
+        };
+        let asks = |hole: Hole| program.command.iter().any(|word| word.has(hole));
+        if asks(Hole::Track) && !campaign.has(RecordKind::Track) {
+            return Err(lacks("track"));
+        }
+        let vehicle = vehicle_file(campaign)?;
+        if asks(Hole::Vehicle) && vehicle.is_none() {
+            return Err(lacks("vehicle"));
+        }
+        let basis = basis(campaign, &program, vehicle.as_deref())?;
+        let (calls, found, units) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::default());
+        Ok(Self { campaign, program, cache, vehicle, basis, units, calls, found })
+    }
+
+    /// How the program is called.
+    #[must_use]
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// How often the program was called, and how many records were there already.
+    #[must_use]
+    pub fn effort(&self) -> (usize, usize) {
+        (self.calls.load(Ordering::Relaxed), self.found.load(Ordering::Relaxed))
+    }
+
+    /// The unit that a channel of a section's record has: that of the campaign's simulation, else that of the program's last record.
+    #[must_use]
+    pub fn unit(&self, section: &Section, channel: &str) -> Unit {
+        let own = || {
+            let units = self.units.lock().ok()?;
+            let (_, units) = units.iter().find(|(name, _)| name == section.name())?;
+            Some(units.iter().find(|(name, _)| name == channel)?.1.clone())
+        };
+        unit_in(&self.headings(section), channel).or_else(own).unwrap_or_else(Unit::one)
+    }
+
+    /// How far the program without effects is from the campaign's simulation of a section, channel by channel.
+    ///
+    /// # Errors
+    /// Of the program; the campaign's record cannot be read; both have no place in common.
+    pub fn baseline(&self, section: &Section) -> Result<Vec<Deviation>, Problem> {
+        let (recorded, ..) = recorded(self.campaign, RecordKind::Simulation, section).map_err(first)?;
+        deviations(&self.run(&Task { section, settings: &[], shift: 0.0 })?, &recorded, section)
+    }
+
+    /// Headings of the campaign's simulation of a section; none if there is none.
+    fn headings(&self, section: &Section) -> Vec<Heading> {
+        let place = self.campaign.record_place(RecordKind::Simulation, &section.cell);
+        place.ok().and_then(|place| read_headings(&place.path, &place.inside).ok()).unwrap_or_default()
+    }
+
+    /// What stands for a placeholder in a call.
+    fn filled(&self, task: &Task<'_>, out: &Path) -> Result<Vec<String>, Problem> {
+        let section = task.section;
+        let asks = |hole: Hole| self.program.command.iter().any(|word| word.has(hole));
+        let lacks = |what: &str| {
+            let says = format!("section `{}` has no {what}, which the command of `{}` asks for", section.name(), self.program.name);
+            Problem::error("section", says).at(&section.cell.span)
+        };
+        if !task.settings.is_empty() && !asks(Hole::Set) {
+            let says = format!("`{}` takes no parameters: its command has no `{{set}}`", self.program.name);
+            return Err(Problem::error("not-simulated", says).at(&self.program.span));
+        }
+        if asks(Hole::Speed) && section.speed.is_none() {
+            return Err(lacks("speed"));
+        }
+        if (asks(Hole::Start) || asks(Hole::End)) && !(section.start.is_finite() && section.end.is_finite()) {
+            return Err(lacks("start or no end"));
+        }
+        let track = if asks(Hole::Track) { Some(self.track(section)?) } else { None };
+        let path = |path: Option<&Path>| path.map(|path| path.display().to_string()).unwrap_or_default();
+        let fills = |hole: Hole| match hole {
+            Hole::Vehicle => path(self.vehicle.as_deref()),
+            Hole::Track => path(track.as_deref()),
+            Hole::Out => path(Some(out)),
+            Hole::Speed => section.speed.map(|speed| self.program.speed_unit.from_si(speed).to_string()).unwrap_or_default(),
+            Hole::Section => section.name().to_string(),
+            Hole::Start => (section.start - task.shift).to_string(),
+            Hole::End => (section.end - task.shift).to_string(),
+            Hole::Set | Hole::Name | Hole::Value => String::new(),
+        };
+        Ok(fill(&self.program.command, &self.program.set, task.settings, &fills))
+    }
+
+    fn track(&self, section: &Section) -> Result<PathBuf, Problem> {
+        let place = self.campaign.record_place(RecordKind::Track, &section.cell)?;
+        Ok(absolute(&place.path))
+    }
+
+    /// What a record depends on. Paths do not count, contents do.
+    fn key(&self, task: &Task<'_>) -> Result<String, Problem> {
+        let mut key = self.basis.clone();
+        let words = self.program.command.iter();
+        let asks = |hole: Hole| words.clone().any(|word| word.has(hole));
+        if asks(Hole::Track) {
+            key.add_file("track", &self.track(task.section)?)?;
+        }
+        if asks(Hole::Section) {
+            key.add("section", task.section.name());
+        }
+        if let (true, Some(speed)) = (asks(Hole::Speed), task.section.speed) {
+            key.add("speed", &speed.to_string());
+        }
+        if asks(Hole::Start) || asks(Hole::End) {
+            key.add("start", &(task.section.start - task.shift).to_string());
+            key.add("end", &(task.section.end - task.shift).to_string());
+        }
+        for (name, value) in task.settings {
+            key.add("name", name);
+            key.add("value", &value.to_string());
+        }
+        Ok(key.finish())
+    }
+
+    /// A record in the units of the campaign's simulation, checked.
+    fn read(&self, path: &Path, section: &Section) -> Result<Signals, Problem> {
+        let shown = format!("{}.csv of {}", section.name(), self.program.name);
+        let known = self.headings(section);
+        let made = read_headings(path, &shown).map_err(first)?;
+        let channels = self.program.channels.iter().map(String::as_str);
+        let wanted: Vec<&str> =
+            if self.program.channels.is_empty() { known.iter().map(|one| one.name.as_str()).collect() } else { channels.collect() };
+        for name in wanted {
+            let Some(heading) = made.iter().find(|one| one.name == name) else {
+                let problem = Problem::error("unknown-channel", format!("{shown} has no column `{name}`"));
+                return Err(problem.suggest(name, made.iter().map(|one| one.name.as_str())));
+            };
+            heading.unit(unit_in(&known, name).map(|unit| unit.dimension))?;
+        }
+        let (mut signals, units) = read_signals(path, &shown).map_err(first)?;
+        if let Some(at) = signals.axis.windows(2).position(|pair| pair[1] <= pair[0]) {
+            return Err(Problem::error("not-increasing", format!("{shown}: the position does not increase in line {}", at + 3)));
+        }
+        in_units(&mut signals, &units, &|name| unit_in(&known, name))?;
+        if let Ok(mut all) = self.units.lock() {
+            all.retain(|(name, _)| name != section.name());
+            all.push((section.name().to_string(), units));
+        }
+        Ok(signals)
+    }
+
+    /// One call and its record as written.
+    fn call(&self, task: &Task<'_>) -> Result<(Signals, Vec<u8>), Problem> {
+        let section = task.section;
+        let disk = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be made: {error}"));
+        let folder = tempfile::Builder::new().prefix("fishplate-").tempdir().map_err(disk)?;
+        let out = folder.path().join("record.csv");
+        let words = self.filled(task, &out)?;
+        let executable = self.program.executable();
+        let call = Call {
+            program: &executable,
+            arguments: words.get(1..).unwrap_or_default(),
+            environment: &self.program.environment,
+            folder: &self.program.folder,
+            timeout: self.program.timeout,
+        };
+        self.calls.fetch_add(1, Ordering::Relaxed);
+        process::run(&call).map_err(|fault| self.failed(&fault, &words, section))?;
+        if !out.is_file() {
+            let says = format!("section `{}`: {} ended well and wrote no record", section.name(), self.program.name);
+            let problem = Problem::error("simulator-output", says).at(&section.cell.span);
+            return Err(problem.help(format!("the command was: {}", words.join(" "))));
+        }
+        let signals = self.read(&out, section).map_err(|problem| {
+            let says = format!("section `{}`: the record of {}: {}", section.name(), self.program.name, problem.says);
+            let help = problem.help.clone().unwrap_or_else(|| format!("the command was: {}", words.join(" ")));
+            Problem { says, ..problem }.help(help)
+        })?;
+        let bytes = std::fs::read(&out).map_err(|error| Problem::error("file-unreadable", format!("the record: {error}")))?;
+        Ok((signals, bytes))
+    }
+
+    fn failed(&self, fault: &Fault, words: &[String], section: &Section) -> Problem {
+        let told = |code: &'static str, how: &dyn Display, said: &str| {
+            let problem = Problem::error(code, format!("section `{}`: {} {how}", section.name(), self.program.name));
+            let problem = problem.at(&section.cell.span).help(format!("the command was: {}", words.join(" ")));
+            if said.is_empty() {
+                problem
+            } else {
+                problem.also(&Source::new(self.program.name.as_str(), said).whole(), "what it said at last")
+            }
+        };
+        match fault {
+            Fault::NotStarted(error) => told("simulator-failed", &format!("could not be started: {error}"), ""),
+            Fault::TimedOut { said } => {
+                let seconds = self.program.timeout.as_secs_f64();
+                told("simulator-timeout", &format!("was ended after {seconds} s, its time-out"), said)
+            }
+            Fault::Failed { status, said } => told("simulator-failed", &format!("failed: {status}"), said),
+        }
+    }
+}
+
+impl Simulator for External<'_> {
+    fn name(&self) -> &str {
+        let Program { title, .. } = &self.program;
+        title
+    }
+
+    fn catalogue_name(&self) -> Option<&str> {
+        Some(&self.program.name)
+    }
+
+    fn run(&self, task: &Task<'_>) -> Result<Signals, Problem> {
+        // What no second try would mend is found first.
+        self.filled(task, Path::new(""))?;
+        let key = self.key(task)?;
+        // A record in the cache that cannot be read is made anew.
+        let kept = self.cache.file(&key).filter(|file| file.is_file());
+        if let Some(Ok(signals)) = kept.map(|file| self.read(&file, task.section)) {
+            self.found.fetch_add(1, Ordering::Relaxed);
+            return Ok(signals);
+        }
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            match self.call(task) {
+                Ok((signals, bytes)) => {
+                    self.cache.keep(&key, &bytes)?;
+                    return Ok(signals);
+                }
+                Err(_) if tries <= self.program.retries => {}
+                Err(problem) if tries == 1 => return Err(problem),
+                Err(problem) => return Err(Problem { says: format!("{} ({tries} tries)", problem.says), ..problem }),
+            }
+        }
+    }
+}
+
+fn unit_in(headings: &[Heading], name: &str) -> Option<Unit> {
+    headings.iter().find(|heading| heading.name == name)?.unit(None).ok()
+}
+
+fn first(problems: Vec<Problem>) -> Problem {
+    problems.into_iter().next().unwrap_or_else(|| Problem::error("unreadable", "the file cannot be read"))
+}

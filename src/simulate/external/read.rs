@@ -1,0 +1,277 @@
+//! Reads `sim.yaml`: how a simulator that is a program is called.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::words::{Hole, Word};
+use crate::problem::{Problem, Problems};
+use crate::source::{Source, Span};
+use crate::units::{Dimension, Unit};
+use crate::yaml::{self, Node, Value};
+
+/// A simulator that is a program, as its file describes it.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// By which catalogues say which of its parameters an effect moves.
+    pub name: String,
+    pub title: String,
+    pub source: Arc<Source>,
+    /// Where it runs: the folder of its file.
+    pub folder: PathBuf,
+    pub command: Vec<Word>,
+    /// What `{set}` becomes for each parameter; empty: `name=value`.
+    pub set: Vec<Word>,
+    pub speed_unit: Unit,
+    pub timeout: Duration,
+    /// How often a call that failed is made again.
+    pub retries: u32,
+    pub environment: Vec<(String, String)>,
+    /// Channels that its records must have; empty: those of the campaign's simulation.
+    pub channels: Vec<String>,
+    /// Files beside it whose content the results depend on.
+    pub inputs: Vec<PathBuf>,
+    /// How far it may be from the campaign's simulation: rms of the difference over rms of the channel.
+    pub tolerance: f64,
+    /// The place of the command.
+    pub span: Span,
+}
+
+const KEYS: [&str; 11] =
+    ["simulator", "title", "command", "set", "speed unit", "timeout", "retries", "environment", "channels", "inputs", "tolerance"];
+const TIMEOUT: Duration = Duration::from_secs(600);
+const MOST_RETRIES: f64 = 10.0;
+const TOLERANCE: f64 = 0.05;
+
+/// Reads a description; `folder` is where it lies.
+///
+/// Problems: `unknown-key`, `key-missing`, `wrong-kind`, `range`, `unknown-unit`, `unit-mismatch`, `unknown-placeholder`,
+/// `unclosed-brace`, `placeholder-missing`, `no-such-program`, `file-missing`.
+pub fn read_program(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Option<Program> {
+    let before = problems.errors();
+    let tree = yaml::load(source, problems)?;
+    let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
+    let mut reader = Reader { folder: &folder, problems };
+    if !matches!(tree.value, Value::Map(_)) {
+        reader.fault("wrong-kind", format!("a simulator is a map of keys and values; this is {}", tree.kind_in_words()), &tree.span);
+        return None;
+    }
+    reader.keys(&tree);
+    let name = reader.text(&tree, "simulator");
+    for key in ["simulator", "command"].into_iter().filter(|key| tree.get(key).is_none()) {
+        reader.fault("key-missing", format!("`{key}` is missing"), &tree.span.part(0..0));
+    }
+    let command = tree.get("command").map(|node| reader.words(node, &Hole::OF_COMMAND)).unwrap_or_default();
+    let set = tree.get("set").map(|node| reader.words(node, &Hole::OF_SET)).unwrap_or_default();
+    let speed_unit = tree.get("speed unit").and_then(|node| reader.unit(node, Dimension::LENGTH / Dimension::TIME));
+    let timeout = tree.get("timeout").and_then(|node| reader.seconds(node));
+    let retries = tree.get("retries").and_then(|node| reader.number(node, "retries", 0.0, MOST_RETRIES));
+    let tolerance = tree.get("tolerance").and_then(|node| reader.share(node));
+    let environment = reader.environment(&tree);
+    let channels = tree.get("channels").map(|node| reader.texts(node, "channels")).unwrap_or_default();
+    let inputs = tree.get("inputs").map(|node| reader.inputs(node)).unwrap_or_default();
+    if let Some(node) = tree.get("command") {
+        reader.command(node, &command, &set);
+    }
+    if problems.errors() > before {
+        return None;
+    }
+    let name = name?;
+    Some(Program {
+        title: tree.get("title").and_then(Node::scalar_text).unwrap_or(&name).to_string(),
+        name,
+        source: Arc::clone(source),
+        folder,
+        command,
+        set,
+        speed_unit: speed_unit.or_else(|| Unit::parse("m/s").ok())?,
+        timeout: timeout.unwrap_or(TIMEOUT),
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        retries: retries.unwrap_or(0.0) as u32,
+        environment,
+        channels,
+        inputs,
+        tolerance: tolerance.unwrap_or(TOLERANCE),
+        span: tree.get("command").map_or_else(|| tree.span.clone(), |node| node.span.clone()),
+    })
+}
+
+impl Program {
+    /// The file of the program if the command names it by a path, else its name, which the system looks for.
+    #[must_use]
+    pub fn executable(&self) -> PathBuf {
+        let word = self.command.first().and_then(Word::plain).unwrap_or_default();
+        if word.contains(['/', '\\']) { self.folder.join(word) } else { PathBuf::from(word) }
+    }
+}
+
+struct Reader<'a> {
+    folder: &'a Path,
+    problems: &'a mut Problems,
+}
+
+impl Reader<'_> {
+    fn fault(&mut self, code: &'static str, says: impl Into<String>, at: &Span) {
+        self.problems.push(Problem::error(code, says).at(at));
+    }
+
+    fn keys(&mut self, tree: &Node) {
+        for (key, _) in tree.entries().iter().filter(|(key, _)| !KEYS.contains(&key.text.as_str())) {
+            let problem = Problem::error("unknown-key", format!("a simulator has no key `{}`", key.text)).at(&key.span);
+            self.problems.push(problem.suggest(&key.text, KEYS));
+        }
+    }
+
+    fn text(&mut self, tree: &Node, key: &str) -> Option<String> {
+        let node = tree.get(key)?;
+        match node.scalar_text().map(str::trim).filter(|text| !text.is_empty()) {
+            Some(text) => Some(text.to_string()),
+            None => {
+                self.fault("wrong-kind", format!("`{key}` is text; this is {}", node.kind_in_words()), &node.span);
+                None
+            }
+        }
+    }
+
+    fn texts(&mut self, node: &Node, key: &str) -> Vec<String> {
+        let texts: Vec<String> = node.items().iter().filter_map(|item| Some(item.scalar_text()?.to_string())).collect();
+        if texts.is_empty() || texts.len() != node.items().len() {
+            self.fault("wrong-kind", format!("`{key}` is a list of names"), &node.span);
+        }
+        texts
+    }
+
+    fn words(&mut self, node: &Node, allowed: &[Hole]) -> Vec<Word> {
+        if node.items().is_empty() {
+            let says = format!("a list of words is needed here; this is {}", node.kind_in_words());
+            let help = "no shell splits a line into words: write `[program, --option, \"{out}\"]`";
+            self.problems.push(Problem::error("wrong-kind", says).at(&node.span).help(help));
+        }
+        node.items().iter().filter_map(|item| Word::read(item, allowed, self.problems)).collect()
+    }
+
+    fn unit(&mut self, node: &Node, dimension: Dimension) -> Option<Unit> {
+        let text = node.scalar_text().unwrap_or_default();
+        match Unit::parse(text) {
+            Ok(unit) if unit.dimension == dimension => Some(unit),
+            Ok(unit) => {
+                self.fault("unit-mismatch", format!("{unit} is not a unit of what is needed here"), &node.span);
+                None
+            }
+            Err(unknown) => {
+                let problem = Problem::error("unknown-unit", format!("`{}` is no unit", unknown.word)).at(&node.span);
+                self.problems.push(match unknown.near {
+                    Some(near) => problem.help(format!("did you mean `{near}`?")),
+                    None => problem,
+                });
+                None
+            }
+        }
+    }
+
+    /// A number, or a number with a unit; without one it is in SI.
+    fn quantity(&mut self, node: &Node, dimension: Dimension, example: &str) -> Option<f64> {
+        let text = node.scalar_text().unwrap_or_default().trim();
+        let end = text.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(text.len());
+        let (digits, written) = (&text[..end], text[end..].trim());
+        let number: Option<f64> = digits.parse().ok();
+        let unit = if written.is_empty() { None } else { Unit::parse(written).ok() };
+        match (number, unit) {
+            (Some(number), None) if written.is_empty() => Some(number),
+            (Some(number), Some(unit)) if unit.dimension == dimension => Some(unit.to_si(number)),
+            _ => {
+                self.fault("wrong-kind", format!("`{text}` is not what is needed here, such as `{example}`"), &node.span);
+                None
+            }
+        }
+    }
+
+    fn seconds(&mut self, node: &Node) -> Option<Duration> {
+        let seconds = self.quantity(node, Dimension::TIME, "90 s")?;
+        if !(0.001..=1e6).contains(&seconds) {
+            self.fault("range", "a time-out is between 1 ms and 1000000 s", &node.span);
+            return None;
+        }
+        Some(Duration::from_secs_f64(seconds))
+    }
+
+    fn share(&mut self, node: &Node) -> Option<f64> {
+        let share = self.quantity(node, Dimension::ONE, "5 %")?;
+        if !(0.0..=1.0).contains(&share) {
+            self.fault("range", "a tolerance is a share between 0 and 1", &node.span);
+            return None;
+        }
+        Some(share)
+    }
+
+    fn number(&mut self, node: &Node, key: &str, low: f64, high: f64) -> Option<f64> {
+        match node.number() {
+            Some(number) if (low..=high).contains(&number) && number.fract() == 0.0 => Some(number),
+            Some(_) => {
+                self.fault("range", format!("`{key}` is a whole number from {low} to {high}"), &node.span);
+                None
+            }
+            None => {
+                self.fault("wrong-kind", format!("`{key}` is a number; this is {}", node.kind_in_words()), &node.span);
+                None
+            }
+        }
+    }
+
+    fn environment(&mut self, tree: &Node) -> Vec<(String, String)> {
+        let Some(node) = tree.get("environment") else { return Vec::new() };
+        if !matches!(node.value, Value::Map(_)) {
+            self.fault("wrong-kind", format!("`environment` is a map of names and texts; this is {}", node.kind_in_words()), &node.span);
+        }
+        let mut found = Vec::new();
+        for (key, value) in node.entries() {
+            match value.scalar_text().filter(|text| !text.contains('\0')) {
+                Some(text) if !key.text.is_empty() && !key.text.contains(['=', '\0']) => found.push((key.text.clone(), text.to_string())),
+                _ => self.fault("wrong-kind", "a variable has a name without `=`, and a text", &key.span),
+            }
+        }
+        found
+    }
+
+    fn inputs(&mut self, node: &Node) -> Vec<PathBuf> {
+        let texts = self.texts(node, "inputs");
+        let paths: Vec<PathBuf> = texts.iter().map(|text| self.folder.join(text)).collect();
+        for (text, _) in texts.iter().zip(&paths).filter(|(_, path)| !path.is_file()) {
+            self.fault("file-missing", format!("there is no file `{text}` beside this one"), &node.span);
+        }
+        paths
+    }
+
+    /// What a command needs as a whole.
+    fn command(&mut self, node: &Node, command: &[Word], set: &[Word]) {
+        if command.len() != node.items().len() {
+            return;
+        }
+        let Some((first, place)) = command.first().zip(node.items().first()) else { return };
+        if !command.iter().any(|word| word.has(Hole::Out)) {
+            let problem = Problem::error("placeholder-missing", "the command does not say where the record is to be written");
+            self.problems.push(problem.at(&node.span).help("give it a word with `{out}`"));
+        }
+        if !set.is_empty() && !command.iter().any(|word| word.is(Hole::Set)) {
+            let problem = Problem::error("placeholder-missing", "the command has no place for the words of `set`");
+            self.problems.push(problem.at(&node.span).help("give it a word `{set}`, and nothing else in that word"));
+        }
+        let Some(name) = first.plain() else {
+            return self.fault("wrong-kind", "the first word is the program, without placeholders", &place.span);
+        };
+        if name.contains(['/', '\\']) {
+            if !self.folder.join(name).is_file() {
+                self.fault("no-such-program", format!("there is no program `{name}`, seen from the folder of this file"), &place.span);
+            }
+        } else if !on_path(name) {
+            let problem = Problem::error("no-such-program", format!("the system finds no program `{name}`")).at(&place.span);
+            self.problems.push(problem.help(format!("write `./{name}` for a program beside this file")));
+        }
+    }
+}
+
+fn on_path(name: &str) -> bool {
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    let endings: &[&str] = if cfg!(windows) { &["", ".exe", ".bat", ".cmd"] } else { &[""] };
+    std::env::split_paths(&folders).any(|folder| endings.iter().any(|ending| folder.join(format!("{name}{ending}")).is_file()))
+}

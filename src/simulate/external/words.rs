@@ -1,0 +1,204 @@
+//! The words of a command: text with placeholders in braces.
+
+use std::fmt::Write;
+
+use crate::problem::{Problem, Problems};
+use crate::yaml::Node;
+
+/// What stands in braces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hole {
+    /// Path of the vehicle file.
+    Vehicle,
+    /// Path of the section's track file.
+    Track,
+    /// In the program's unit.
+    Speed,
+    /// Path of the record that the program is to write.
+    Out,
+    /// Name of the section.
+    Section,
+    /// Where the evaluated section begins and ends on the axis of the record.
+    Start,
+    End,
+    /// What is repeated for each parameter.
+    Set,
+    /// Name and value of a parameter, in the words that are repeated.
+    Name,
+    Value,
+}
+
+impl Hole {
+    /// What a command may hold.
+    pub const OF_COMMAND: [Self; 8] =
+        [Self::Vehicle, Self::Track, Self::Speed, Self::Out, Self::Section, Self::Start, Self::End, Self::Set];
+    /// What the words that are repeated for each parameter may hold.
+    pub const OF_SET: [Self; 2] = [Self::Name, Self::Value];
+
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vehicle => "vehicle",
+            Self::Track => "track",
+            Self::Speed => "speed",
+            Self::Out => "out",
+            Self::Section => "section",
+            Self::Start => "start",
+            Self::End => "end",
+            Self::Set => "set",
+            Self::Name => "name",
+            Self::Value => "value",
+        }
+    }
+}
+
+/// A piece of a word.
+#[derive(Clone, Debug, PartialEq)]
+enum Part {
+    Text(String),
+    Hole(Hole),
+}
+
+/// One word of a command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Word {
+    parts: Vec<Part>,
+}
+
+impl Word {
+    /// Reads a word; `{{` and `}}` stand for braces.
+    ///
+    /// Problems: `unknown-placeholder` with the nearest, `unclosed-brace`, `wrong-kind`.
+    pub fn read(node: &Node, allowed: &[Hole], problems: &mut Problems) -> Option<Self> {
+        let Some(text) = node.scalar_text() else {
+            problems.push(Problem::error("wrong-kind", format!("a word is text; this is {}", node.kind_in_words())).at(&node.span));
+            return None;
+        };
+        let mut parts = Vec::new();
+        let mut plain = String::new();
+        let mut at = 0;
+        while let Some(found) = text[at..].find(['{', '}']).map(|found| at + found) {
+            plain.push_str(&text[at..found]);
+            if text[found..].starts_with("{{") || text[found..].starts_with("}}") {
+                plain.push_str(&text[found..=found]);
+                at = found + 2;
+                continue;
+            }
+            let Some(end) = text[found..].find('}').map(|end| found + end).filter(|_| text[found..].starts_with('{')) else {
+                let says = "this brace has no partner";
+                let help = "write `{{` or `}}` for a brace that is meant as one";
+                problems.push(Problem::error("unclosed-brace", says).at(&node.place(found..found + 1)).help(help));
+                return None;
+            };
+            let name = &text[found + 1..end];
+            let Some(hole) = allowed.iter().find(|hole| hole.name() == name) else {
+                let problem = Problem::error("unknown-placeholder", format!("there is no `{{{name}}}` here"));
+                problems.push(problem.at(&node.place(found + 1..end)).suggest(name, allowed.iter().map(|hole| hole.name())));
+                return None;
+            };
+            if !plain.is_empty() {
+                parts.push(Part::Text(std::mem::take(&mut plain)));
+            }
+            parts.push(Part::Hole(*hole));
+            at = end + 1;
+        }
+        plain.push_str(&text[at..]);
+        if !plain.is_empty() || parts.is_empty() {
+            parts.push(Part::Text(plain));
+        }
+        Some(Self { parts })
+    }
+
+    #[must_use]
+    pub fn has(&self, hole: Hole) -> bool {
+        self.parts.contains(&Part::Hole(hole))
+    }
+
+    /// Whether the word is a placeholder and nothing else.
+    #[must_use]
+    pub fn is(&self, hole: Hole) -> bool {
+        self.parts == [Part::Hole(hole)]
+    }
+
+    /// The text of a word without placeholders.
+    #[must_use]
+    pub fn plain(&self) -> Option<&str> {
+        if let [Part::Text(text)] = &self.parts[..] { Some(text) } else { None }
+    }
+
+    /// The word with its placeholders filled.
+    #[must_use]
+    pub fn filled(&self, with: &dyn Fn(Hole) -> String) -> String {
+        self.parts.iter().fold(String::new(), |mut text, part| {
+            match part {
+                Part::Text(plain) => text.push_str(plain),
+                Part::Hole(hole) => {
+                    let _ = write!(text, "{}", with(*hole));
+                }
+            }
+            text
+        })
+    }
+}
+
+/// The words of a call: `{set}` repeated for every parameter, by `set` where there are such words, else as `name=value`.
+#[must_use]
+pub fn fill(command: &[Word], set: &[Word], settings: &[(String, f64)], with: &dyn Fn(Hole) -> String) -> Vec<String> {
+    let mut words = Vec::new();
+    for word in command {
+        if !word.has(Hole::Set) {
+            words.push(word.filled(with));
+            continue;
+        }
+        for (name, value) in settings {
+            let parameter = |hole: Hole| match hole {
+                Hole::Name => name.clone(),
+                Hole::Value => value.to_string(),
+                Hole::Set => format!("{name}={value}"),
+                other => with(other),
+            };
+            if set.is_empty() {
+                words.push(word.filled(&parameter));
+            } else {
+                words.extend(set.iter().map(|word| word.filled(&parameter)));
+            }
+        }
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+    use crate::yaml;
+
+    fn words(text: &str, allowed: &[Hole]) -> Result<Vec<Word>, Vec<(&'static str, String)>> {
+        let mut problems = Problems::default();
+        let tree = yaml::load(&Source::new("sim.yaml", text), &mut problems).expect("YAML");
+        let words: Vec<Word> = tree.items().iter().filter_map(|node| Word::read(node, allowed, &mut problems)).collect();
+        let place = |problem: &Problem| problem.at.as_ref().map_or("", |span| span.text()).to_string();
+        if problems.0.is_empty() { Ok(words) } else { Err(problems.0.iter().map(|problem| (problem.code, place(problem))).collect()) }
+    }
+
+    #[test]
+    fn parameters_repeat_their_words() {
+        let command = words("[run, '--to={out}', '{set}', '{{x}}']", &Hole::OF_COMMAND).expect("right");
+        let set = words("[-p, '{name}={value}']", &Hole::OF_SET).expect("right");
+        let settings = [("mu".to_string(), 0.5), ("m".to_string(), -3e4)];
+        let with = |hole: Hole| hole.name().to_uppercase();
+        assert_eq!(fill(&command, &set, &settings, &with), ["run", "--to=OUT", "-p", "mu=0.5", "-p", "m=-30000", "{x}"]);
+        assert_eq!(fill(&command, &set, &[], &with), ["run", "--to=OUT", "{x}"]);
+        let command = words("[run, '-D{set}']", &Hole::OF_COMMAND).expect("right");
+        assert_eq!(fill(&command, &[], &settings, &with), ["run", "-Dmu=0.5", "-Dm=-30000"]);
+    }
+
+    #[test]
+    fn faults_are_placed() {
+        assert_eq!(words("['{trak}']", &Hole::OF_COMMAND), Err(vec![("unknown-placeholder", "trak".to_string())]));
+        assert_eq!(words("['a{out']", &Hole::OF_COMMAND), Err(vec![("unclosed-brace", "{".to_string())]));
+        assert_eq!(words("['a}']", &Hole::OF_COMMAND), Err(vec![("unclosed-brace", "}".to_string())]));
+        assert_eq!(words("['{name}']", &Hole::OF_COMMAND), Err(vec![("unknown-placeholder", "name".to_string())]));
+        assert_eq!(words("[[a]]", &Hole::OF_COMMAND), Err(vec![("wrong-kind", "[a]".to_string())]));
+    }
+}
