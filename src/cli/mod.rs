@@ -2,8 +2,11 @@
 
 mod certify;
 mod explain;
+mod inputs;
 mod output;
 mod protocols;
+mod study;
+mod values;
 
 use std::path::PathBuf;
 
@@ -38,6 +41,12 @@ enum Command {
     /// Run a protocol over a campaign and write the report.
     #[command(after_help = "Example:\n  fishplate certify examples/coach --out target/coach-report")]
     Certify(certify::Certify),
+    /// How far the verdict depends on choices: sections, synchronisation, parameters of the protocol.
+    #[command(after_help = "Example:\n  fishplate study sections examples/coach --out target/coach-sections")]
+    Study {
+        #[command(subcommand)]
+        study: study::Study,
+    },
     /// Check protocols: every problem with its place.
     #[command(after_help = "Example:\n  fishplate check protocols/en14363-2016-annex-t.fp my-variant.yaml")]
     Check {
@@ -121,6 +130,7 @@ pub fn run() -> Exit {
     let console = Console::new(arguments.quiet, arguments.color);
     match arguments.command {
         Command::Certify(certify) => certify.run(&console),
+        Command::Study { study } => study.run(&console),
         Command::Check { protocols } => protocols::check(&protocols, &console),
         Command::Fmt { protocols, check } => protocols::fmt(&protocols, check, &console),
         Command::Convert { protocol, to, output } => protocols::convert(&protocol, matches!(to, Form::Yaml), output.as_deref(), &console),
