@@ -177,15 +177,19 @@ impl<'a> Prepared<'a> {
                 values
             })
             .collect();
-        (0..shifts.offsets.len()).map(|at| self.at(values.iter_mut().map(|all| std::mem::take(&mut all[at])).collect())).collect()
+        let of_shift = |(at, offset): (usize, &f64)| {
+            let values = values.iter_mut().map(|all| std::mem::take(&mut all[at])).collect();
+            self.at(values, *offset == 0.0)
+        };
+        shifts.offsets.iter().enumerate().map(of_shift).collect()
     }
 
-    /// All sections at one shift.
-    fn at(&self, values: Vec<SectionValues>) -> Result<Evaluated, Problems> {
+    /// All sections at one shift; without one, some section must be usable.
+    fn at(&self, values: Vec<SectionValues>, needed: bool) -> Result<Evaluated, Problems> {
         let (mut units, mut notes) = (self.units.clone(), self.notes.clone());
         requirements::take_over(self.plan, &mut units, &values, &mut notes)?;
         stop_on_fault(self.plan, &units, &values)?;
-        if units.iter().all(|unit| unit.fault.is_some()) {
+        if needed && units.iter().all(|unit| unit.fault.is_some()) {
             return Err(nothing_usable(&units, values));
         }
         let files = values.iter().flat_map(|values| values.files.iter().cloned()).collect();

@@ -227,23 +227,32 @@ impl Held<'_> {
         })
     }
 
+    /// The part of the section that the moved record covers.
+    fn covered(&self, shift: f64) -> Result<Extent, String> {
+        let (start, end) = self.state.extent;
+        if shift == 0.0 {
+            return Ok((start, end));
+        }
+        let axis = &self.state.opened.along.axis;
+        let from = axis.first().map_or(start, |x| (x + shift).max(start));
+        let to = axis.last().map_or(end, |x| (x + shift).min(end));
+        let missing = (end - start) - (to - from);
+        if missing > MOST_MISSING * (end - start) {
+            return Err(format!("shifted by {shift} along the axis, the record ends {missing:.3} short of the section"));
+        }
+        Ok((from, to))
+    }
+
     /// Values of the wanted nodes with the record moved along the axis by a shift (SI) before the section is cut.
     ///
     /// # Errors
-    /// Where the moved record does not cover the section, and as evaluation.
+    /// Where the moved record covers too little of the section, and as evaluation.
     pub fn at(&self, shift: f64) -> Result<Vec<(NodeId, Found)>, String> {
         let mut moved = Moved { shift, known: Vec::new() };
-        if shift != 0.0 {
-            let (start, end) = self.state.opened.extent;
-            let axis = &self.state.opened.along.axis;
-            let first = axis.first().map_or(0.0, |x| x + shift - start);
-            let last = axis.last().map_or(0.0, |x| end - (x + shift));
-            let short = first.max(last);
-            if short > 0.0 {
-                return Err(format!("the record, shifted by {shift} along the axis, ends {short:.3} short of the section"));
-            }
-        }
+        let extent = self.covered(shift)?;
         let mut state = self.state.clone();
+        state.cutter = Cutter::new(extent);
+        state.extent = extent;
         for value in state.values.iter_mut().flatten() {
             if let Signal::Samples(samples) = value {
                 *samples = moved.samples(samples);
@@ -258,6 +267,9 @@ impl Held<'_> {
         Ok(state.found)
     }
 }
+
+/// Share of a section that a moved record may leave uncovered: what there is of it is evaluated.
+const MOST_MISSING: f64 = 0.2;
 
 /// Signals of a record run along the same samples, which are moved once for all of them.
 struct Moved {
@@ -290,6 +302,8 @@ struct State<'a> {
     /// How many nodes still need a value.
     uses: Vec<usize>,
     cutter: Cutter,
+    /// The part of the section that is evaluated.
+    extent: Extent,
     found: Vec<(NodeId, Found)>,
 }
 
@@ -297,7 +311,7 @@ impl<'a> State<'a> {
     fn new(opened: &'a Opened, graph: &'a Graph, known: &'a Known<'a>, method: Method) -> Self {
         let nodes = graph.nodes.len();
         let cutter = Cutter::new(opened.extent);
-        Self { opened, graph, known, method, values: vec![None; nodes], uses: vec![0; nodes], cutter, found: Vec::new() }
+        Self { opened, graph, known, method, values: vec![None; nodes], uses: vec![0; nodes], cutter, extent: opened.extent, found: Vec::new() }
     }
 
     /// The needed nodes by level, inputs before what uses them, and how often each is used.
@@ -449,7 +463,7 @@ impl State<'_> {
                 let samples = self.samples(node.inputs[0])?;
                 Ok(Signal::Samples(self.cutter.cut(&samples)?))
             }
-            Operation::Window(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.opened.extent)?)),
+            Operation::Window(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.extent)?)),
             _ => Err("this node joins records".into()),
         }
     }

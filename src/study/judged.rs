@@ -79,10 +79,17 @@ impl Tally {
 
 impl super::case::Quantity {
     /// Whether some sections have as many signals and pairs as the protocol asks for.
-    pub fn enough(&self, sections: impl Iterator<Item = usize> + Clone) -> bool {
-        let pairs: usize = sections.clone().map(|at| self.values[at].len()).sum();
-        let signals = sections.fold(0_u128, |all, at| all | self.signals[at]).count_ones() as usize;
-        pairs >= self.minimum_pairs && signals >= self.minimum_signals
+    pub fn enough(&self, sections: impl Iterator<Item = usize>) -> bool {
+        let mut pairs = 0;
+        let mut signals = 0_u128;
+        for at in sections {
+            pairs += self.values[at].len();
+            signals |= self.signals[at];
+            if pairs >= self.minimum_pairs && signals.count_ones() as usize >= self.minimum_signals {
+                return true;
+            }
+        }
+        self.minimum_pairs == 0 && self.minimum_signals == 0
     }
 }
 
@@ -111,16 +118,36 @@ impl<'a> Sums<'a> {
 
     /// The value divided by its limit; `None` where it is not defined.
     pub fn over(&self, sections: impl Iterator<Item = usize> + Clone) -> Option<f64> {
-        let (n, x, xx) = sections.clone().fold((0.0, 0.0, 0.0), |(n, x, xx), at| {
+        if self.pooled() { self.measure.over(sections) } else { self.value(self.add(sections)) }
+    }
+
+    /// As [`Self::over`] of all sections summed but some.
+    pub fn without(&self, all: (f64, f64, f64), removed: &[usize], kept: impl Iterator<Item = usize> + Clone) -> Option<f64> {
+        if self.pooled() {
+            return self.measure.over(kept);
+        }
+        let (n, x, xx) = self.add(removed.iter().copied());
+        self.value((all.0 - n, all.1 - x, all.2 - xx))
+    }
+
+    /// Count, sum and sum of squares of some sections.
+    pub fn add(&self, sections: impl Iterator<Item = usize>) -> (f64, f64, f64) {
+        sections.fold((0.0, 0.0, 0.0), |(n, x, xx), at| {
             let (of_n, of_x, of_xx) = self.sections[at];
             (n + of_n, x + of_x, xx + of_xx)
-        });
+        })
+    }
+
+    fn pooled(&self) -> bool {
+        !matches!(self.measure.kind, Kind::Mean | Kind::Deviation { .. } | Kind::RootMeanSquare)
+    }
+
+    fn value(&self, (n, x, xx): (f64, f64, f64)) -> Option<f64> {
         let value = match self.measure.kind {
             Kind::Mean => self.center + x / n,
             Kind::RootMeanSquare => (xx / n).sqrt(),
             Kind::Deviation { ddof } if n > ddof as f64 => ((xx - x * x / n).max(0.0) / (n - ddof as f64)).sqrt(),
-            Kind::Deviation { .. } => f64::NAN,
-            _ => return self.measure.over(sections),
+            _ => f64::NAN,
         };
         Some(value * self.measure.scale).filter(|value| value.is_finite())
     }

@@ -6,7 +6,7 @@ use crate::result::Verdict;
 use crate::result::study::Removal;
 
 /// Sets tried, fewer where a statistic is taken from all values anew.
-const MOST_TRIED: usize = 1_000_000;
+const MOST_TRIED: usize = 300_000;
 const MOST_TRIED_POOLED: usize = 20_000;
 /// Sets of which the sections are kept.
 const KEPT: usize = 20;
@@ -15,6 +15,8 @@ const KEPT: usize = 20;
 pub fn smallest(case: &Case, verdict: Verdict) -> Removal {
     let sums: Vec<Vec<Sums<'_>>> = case.quantities.iter().map(|quantity| quantity.measures.iter().map(Sums::of).collect()).collect();
     let slow = case.measures().any(|(_, measure)| !matches!(measure.kind, Kind::Mean | Kind::Deviation { .. } | Kind::RootMeanSquare));
+    let all_sums: Vec<Vec<(f64, f64, f64)>> =
+        sums.iter().map(|sums| sums.iter().map(|sums| sums.add(case.usable().into_iter())).collect()).collect();
     let mut left = if slow { MOST_TRIED_POOLED } else { MOST_TRIED };
     let members: Vec<(usize, usize)> =
         case.strata.iter().enumerate().flat_map(|(stratum, of)| of.members.iter().map(move |&at| (stratum, at))).collect();
@@ -22,7 +24,17 @@ pub fn smallest(case: &Case, verdict: Verdict) -> Removal {
     let most: usize = spare.iter().sum();
     let mut removal = Removal { verdict, sets: Vec::new(), count: 0, tried: 0, complete: most == 0 };
     for size in 1..=most {
-        let mut search = Search { case, sums: &sums, members: &members, verdict, left, removed: Vec::new(), spare: spare.clone(), found: Vec::new() };
+        let mut search = Search {
+            case,
+            sums: &sums,
+            all: &all_sums,
+            members: &members,
+            verdict,
+            left,
+            removed: Vec::new(),
+            spare: spare.clone(),
+            found: Vec::new(),
+        };
         if !search.sets(0, size) {
             break;
         }
@@ -42,6 +54,8 @@ pub fn smallest(case: &Case, verdict: Verdict) -> Removal {
 struct Search<'a> {
     case: &'a Case,
     sums: &'a [Vec<Sums<'a>>],
+    /// Of all usable sections.
+    all: &'a [Vec<(f64, f64, f64)>],
     /// Stratum and section.
     members: &'a [(usize, usize)],
     verdict: Verdict,
@@ -85,10 +99,10 @@ impl Search<'_> {
     fn judged(&self) -> Verdict {
         let kept = || self.members.iter().map(|(_, at)| *at).filter(|at| !self.removed.contains(at));
         let mut tally = Tally::default();
-        for (quantity, sums) in self.case.quantities.iter().zip(self.sums) {
+        for ((quantity, sums), all) in self.case.quantities.iter().zip(self.sums).zip(self.all) {
             let before = tally;
-            for sums in sums {
-                tally.limit(sums.over(kept()).map(|value| sums.measure().holds(value)));
+            for (sums, all) in sums.iter().zip(all) {
+                tally.limit(sums.without(*all, &self.removed, kept()).map(|value| sums.measure().holds(value)));
             }
             tally.quantity(&before, sums.is_empty());
             tally.missing |= !sums.is_empty() && !quantity.enough(kept());
