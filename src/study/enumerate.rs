@@ -66,24 +66,26 @@ pub fn core(case: &Case, halves: &Halves) -> (Vec<Vec<OverAll>>, Verdicts) {
         .with_max_len(1)
         .map(|(at, quantity)| {
             let mut of_quantity = Fails::new(rows, columns);
+            let mut undefined = None;
             let mut found = Vec::new();
             for measure in &quantity.measures {
-                let mut fails = Fails::new(rows, columns);
-                let mut undefined = None;
-                found.push(measured(measure, halves, &mut fails, &mut undefined));
-                if counting {
-                    if let Some(undefined) = &undefined {
-                        missing.lock().expect("no panic holds the lock").join_all(undefined);
-                    }
-                    if matches!(case.rule, Rule::AtLeastLimits(_)) {
-                        fails.tally(&mut verdicts.lock().expect("no panic holds the lock").counts);
-                    }
+                if matches!(case.rule, Rule::AtLeastLimits(_)) {
+                    let mut fails = Fails::new(rows, columns);
+                    found.push(measured(measure, halves, &mut fails, &mut undefined));
+                    fails.tally(&mut verdicts.lock().expect("no panic holds the lock").counts);
+                    of_quantity.join_all(&fails);
+                } else {
+                    found.push(measured(measure, halves, &mut of_quantity, &mut undefined));
                 }
-                of_quantity.join_all(&fails);
-                undefined.iter().for_each(|undefined| of_quantity.join_all(undefined));
             }
             if !quantity.measures.is_empty() {
-                too_few(quantity, halves, &mut of_quantity);
+                too_few(quantity, halves, &mut undefined);
+            }
+            if let Some(undefined) = &undefined {
+                of_quantity.join_all(undefined);
+                if counting {
+                    missing.lock().expect("no panic holds the lock").join_all(undefined);
+                }
             }
             let mut verdicts = verdicts.lock().expect("no panic holds the lock");
             let Verdicts { any, twice, counts, kept, failing } = &mut *verdicts;
@@ -123,19 +125,22 @@ pub fn core(case: &Case, halves: &Halves) -> (Vec<Vec<OverAll>>, Verdicts) {
 fn measured(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut Option<Fails>) -> OverAll {
     let parts = measure.parts(halves);
     if matches!(parts, Parts::Pooled) {
-        let (listed, ends) = pooled(measure, halves, fails, undefined);
-        return over_all(measure, listed, ends, fails);
+        let (listed, ends, failing) = pooled(measure, halves, fails, undefined);
+        return over_all(measure, listed, ends, failing);
     }
     let mut without = |row: u32, column: u32| {
         undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count)).one(row, column);
     };
+    let mut failing = 0;
     let (listed, ends) = match parts {
         Parts::Sums { mut blocks, form, undefined: nowhere } => {
             for (rows, columns) in nowhere {
                 rows.iter().for_each(|&row| columns.iter().for_each(|&column| without(row, column)));
             }
             let (low, high) = form.bounds(measure.low, measure.high);
-            let found = order(&mut blocks, form, Some(Limit { low, high, fails }));
+            let mut limit = Limit { low, high, fails, count: 0 };
+            let found = order(&mut blocks, form, Some(&mut limit));
+            failing = limit.count;
             let ends = found.as_ref().map(|order| (order.at_min, order.at_max));
             (found.map(Listed::from), ends)
         }
@@ -147,7 +152,10 @@ fn measured(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &m
                 for (column, c) in columns.iter().enumerate() {
                     match (*r).into_iter().chain(*c).reduce(f64::max) {
                         None => without(row as u32, column as u32),
-                        Some(value) if !within(&Some(value)) => fails.one(row as u32, column as u32),
+                        Some(value) if !within(&Some(value)) => {
+                            fails.one(row as u32, column as u32);
+                            failing += 1;
+                        }
                         Some(_) => {}
                     }
                 }
@@ -156,15 +164,15 @@ fn measured(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &m
         }
         Parts::Pooled => (None, None),
     };
-    over_all(measure, listed, ends, fails)
+    over_all(measure, listed, ends, failing)
 }
 
-fn over_all(measure: &Measure, listed: Option<Listed>, ends: Ends, fails: &Fails) -> OverAll {
+fn over_all(measure: &Measure, listed: Option<Listed>, ends: Ends, failing: u64) -> OverAll {
     let worst = listed.zip(ends).map(|(listed, (at_min, at_max))| {
         let low = if measure.at_least { true } else { -listed.min > listed.max };
         if low { (at_min, listed.min) } else { (at_max, listed.max) }
     });
-    OverAll { spread: listed, failing: fails.count(), worst }
+    OverAll { spread: listed, failing, worst }
 }
 
 type Ends = Option<((u32, u32), (u32, u32))>;
@@ -180,8 +188,9 @@ fn extreme_ends(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -
 }
 
 /// From the values of every selection.
-fn pooled(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut Option<Fails>) -> (Option<Listed>, Ends) {
+fn pooled(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut Option<Fails>) -> (Option<Listed>, Ends, u64) {
     let mut list = Vec::new();
+    let mut failing = 0;
     let mut without = |row: u32, column: u32| {
         undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count)).one(row, column);
     };
@@ -192,6 +201,7 @@ fn pooled(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut
                 Some(value) => {
                     if !measure.holds(value) {
                         fails.one(row as u32, column as u32);
+                        failing += 1;
                     }
                     list.push((value, (row as u32, column as u32)));
                 }
@@ -201,11 +211,11 @@ fn pooled(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut
     list.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let ends = list.first().zip(list.last()).map(|(first, last)| (first.1, last.1));
     let single: Vec<(f64, f64)> = list.into_iter().map(|(value, _)| (value, 1.0)).collect();
-    (weighted(&single), ends)
+    (weighted(&single), ends, failing)
 }
 
 /// Marks selections with fewer signals or pairs than the protocol asks for.
-fn too_few(quantity: &Quantity, halves: &Halves, fails: &mut Fails) {
+fn too_few(quantity: &Quantity, halves: &Halves, undefined: &mut Option<Fails>) {
     let of = |half: &Half| -> Vec<(usize, u128)> {
         half.choices()
             .map(|choice| {
@@ -223,6 +233,7 @@ fn too_few(quantity: &Quantity, halves: &Halves, fails: &mut Fails) {
     if enough {
         return;
     }
+    let fails = undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count));
     for (row, (pairs, signals)) in rows.iter().enumerate() {
         for (column, (more, others)) in columns.iter().enumerate() {
             if pairs + more < quantity.minimum_pairs || ((signals | others).count_ones() as usize) < quantity.minimum_signals {

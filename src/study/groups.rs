@@ -137,27 +137,37 @@ pub fn below<const N: usize>(keys: &[f64], bounds: &[f64; N]) -> [usize; N] {
 }
 
 impl Sorted<'_> {
-    /// Marks the columns of one row; their order was told to `fails` before.
-    pub fn mark(&self, row: &Row, low: f64, high: f64, fails: &mut Fails) {
-        let slack = self.slack(row);
-        let last = self.keys.len() - 1;
-        if row.p + self.keys[last] + slack > high {
-            let [from, to] = below(self.keys, &[high - row.p - slack, high - row.p + slack]);
-            for column in &self.columns[from..to] {
-                if value(row, column.q, column.y) > high {
-                    fails.one(row.at, column.at);
-                }
+    /// Marks every value below or above what is allowed; how many they are.
+    pub fn mark(&self, low: f64, high: f64, fails: &mut Fails) -> u64 {
+        let (first, last) = (self.keys[0], self.keys[self.keys.len() - 1]);
+        let mut count = 0;
+        let mut told = false;
+        for row in self.rows {
+            let slack = self.slack(row);
+            let (over, under) = (row.p + last + slack > high, row.p + first - slack < low);
+            if (over || under) && !told {
+                fails.order(self.columns);
+                told = true;
             }
-            fails.after(row.at, self.columns, to);
-        }
-        if row.p + self.keys[0] - slack < low {
-            let [from, to] = below(self.keys, &[low - row.p - slack, low - row.p + slack]);
-            for column in &self.columns[from..to] {
-                if value(row, column.q, column.y) < low {
+            if over {
+                let [from, to] = below(self.keys, &[high - row.p - slack, high - row.p + slack]);
+                for column in self.columns[from..to].iter().filter(|column| value(row, column.q, column.y) > high) {
                     fails.one(row.at, column.at);
+                    count += 1;
                 }
+                fails.after(row.at, self.columns, to);
+                count += (self.columns.len() - to) as u64;
             }
-            fails.before(row.at, self.columns, from);
+            if under {
+                let [from, to] = below(self.keys, &[low - row.p - slack, low - row.p + slack]);
+                for column in self.columns[from..to].iter().filter(|column| value(row, column.q, column.y) < low) {
+                    fails.one(row.at, column.at);
+                    count += 1;
+                }
+                fails.before(row.at, self.columns, from);
+                count += from as u64;
+            }
         }
+        count
     }
 }

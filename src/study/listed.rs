@@ -68,7 +68,9 @@ pub fn larger(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -> 
     let mut list = Vec::with_capacity(values.len());
     for value in values {
         let now = (no_row + upto(&rows, value)) * (no_column + upto(&columns, value));
-        list.push((if negative { -value } else { value }, now - before));
+        if now > before {
+            list.push((if negative { -value } else { value }, now - before));
+        }
         before = now;
     }
     if negative {

@@ -42,6 +42,8 @@ pub struct Limit<'a> {
     pub low: f64,
     pub high: f64,
     pub fails: &'a mut Fails,
+    /// How many values broke it.
+    pub count: u64,
 }
 
 /// Rank of each quartile among `count` values, and how far it lies toward the next.
@@ -85,7 +87,7 @@ fn pilot(blocks: &[Block], count: u64) -> Vec<f64> {
 }
 
 /// Order statistics of all values of some blocks, mapped by their form; what a limit forbids is marked on the way.
-pub fn order(blocks: &mut [Block], form: Form, limit: Option<Limit<'_>>) -> Option<Order> {
+pub fn order(blocks: &mut [Block], form: Form, limit: Option<&mut Limit<'_>>) -> Option<Order> {
     let count: u64 = blocks.iter().map(|block| block.rows.len() as u64 * block.columns.len() as u64).sum();
     if count == 0 {
         return None;
@@ -98,14 +100,9 @@ pub fn order(blocks: &mut [Block], form: Form, limit: Option<Limit<'_>>) -> Opti
         let mut sweep = Sweep::new(&sample, margin, form);
         for block in blocks.iter_mut() {
             groups(block, |sorted| {
+                sorted.rows.iter().for_each(|row| sweep.row(sorted, row));
                 if let Some(limit) = &mut limit {
-                    limit.fails.order(sorted.columns);
-                }
-                for row in sorted.rows {
-                    sweep.row(sorted, row);
-                    if let Some(limit) = &mut limit {
-                        sorted.mark(row, limit.low, limit.high, limit.fails);
-                    }
+                    limit.count += sorted.mark(limit.low, limit.high, limit.fails);
                 }
             });
         }

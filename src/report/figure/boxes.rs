@@ -9,8 +9,8 @@ use crate::report::number;
 use crate::result::study::{QuantitySpread, Spread, StatisticSpread};
 
 /// Heights of a panel's plotting area and of what stands below it, in points.
-const PANEL: f64 = 118.0;
-const LABELS: f64 = 26.0;
+const PANEL: f64 = 98.0;
+const LABELS: f64 = 22.0;
 /// Widest half of a box.
 const HALF: f64 = 9.0;
 /// No scale reaches farther from zero than this; what lies beyond is cut at the frame, and said so.

@@ -4,7 +4,7 @@ use super::axis::Scale;
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{BEYOND, BLUE, DASHED, GRID, INK, MUTED, Mark, SMALL, TEXT, VERMILION, WIDTH, cut};
+use super::style::{BEYOND, BLUE, DASHED, GRID, INK, MUTED, Mark, SMALL, TEXT, VERMILION, WHITE, WIDTH, cut, text_width};
 use crate::report::number;
 use crate::result::Verdict;
 use crate::result::study::{AtValue, ParameterStudy};
@@ -50,8 +50,10 @@ pub fn choices(study: &ParameterStudy) -> String {
     frame.x_axis(&mut canvas, &x.ticks(8), "largest statistic / limit, all sections");
     let mut y = top;
     for parameter in &study.parameters {
+        let title = cut(&parameter.title, TEXT, WIDTH - SHARES - 8.0);
         canvas.draw(|layer| {
-            layer.text(&cut(&parameter.title, TEXT, WIDTH - SHARES - 8.0), (2.0, y + 8.0), &Font::left(TEXT).bold(parameter.decides));
+            layer.rect((0.0, y + 3.0), (6.0 + text_width(&title, TEXT), y + 13.0), WHITE);
+            layer.text(&title, (2.0, y + 8.0), &Font::left(TEXT).bold(parameter.decides));
         });
         y += GAP;
         for at in &parameter.values {
@@ -62,7 +64,7 @@ pub fn choices(study: &ParameterStudy) -> String {
     canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
         layer.line((x.at(1.0), top), (x.at(1.0), frame.bottom()), INK, 0.9);
     });
-    frame.spine(&mut canvas);
+    canvas.draw(|layer| layer.line((frame.left(), frame.bottom()), (frame.right(), frame.bottom()), INK, 0.7));
     canvas.finish()
 }
 
