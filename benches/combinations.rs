@@ -176,18 +176,30 @@ fn plot(path: &str) {
     );
     for power in 2..=9 {
         let at = x(10_f64.powi(power));
-        let _ = writeln!(svg, "<path d=\"M{at:.1} 30V250\" stroke=\"#DDE1E6\"/><text x=\"{at:.1}\" y=\"266\" text-anchor=\"middle\">10<tspan dy=\"-4\" font-size=\"8\">{power}</tspan></text>");
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{at:.1} 30V250\" stroke=\"#DDE1E6\"/><text x=\"{at:.1}\" y=\"266\" text-anchor=\"middle\">10<tspan dy=\"-4\" font-size=\"8\">{power}</tspan></text>"
+        );
     }
     for power in -1..=4 {
         let at = y(10_f64.powi(power));
         let label = if power < 0 { "0.1".to_owned() } else { format!("{}", 10_i32.pow(power as u32)) };
-        let _ = writeln!(svg, "<path d=\"M60 {at:.1}H460\" stroke=\"#DDE1E6\"/><text x=\"54\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>", at + 4.0);
+        let _ = writeln!(
+            svg,
+            "<path d=\"M60 {at:.1}H460\" stroke=\"#DDE1E6\"/><text x=\"54\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>",
+            at + 4.0
+        );
     }
     let path_of: Vec<String> = points.iter().map(|(selections, ms, _)| format!("{:.1} {:.1}", x(*selections), y(*ms))).collect();
     let _ = writeln!(svg, "<path d=\"M{}\" fill=\"none\" stroke=\"#0072B2\" stroke-width=\"1.5\"/>", path_of.join("L"));
     for (selections, ms, sections) in &points {
         let (x, y) = (x(*selections), y(*ms));
-        let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\" fill=\"#0072B2\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{sections}</text>", x - 5.0, y - 5.0);
+        let _ = writeln!(
+            svg,
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\" fill=\"#0072B2\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{sections}</text>",
+            x - 5.0,
+            y - 5.0
+        );
     }
     svg += "<text x=\"260\" y=\"288\" text-anchor=\"middle\">selections (at the points: sections in each of four zones)</text>\n";
     svg += "<text x=\"16\" y=\"140\" text-anchor=\"middle\" transform=\"rotate(-90 16 140)\">time for share and 24 statistics [ms]</text>\n</svg>\n";

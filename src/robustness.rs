@@ -9,9 +9,7 @@ use crate::check::{Override, Overrides};
 use crate::data::Campaign;
 use crate::problem::{Problem, Problems};
 use crate::result::Verdict;
-use crate::result::study::{
-    AtOffset, AtValue, Estimated, Found, ParameterStudy, Selected, SelectionStudy, Study, SyncStudy, Varied,
-};
+use crate::result::study::{AtOffset, AtValue, Estimated, Found, ParameterStudy, Selected, SelectionStudy, Study, SyncStudy, Varied};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::source::Source;
 use crate::study::case::Case;
@@ -40,9 +38,7 @@ pub fn sections(compiled: &Compiled, campaign: &Campaign, settings: &Settings, p
 }
 
 fn too_few(says: String) -> Problems {
-    Problems(vec![
-        Problem::error("too-few-sections", says).help("give more sections, or fewer for each selection with `--take`"),
-    ])
+    Problems(vec![Problem::error("too-few-sections", says).help("give more sections, or fewer for each selection with `--take`")])
 }
 
 fn selected(evaluated: &Evaluated, plan: &Plan, settings: &Settings) -> Result<SelectionStudy, String> {
@@ -99,11 +95,8 @@ pub fn synchronisation(
     let zero = offsets.iter().position(|offset| *offset == 0.0).unwrap_or(0);
     let base = Case::of(&all[zero].pool(plan), settings.take).map_err(too_few)?;
     let selection = draw(&base, &mut Random::new(settings.selections.seed, 0));
-    let mut found: Vec<AtOffset> = all
-        .iter()
-        .zip(&offsets)
-        .map(|(evaluated, offset)| at_offset(evaluated, plan, settings, *offset, &selection))
-        .collect();
+    let mut found: Vec<AtOffset> =
+        all.iter().zip(&offsets).map(|(evaluated, offset)| at_offset(evaluated, plan, settings, *offset, &selection)).collect();
     for at in (0..found.len()).filter(|at| *at != zero) {
         found[at].changes = changes(&found[zero], &found[at]);
         found[at].lost = lost(&all[zero], &all[at], plan);
@@ -157,7 +150,12 @@ fn changes(base: &AtOffset, at: &AtOffset) -> Vec<String> {
     }
     for (before, now) in base.selected.iter().zip(&at.selected).filter(|(before, now)| before.holds != now.holds) {
         let word = if now.holds { "holds" } else { "fails" };
-        changes.push(format!("the one selection: {} of {} {word} instead of {}", before.name, before.id, if now.holds { "failing" } else { "holding" }));
+        changes.push(format!(
+            "the one selection: {} of {} {word} instead of {}",
+            before.name,
+            before.id,
+            if now.holds { "failing" } else { "holding" }
+        ));
     }
     changes
 }
@@ -214,11 +212,8 @@ pub fn parameters(
             );
             continue;
         };
-        let values: Vec<Option<Compiled>> = varied
-            .values
-            .iter()
-            .map(|value| with(compiled.family.clone(), overrides, &varied.name, value, &mut problems))
-            .collect();
+        let values: Vec<Option<Compiled>> =
+            varied.values.iter().map(|value| with(compiled.family.clone(), overrides, &varied.name, value, &mut problems)).collect();
         compiled_values.push((varied, parameter, values));
     }
     if problems.any_error() {

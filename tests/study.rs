@@ -20,7 +20,15 @@ fn named(name: &str) -> Statistic {
 fn limit(statistic: &str, bound: f64, ddof: usize, sections: usize) -> PooledLimit {
     let bounds = if statistic == "each" { vec![bound; sections] } else { vec![bound] };
     let statistic = named(statistic);
-    PooledLimit { statistic, ddof, at_least: false, title: statistic.title(ddof), scope: "all".into(), inside: vec![true; sections], bounds }
+    PooledLimit {
+        statistic,
+        ddof,
+        at_least: false,
+        title: statistic.title(ddof),
+        scope: "all".into(),
+        inside: vec![true; sections],
+        bounds,
+    }
 }
 
 fn sections(zones: &[usize]) -> Vec<Section> {
@@ -52,7 +60,9 @@ fn every(case: &Case) -> Vec<Vec<usize>> {
     case.strata.iter().fold(vec![Vec::new()], |all: Vec<Vec<usize>>, stratum| {
         let choices = subsets(&stratum.members, stratum.take);
         all.iter()
-            .flat_map(|before| choices.iter().map(move |choice| before.iter().copied().chain(choice.iter().map(|&at| at as usize)).collect()))
+            .flat_map(|before| {
+                choices.iter().map(move |choice| before.iter().copied().chain(choice.iter().map(|&at| at as usize)).collect())
+            })
             .collect()
     })
 }
@@ -127,9 +137,15 @@ fn peer(name: &str) -> (Case, serde_json::Value) {
     names.dedup();
     let zone = |section: &str| rows.iter().find(|row| row[0] == section).map(|row| row[1].to_string());
     let mut ids: Vec<&str> = Vec::new();
-    rows.iter().for_each(|row| if !ids.contains(&row[2]) { ids.push(row[2]) });
+    rows.iter().for_each(|row| {
+        if !ids.contains(&row[2]) {
+            ids.push(row[2])
+        }
+    });
     let quantities = ids.iter().map(|id| {
-        let of = |section: &str| rows.iter().filter(|row| row[0] == section && row[2] == *id).map(|row| row[4].parse().expect("a number")).collect();
+        let of = |section: &str| {
+            rows.iter().filter(|row| row[0] == section && row[2] == *id).map(|row| row[4].parse().expect("a number")).collect()
+        };
         let bound: f64 = rows.iter().find(|row| row[2] == *id).expect("a row")[5].parse().expect("a limit");
         let limits = vec![limit("std", bound, 1, names.len()), limit("mean", bound * 2.0 / 3.0, 1, names.len())];
         quantity(id, names.iter().map(|section| of(section)).collect(), limits)

@@ -95,4 +95,3 @@ pub fn progress_bar(console: &Console, steps: usize) -> Arc<ProgressBar> {
     }
     Arc::new(bar)
 }
-

@@ -47,7 +47,8 @@ pub fn estimate(pairs: &[Pair<'_>], search: &Search) -> Option<Estimate> {
         let shift = lag as f64 * search.step;
         pairs.iter().all(|pair| {
             let axis = pair.measured.0;
-            axis.first().is_some_and(|first| first + shift <= grid[0]) && axis.last().is_some_and(|last| last + shift >= grid[grid.len() - 1])
+            axis.first().is_some_and(|first| first + shift <= grid[0])
+                && axis.last().is_some_and(|last| last + shift >= grid[grid.len() - 1])
         })
     };
     let lags: Vec<i64> = (-most..=most).filter(|lag| reach(*lag)).collect();

@@ -24,10 +24,10 @@ use crate::result::{DataItem, FileHash, QuantityResult, SectionResult, Trace, Ve
 
 pub use facts::Facts;
 pub use judge::Judged;
-use pool::Pool;
-pub use synchronisation::{Offset, Shifts};
 use pairs::SectionValues;
+use pool::Pool;
 use sections::Unit;
+pub use synchronisation::{Offset, Shifts};
 
 /// What a run computed; the report adds what the protocol and the campaign say about themselves.
 #[derive(Debug)]

@@ -70,7 +70,12 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
     Pool {
         sections: units
             .iter()
-            .map(|unit| Section { name: unit.name.clone(), zone: unit.zone.clone(), used: unit.fault.is_none(), reason: unit.fault.clone() })
+            .map(|unit| Section {
+                name: unit.name.clone(),
+                zone: unit.zone.clone(),
+                used: unit.fault.is_none(),
+                reason: unit.fault.clone(),
+            })
             .collect(),
         zones: plan
             .zones

@@ -311,7 +311,17 @@ impl<'a> State<'a> {
     fn new(opened: &'a Opened, graph: &'a Graph, known: &'a Known<'a>, method: Method) -> Self {
         let nodes = graph.nodes.len();
         let cutter = Cutter::new(opened.extent);
-        Self { opened, graph, known, method, values: vec![None; nodes], uses: vec![0; nodes], cutter, extent: opened.extent, found: Vec::new() }
+        Self {
+            opened,
+            graph,
+            known,
+            method,
+            values: vec![None; nodes],
+            uses: vec![0; nodes],
+            cutter,
+            extent: opened.extent,
+            found: Vec::new(),
+        }
     }
 
     /// The needed nodes by level, inputs before what uses them, and how often each is used.

@@ -65,7 +65,9 @@ pub struct Measure {
 pub enum Kind {
     Mean,
     /// With the divisor's n - `ddof`.
-    Deviation { ddof: usize },
+    Deviation {
+        ddof: usize,
+    },
     RootMeanSquare,
     Largest,
     Smallest,
@@ -100,7 +102,13 @@ impl Case {
         };
         for zone in pool.zones.iter().filter(|zone| zone.needed > 0) {
             let (members, not_used) = of_zone(&|of| of == Some(zone.name.as_str()));
-            strata.push(Stratum { zone: zone.name.clone(), title: zone.title.clone(), take: take.unwrap_or(zone.needed), members, not_used });
+            strata.push(Stratum {
+                zone: zone.name.clone(),
+                title: zone.title.clone(),
+                take: take.unwrap_or(zone.needed),
+                members,
+                not_used,
+            });
         }
         if strata.is_empty() {
             let (members, not_used) = of_zone(&|_| true);

@@ -50,7 +50,8 @@ fn split(case: &Case) -> (f64, f64, Vec<bool>) {
     // Beyond 16 zones the first 16 are shared out and the others stay with the columns.
     let shared = sizes.len().min(16);
     let product = |mask: u32| (0..shared).filter(|at| mask >> at & 1 == 1).map(|at| sizes[at]).product::<f64>();
-    let best = (0..1_u32 << shared).filter(|mask| product(*mask) * product(*mask) >= all).min_by(|a, b| product(*a).total_cmp(&product(*b)));
+    let best =
+        (0..1_u32 << shared).filter(|mask| product(*mask) * product(*mask) >= all).min_by(|a, b| product(*a).total_cmp(&product(*b)));
     let mask = best.unwrap_or((1 << shared) - 1);
     let rows = product(mask);
     (rows, all / rows, (0..sizes.len()).map(|at| at < shared && mask >> at & 1 == 1).collect())

@@ -41,13 +41,7 @@ pub struct Listed {
 
 impl From<Order> for Listed {
     fn from(order: Order) -> Self {
-        Self {
-            count: order.count as f64,
-            min: order.min,
-            max: order.max,
-            quartiles: order.quartiles,
-            outliers: order.outliers as f64,
-        }
+        Self { count: order.count as f64, min: order.min, max: order.max, quartiles: order.quartiles, outliers: order.outliers as f64 }
     }
 }
 

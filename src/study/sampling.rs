@@ -173,8 +173,7 @@ impl Drawn {
 
 /// As many selections as the wanted width takes.
 pub fn some(case: &Case, settings: &Settings) -> Counted {
-    let sums_of: Vec<Vec<Sums<'_>>> =
-        case.quantities.iter().map(|quantity| quantity.measures.iter().map(Sums::of).collect()).collect();
+    let sums_of: Vec<Vec<Sums<'_>>> = case.quantities.iter().map(|quantity| quantity.measures.iter().map(Sums::of).collect()).collect();
     let mut drawn = Drawn::none(case);
     let mut batches = 0;
     let interval = loop {

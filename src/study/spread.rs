@@ -132,8 +132,7 @@ impl Sweep {
             (window.low, window.high) = (at(share - margin), at(share + margin));
         }
         // Where the whiskers may end, from the least and the greatest that the quartiles can be.
-        let (q1, q3) =
-            ((form.map(windows[0].low), form.map(windows[0].high)), (form.map(windows[2].low), form.map(windows[2].high)));
+        let (q1, q3) = ((form.map(windows[0].low), form.map(windows[0].high)), (form.map(windows[2].low), form.map(windows[2].high)));
         let fence = |low: f64, high: f64| {
             let room = 1e-9 * (low.abs() + high.abs());
             let (low, high) = form.bounds(low - room, high + room);

@@ -137,7 +137,11 @@ fn one(layer: &mut super::canvas::Layer<'_>, frame: &Frame, x: f64, half: f64, s
             }
         }
         let at = place(spread.max.max(high)) - 5.0;
-        layer.text(&number::count(spread.outliers).replace('\u{202f}', " "), (x, at.max(frame.top() - 3.0)), &Font::middle(4.6).color(MUTED));
+        layer.text(
+            &number::count(spread.outliers).replace('\u{202f}', " "),
+            (x, at.max(frame.top() - 3.0)),
+            &Font::middle(4.6).color(MUTED),
+        );
     }
 }
 

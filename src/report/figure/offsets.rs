@@ -28,10 +28,11 @@ pub fn selection(study: &SyncStudy) -> String {
             })
             .collect()
     };
-    let panels: Vec<(&str, bool, Vec<(usize, String)>)> = [("mean / limit", true, of(true)), ("standard deviation / limit", false, of(false))]
-        .into_iter()
-        .filter(|(.., statistics)| !statistics.is_empty())
-        .collect();
+    let panels: Vec<(&str, bool, Vec<(usize, String)>)> =
+        [("mean / limit", true, of(true)), ("standard deviation / limit", false, of(false))]
+            .into_iter()
+            .filter(|(.., statistics)| !statistics.is_empty())
+            .collect();
     let mut canvas = Canvas::new(WIDTH, top + panels.len() as f64 * (PANEL + LABELS + 8.0));
     legend.draw(&mut canvas, (40.0, 0.0));
     for (at, (title, signed, statistics)) in panels.iter().enumerate() {
@@ -47,10 +48,8 @@ fn panel(canvas: &mut Canvas, study: &SyncStudy, (title, signed): (&str, bool), 
     let low = if signed { values.fold(-1.1, f64::min).max(-3.0) } else { 0.0 };
     let y = Scale { low, high: high + 0.03 * (high - low), from: top + PANEL, to: top };
     let ticks = y.ticks(7);
-    let frame = Frame {
-        x: Scale { low: 0.0, high: statistics.len() as f64, from: Frame::axis_room(&ticks).max(36.0), to: WIDTH - 4.0 },
-        y,
-    };
+    let frame =
+        Frame { x: Scale { low: 0.0, high: statistics.len() as f64, from: Frame::axis_room(&ticks).max(36.0), to: WIDTH - 4.0 }, y };
     canvas.draw(|layer| {
         layer.rect((frame.left(), frame.top()), (frame.right(), y.at(1.0)), BEYOND);
         if signed {
@@ -71,7 +70,9 @@ fn panel(canvas: &mut Canvas, study: &SyncStudy, (title, signed): (&str, bool), 
             });
         }
         let down = if place % 2 == 1 && text_width(label, size) > width { 17.0 } else { 8.0 };
-        canvas.draw(|layer| layer.text(&cut(&plain(label), size, 1.9 * width), (frame.x.at(place as f64 + 0.5), frame.bottom() + down), &Font::middle(size)));
+        canvas.draw(|layer| {
+            layer.text(&cut(&plain(label), size, 1.9 * width), (frame.x.at(place as f64 + 0.5), frame.bottom() + down), &Font::middle(size))
+        });
     }
     canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
         for limit in if signed { &[-1.0, 1.0][..] } else { &[1.0][..] } {

@@ -10,9 +10,9 @@ pub mod tables;
 pub use document::{Chapter, Document, Head, Item, Table};
 
 use crate::report::figure;
+use crate::report::number;
 use crate::report::view::{self, Fact, Finding};
 use crate::result::study::{Found, Share, Study};
-use crate::report::number;
 
 /// The study as both reports print it.
 pub fn document(study: &Study) -> Document {
@@ -54,7 +54,11 @@ fn settings(study: &Study) -> Chapter {
         head: ["Name", "Meaning", "Used", "Default", "Set by"].map(Head::text).to_vec(),
         rows: study.protocol.parameters.iter().map(row).collect(),
     };
-    Chapter { id: "protocol".into(), title: "Protocol".into(), items: vec![Item::Text { text: study.protocol.verdict_rule.clone() }, Item::Table { table }] }
+    Chapter {
+        id: "protocol".into(),
+        title: "Protocol".into(),
+        items: vec![Item::Text { text: study.protocol.verdict_rule.clone() }, Item::Table { table }],
+    }
 }
 
 /// All figures of a study by the names the document gives them.

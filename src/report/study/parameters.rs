@@ -50,7 +50,9 @@ pub fn chapters(found: &ParameterStudy) -> Vec<Chapter> {
         id: "choices".into(),
         title: "Which free choice decides the verdict".into(),
         items: vec![
-            Item::text("Each parameter is varied by itself, all others as they are. A value in bold in the figure is the one as it is; a parameter in bold decides."),
+            Item::text(
+                "Each parameter is varied by itself, all others as they are. A value in bold in the figure is the one as it is; a parameter in bold decides.",
+            ),
             Item::figure(
                 "choices",
                 "Largest statistic divided by its limit for every value, and the share of selections validated",

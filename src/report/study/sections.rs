@@ -118,7 +118,10 @@ pub fn spread(quantities: &[QuantitySpread], figure: &str, at: &str) -> Vec<Item
         Item::figure(
             figure,
             format!("Statistics of all selections divided by their limits{at}"),
-            format!("Box plots of {} normalised statistics; {beyond} reach beyond their limits in some selections. The numbers are in the table.", rows.len()),
+            format!(
+                "Box plots of {} normalised statistics; {beyond} reach beyond their limits in some selections. The numbers are in the table.",
+                rows.len()
+            ),
         ),
         Item::Table {
             table: Table {
@@ -168,7 +171,12 @@ fn failing(found: &SelectionStudy) -> Vec<Item> {
     items.push(Item::Table {
         table: Table {
             caption: "The selection that is worst for each limit that some selection breaks".into(),
-            head: vec![Head::short("Quantity"), Head::short("Statistic"), Head::number("Of its limit"), Head::text("Sections of the selection")],
+            head: vec![
+                Head::short("Quantity"),
+                Head::short("Statistic"),
+                Head::number("Of its limit"),
+                Head::text("Sections of the selection"),
+            ],
             rows: found
                 .worst
                 .iter()
@@ -198,7 +206,13 @@ fn importance(sections: &[Importance], removal: &Removal) -> Vec<Item> {
         Item::Table {
             table: Table {
                 caption: "Share of selections validated with and without each section, the largest difference first".into(),
-                head: vec![Head::text("Section"), Head::short("Zone"), Head::number("With it"), Head::number("Without it"), Head::number("Difference, points")],
+                head: vec![
+                    Head::text("Section"),
+                    Head::short("Zone"),
+                    Head::number("With it"),
+                    Head::number("Without it"),
+                    Head::number("Difference, points"),
+                ],
                 rows: sorted
                     .iter()
                     .take(MOST_ROWS)
@@ -217,9 +231,14 @@ fn worded(removal: &Removal) -> String {
     let verdict = removal.verdict.in_words();
     match removal.sets.as_slice() {
         [] if removal.complete => {
-            format!("No set of sections changes the verdict of all sections together ({verdict}) by its removal: all sets were tried that leave what a selection takes.")
+            format!(
+                "No set of sections changes the verdict of all sections together ({verdict}) by its removal: all sets were tried that leave what a selection takes."
+            )
         }
-        [] => format!("No set of up to {} sections changes the verdict of all sections together ({verdict}) by its removal; larger ones were not tried.", removal.tried),
+        [] => format!(
+            "No set of up to {} sections changes the verdict of all sections together ({verdict}) by its removal; larger ones were not tried.",
+            removal.tried
+        ),
         [first, rest @ ..] => {
             let size = first.len();
             let plural = if size == 1 { "section" } else { "sections" };

@@ -23,12 +23,7 @@ pub fn opening(found: &SyncStudy) -> Opening {
         ("Estimates taken out", if found.corrected { "yes" } else { "no" }.to_owned()),
     ];
     Opening {
-        headline: Finding::new(
-            if same { Some(true) } else { None },
-            "The verdict stays",
-            "The verdict changes",
-            "The verdict changes",
-        ),
+        headline: Finding::new(if same { Some(true) } else { None }, "The verdict stays", "The verdict changes", "The verdict changes"),
         sentence: format!(
             "The measurement was shifted against the simulation from {} to {}. The verdict on all sections together {}; the share of selections validated lies between {} and {}.",
             shown(found, first),
@@ -91,7 +86,9 @@ fn shares(found: &SyncStudy) -> Vec<Item> {
     let lost: Vec<String> = found
         .offsets
         .iter()
-        .flat_map(|at| at.lost.iter().map(move |(section, reason)| format!("Offset {}: {section} is not used: {reason}", shown(found, at.offset))))
+        .flat_map(|at| {
+            at.lost.iter().map(move |(section, reason)| format!("Offset {}: {section} is not used: {reason}", shown(found, at.offset)))
+        })
         .collect();
     if !lost.is_empty() {
         items.push(Item::text("Sections that cannot be used at some offset, which changes what is selected from:"));

@@ -45,16 +45,10 @@ fn spread(quantities: &[QuantitySpread]) -> Vec<Row> {
 }
 
 fn sections(found: &SelectionStudy) -> Result<Tables, csv::Error> {
-    let importance = found
-        .sections
-        .iter()
-        .map(|one| vec![one.section.clone(), one.zone.clone(), number(one.with), number(one.without)])
-        .collect();
-    let failing = found
-        .quantities
-        .iter()
-        .map(|quantity| vec![quantity.id.clone(), quantity.failing.to_string(), number(quantity.alone)])
-        .collect();
+    let importance =
+        found.sections.iter().map(|one| vec![one.section.clone(), one.zone.clone(), number(one.with), number(one.without)]).collect();
+    let failing =
+        found.quantities.iter().map(|quantity| vec![quantity.id.clone(), quantity.failing.to_string(), number(quantity.alone)]).collect();
     let worst = found
         .worst
         .iter()

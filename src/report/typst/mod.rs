@@ -62,12 +62,7 @@ pub fn typeset_study(data: &Document, figures: &[(String, String)], attachments:
 }
 
 /// Typesets data in a frame of parts.
-fn framed(
-    frame: String,
-    data: &impl Serialize,
-    figures: &[(String, String)],
-    attachments: &[Attachment<'_>],
-) -> Result<Pdf, Problems> {
+fn framed(frame: String, data: &impl Serialize, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> Result<Pdf, Problems> {
     let printable = Printable::of(world::fonts());
     let mut files = Files::new(frame);
     let mut value = serde_json::to_value(data).map_err(|error| one(Problem::error("report-template", error.to_string())))?;
