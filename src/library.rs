@@ -29,6 +29,33 @@ pub const SHIPPED: &[Shipped] = shipped![
     "stationary-sway",
 ];
 
+/// The shipped catalogues of effects; the first is the one that is used unless told otherwise.
+pub const CATALOGUES: &[Shipped] = &[Shipped { name: "bogie-vehicle", text: include_str!("../effects/bogie-vehicle.yaml") }];
+
+/// A catalogue of effects by path or shipped name.
+///
+/// # Errors
+/// `no-such-catalogue`, `unreadable`, `not-utf8`.
+pub fn find_catalogue(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Box<Problem>> {
+    let path = beside.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
+    if path.is_file() {
+        return read(&path);
+    }
+    let shipped = CATALOGUES.iter().find(|shipped| shipped.name == name);
+    shipped.map(|shipped| Source::new(format!("effects/{name}.yaml"), shipped.text)).ok_or_else(|| {
+        let problem = Problem::error("no-such-catalogue", format!("there is no file and no shipped catalogue `{name}`"));
+        Box::new(problem.suggest(name, CATALOGUES.iter().map(|shipped| shipped.name)))
+    })
+}
+
+/// The catalogue that another extends: a shipped name, or a path beside it.
+///
+/// # Errors
+/// As [`find_catalogue`].
+pub fn parent_catalogue(name: &str, from: &Source) -> Result<Arc<Source>, Box<Problem>> {
+    find_catalogue(name, if CATALOGUES.iter().any(|shipped| shipped.name == name) { None } else { Path::new(&from.name).parent() })
+}
+
 /// Names of the shipped protocols.
 pub fn names() -> impl Iterator<Item = &'static str> {
     SHIPPED.iter().map(|shipped| shipped.name)

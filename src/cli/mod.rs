@@ -1,10 +1,12 @@
 //! The command line: arguments to stages to an exit code.
 
 mod certify;
+mod effects;
 mod explain;
 mod inputs;
 mod output;
 mod protocols;
+mod simulate;
 mod study;
 mod values;
 
@@ -47,6 +49,14 @@ enum Command {
         #[command(subcommand)]
         study: study::Study,
     },
+    /// Simulate one section, or every section of a campaign, with the reference vehicle model; effects can be added.
+    #[command(
+        after_help = "Example:\n  fishplate simulate examples/coach --effect friction=0.5 --out target/coach-wet\n  fishplate simulate --vehicle examples/coach/vehicle.yaml --track examples/coach/track/S13.csv --speed '70 km/h' -o S13.csv"
+    )]
+    Simulate(simulate::Simulate),
+    /// List the effects that can be added to a simulation, or print a shipped catalogue.
+    #[command(after_help = "Example:\n  fishplate effects\n  fishplate effects --text > mine.yaml")]
+    Effects(effects::Effects),
     /// Check protocols: every problem with its place.
     #[command(after_help = "Example:\n  fishplate check protocols/en14363-2016-annex-t.fp my-variant.yaml")]
     Check {
@@ -131,6 +141,8 @@ pub fn run() -> Exit {
     match arguments.command {
         Command::Certify(certify) => certify.run(&console),
         Command::Study { study } => study.run(&console),
+        Command::Simulate(simulate) => simulate.run(&console),
+        Command::Effects(effects) => effects.run(&console),
         Command::Check { protocols } => protocols::check(&protocols, &console),
         Command::Fmt { protocols, check } => protocols::fmt(&protocols, check, &console),
         Command::Convert { protocol, to, output } => protocols::convert(&protocol, matches!(to, Form::Yaml), output.as_deref(), &console),

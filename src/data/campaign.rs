@@ -233,6 +233,36 @@ impl Campaign {
         Ok((record, file))
     }
 
+    /// Every file that the campaign names but its `campaign.yaml` and the records of one kind, with its path inside and its bytes:
+    /// what a copy of the campaign needs.
+    ///
+    /// # Errors
+    /// A file cannot be read, or lies outside.
+    pub fn other_files(&self, but: RecordKind) -> Result<Vec<(String, Vec<u8>)>, Problem> {
+        let mut inside: Vec<String> = self.files.iter().map(|file| file.path.clone()).filter(|path| path != CAMPAIGN_FILE).collect();
+        for kind in RecordKind::ALL.into_iter().filter(|kind| *kind != but && self.has(*kind)) {
+            for name in &self.names {
+                inside.push(self.record_place(kind, name)?.inside);
+            }
+        }
+        // Files that the vehicle names, as far as they are there.
+        let mut named = vec!["profile.csv".to_string(), "profile_worn.csv".to_string()];
+        let maps = self.vehicle.entries().iter().flat_map(|(_, node)| node.entries());
+        named.extend(maps.filter_map(|(_, node)| Some(node.scalar_text()?.to_string())).filter(|text| text.ends_with(".csv")));
+        for written in named {
+            let place = self.folder.place(&written, &self.tree.span.part(0..0))?;
+            if place.path.is_file() && !inside.contains(&place.inside) {
+                inside.push(place.inside);
+            }
+        }
+        let read = |inside: String| {
+            let place = self.folder.place(&inside, &self.tree.span.part(0..0))?;
+            let bytes = std::fs::read(&place.path).map_err(|error| Problem::error("unreadable", format!("{}: {error}", place.shown)))?;
+            Ok((inside, bytes))
+        };
+        inside.into_iter().map(read).collect()
+    }
+
     /// The path inside the campaign of a file that a message names by the folder as it was given.
     pub fn inside<'a>(&self, shown: &'a str) -> &'a str {
         self.folder.inside(shown)

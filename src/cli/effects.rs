@@ -1,0 +1,48 @@
+//! `effects`: what can be added to a simulation.
+
+use std::fmt::Write;
+
+use clap::Args;
+
+use super::output::{Console, Exit};
+use super::simulate::load_catalogue;
+use crate::effects::{Action, Catalogue};
+use crate::library;
+use crate::problem::Problems;
+
+#[derive(Debug, Args)]
+pub struct Effects {
+    /// A catalogue: a path, or the name of a shipped one.
+    #[arg(default_value = library::CATALOGUES[0].name)]
+    catalogue: String,
+    /// Print the text of the catalogue instead.
+    #[arg(long)]
+    text: bool,
+}
+
+impl Effects {
+    pub fn run(self, console: &Console) -> Exit {
+        let mut problems = Problems::default();
+        let catalogue = load_catalogue(&self.catalogue, &mut problems);
+        console.problems(&problems);
+        let Some(catalogue) = catalogue else { return Exit::Wrong };
+        if self.text { console.print(&catalogue.source.text) } else { console.print(&list(&catalogue)) }
+    }
+}
+
+fn list(catalogue: &Catalogue) -> String {
+    let mut out = format!("{}\n", catalogue.title);
+    for effect in &catalogue.effects {
+        let how = match &effect.action {
+            Action::Simulator => "simulated".to_string(),
+            Action::Signals(operator, _) => format!("signals: {}", operator.name()),
+        };
+        let _ = write!(out, "\n{}  ({}, {how})\n  {}: {}\n", effect.name, effect.acts.in_words(), effect.title, effect.means);
+        for parameter in &effect.parameters {
+            let unit = parameter.unit.suffix();
+            let neutral = parameter.neutral.map_or("as in the vehicle file".to_string(), |value| format!("{value}{unit}"));
+            let _ = writeln!(out, "    {:42} {} to {}{unit}, neutral {neutral}", parameter.name, parameter.low, parameter.high);
+        }
+    }
+    out
+}

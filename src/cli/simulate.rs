@@ -1,0 +1,203 @@
+//! `simulate`: the reference vehicle model, or another simulator, with effects added.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rayon::prelude::*;
+
+use super::inputs::progress_bar;
+use super::output::{Console, Exit};
+use crate::data::text::read_text;
+use crate::data::write::{Entry, Outputs, campaign_yaml, write_whole};
+use crate::data::{Campaign, RecordKind};
+use crate::effects::{self, Applied, Catalogue};
+use crate::library;
+use crate::model::CHANNELS;
+use crate::problem::{Problem, Problems};
+use crate::simulate::{Builtin, Plan, Section, Simulator, model_parameters, record_text, sections, simulate, single};
+use crate::units::{Dimension, Unit};
+use crate::yaml;
+
+#[derive(Debug, Args)]
+pub struct Simulate {
+    /// Folder of a campaign: every section is simulated.
+    #[arg(required_unless_present = "vehicle", conflicts_with_all = ["vehicle", "track", "speed", "output"])]
+    campaign: Option<PathBuf>,
+    /// A vehicle file; its contact profile stands beside it.
+    #[arg(long, requires_all = ["track", "output"])]
+    vehicle: Option<PathBuf>,
+    /// A track file.
+    #[arg(long)]
+    track: Option<PathBuf>,
+    /// Speed in m/s, or with its unit: `120 km/h`.
+    #[arg(long, requires = "vehicle")]
+    speed: Option<String>,
+    /// An effect and its size, as often as needed: `friction=0.5`, `payload=3.5 t`, `sensor_gain=0.8 on Y_3R`,
+    /// `friction=0.2 in zones 3, 4`; `fishplate effects` lists them.
+    #[arg(long = "effect", value_name = "EFFECT[.PARAMETER]=VALUE")]
+    effects: Vec<String>,
+    /// Catalogue of effects: a path, or the name of a shipped one.
+    #[arg(long = "effects", value_name = "CATALOGUE", default_value = library::CATALOGUES[0].name)]
+    catalogue: String,
+    /// Folder to write the simulated campaign to; made if missing.
+    #[arg(long, required_unless_present = "vehicle")]
+    out: Option<PathBuf>,
+    /// File to write the record to.
+    #[arg(long, short)]
+    output: Option<PathBuf>,
+    /// Sections worked on at a time [default: one per core]
+    #[arg(long, short)]
+    jobs: Option<NonZeroUsize>,
+}
+
+/// The catalogue of a name or path.
+pub fn load_catalogue(name: &str, problems: &mut Problems) -> Option<Catalogue> {
+    let source = library::find_catalogue(name, None).map_err(|problem| problems.push(*problem)).ok()?;
+    effects::read(&source, &library::parent_catalogue, &model_parameters(), problems)
+}
+
+impl Simulate {
+    pub fn run(self, console: &Console) -> Exit {
+        if let Some(jobs) = self.jobs {
+            // Fails only if the pool was made before, which nothing does before here.
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
+        }
+        let mut problems = Problems::default();
+        let catalogue = load_catalogue(&self.catalogue, &mut problems);
+        console.problems(&problems);
+        let Some(catalogue) = catalogue else { return Exit::Wrong };
+        let effects = match effects::choose(&catalogue, &self.effects) {
+            Ok(effects) => effects,
+            Err(found) => {
+                console.problems(&Problems(found));
+                return Exit::Wrong;
+            }
+        };
+        match (&self.campaign, &self.vehicle) {
+            (Some(campaign), _) => self.whole(campaign, &catalogue, &effects, console),
+            (None, Some(vehicle)) => self.one(vehicle, &catalogue, &effects, console),
+            (None, None) => Exit::Wrong,
+        }
+    }
+
+    /// Every section of a campaign, written as a campaign with the simulated records.
+    fn whole(&self, folder: &Path, catalogue: &Catalogue, effects: &[Applied], console: &Console) -> Exit {
+        let mut problems = Problems::default();
+        let campaign = Campaign::open(folder, &mut problems);
+        let prepared = campaign.as_ref().and_then(|campaign| {
+            let sections = sections(campaign, &mut problems);
+            Some((campaign, Builtin::new(campaign, &mut problems)?, sections))
+        });
+        console.problems(&problems);
+        let (Some((campaign, model, sections)), Some(out)) = (prepared.filter(|_| !problems.any_error()), &self.out) else {
+            return Exit::Wrong;
+        };
+        let bar = progress_bar(console, sections.len());
+        let made: Vec<Result<String, Problem>> = sections
+            .par_iter()
+            .map(|section| {
+                let text = record(&model, catalogue, effects, section);
+                bar.set_message(section.name().to_string());
+                bar.inc(1);
+                text
+            })
+            .collect();
+        bar.finish_and_clear();
+        let failed: Vec<Problem> = made.iter().filter_map(|made| made.as_ref().err().cloned()).collect();
+        if !failed.is_empty() {
+            console.problems(&Problems(failed));
+            return Exit::Unfinished;
+        }
+        let records = sections.iter().map(Section::name).zip(made.into_iter().flatten());
+        match write_campaign(out, campaign, records) {
+            Ok(()) => {
+                console.say(&format!("written: {} sections to {}", sections.len(), out.display()));
+                Exit::Done
+            }
+            Err(problem) => console.fail(problem, Exit::Unfinished),
+        }
+    }
+
+    /// One vehicle on one track.
+    fn one(&self, vehicle: &Path, catalogue: &Catalogue, effects: &[Applied], console: &Console) -> Exit {
+        let (Some(track), Some(output)) = (&self.track, &self.output) else { return Exit::Wrong };
+        let mut problems = Problems::default();
+        let tree = read_text(vehicle, &vehicle.display().to_string())
+            .map_err(|problem| problems.push(problem))
+            .ok()
+            .and_then(|(source, _)| yaml::load(&source, &mut problems));
+        let speed = speed(self.speed.as_deref()).map_err(|problem| problems.push(problem));
+        console.problems(&problems);
+        let (Some(tree), Ok(speed)) = (tree, speed) else { return Exit::Wrong };
+        let nowhere = Section::nowhere();
+        let plan = match Plan::new(catalogue, effects, &nowhere, None) {
+            Ok(plan) => plan,
+            Err(problem) => return console.fail(problem, Exit::Wrong),
+        };
+        let made = single((vehicle, &tree), track, speed, &plan.settings, plan.shift());
+        let text = made.and_then(|mut signals| {
+            let done = plan.operate(&mut signals, &nowhere).and_then(|()| record_text(&signals, &unit));
+            done.map_err(|problem| Problems(vec![problem]))
+        });
+        match text {
+            Ok(text) => match write_whole(output, text.as_bytes()) {
+                Ok(()) => Exit::Done,
+                Err(problem) => console.fail(problem, Exit::Unfinished),
+            },
+            Err(problems) => {
+                console.problems(&problems);
+                let failed = problems.0.iter().any(|problem| problem.code == "simulation-failed");
+                if failed { Exit::Unfinished } else { Exit::Wrong }
+            }
+        }
+    }
+}
+
+fn record(simulator: &dyn Simulator, catalogue: &Catalogue, effects: &[Applied], section: &Section) -> Result<String, Problem> {
+    let made = simulate(simulator, catalogue, effects, section, None)?;
+    record_text(&made.signals, &unit)
+}
+
+/// The unit of a channel of the model.
+fn unit(name: &str) -> Unit {
+    let unit = CHANNELS.iter().find(|(known, _)| *known == name).and_then(|(_, unit)| Unit::parse(unit).ok());
+    unit.unwrap_or_else(Unit::one)
+}
+
+fn speed(written: Option<&str>) -> Result<f64, Problem> {
+    let Some(written) = written else {
+        return Err(Problem::error("speed-missing", "a speed is needed").help("write `--speed 30` for m/s, or `--speed '108 km/h'`"));
+    };
+    let wrong = |says: String| Problem::error("speed", says).help("write `--speed 30` for m/s, or `--speed '108 km/h'`");
+    let end = written.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(written.len());
+    let (digits, unit) = written.split_at(end);
+    let number: f64 = digits.parse().map_err(|_| wrong(format!("`{written}` is no speed")))?;
+    let unit = if unit.trim().is_empty() { "m/s" } else { unit.trim() };
+    let unit = Unit::parse(unit).map_err(|unknown| wrong(format!("`{}` is no unit", unknown.word)))?;
+    if unit.dimension != Dimension::LENGTH / Dimension::TIME {
+        return Err(wrong(format!("{unit} is not the unit of a speed")));
+    }
+    let speed = unit.to_si(number);
+    if !(1.0..=150.0).contains(&speed) {
+        return Err(wrong(format!("a speed of {speed:.1} m/s is outside what the model is for: 1 to 150 m/s")));
+    }
+    Ok(speed)
+}
+
+/// A campaign like another, with other simulated records. Everything that the other has is copied beside them.
+pub fn write_campaign(out: &Path, campaign: &Campaign, records: impl Iterator<Item = (impl AsRef<str>, String)>) -> Result<(), Problem> {
+    let mut outputs = Outputs::new(out);
+    for (name, text) in records {
+        outputs.add(&format!("simulation/{}.csv", name.as_ref()), text.as_bytes())?;
+    }
+    let entries = campaign.tree.entries().iter().filter(|(key, _)| !["simulation", "simulation_ran_on"].contains(&key.text.as_str()));
+    let mut lines: Vec<(&str, Entry<'_>)> = entries.map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
+    lines.push(("simulation", Entry::Text("simulation")));
+    lines.push(("simulation_ran_on", Entry::Text("measured track")));
+    outputs.add("campaign.yaml", campaign_yaml(&lines).as_bytes())?;
+    for (inside, bytes) in campaign.other_files(RecordKind::Simulation)? {
+        outputs.add(&inside, &bytes)?;
+    }
+    outputs.commit()
+}

@@ -1,0 +1,208 @@
+//! Effects as chosen on a command line: `friction=0.5`, `payload.payload.mass=3.5 t`, `sensor_gain=0.8 on Y_3R`,
+//! `friction=0.2 in zones 3, 4`.
+
+use super::catalogue::{Action, Catalogue, Effect, Parameter};
+use super::read::CHANNEL;
+use crate::problem::Problem;
+use crate::source::{Source, Span};
+use crate::units::Unit;
+
+/// An effect with its size, and where it acts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Applied {
+    pub effect: String,
+    /// Values of its parameters in their units; parameters that are not there are neutral.
+    pub values: Vec<(String, f64)>,
+    /// What an operator acts on.
+    pub channels: Vec<String>,
+    pub confined: Option<Confined>,
+}
+
+/// The sections that an effect is confined to: those with one of the values in a column of the section table.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Confined {
+    /// `zone`, `direction` or `section`.
+    pub column: String,
+    pub values: Vec<String>,
+}
+
+impl Confined {
+    /// Whether a section with this value in the column is among them.
+    #[must_use]
+    pub fn has(&self, value: &str) -> bool {
+        self.values.iter().any(|one| one == value)
+    }
+}
+
+impl Applied {
+    /// The value of a parameter that is not neutral.
+    #[must_use]
+    pub fn value(&self, parameter: &str) -> Option<f64> {
+        self.values.iter().find(|(name, _)| name == parameter).map(|(_, value)| *value)
+    }
+}
+
+/// Words that are numbers in the model.
+const WORDS: [(&str, f64); 3] = [("both", 0.0), ("R", 1.0), ("L", -1.0)];
+const COLUMNS: [(&str, &str); 6] = [
+    ("zone", "zone"),
+    ("zones", "zone"),
+    ("direction", "direction"),
+    ("directions", "direction"),
+    ("section", "section"),
+    ("sections", "section"),
+];
+
+/// Reads effects as written; parameters of one effect may come one after the other.
+///
+/// # Errors
+/// Every text that is none: `unknown-effect`, `unknown-parameter` and `unknown-channel` with the nearest name, `range` with the range,
+/// `unknown-unit`, `unit-mismatch`, `wrong-kind`.
+pub fn choose(catalogue: &Catalogue, texts: &[String]) -> Result<Vec<Applied>, Vec<Problem>> {
+    let mut chosen: Vec<Applied> = Vec::new();
+    let mut problems = Vec::new();
+    for text in texts {
+        let source = Source::new("--effect", text.clone());
+        match one(catalogue, text, &source) {
+            Err(problem) => problems.push(*problem),
+            Ok(applied) => match chosen
+                .iter_mut()
+                .find(|known| known.effect == applied.effect && known.channels == applied.channels && known.confined == applied.confined)
+            {
+                Some(known) => {
+                    known.values.retain(|(name, _)| applied.value(name).is_none());
+                    known.values.extend(applied.values);
+                }
+                None => chosen.push(applied),
+            },
+        }
+    }
+    if problems.is_empty() { Ok(chosen) } else { Err(problems) }
+}
+
+fn one(catalogue: &Catalogue, text: &str, source: &std::sync::Arc<Source>) -> Result<Applied, Box<Problem>> {
+    let place = |part: &str| -> Span {
+        let start = part.as_ptr() as usize - text.as_ptr() as usize;
+        source.span(start..start + part.len())
+    };
+    let (rest, confined) = match text.split_once(" in ") {
+        Some((rest, within)) => (rest, Some(confinement(within, &place)?)),
+        None => (text, None),
+    };
+    let (rest, on) = match rest.split_once(" on ") {
+        Some((rest, on)) => (rest, Some(on)),
+        None => (rest, None),
+    };
+    let (named, value) = match rest.split_once('=') {
+        Some((named, value)) => (named.trim(), Some(value.trim())),
+        None => (rest.trim(), None),
+    };
+    let (name, parameter) = match named.split_once('.') {
+        Some((name, parameter)) => (name, Some(parameter)),
+        None => (named, None),
+    };
+    let effect = catalogue.effect(name).ok_or_else(|| {
+        let problem = Problem::error("unknown-effect", format!("there is no effect `{name}`")).at(&place(name));
+        Box::new(problem.suggest(name, catalogue.effects.iter().map(|effect| effect.name.as_str())))
+    })?;
+    let (parameter, channel) = parameter_named(effect, parameter, &place)?;
+    let value = match value {
+        Some(written) => number(parameter, written, &place)?,
+        None => parameter.default,
+    };
+    if value < parameter.low || value > parameter.high {
+        let (low, high, unit) = (parameter.low, parameter.high, parameter.unit.suffix());
+        let says = format!("{value}{unit} is outside the range of `{}`: {low} to {high}{unit}", parameter.name);
+        return Err(Box::new(Problem::error("range", says).at(&place(rest))));
+    }
+    let mut channels: Vec<String> = channel.into_iter().collect();
+    if let Action::Signals(_, allowed) = &effect.action {
+        for name in on.map_or(Vec::new(), |on| on.split(',').map(str::trim).collect()) {
+            let found = catalogue.channels(name).filter(|found| found.iter().all(|channel| allowed.contains(channel)));
+            channels.extend(found.ok_or_else(|| {
+                let problem = Problem::error("unknown-channel", format!("`{}` does not act on `{name}`", effect.name)).at(&place(name));
+                let groups = catalogue.groups.iter().map(|group| group.name.as_str());
+                Box::new(problem.suggest(name, allowed.iter().map(String::as_str).chain(groups)))
+            })?);
+        }
+        if channels.is_empty() {
+            if parameter.name.contains(CHANNEL) {
+                let says = format!("`{}` acts on one channel or a group: say which", effect.name);
+                return Err(Box::new(
+                    Problem::error("channel-missing", says).at(&place(rest)).help(format!("write `{rest} on {}`", allowed[0])),
+                ));
+            }
+            channels.clone_from(allowed);
+        }
+    } else if let Some(on) = on {
+        let says = format!("`{}` acts on the {}, not on channels", effect.name, effect.acts.in_words());
+        return Err(Box::new(Problem::error("unknown-channel", says).at(&place(on))));
+    }
+    Ok(Applied { effect: name.to_string(), values: vec![(parameter.name.clone(), value)], channels, confined })
+}
+
+/// The parameter a text names, wholly or by its last words, and the channel that stands in its name.
+fn parameter_named<'a>(
+    effect: &'a Effect,
+    named: Option<&str>,
+    place: &dyn Fn(&str) -> Span,
+) -> Result<(&'a Parameter, Option<String>), Box<Problem>> {
+    let Some(named) = named else {
+        // The first parameter is the one that the effect is about.
+        return Ok((&effect.parameters[0], None));
+    };
+    for parameter in &effect.parameters {
+        if let Some(stem) = parameter.name.strip_suffix(CHANNEL) {
+            if let Some(channel) = named.strip_prefix(stem).filter(|channel| !channel.is_empty()) {
+                if let Action::Signals(_, allowed) = &effect.action
+                    && !allowed.iter().any(|known| known == channel)
+                {
+                    let problem = Problem::error("unknown-channel", format!("`{}` does not act on `{channel}`", effect.name));
+                    return Err(Box::new(problem.at(&place(channel)).suggest(channel, allowed.iter().map(String::as_str))));
+                }
+                return Ok((parameter, Some(channel.to_string())));
+            }
+        } else if parameter.name == named || parameter.name.strip_suffix(named).is_some_and(|head| head.ends_with('.')) {
+            return Ok((parameter, None));
+        }
+    }
+    let problem = Problem::error("unknown-parameter", format!("`{}` has no parameter `{named}`", effect.name)).at(&place(named));
+    Err(Box::new(problem.suggest(named, effect.parameter_names())))
+}
+
+fn number(parameter: &Parameter, written: &str, place: &dyn Fn(&str) -> Span) -> Result<f64, Box<Problem>> {
+    if let Some((_, value)) = WORDS.iter().find(|(word, _)| *word == written) {
+        return Ok(*value);
+    }
+    let end = written.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(written.len());
+    let (digits, unit) = written.split_at(end);
+    let wrong = |says: String| Box::new(Problem::error("wrong-kind", says).at(&place(written)));
+    let value: f64 = digits.trim().parse().map_err(|_| wrong(format!("`{written}` is no number")))?;
+    if !value.is_finite() {
+        return Err(wrong(format!("`{written}` is too large")));
+    }
+    let unit = unit.trim();
+    if unit.is_empty() {
+        return Ok(value);
+    }
+    let unit = Unit::parse(unit).map_err(|unknown| {
+        let problem = Problem::error("unknown-unit", format!("`{}` is no unit", unknown.word)).at(&place(unit));
+        Box::new(unknown.near.map_or(problem.clone(), |near| problem.help(format!("did you mean `{near}`?"))))
+    })?;
+    if unit.dimension != parameter.unit.dimension {
+        let says = format!("`{}` is in {}, not in {unit}", parameter.name, parameter.unit);
+        return Err(Box::new(Problem::error("unit-mismatch", says).at(&place(written))));
+    }
+    Ok(parameter.unit.from_si(unit.to_si(value)))
+}
+
+fn confinement(text: &str, place: &dyn Fn(&str) -> Span) -> Result<Confined, Box<Problem>> {
+    let text = text.trim();
+    let (word, values) = text.split_once(' ').unwrap_or((text, ""));
+    let column = COLUMNS.iter().find(|(known, _)| *known == word).map(|(_, column)| *column).ok_or_else(|| {
+        let problem = Problem::error("unknown-word", format!("an effect cannot be confined to `{text}`")).at(&place(text));
+        Box::new(problem.help("write `in zones 3, 4`, `in direction left` or `in sections S01, S02`"))
+    })?;
+    let values = values.split(',').map(|value| value.trim().to_string()).filter(|value| !value.is_empty()).collect();
+    Ok(Confined { column: column.to_string(), values })
+}

@@ -1,0 +1,13 @@
+//! Effects: what a simulation may lack, declared in a text, and how each is added.
+
+#![allow(clippy::cast_precision_loss)]
+
+mod catalogue;
+mod choose;
+pub mod operators;
+mod read;
+
+pub use catalogue::{Action, Acts, Catalogue, Effect, Fit, Group, Parameter};
+pub use choose::{Applied, Confined, choose};
+pub use operators::{Channel, Gauss, Operator, Signals};
+pub use read::{CHANNEL, Find, ModelParameters, read};

@@ -1,0 +1,214 @@
+//! Effects of the measuring chain: exact operations on recorded signals.
+
+use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
+
+/// A record as it goes through the chain. Values are in the unit of their channel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Signals {
+    /// Position on the axis, in m for a record over distance.
+    pub axis: Vec<f64>,
+    /// Samples per second.
+    pub rate: f64,
+    pub channels: Vec<Channel>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Channel {
+    pub name: String,
+    pub values: Vec<f64>,
+}
+
+/// What is done to channels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Operator {
+    /// A share of the partner channel is added. First in the chain.
+    Crosstalk,
+    /// Causal low-pass of second order, in the steady state of the first sample.
+    LowPass,
+    Gain,
+    Polarity,
+    Offset,
+    /// Grows with time since the start of the record.
+    Drift,
+    Noise,
+    /// Nothing beyond a bound.
+    Clip,
+    /// Pairs of channels exchanged.
+    Swap,
+    /// The recorded position is the true one plus a shift. Last in the chain.
+    Shift,
+}
+
+impl Operator {
+    pub const ALL: [Self; 10] = [
+        Self::Crosstalk,
+        Self::LowPass,
+        Self::Gain,
+        Self::Polarity,
+        Self::Offset,
+        Self::Drift,
+        Self::Noise,
+        Self::Clip,
+        Self::Swap,
+        Self::Shift,
+    ];
+
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Crosstalk => "crosstalk",
+            Self::LowPass => "low-pass",
+            Self::Gain => "gain",
+            Self::Polarity => "polarity",
+            Self::Offset => "offset",
+            Self::Drift => "drift",
+            Self::Noise => "noise",
+            Self::Clip => "clip",
+            Self::Swap => "swap",
+            Self::Shift => "shift",
+        }
+    }
+}
+
+/// Order of the low-pass of the chain.
+const LOW_PASS_ORDER: usize = 2;
+
+impl Signals {
+    #[must_use]
+    pub fn channel(&self, name: &str) -> Option<&Channel> {
+        self.channels.iter().find(|channel| channel.name == name)
+    }
+
+    fn position(&self, name: &str) -> Option<usize> {
+        self.channels.iter().position(|channel| channel.name == name)
+    }
+
+    /// Applies an operator with its value to channels; channels that the record has not are passed over.
+    ///
+    /// For [`Operator::Crosstalk`] and [`Operator::Swap`] the channels come in pairs: the one acted on, its partner.
+    /// `seed` makes the noise repeatable; it goes with the section.
+    ///
+    /// # Errors
+    /// The low-pass cannot be made at this sampling rate, in words.
+    pub fn apply(&mut self, operator: Operator, value: f64, channels: &[String], seed: u64) -> Result<(), String> {
+        match operator {
+            Operator::Shift => self.axis.iter_mut().for_each(|x| *x += value),
+            Operator::Swap => {
+                for pair in channels.chunks_exact(2) {
+                    if let (Some(a), Some(b)) = (self.position(&pair[0]), self.position(&pair[1])) {
+                        let (low, high) = (a.min(b), a.max(b));
+                        let (left, right) = self.channels.split_at_mut(high);
+                        std::mem::swap(&mut left[low].values, &mut right[0].values);
+                    }
+                }
+            }
+            Operator::Crosstalk => {
+                for pair in channels.chunks_exact(2) {
+                    if let (Some(to), Some(from)) = (self.position(&pair[0]), self.position(&pair[1])) {
+                        let partner = self.channels[from].values.clone();
+                        self.channels[to].values.iter_mut().zip(partner).for_each(|(x, y)| *x += value * y);
+                    }
+                }
+            }
+            Operator::LowPass => {
+                let filter = Filter::design(Band::LowPass(value), LOW_PASS_ORDER, self.rate, Phase::Causal, Cutoff::PerPass);
+                let filter = filter.map_err(|error| error.to_string())?;
+                for name in channels {
+                    if let Some(at) = self.position(name) {
+                        self.channels[at].values = filter.apply(&self.channels[at].values).map_err(|error| error.to_string())?;
+                    }
+                }
+            }
+            _ => {
+                for name in channels {
+                    if let Some(at) = self.position(name) {
+                        let seed = seed ^ (at as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+                        each(operator, value, &mut self.channels[at].values, self.rate, seed);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn each(operator: Operator, value: f64, values: &mut [f64], rate: f64, seed: u64) {
+    match operator {
+        Operator::Gain | Operator::Polarity => values.iter_mut().for_each(|x| *x *= value),
+        Operator::Offset => values.iter_mut().for_each(|x| *x += value),
+        Operator::Drift => values.iter_mut().enumerate().for_each(|(n, x)| *x += value * n as f64 / rate),
+        Operator::Clip => values.iter_mut().for_each(|x| *x = x.clamp(-value, value)),
+        Operator::Noise => {
+            let mut noise = Gauss::new(seed);
+            values.iter_mut().for_each(|x| *x += value * noise.next());
+        }
+        Operator::Crosstalk | Operator::LowPass | Operator::Swap | Operator::Shift => {}
+    }
+}
+
+/// Random numbers, the same for the same seed on every machine.
+#[derive(Clone, Debug)]
+pub struct Gauss(fastrand::Rng);
+
+impl Gauss {
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self(fastrand::Rng::with_seed(seed))
+    }
+
+    /// Uniform in 0 to 1, both excluded.
+    pub fn uniform(&mut self) -> f64 {
+        self.0.f64().max(f64::MIN_POSITIVE)
+    }
+
+    /// A whole number below `bound`.
+    pub fn below(&mut self, bound: usize) -> usize {
+        self.0.usize(..bound)
+    }
+
+    /// Normal with mean 0 and standard deviation 1.
+    #[allow(clippy::should_implement_trait)]
+    pub fn next(&mut self) -> f64 {
+        // The inverse of the distribution: quantile(p) = -sqrt(2) erfc^-1(2 p).
+        -std::f64::consts::SQRT_2 * statrs::function::erf::erfc_inv(2.0 * self.uniform())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two() -> Signals {
+        let channel = |name: &str, values: &[f64]| Channel { name: name.into(), values: values.to_vec() };
+        Signals { axis: vec![0.0, 1.0, 2.0], rate: 2.0, channels: vec![channel("a", &[1.0, 2.0, 3.0]), channel("b", &[4.0, -5.0, 6.0])] }
+    }
+
+    fn after(operator: Operator, value: f64, channels: &[&str]) -> Vec<Vec<f64>> {
+        let mut signals = two();
+        let channels: Vec<String> = channels.iter().map(ToString::to_string).collect();
+        signals.apply(operator, value, &channels, 1).expect("applies");
+        signals.channels.into_iter().map(|channel| channel.values).collect()
+    }
+
+    #[test]
+    fn operators_by_hand() {
+        let untouched = vec![4.0, -5.0, 6.0];
+        assert_eq!(after(Operator::Gain, 2.0, &["a"]), [vec![2.0, 4.0, 6.0], untouched.clone()]);
+        assert_eq!(after(Operator::Polarity, -1.0, &["a"]), [vec![-1.0, -2.0, -3.0], untouched.clone()]);
+        assert_eq!(after(Operator::Offset, 0.5, &["a"]), [vec![1.5, 2.5, 3.5], untouched.clone()]);
+        assert_eq!(after(Operator::Drift, 4.0, &["a"]), [vec![1.0, 4.0, 7.0], untouched.clone()]);
+        assert_eq!(after(Operator::Clip, 4.5, &["b"]), [vec![1.0, 2.0, 3.0], vec![4.0, -4.5, 4.5]]);
+        assert_eq!(after(Operator::Swap, 1.0, &["a", "b"]), [untouched.clone(), vec![1.0, 2.0, 3.0]]);
+        assert_eq!(after(Operator::Crosstalk, 0.1, &["a", "b"]), [vec![1.4, 1.5, 3.6], untouched]);
+    }
+
+    /// Mean and variance of a hundred thousand numbers, within four standard errors.
+    #[test]
+    fn noise_is_normal() {
+        let mut gauss = Gauss::new(7);
+        let values: Vec<f64> = (0..100_000).map(|_| gauss.next()).collect();
+        let mean = values.iter().sum::<f64>() / 1e5;
+        let variance = values.iter().map(|x| x * x).sum::<f64>() / 1e5;
+        assert!(mean.abs() < 4.0 / 1e5_f64.sqrt() && (variance - 1.0).abs() < 4.0 * (2.0_f64 / 1e5).sqrt());
+    }
+}

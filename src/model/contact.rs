@@ -1,0 +1,185 @@
+//! Forces between wheel and rail: linear creep forces with Kalker's coefficients, saturated after Shen, Hedrick and Elkins,
+//! on a contact ellipse after Hertz.
+//!
+//! Z. Y. Shen, J. K. Hedrick, J. A. Elkins: A comparison of alternative creep force models for rail vehicle dynamic analysis,
+//! Vehicle System Dynamics 12 (1983) 79-83.
+//!
+//! The eight wheels are worked side by side, so that the compiler can put several into one instruction.
+
+use super::parameters::Vehicle;
+
+/// Right wheels of wheelsets 1 to 4, then left wheels.
+pub const WHEELS: usize = 8;
+/// One number per wheel.
+pub type Wheels = [f64; WHEELS];
+
+/// Passes of the fixed point of the normal force.
+const PASSES: usize = 3;
+/// Smallest normal force in N: keeps the ellipse defined on a wheel that is off the rail.
+const LEAST_NORMAL_FORCE: f64 = 100.0;
+/// Least share of the vertical force in the normal force.
+const LEAST_SHARE: f64 = 0.2;
+/// Least cosine of the contact angle in the lateral creepage.
+const LEAST_COSINE: f64 = 0.3;
+
+/// Constants of the contact of one vehicle.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    f11: f64,
+    f22: f64,
+    f23: f64,
+    per_reference_load: f64,
+    pub friction: f64,
+    /// 1/m
+    per_radius: f64,
+    stop_displacement: f64,
+    stop_stiffness: f64,
+}
+
+/// What a wheel does on its rail; lateral quantities mirrored, positive towards the own flange.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Motion {
+    pub vertical_force: Wheels,
+    pub contact_angle: Wheels,
+    pub longitudinal_creepage: Wheels,
+    /// Before the division by the cosine of the contact angle.
+    pub lateral_slip: Wheels,
+    /// Spin by the yaw rate, in 1/m; that of the contact angle is added here.
+    pub yaw_spin: Wheels,
+    /// Displacement towards the flange in m.
+    pub towards_flange: Wheels,
+}
+
+/// Longitudinal force and mirrored lateral force on the wheels in N.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Forces {
+    pub longitudinal: Wheels,
+    pub lateral: Wheels,
+}
+
+impl Contact {
+    #[must_use]
+    pub fn new(vehicle: &Vehicle) -> Self {
+        let stiffness = vehicle.kalker_scale * vehicle.shear_modulus;
+        let ab = vehicle.ellipse_ab;
+        Self {
+            f11: stiffness * vehicle.kalker_c11 * ab,
+            f22: stiffness * vehicle.kalker_c22 * ab,
+            f23: stiffness * vehicle.kalker_c23 * ab * ab.sqrt(),
+            per_reference_load: 1.0 / vehicle.ellipse_reference_load,
+            friction: vehicle.friction,
+            per_radius: 1.0 / vehicle.wheel_radius,
+            stop_displacement: vehicle.stop_displacement,
+            stop_stiffness: vehicle.stop_stiffness,
+        }
+    }
+
+    /// Creep force at reference load per creepage, longitudinal and lateral, in N.
+    #[must_use]
+    pub fn creep_coefficients(&self) -> (f64, f64) {
+        (self.f11, self.f22)
+    }
+
+    /// Longitudinal and lateral creep force in N of one wheel at a normal force in N.
+    #[inline(always)]
+    #[must_use]
+    pub fn creep(&self, normal: f64, xi: f64, eta: f64, zeta: f64) -> (f64, f64) {
+        // ab grows with N^(2/3), ab^1.5 with N.
+        let load = normal * self.per_reference_load;
+        let area = load * inverse_cube_root(load);
+        let lx = -self.f11 * area * xi;
+        let lt = -self.f22 * area * eta - self.f23 * load * zeta;
+        let linear = (lx * lx + lt * lt).sqrt();
+        // F / L = 1 - r/3 + r^2/27 below saturation, mu N / L = 1/r above; at r = 3 both are 1/3.
+        let r = linear / (self.friction * normal);
+        let beyond = 1.0 / r;
+        let below = 1.0 - r * (1.0 / 3.0 - r * (1.0 / 27.0));
+        let share = if r < 3.0 { below } else { beyond };
+        (share * lx, share * lt)
+    }
+
+    /// Forces on all wheels.
+    #[inline(always)]
+    #[must_use]
+    pub fn forces(&self, motion: &Motion) -> Forces {
+        let (mut sin, mut cos, mut eta, mut zeta, mut n) = ([0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS]);
+        let (q, xi) = (&motion.vertical_force, &motion.longitudinal_creepage);
+        for i in 0..WHEELS {
+            (sin[i], cos[i]) = sin_cos(motion.contact_angle[i]);
+            eta[i] = motion.lateral_slip[i] / greater(cos[i], LEAST_COSINE);
+            zeta[i] = motion.yaw_spin[i] - sin[i] * self.per_radius;
+            n[i] = greater(q[i] / cos[i], LEAST_NORMAL_FORCE);
+        }
+        // N cos(gamma) + T sin(gamma) = Q
+        for _ in 0..PASSES {
+            for i in 0..WHEELS {
+                let (_, t) = self.creep(n[i], xi[i], eta[i], zeta[i]);
+                let vertical = greater(n[i] * cos[i] + t * sin[i], LEAST_SHARE * n[i]);
+                n[i] = greater(q[i] * n[i] / vertical, LEAST_NORMAL_FORCE);
+            }
+        }
+        let mut forces = Forces::default();
+        for i in 0..WHEELS {
+            let (fx, t) = self.creep(n[i], xi[i], eta[i], zeta[i]);
+            let stop = self.stop_stiffness * greater(motion.towards_flange[i] - self.stop_displacement, 0.0);
+            forces.longitudinal[i] = fx;
+            forces.lateral[i] = t * cos[i] - n[i] * sin[i] - stop;
+        }
+        forces
+    }
+}
+
+/// The greater of two numbers, without the care for NaN that costs instructions.
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// `x^(-1/3)` of a positive number to the last digits, by an iteration of third order without divisions from a guess by the
+/// exponent. Branchless, and the same on every machine.
+#[inline(always)]
+fn inverse_cube_root(x: f64) -> f64 {
+    // A third of the bits is a third of the exponent: 1/4 + 1/16 + ... = 1/3, and the bias is put right.
+    let bits = x.to_bits();
+    let third = (bits >> 2) + (bits >> 4) + (bits >> 6) + (bits >> 8) + (bits >> 10) + (bits >> 12) + (bits >> 14) + (bits >> 16);
+    let mut root = f64::from_bits(0x553E_DC00_0000_0000 - third);
+    for _ in 0..3 {
+        let rest = 1.0 - x * root * root * root;
+        root += root * rest * (1.0 / 3.0 + rest * (2.0 / 9.0));
+    }
+    root
+}
+
+/// Sine and cosine for contact angles (magnitude below 1.6 rad), by their series; error below 1e-12.
+#[inline(always)]
+fn sin_cos(x: f64) -> (f64, f64) {
+    // Half the angle keeps the series short; the double-angle formulas give it back.
+    let h = 0.5 * x;
+    let z = h * h;
+    let series = |terms: [f64; 7]| terms.iter().rev().fold(0.0, |sum, term| term + z * sum);
+    let sin = h * series([1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0, 1.0 / 6_227_020_800.0]);
+    let cos = series([1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0]);
+    (2.0 * sin * cos, cos * cos - sin * sin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_cube_root_is_that_of_the_library() {
+        for i in 0..4000 {
+            let x = 10f64.powf(f64::from(i) * 0.004 - 8.0);
+            assert!((inverse_cube_root(x) * x.cbrt() - 1.0).abs() < 1e-15, "{x}");
+        }
+    }
+
+    #[test]
+    fn sine_and_cosine_are_those_of_the_library() {
+        for i in -160..=160 {
+            let x = f64::from(i) * 0.01;
+            let (sin, cos) = sin_cos(x);
+            assert!((sin - x.sin()).abs() < 1e-12 && (cos - x.cos()).abs() < 1e-12, "{x}");
+        }
+    }
+}

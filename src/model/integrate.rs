@@ -1,0 +1,133 @@
+//! Time integration: the classical Runge-Kutta method of fourth order with a fixed step.
+//!
+//! Explicit, because nothing in the model is stiff at a millisecond but the spin of the wheelsets at low speed, for which the step is
+//! divided.
+
+use super::equations::{Equations, Hints, Input, Outputs};
+use super::state::State;
+use super::track::Track;
+
+/// Step in s, and distance of the samples.
+pub const SAMPLE: f64 = 1e-3;
+/// Largest product of step and fastest rate; the method is stable up to 2.78.
+const STABLE: f64 = 2.0;
+/// Longest that a wheelset may be beyond the contact table, in s.
+const BEYOND: f64 = 0.2;
+
+/// A run that came to no result.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Failure {
+    /// Since the start of the run, s.
+    pub time: f64,
+    /// Of the car body's centre, m.
+    pub distance: f64,
+    pub kind: FailureKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FailureKind {
+    /// A state is no finite number.
+    Diverged,
+    /// A wheelset (1 to 4) was beyond the contact table for long, or far beyond it; displacement in m.
+    Derailed { wheelset: usize, displacement: f64 },
+    /// The run would have to begin before its start, by so many m.
+    TooEarly { by: f64 },
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (time, distance) = (self.time, self.distance);
+        match self.kind {
+            FailureKind::Diverged => write!(f, "the motion grew without bound {time:.3} s after the start, at {distance:.1} m"),
+            FailureKind::Derailed { wheelset, displacement } => write!(
+                f,
+                "wheelset {wheelset} left the contact table {time:.3} s after the start, at {distance:.1} m: displaced by {:.1} mm",
+                displacement * 1e3
+            ),
+            FailureKind::TooEarly { by } => write!(f, "the record would begin {by:.1} m before the run does"),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// Runs from `state` at distance `from` for `samples` samples and gives each to `sample` with its number.
+///
+/// # Errors
+/// The run diverges, or a wheelset leaves the contact table.
+pub fn run(
+    equations: &Equations<'_>,
+    track: &Track,
+    state: State,
+    from: f64,
+    samples: usize,
+    steps_per_sample: usize,
+    sample: impl FnMut(usize, &State, &Outputs),
+) -> Result<(), Failure> {
+    // The widest vector instructions that the processor has. They change the time, not one bit of the result.
+    pulp::Arch::new().dispatch(Run { equations, track, state, from, samples, steps_per_sample, sample })
+}
+
+struct Run<'a, F> {
+    equations: &'a Equations<'a>,
+    track: &'a Track,
+    state: State,
+    from: f64,
+    samples: usize,
+    steps_per_sample: usize,
+    sample: F,
+}
+
+/// Where in the step the stages are, and what they count for in it.
+const STAGES: [(f64, f64); 4] = [(0.5, 1.0 / 6.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 3.0), (0.0, 1.0 / 6.0)];
+
+impl<F: FnMut(usize, &State, &Outputs)> pulp::NullaryFnOnce for Run<'_, F> {
+    type Output = Result<(), Failure>;
+
+    #[inline(always)]
+    fn call(mut self) -> Self::Output {
+        let (equations, track) = (self.equations, self.track);
+        let speed = equations.speed;
+        let step = SAMPLE / self.steps_per_sample as f64;
+        let (low, high) = equations.table();
+        let most = high.max(-low);
+        let mut beyond = 0;
+        let mut hints = Hints::default();
+        let mut rates = State::default();
+        let mut inputs = [equations.input(track, self.from, &mut hints), Input::default(), Input::default()];
+        for n in 0..self.samples {
+            for part in 0..self.steps_per_sample {
+                let t = n as f64 * SAMPLE + part as f64 * step;
+                inputs[1] = equations.input(track, self.from + speed * (t + 0.5 * step), &mut hints);
+                inputs[2] = equations.input(track, self.from + speed * (t + step), &mut hints);
+                let (start, mut probe) = (self.state, self.state);
+                for (stage, (next, weight)) in STAGES.into_iter().enumerate() {
+                    let outputs = equations.rates(&probe, &inputs[stage.div_ceil(2)], &mut rates);
+                    if stage == 0 && part == 0 {
+                        (self.sample)(n, &start, &outputs);
+                        let (displacement, wheelset) = outputs.widest;
+                        beyond = if displacement > most { beyond + 1 } else { 0 };
+                        let failure = |kind| Failure { time: t, distance: self.from + speed * t, kind };
+                        if !start.is_finite() {
+                            return Err(failure(FailureKind::Diverged));
+                        }
+                        if displacement > 2.0 * most || f64::from(beyond) * SAMPLE > BEYOND {
+                            return Err(failure(FailureKind::Derailed { wheelset: wheelset + 1, displacement }));
+                        }
+                    }
+                    self.state.add(weight * step, &rates);
+                    probe = start;
+                    probe.add(next * step, &rates);
+                }
+                inputs.swap(0, 2);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Steps per sample that the vehicle needs at its speed.
+#[must_use]
+pub fn steps_per_sample(equations: &Equations<'_>) -> usize {
+    (equations.fastest_rate() * SAMPLE / STABLE).ceil().max(1.0) as usize
+}

@@ -1,0 +1,152 @@
+//! From a run to a record: the recording chain of the reference.
+
+use super::equations::{Equations, Outputs};
+use super::integrate::{Failure, FailureKind, SAMPLE, run, steps_per_sample};
+use super::parameters::Vehicle;
+use super::profile::Profile;
+use super::track::{Track, TrackTable};
+use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
+
+/// Channels of a record with their units, in the order of the file.
+pub const CHANNELS: [(&str, &str); 22] = [
+    ("Y_1R", "kN"),
+    ("Y_1L", "kN"),
+    ("Y_2R", "kN"),
+    ("Y_2L", "kN"),
+    ("Y_3R", "kN"),
+    ("Y_3L", "kN"),
+    ("Y_4R", "kN"),
+    ("Y_4L", "kN"),
+    ("Q_1R", "kN"),
+    ("Q_1L", "kN"),
+    ("Q_2R", "kN"),
+    ("Q_2L", "kN"),
+    ("Q_3R", "kN"),
+    ("Q_3L", "kN"),
+    ("Q_4R", "kN"),
+    ("Q_4L", "kN"),
+    ("ay_I", "m/s^2"),
+    ("ay_II", "m/s^2"),
+    ("az_I", "m/s^2"),
+    ("az_II", "m/s^2"),
+    ("ayb_I", "m/s^2"),
+    ("ayb_II", "m/s^2"),
+];
+
+/// Sampling rate of a record in Hz.
+pub const SAMPLING_RATE: f64 = 200.0;
+/// Samples of the run per sample of the record.
+const DECIMATION: usize = 5;
+/// Edge of the low-pass before the decimation, in Hz, of each of its two passes.
+const ANTI_ALIAS: f64 = 40.0;
+const ANTI_ALIAS_ORDER: usize = 2;
+/// Before the first table point, in s of the trailing wheelset.
+const RUN_IN: f64 = 2.5;
+/// Behind the last sample, in s, so that the filter has passed its end.
+const RUN_OUT: f64 = 0.1;
+/// Recorded before and behind a section, in m.
+pub const BEFORE: f64 = 36.0;
+pub const BEHIND: f64 = 34.0;
+
+/// A simulated record.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Record {
+    /// Of the car body's centre, in m; one per sample, at [`SAMPLING_RATE`].
+    pub distance: Vec<f64>,
+    /// One list per entry of [`CHANNELS`], in its unit.
+    pub channels: Vec<Vec<f64>>,
+}
+
+/// Where the record begins at the latest and ends at the earliest, in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    pub from: f64,
+    pub to: f64,
+}
+
+impl Window {
+    /// Of a section, with what the filters need before and behind it.
+    #[must_use]
+    pub fn around(start: f64, end: f64) -> Self {
+        Self { from: start - BEFORE, to: end + BEHIND }
+    }
+}
+
+/// One vehicle on one track at a constant speed in m/s.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup<'a> {
+    pub vehicle: &'a Vehicle,
+    pub profile: &'a Profile,
+    pub track: &'a TrackTable,
+    pub speed: f64,
+}
+
+/// Simulates a record.
+///
+/// # Errors
+/// The run diverges, a wheelset leaves the contact table, or the window lies before the start of the run.
+pub fn simulate(setup: &Setup<'_>, window: Window) -> Result<Record, Failure> {
+    simulate_with(setup, window, None)
+}
+
+/// As [`simulate`], with a step of 1 ms divided by `divided` instead of the default choice.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_with(setup: &Setup<'_>, window: Window, divided: Option<usize>) -> Result<Record, Failure> {
+    let equations = Equations::new(setup.vehicle, setup.profile, setup.speed);
+    let track = Track::new(setup.track, setup.vehicle);
+    let s0 = start(&equations, &track);
+    let at = |n: usize| s0 + setup.speed * (n as f64 * SAMPLE);
+    if window.from < s0 {
+        return Err(Failure { time: 0.0, distance: s0, kind: FailureKind::TooEarly { by: s0 - window.from } });
+    }
+    let first = first_at(window.from, s0, setup.speed);
+    let mut last = first;
+    while at(last) < window.to {
+        last += DECIMATION;
+    }
+    let samples = last + 1 + (RUN_OUT / SAMPLE) as usize;
+    let mut raw = vec![vec![0.0; samples]; CHANNELS.len()];
+    let divided = divided.unwrap_or_else(|| steps_per_sample(&equations));
+    run(&equations, &track, equations.at_rest(), s0, samples, divided, |n, _, outputs| {
+        for (channel, value) in raw.iter_mut().zip(channels(outputs)) {
+            channel[n] = value;
+        }
+    })?;
+    let filter = Filter::design(Band::LowPass(ANTI_ALIAS), ANTI_ALIAS_ORDER, 1.0 / SAMPLE, Phase::Zero, Cutoff::PerPass);
+    let filter = filter.expect("the chain's constants make a filter");
+    let signals: Vec<&[f64]> = raw.iter().map(Vec::as_slice).collect();
+    let smooth = filter.apply_many(&signals).expect("the run-in alone is long enough for the filter");
+    let kept = |signal: Vec<f64>| signal[first..=last].iter().step_by(DECIMATION).copied().collect();
+    Ok(Record { distance: (first..=last).step_by(DECIMATION).map(at).collect(), channels: smooth.into_iter().map(kept).collect() })
+}
+
+/// Where the run starts: the trailing wheelset reaches the first point of the track after the run-in.
+#[must_use]
+pub fn start(equations: &Equations<'_>, track: &Track) -> f64 {
+    track.start() + equations.vehicle.half_bogie_spacing + equations.vehicle.half_wheelbase - RUN_IN * equations.speed
+}
+
+fn first_at(from: f64, s0: f64, speed: f64) -> usize {
+    let mut n = ((from - s0) / (speed * SAMPLE)).floor().max(0.0) as usize;
+    while s0 + speed * (n as f64 * SAMPLE) < from {
+        n += 1;
+    }
+    n
+}
+
+/// In the order of [`CHANNELS`].
+fn channels(outputs: &Outputs) -> [f64; 22] {
+    let mut values = [0.0; 22];
+    for j in 0..4 {
+        for side in 0..2 {
+            values[2 * j + side] = outputs.y[4 * side + j] * 1e-3;
+            values[8 + 2 * j + side] = outputs.q[4 * side + j] * 1e-3;
+        }
+    }
+    values[16..18].copy_from_slice(&outputs.ay);
+    values[18..20].copy_from_slice(&outputs.az);
+    values[20..22].copy_from_slice(&outputs.ayb);
+    values
+}

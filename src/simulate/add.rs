@@ -1,0 +1,142 @@
+//! Adds effects to a section: what the simulator is told, and what is done to its signals.
+
+use super::{Section, Simulator, Task};
+use crate::effects::{Action, Applied, Catalogue, Operator, Signals};
+use crate::problem::Problem;
+
+/// What effects mean for one section.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plan {
+    /// Parameters of the simulator, in its units.
+    pub settings: Vec<(String, f64)>,
+    /// In the order of the measuring chain.
+    pub operators: Vec<(Operator, f64, Vec<String>)>,
+}
+
+/// A record with effects, and what it took.
+#[derive(Clone, Debug)]
+pub struct Simulated {
+    pub signals: Signals,
+    /// Runs of the simulator.
+    pub runs: usize,
+}
+
+impl Plan {
+    /// What `effects` mean for `section` on a simulator; effects confined to other sections mean nothing.
+    ///
+    /// # Errors
+    /// The catalogue does not say how this simulator adds an effect.
+    pub fn new(catalogue: &Catalogue, effects: &[Applied], section: &Section, simulator: Option<&str>) -> Result<Self, Problem> {
+        let mut plan = Self::default();
+        for applied in effects {
+            let here = |confined: &crate::effects::Confined| section.fact(&confined.column).is_some_and(|value| confined.has(value));
+            let Some(effect) = catalogue.effect(&applied.effect) else { continue };
+            if !applied.confined.as_ref().is_none_or(here) {
+                continue;
+            }
+            for parameter in &effect.parameters {
+                let Some(value) = applied.value(&parameter.name) else { continue };
+                match (&effect.action, simulator) {
+                    (Action::Signals(operator, _), _) => plan.operators.push((*operator, value, applied.channels.clone())),
+                    (Action::Simulator, None) => {
+                        let (key, factor) =
+                            parameter.model.as_ref().ok_or_else(|| unsaid(&effect.name, &parameter.name, "the built-in model"))?;
+                        plan.set(key, value * factor);
+                    }
+                    (Action::Simulator, Some(simulator)) => {
+                        let found = parameter.simulators.iter().find(|(name, ..)| name == simulator);
+                        let (_, key, factor) = found.ok_or_else(|| unsaid(&effect.name, &parameter.name, simulator))?;
+                        plan.set(key, value * factor);
+                    }
+                }
+            }
+        }
+        plan.operators.sort_by_key(|(operator, ..)| *operator);
+        Ok(plan)
+    }
+
+    fn set(&mut self, key: &str, value: f64) {
+        self.settings.retain(|(known, _)| known != key);
+        self.settings.push((key.to_string(), value));
+    }
+
+    /// Recorded minus true position, in the unit of the axis.
+    #[must_use]
+    pub fn shift(&self) -> f64 {
+        self.operators.iter().filter(|(operator, ..)| *operator == Operator::Shift).map(|(_, value, _)| value).sum()
+    }
+
+    /// Does to the signals of a section what its measuring chain does.
+    ///
+    /// # Errors
+    /// An operator cannot be applied, with the section.
+    pub fn operate(&self, signals: &mut Signals, section: &Section) -> Result<(), Problem> {
+        let seed = section.name().bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3));
+        for (operator, value, channels) in &self.operators {
+            signals.apply(*operator, *value, channels, seed).map_err(|says| {
+                Problem::error("operator", format!("section `{}`: {}: {says}", section.name(), operator.name())).at(&section.cell.span)
+            })?;
+        }
+        Ok(())
+    }
+}
+
+fn unsaid(effect: &str, parameter: &str, simulator: &str) -> Problem {
+    Problem::error("not-simulated", format!("the catalogue does not say how {simulator} adds `{parameter}` of `{effect}`"))
+        .help("name the simulator's parameter under `simulators` or `model` of the effect's parameter")
+}
+
+/// Makes a section's record with effects. With `recorded`, a simulation that was made elsewhere, the effects come as an increment:
+/// recorded + (simulator with effects - simulator without), so that what the two simulators differ in drops out.
+///
+/// # Errors
+/// Of the simulator, of the catalogue (see [`Plan::new`]) and of operators.
+pub fn simulate(
+    simulator: &dyn Simulator,
+    catalogue: &Catalogue,
+    effects: &[Applied],
+    section: &Section,
+    recorded: Option<&Signals>,
+) -> Result<Simulated, Problem> {
+    let plan = Plan::new(catalogue, effects, section, simulator.catalogue_name())?;
+    let run = |settings: &[(String, f64)], shift: f64| simulator.run(&Task { section, settings, shift });
+    let mut made = match recorded {
+        None => Simulated { signals: run(&plan.settings, plan.shift())?, runs: 1 },
+        Some(recorded) if plan.settings.is_empty() => Simulated { signals: recorded.clone(), runs: 0 },
+        Some(recorded) => {
+            let (with, without) = (run(&plan.settings, 0.0)?, run(&[], 0.0)?);
+            Simulated { signals: incremented(recorded, &with, &without), runs: 2 }
+        }
+    };
+    plan.operate(&mut made.signals, section)?;
+    Ok(made)
+}
+
+/// `recorded + (with - without)`, position by position; channels that the simulator does not make stay as recorded.
+#[must_use]
+pub fn incremented(recorded: &Signals, with: &Signals, without: &Signals) -> Signals {
+    let mut sum = recorded.clone();
+    for channel in &mut sum.channels {
+        let (Some(with), Some(base)) = (with.channel(&channel.name), without.channel(&channel.name)) else { continue };
+        let difference: Vec<f64> = with.values.iter().zip(&base.values).map(|(with, base)| with - base).collect();
+        let mut at = 0;
+        for (x, value) in recorded.axis.iter().zip(&mut channel.values) {
+            *value += interpolated(&without.axis, &difference, *x, &mut at);
+        }
+    }
+    sum
+}
+
+/// Linear between samples, constant beyond the ends; `at` is where the last look was.
+fn interpolated(axis: &[f64], values: &[f64], x: f64, at: &mut usize) -> f64 {
+    let last = axis.len().min(values.len()).saturating_sub(1);
+    while *at + 1 < last && axis[*at + 1] <= x {
+        *at += 1;
+    }
+    let (from, to) = (*at, (*at + 1).min(last));
+    if to == from {
+        return values.get(from).copied().unwrap_or(0.0);
+    }
+    let share = ((x - axis[from]) / (axis[to] - axis[from])).clamp(0.0, 1.0);
+    values[from] + share * (values[to] - values[from])
+}

@@ -1,0 +1,279 @@
+//! The reference vehicle model as a simulator of a campaign's sections.
+
+use std::path::Path;
+
+use super::{Simulator, Task};
+use crate::data::record::{Record, Wanted, read_record};
+use crate::data::table::Cell;
+use crate::data::{Campaign, RecordKind};
+use crate::effects::{Channel, Signals};
+use crate::model::{self, CHANNELS, PARAMETERS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, VehicleFault, Window};
+use crate::problem::{Problem, Problems};
+use crate::source::{Source, Spanned};
+use crate::units::Dimension;
+use crate::yaml::Node;
+
+/// Sides of a wheelset as the vehicle file writes them.
+const SIDES: [(&str, f64); 3] = [("both", 0.0), ("R", 1.0), ("L", -1.0)];
+
+/// The parameters of the model, as catalogues may name them: key and unit.
+#[must_use]
+pub fn model_parameters() -> Vec<(&'static str, &'static str)> {
+    PARAMETERS.iter().map(|parameter| (parameter.key, parameter.unit)).collect()
+}
+
+/// The model with the vehicle, the profile and the tracks of a campaign.
+#[derive(Debug)]
+pub struct Builtin<'a> {
+    campaign: &'a Campaign,
+    vehicle: Vehicle,
+    new: ProfileTable,
+    worn: Option<ProfileTable>,
+}
+
+impl<'a> Builtin<'a> {
+    /// The model for a campaign; `None`, with the reasons, if the campaign lacks what it needs.
+    pub fn new(campaign: &'a Campaign, problems: &mut Problems) -> Option<Self> {
+        let vehicle = vehicle(&campaign.vehicle, problems)?;
+        if !campaign.has(RecordKind::Track) {
+            let says = "the campaign has no `track`: the folder of what the vehicle ran over, which the model needs";
+            problems.push(Problem::error("key-missing", says).at(&campaign.tree.span.part(0..0)));
+            return None;
+        }
+        let place = |key: &str, default: &str| {
+            let node = campaign.vehicle.lookup(key);
+            let written = node.and_then(|node| Some(Spanned::new(node.scalar_text()?.to_string(), node.span.clone())));
+            campaign.place(&written.unwrap_or_else(|| Spanned::new(default.to_string(), campaign.tree.span.part(0..0))))
+        };
+        let read = |key: &str, default: &str, needed: bool, problems: &mut Problems| match place(key, default) {
+            Ok(place) if place.path.is_file() || needed => profile(&place.path, &place.shown, problems),
+            Ok(_) => None,
+            Err(problem) => {
+                problems.push(problem);
+                None
+            }
+        };
+        let new = read("profile.file", "profile.csv", true, problems)?;
+        let worn = read("profile.worn_file", "profile_worn.csv", false, problems);
+        Some(Self { campaign, vehicle, new, worn })
+    }
+
+    /// The vehicle with some parameters set.
+    fn with(&self, settings: &[(String, f64)]) -> Result<(Vehicle, Profile), Problem> {
+        let mut vehicle = self.vehicle.clone();
+        for (key, value) in settings {
+            vehicle.set(key, *value).map_err(|fault| match fault {
+                Some(fault) => inadmissible(&fault, &None),
+                None => Problem::error("unknown-parameter", format!("the model has no parameter `{key}`"))
+                    .suggest(key, PARAMETERS.iter().map(|parameter| parameter.key)),
+            })?;
+        }
+        let profile = Profile::new(&self.new, self.worn.as_ref(), &vehicle).ok_or_else(|| {
+            Problem::error("profile", "a worn profile needs a second profile table over the same displacements")
+                .help("put `profile_worn.csv` beside `profile.csv`")
+        })?;
+        Ok((vehicle, profile))
+    }
+}
+
+impl Simulator for Builtin<'_> {
+    fn name(&self) -> &str {
+        "reference vehicle model"
+    }
+
+    fn catalogue_name(&self) -> Option<&str> {
+        None
+    }
+
+    fn run(&self, task: &Task<'_>) -> Result<Signals, Problem> {
+        let section = task.section;
+        let Some(speed) = section.speed else {
+            return Err(Problem::error("speed-missing", format!("section `{}` has no speed", section.name())).at(&section.cell.span));
+        };
+        let (vehicle, profile) = self.with(task.settings)?;
+        let track = track_of(self.campaign, &section.cell)?;
+        let around = Window::around(section.start, section.end);
+        let window = Window { from: around.from - task.shift, to: around.to - task.shift };
+        let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
+        made(&setup, window).map_err(|problem| Problem { says: format!("section `{}`: {}", section.name(), problem.says), ..problem })
+    }
+}
+
+fn made(setup: &Setup<'_>, window: Window) -> Result<Signals, Problem> {
+    let record = model::simulate(setup, window).map_err(|failure| Problem::error("simulation-failed", failure.to_string()))?;
+    let channels = CHANNELS.iter().zip(record.channels).map(|((name, _), values)| Channel { name: (*name).to_string(), values });
+    Ok(Signals { axis: record.distance, rate: SAMPLING_RATE, channels: channels.collect() })
+}
+
+/// The vehicle of a vehicle file.
+pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
+    let number = |key: &str| {
+        let node = tree.lookup(key)?;
+        let word = || SIDES.iter().find(|(word, _)| node.scalar_text() == Some(word)).map(|(_, value)| *value);
+        node.number().or_else(word)
+    };
+    match Vehicle::from_values(number) {
+        Ok(vehicle) => Some(vehicle),
+        Err(faults) => {
+            for fault in faults {
+                let key = match fault {
+                    VehicleFault::Missing(parameter) | VehicleFault::Inadmissible(parameter, _) => parameter.key,
+                };
+                problems.push(inadmissible(&fault, &tree.lookup(key).map(|node| node.span.clone())).or_at(tree));
+            }
+            None
+        }
+    }
+}
+
+trait OrAt {
+    fn or_at(self, tree: &Node) -> Self;
+}
+
+impl OrAt for Problem {
+    fn or_at(self, tree: &Node) -> Self {
+        if self.at.is_some() { self } else { self.at(&tree.span.part(0..0)) }
+    }
+}
+
+fn inadmissible(fault: &VehicleFault, at: &Option<crate::source::Span>) -> Problem {
+    let problem = match fault {
+        VehicleFault::Missing(parameter) => Problem::error(
+            "key-missing",
+            format!("the vehicle has no number `{}` ({}, in {})", parameter.key, parameter.meaning, parameter.unit),
+        ),
+        VehicleFault::Inadmissible(parameter, value) => {
+            let says = format!("`{}` is {value}, which is not {}", parameter.key, parameter.admissible.in_words());
+            Problem::error("range", says)
+        }
+    };
+    match at {
+        Some(span) => problem.at(span),
+        None => problem,
+    }
+}
+
+/// A vehicle on a track that belong to no campaign, over the whole track; `profile.csv` stands beside the vehicle file unless that
+/// names another.
+///
+/// # Errors
+/// Every fault of the files; the run diverges.
+pub fn single(
+    vehicle_file: (&Path, &Node),
+    track_file: &Path,
+    speed: f64,
+    settings: &[(String, f64)],
+    shift: f64,
+) -> Result<Signals, Problems> {
+    let mut problems = Problems::default();
+    let (path, tree) = vehicle_file;
+    let beside = |key: &str, default: &str| {
+        let name = tree.lookup(key).and_then(Node::scalar_text).unwrap_or(default);
+        path.parent().unwrap_or(Path::new("")).join(name)
+    };
+    let vehicle = vehicle(tree, &mut problems);
+    let (new, worn) = (beside("profile.file", "profile.csv"), beside("profile.worn_file", "profile_worn.csv"));
+    let new = profile(&new, &new.display().to_string(), &mut problems);
+    let worn = worn.is_file().then(|| profile(&worn, &worn.display().to_string(), &mut problems)).flatten();
+    let track = read_track(track_file, &track_file.display().to_string());
+    let (Some(mut vehicle), Some(new), Ok(track)) = (vehicle, new, track.map_err(|problem| problems.push(problem))) else {
+        return Err(problems);
+    };
+    let all = |problem: Problem| Problems(vec![problem]);
+    for (key, value) in settings {
+        vehicle.set(key, *value).map_err(|fault| {
+            all(fault.map_or_else(
+                || Problem::error("unknown-parameter", format!("the model has no parameter `{key}`")),
+                |fault| inadmissible(&fault, &None),
+            ))
+        })?;
+    }
+    let Some(profile) = Profile::new(&new, worn.as_ref(), &vehicle) else {
+        return Err(all(Problem::error("profile", "a worn profile needs a second profile table over the same displacements")));
+    };
+    let (start, end) = (track.distance[0], track.distance[track.distance.len() - 1]);
+    let half = vehicle.half_bogie_spacing + vehicle.half_wheelbase;
+    let window = Window { from: start - shift, to: end - half - shift };
+    made(&Setup { vehicle: &vehicle, profile: &profile, track: &track, speed }, window).map_err(all)
+}
+
+fn track_of(campaign: &Campaign, section: &Cell) -> Result<TrackTable, Problem> {
+    let place = campaign.record_place(RecordKind::Track, section)?;
+    read_track(&place.path, &place.inside)
+}
+
+/// Reads a track file. Lengths of irregularities in mm, as the model takes them.
+fn read_track(path: &Path, shown: &str) -> Result<TrackTable, Problem> {
+    let length = Dimension::LENGTH;
+    let wanted = [
+        Wanted::new("distance", length),
+        Wanted::new("curvature", Dimension::ONE / length),
+        Wanted::new("cant", length),
+        Wanted::new("alignment", length),
+        Wanted::new("level", length),
+        Wanted::new("cross level", length),
+        Wanted::new("gauge", length),
+    ];
+    let record = read_record(path, shown, &wanted).map_err(first)?;
+    let column = |name: &str, factor: f64| numbers(&record, name, factor);
+    let distance = column("distance", 1.0);
+    increasing(&record, "distance", &distance)?;
+    Ok(TrackTable {
+        curvature: column("curvature", 1.0),
+        cant: column("cant", 1e3),
+        alignment: column("alignment", 1e3),
+        level: column("level", 1e3),
+        cross_level: column("cross level", 1e3),
+        gauge: column("gauge", 1e3),
+        distance,
+    })
+}
+
+fn profile(path: &Path, shown: &str, problems: &mut Problems) -> Option<ProfileTable> {
+    let length = Dimension::LENGTH;
+    let wanted = [
+        Wanted::new("displacement", length),
+        Wanted::new("radius deviation right", length),
+        Wanted::new("radius deviation left", length),
+        Wanted::new("contact angle right", Dimension::ONE),
+        Wanted::new("contact angle left", Dimension::ONE),
+    ];
+    let record = match read_record(path, shown, &wanted) {
+        Ok(record) => record,
+        Err(found) => {
+            found.into_iter().for_each(|problem| problems.push(problem));
+            return None;
+        }
+    };
+    let column = |name: &str, factor: f64| numbers(&record, name, factor);
+    let displacement = column("displacement", 1e3);
+    if let Err(problem) = increasing(&record, "displacement", &displacement) {
+        problems.push(problem);
+        return None;
+    }
+    Some(ProfileTable {
+        displacement,
+        radius_deviation: [column("radius deviation right", 1e3), column("radius deviation left", 1e3)],
+        contact_angle: [column("contact angle right", 1.0), column("contact angle left", 1.0)],
+    })
+}
+
+fn numbers(record: &Record, name: &str, factor: f64) -> Vec<f64> {
+    record.column(name).map(|column| column.values.iter().map(|value| value * factor).collect()).unwrap_or_default()
+}
+
+/// A table needs two points, one behind the other.
+fn increasing(record: &Record, name: &str, values: &[f64]) -> Result<(), Problem> {
+    let at = |row: usize| record.place(row, record.column(name)).unwrap_or_else(|| Source::new(record.shown.as_str(), "").whole());
+    if values.len() < 2 {
+        return Err(Problem::error("too-short", format!("{} has {} rows; two are needed at least", record.shown, values.len())));
+    }
+    match values.windows(2).position(|pair| pair[1] <= pair[0]) {
+        Some(row) => Err(Problem::error("not-increasing", format!("`{name}` does not increase here")).at(&at(row + 1))),
+        None => Ok(()),
+    }
+}
+
+fn first(problems: Vec<Problem>) -> Problem {
+    problems.into_iter().next().unwrap_or_else(|| Problem::error("unreadable", "the file cannot be read"))
+}

@@ -1,0 +1,88 @@
+//! Records of a campaign as signals, and signals as records of a campaign.
+
+use super::section::Section;
+use crate::data::campaign::ReadFile;
+use crate::data::record::{Record, Wanted};
+use crate::data::write::{OutColumn, record_csv};
+use crate::data::{Campaign, RecordKind};
+use crate::effects::{Channel, Signals};
+use crate::problem::Problem;
+use crate::units::Unit;
+
+/// Units of the channels that are written, by name.
+pub type Units = Vec<(String, Unit)>;
+
+/// Column of the time.
+const TIME: &str = "time";
+/// The axis of a record; without it, the time.
+const AXIS: &str = "distance";
+
+/// A record of a section with all its channels, each in its own unit, and those units.
+///
+/// # Errors
+/// As [`Campaign::read`]; the record has no `time`.
+pub fn recorded(campaign: &Campaign, kind: RecordKind, section: &Section) -> Result<(Signals, Units, ReadFile), Vec<Problem>> {
+    let place = campaign.record_place(kind, &section.cell).map_err(|problem| vec![problem])?;
+    let headings = crate::data::record::read_headings(&place.path, &place.inside)?;
+    let wanted: Vec<Wanted> =
+        headings.iter().map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true }).collect();
+    let (record, file) = campaign.read(kind, &section.cell, &wanted)?;
+    let (signals, units) = signals(&record)?;
+    Ok((signals, units, file))
+}
+
+/// As [`recorded`], for a file that is no campaign's.
+///
+/// # Errors
+/// Of reading; the record has no `time`.
+pub fn read_signals(path: &std::path::Path, shown: &str) -> Result<(Signals, Units), Vec<Problem>> {
+    let headings = crate::data::record::read_headings(path, shown)?;
+    let wanted: Vec<Wanted> =
+        headings.iter().map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true }).collect();
+    signals(&crate::data::record::read_record(path, shown, &wanted)?)
+}
+
+fn signals(record: &Record) -> Result<(Signals, Units), Vec<Problem>> {
+    let Some(time) = record.column(TIME) else {
+        let problem = Problem::error("missing-channel", format!("{} has no column `{TIME}`", record.shown));
+        return Err(vec![problem.suggest(TIME, record.channels.iter().map(String::as_str))]);
+    };
+    let span = time.values.last().zip(time.values.first()).map_or(0.0, |(last, first)| last - first);
+    if record.rows < 2 || span <= 0.0 {
+        return Err(vec![Problem::error("too-short", format!("{} has {} samples: too few", record.shown, record.rows))]);
+    }
+    let axis = record.column(AXIS).unwrap_or(time);
+    let mut units = Vec::new();
+    let mut channels = Vec::new();
+    for column in record.columns.iter().filter(|column| column.name != TIME && column.name != AXIS) {
+        let values = column.values.iter().map(|value| column.unit.from_si(*value)).collect();
+        channels.push(Channel { name: column.name.clone(), values });
+        units.push((column.name.clone(), column.unit.clone()));
+    }
+    Ok((Signals { axis: axis.values.clone(), rate: (record.rows - 1) as f64 / span, channels }, units))
+}
+
+/// A record as text: time from 0, distance, channels; forces in kN to 0.01, accelerations in m/s^2 to 0.0001.
+///
+/// # Errors
+/// A value is not finite: a fault of the simulator, found before anything is written.
+pub fn record_text(signals: &Signals, units: &dyn Fn(&str) -> Unit) -> Result<String, Problem> {
+    let time: Vec<f64> = (0..signals.axis.len()).map(|n| n as f64 / signals.rate).collect();
+    let (seconds, metres) = (Unit::parse("s").unwrap_or_else(|_| Unit::one()), Unit::parse("m").unwrap_or_else(|_| Unit::one()));
+    let units: Vec<Unit> = signals.channels.iter().map(|channel| units(&channel.name)).collect();
+    let values: Vec<Vec<f64>> = signals
+        .channels
+        .iter()
+        .zip(&units)
+        .map(|(channel, unit)| channel.values.iter().map(|value| unit.to_si(*value)).collect())
+        .collect();
+    let mut columns = vec![
+        OutColumn { name: TIME, unit: &seconds, values: &time, decimals: 3 },
+        OutColumn { name: AXIS, unit: &metres, values: &signals.axis, decimals: 3 },
+    ];
+    for ((channel, unit), values) in signals.channels.iter().zip(&units).zip(&values) {
+        let decimals = if unit.text == "kN" { 2 } else { 4 };
+        columns.push(OutColumn { name: &channel.name, unit, values, decimals });
+    }
+    record_csv(&columns)
+}

@@ -1,0 +1,41 @@
+//! Simulators: what turns a section and settings of parameters into a record.
+
+#![allow(clippy::cast_precision_loss)]
+
+mod add;
+mod builtin;
+mod campaign;
+mod section;
+
+pub use add::{Plan, Simulated, simulate};
+pub use builtin::{Builtin, model_parameters, single};
+pub use campaign::{Units, read_signals, record_text, recorded};
+pub use section::{Section, sections};
+
+use crate::effects::Signals;
+use crate::problem::Problem;
+
+/// A record to be made.
+#[derive(Clone, Copy, Debug)]
+pub struct Task<'a> {
+    pub section: &'a Section,
+    /// Parameters of the simulator that differ from the vehicle file, in its units.
+    pub settings: &'a [(String, f64)],
+    /// Recorded minus true position in m: the record is made where it will be shifted to.
+    pub shift: f64,
+}
+
+/// Something that makes records.
+pub trait Simulator: Sync {
+    /// What reports call it.
+    fn name(&self) -> &str;
+
+    /// The name by which a catalogue says which parameters of it an effect moves; `None` for the built-in model.
+    fn catalogue_name(&self) -> Option<&str>;
+
+    /// Makes a record.
+    ///
+    /// # Errors
+    /// What went wrong, and where: a run that diverges, a program that fails, an input that cannot be read.
+    fn run(&self, task: &Task<'_>) -> Result<Signals, Problem>;
+}

@@ -1,0 +1,85 @@
+//! The sections of a campaign as a simulator needs them.
+
+use crate::data::table::{Cell, Table};
+use crate::data::{Campaign, Heading};
+use crate::problem::{Problem, Problems};
+use crate::source::Source;
+use crate::units::Dimension;
+
+/// A section to be simulated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    pub cell: Cell,
+    /// Where it begins and ends on the axis, in SI; infinite for a record without a section table.
+    pub start: f64,
+    pub end: f64,
+    /// In m/s, if the table has speeds.
+    pub speed: Option<f64>,
+    /// All columns of its row: name without unit, text.
+    pub facts: Vec<(String, String)>,
+}
+
+impl Section {
+    /// A place that belongs to no campaign.
+    #[must_use]
+    pub fn nowhere() -> Self {
+        let cell = Cell::new("record".to_string(), Source::new("", "").whole());
+        Self { cell, start: f64::NEG_INFINITY, end: f64::INFINITY, speed: None, facts: Vec::new() }
+    }
+
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.cell.value
+    }
+
+    /// The text of a column; the section's name for `section`.
+    #[must_use]
+    pub fn fact(&self, column: &str) -> Option<&str> {
+        if column == "section" {
+            return Some(self.name());
+        }
+        self.facts.iter().find(|(name, _)| name == column).map(|(_, text)| text.as_str())
+    }
+
+    /// The number in a column.
+    #[must_use]
+    pub fn number(&self, column: &str) -> Option<f64> {
+        self.fact(column)?.trim().parse().ok()
+    }
+}
+
+/// The sections of a campaign, in the order of its table.
+pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Vec<Section> {
+    let Some(table) = &campaign.sections else {
+        let whole =
+            |cell: &Cell| Section { cell: cell.clone(), start: f64::NEG_INFINITY, end: f64::INFINITY, speed: None, facts: Vec::new() };
+        return campaign.names.iter().map(whole).collect();
+    };
+    let start = column(table, "start", None, problems);
+    let end = column(table, "end", None, problems);
+    let speed = match table.column("speed") {
+        Some(_) => column(table, "speed", Some(Dimension::LENGTH / Dimension::TIME), problems),
+        None => Vec::new(),
+    };
+    let mut found = Vec::new();
+    for (row, cell) in campaign.names.iter().enumerate() {
+        let number = |column: &[Option<f64>]| column.get(row).copied().flatten();
+        let fact = |(at, heading): (usize, &Heading)| {
+            (heading.name.clone(), table.cell(row, at).map(|cell| cell.value.clone()).unwrap_or_default())
+        };
+        let facts = table.columns.iter().enumerate().map(fact).collect();
+        match (number(&start), number(&end)) {
+            (Some(start), Some(end)) => found.push(Section { cell: cell.clone(), start, end, speed: number(&speed), facts }),
+            _ => problems.push(Problem::error("section", format!("section `{}` has no start or no end", cell.value)).at(&cell.span)),
+        }
+    }
+    found
+}
+
+fn column(table: &Table, name: &str, dimension: Option<Dimension>, problems: &mut Problems) -> Vec<Option<f64>> {
+    let numbers = table.need_column(name).map_err(|problem| vec![problem]).and_then(|at| table.numbers(at, dimension));
+    numbers.unwrap_or_else(|found| {
+        found.into_iter().for_each(|problem| problems.push(problem));
+        Vec::new()
+    })
+}
