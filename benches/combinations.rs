@@ -4,6 +4,8 @@
 //! differences, their times alternate, and their results are compared. With `--plot FILE`, the cost against the number of
 //! sections as SVG.
 
+#![allow(clippy::print_stdout)]
+
 use std::fmt::Write as _;
 use std::process::Command;
 use std::time::Instant;

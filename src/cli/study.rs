@@ -191,7 +191,7 @@ impl Common {
         if !(self.width > 0.0 && self.width < 1.0) {
             problems.push(Problem::error("width", format!("`--width {}` is not between 0 and 1", self.width)));
         }
-        if !(self.enumerate >= 0.0) {
+        if self.enumerate.is_nan() || self.enumerate < 0.0 {
             problems.push(Problem::error("enumerate", format!("`--enumerate {}` is no number of selections", self.enumerate)));
         }
         problems

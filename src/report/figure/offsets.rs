@@ -28,11 +28,10 @@ pub fn selection(study: &SyncStudy) -> String {
             })
             .collect()
     };
-    let panels: Vec<(&str, bool, Vec<(usize, String)>)> =
-        [("mean / limit", true, of(true)), ("standard deviation / limit", false, of(false))]
-            .into_iter()
-            .filter(|(.., statistics)| !statistics.is_empty())
-            .collect();
+    let panels: Vec<_> = [("mean / limit", true, of(true)), ("standard deviation / limit", false, of(false))]
+        .into_iter()
+        .filter(|(.., statistics)| !statistics.is_empty())
+        .collect();
     let mut canvas = Canvas::new(WIDTH, top + panels.len() as f64 * (PANEL + LABELS + 8.0));
     legend.draw(&mut canvas, (40.0, 0.0));
     for (at, (title, signed, statistics)) in panels.iter().enumerate() {
