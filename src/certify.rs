@@ -33,17 +33,9 @@ pub fn compile(family: Family, overrides: &Overrides, problems: &mut Problems) -
 /// What makes the campaign unusable as a whole; see [`run::run`].
 pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Certification, Problems> {
     let outcome = run::run(&compiled.plan, &compiled.graph, campaign, settings, progress)?;
-    let mut files: Vec<FileHash> =
-        campaign.files.iter().map(|file| FileHash { path: file.path.clone(), sha256: file.sha256.clone(), bytes: file.bytes }).collect();
-    files.extend(outcome.files);
     Ok(Certification {
         protocol: protocol_info(compiled),
-        campaign: CampaignInfo {
-            name: campaign.name.clone(),
-            files,
-            vehicle: vehicle_items(&compiled.plan, campaign, outcome.vehicle),
-            facts: campaign.facts.iter().map(fact_item).collect(),
-        },
+        campaign: campaign_info(&compiled.plan, campaign, outcome.files, outcome.vehicle),
         verdict: outcome.verdict,
         reasons: outcome.reasons,
         quantities: outcome.quantities,
@@ -55,7 +47,21 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
     })
 }
 
-fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
+/// What a report says of the campaign: all files read, the records last, and the vehicle with what the protocol reads first.
+pub fn campaign_info(plan: &Plan, campaign: &Campaign, records: Vec<FileHash>, vehicle: Vec<DataItem>) -> CampaignInfo {
+    let mut files: Vec<FileHash> =
+        campaign.files.iter().map(|file| FileHash { path: file.path.clone(), sha256: file.sha256.clone(), bytes: file.bytes }).collect();
+    files.extend(records);
+    CampaignInfo {
+        name: campaign.name.clone(),
+        files,
+        vehicle: vehicle_items(plan, campaign, vehicle),
+        facts: campaign.facts.iter().map(fact_item).collect(),
+    }
+}
+
+/// What a report says of the protocol.
+pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
     let Compiled { family, plan, graph } = compiled;
     let files: Vec<ProtocolFile> = family
         .sources

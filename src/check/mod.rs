@@ -258,6 +258,7 @@ impl Checker<'_> {
                 value: found.value_words.clone(),
                 default: found.default_words.clone(),
                 set_by: found.set_by,
+                choices: if let plan::Type::Word(choices) = &found.ty { choices.clone() } else { Vec::new() },
             })
             .collect();
         let text = |key: &str| head.field(key).map(|field| field.value.text.clone());

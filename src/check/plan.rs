@@ -45,6 +45,8 @@ pub struct Parameter {
     pub value: String,
     pub default: String,
     pub set_by: SetBy,
+    /// Its words, where it is a choice of words.
+    pub choices: Vec<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,27 +1,18 @@
 //! `certify`: the main job.
 
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::inputs::{Prepared, prepare, progress_bar};
 use super::output::{Console, Exit};
-use super::protocols::load;
-use crate::certify::{Compiled, certify, compile};
-use crate::check::family::{self, Family};
-use crate::check::{Override, Overrides, plan::SetBy};
-use crate::data::Campaign;
-use crate::data::text::read_text;
+use crate::certify::certify;
 use crate::data::write::Outputs;
-use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::report::{figure, html, json, number, tables, typst, view};
 use crate::result::{Certification, Verdict};
 use crate::run::Settings;
-use crate::source::{Source, Spanned};
-use crate::syntax::document::Text;
 
 #[derive(Debug, Args)]
 pub struct Certify {
@@ -68,7 +59,7 @@ impl Certify {
         let mut problems = Problems::default();
         let prepared = prepare(&self.campaign, self.protocol.as_deref(), &self.set, &mut problems);
         console.problems(&problems);
-        let Some((compiled, campaign)) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let Some(Prepared { compiled, campaign, .. }) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
         let bar = progress_bar(console, campaign.names.len());
         let settings = Settings { traces: if self.only == Only::Results { 0 } else { self.plots } };
         let found = certify(&compiled, &campaign, settings, &|section| {
@@ -129,76 +120,6 @@ impl Certify {
         files.push(("results.json".into(), results.into_bytes()));
         Ok(files)
     }
-}
-
-/// A campaign, and the protocol to run on it, ready to run.
-pub fn prepare(folder: &Path, protocol: Option<&str>, set: &[String], problems: &mut Problems) -> Option<(Compiled, Campaign)> {
-    let campaign = Campaign::open(folder, problems)?;
-    let family = match (protocol, &campaign.protocol) {
-        (Some(name), _) => load(name, problems),
-        (None, Some(named)) => campaign_protocol(&campaign, named, problems),
-        (None, None) => load(library::SHIPPED[0].name, problems),
-    }?;
-    let overrides = overrides(set, &campaign, problems)?;
-    let compiled = compile(family, &overrides, problems)?;
-    Some((compiled, campaign))
-}
-
-/// Parameters of the campaign, and over them those of the command line.
-fn overrides(set: &[String], campaign: &Campaign, problems: &mut Problems) -> Option<Overrides> {
-    let mut overrides = Overrides::new();
-    for parameter in &campaign.parameters {
-        let value = &parameter.value;
-        let text = Text { text: value.raw.clone(), span: value.span.clone(), exact: value.exact };
-        overrides.insert(parameter.name.text.clone(), Override { text, set_by: SetBy::Campaign });
-    }
-    for set in set {
-        let Some((name, value)) = set.split_once('=') else {
-            problems.push(Problem::error("set", format!("`--set {set}` has no `=`")).help("write `--set name=value`"));
-            return None;
-        };
-        let source = Source::new("--set", set.clone());
-        let span = source.span(name.len() + 1..set.len());
-        overrides.insert(
-            name.trim().to_string(),
-            Override { text: Text { text: value.to_string(), span, exact: true }, set_by: SetBy::CommandLine },
-        );
-    }
-    Some(overrides)
-}
-
-/// The protocol a campaign names: a shipped one, or a file inside the campaign, as are those it extends.
-fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mut Problems) -> Option<Family> {
-    let inside = |named: &Spanned<String>| {
-        if let Some(shipped) = library::shipped(&named.value) {
-            return Ok(shipped);
-        }
-        let place = campaign.place(named)?;
-        read_text(&place.path, &place.shown).map(|(source, _)| source).map_err(|problem| {
-            let problem = if problem.at.is_some() { problem } else { problem.at(&named.span) };
-            if problem.code == "file-missing" { problem.suggest(&named.value, library::names()) } else { problem }
-        })
-    };
-    let source = inside(named).map_err(|problem| problems.push(problem)).ok()?;
-    let parent = |name: &str, from: &Source| {
-        if let Some(shipped) = library::shipped(name) {
-            return Ok(shipped);
-        }
-        let beside = Path::new(campaign.inside(&from.name)).parent().unwrap_or(Path::new(""));
-        inside(&Spanned::new(beside.join(name).display().to_string(), source.whole())).map_err(Box::new)
-    };
-    Some(family::read(&source, &parent, problems))
-}
-
-pub fn progress_bar(console: &Console, sections: usize) -> Arc<ProgressBar> {
-    let bar = ProgressBar::new(sections as u64);
-    if console.quiet {
-        bar.set_draw_target(ProgressDrawTarget::hidden());
-    }
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
-        bar.set_style(style);
-    }
-    Arc::new(bar)
 }
 
 /// The table of verdicts on the terminal.

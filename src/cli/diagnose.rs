@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::certify::prepare;
+use super::inputs::{Prepared, prepare};
 use super::output::{Console, Exit};
 use super::simulate::load_catalogue;
 use super::simulator::{Chosen, SimulatorChoice};
@@ -134,7 +134,7 @@ pub fn exit(diagnosis: &Diagnosis) -> Exit {
 
 /// Opens everything and diagnoses.
 pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &mut Problems) -> Option<(Campaign, Outcome)> {
-    let (compiled, campaign) = prepare(asked.folder, asked.protocol, &[], problems)?;
+    let Prepared { compiled, campaign, .. } = prepare(asked.folder, asked.protocol, &[], problems)?;
     let catalogue = load_catalogue(asked.catalogue, problems)?;
     let settings = Settings::read(&catalogue, problems)?;
     let sections = sections(&campaign, problems);

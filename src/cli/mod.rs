@@ -4,9 +4,12 @@ mod certify;
 mod diagnose;
 mod effects;
 mod explain;
+mod inputs;
 mod output;
 mod protocols;
 mod simulate;
+mod study;
+mod values;
 mod simulator;
 
 use std::path::PathBuf;
@@ -42,6 +45,12 @@ enum Command {
     /// Run a protocol over a campaign and write the report.
     #[command(after_help = "Example:\n  fishplate certify examples/coach --out target/coach-report")]
     Certify(certify::Certify),
+    /// How far the verdict depends on choices: sections, synchronisation, parameters of the protocol.
+    #[command(after_help = "Example:\n  fishplate study sections examples/coach --out target/coach-sections")]
+    Study {
+        #[command(subcommand)]
+        study: study::Study,
+    },
     /// Simulate one section, or every section of a campaign, with the reference vehicle model or another simulator; effects can be added.
     #[command(
         after_help = "Example:\n  fishplate simulate examples/coach --effect friction=0.5 --out target/coach-wet\n  fishplate simulate examples/coach --simulator sim.yaml --increment --effect friction=0.5 --out target/coach-wet\n  fishplate simulate --vehicle examples/coach/vehicle.yaml --track examples/coach/track/S13.csv --speed '70 km/h' -o S13.csv"
@@ -136,6 +145,7 @@ pub fn run() -> Exit {
     let console = Console::new(arguments.quiet, arguments.color);
     match arguments.command {
         Command::Certify(certify) => certify.run(&console),
+        Command::Study { study } => study.run(&console),
         Command::Simulate(simulate) => simulate.run(&console),
         Command::Diagnose(diagnose) => diagnose.run(&console),
         Command::Effects(effects) => effects.run(&console),

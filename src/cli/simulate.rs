@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use rayon::prelude::*;
 
-use super::certify::progress_bar;
+use super::inputs::progress_bar;
 use super::output::{Console, Exit};
 use super::simulator::{Chosen, SimulatorChoice};
 use crate::data::text::read_text;

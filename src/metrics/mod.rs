@@ -12,6 +12,7 @@
 //! | [`percentile`] | values | order statistics, interpolated |
 //! | [`statistics`], [`interval`] | values | mean, scatter, extremes, regression; confidence intervals |
 //! | [`pair`] | simulated and measured signal | how well they agree |
+//! | [`synchronise`] | signals of two records | by how much one lies ahead of the other |
 //! | [`hysteresis`] | two loops of output over input | how well they agree, branch by branch |
 
 pub mod filter;
@@ -23,4 +24,5 @@ pub mod percentile;
 pub mod resample;
 pub mod statistics;
 mod sum;
+pub mod synchronise;
 pub mod window;

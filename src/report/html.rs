@@ -7,18 +7,22 @@ use std::collections::BTreeMap;
 
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, UndefinedBehavior, Value, context};
+use serde::Serialize;
 use serde_json::Value as Json;
 use sha2::{Digest, Sha256};
 
 use crate::problem::{Problem, Problems};
+use crate::report::study::Document;
 use crate::report::view::ReportData;
 use crate::report::visible::visible;
 
 const CSS: &str = include_str!("../../templates/html/report.css");
 const SCRIPT: &str = include_str!("../../templates/html/report.js");
 
-const TEMPLATES: [(&str, &str); 13] = [
+const TEMPLATES: [(&str, &str); 15] = [
     ("report.html", include_str!("../../templates/report.html")),
+    ("study.html", include_str!("../../templates/study.html")),
+    ("html/study.html", include_str!("../../templates/html/study.html")),
     ("html/macros.html", include_str!("../../templates/html/macros.html")),
     ("html/navigation.html", include_str!("../../templates/html/navigation.html")),
     ("html/cover.html", include_str!("../../templates/html/cover.html")),
@@ -45,10 +49,19 @@ const GRAPH: &str = "graph";
 ///
 /// `report-template`: a template cannot be filled.
 pub fn html(data: &ReportData, figures: &[(String, String)]) -> Result<String, Problems> {
-    filled(data, figures).map_err(|error| Problems(vec![Problem::error("report-template", error)]))
+    filled("report.html", data, figures).map_err(|error| Problems(vec![Problem::error("report-template", error)]))
 }
 
-fn filled(data: &ReportData, figures: &[(String, String)]) -> Result<String, String> {
+/// A study as one HTML page, as [`html`] makes one of a certification.
+///
+/// # Errors
+///
+/// As [`html`].
+pub fn study_html(data: &Document, figures: &[(String, String)]) -> Result<String, Problems> {
+    filled("study.html", data, figures).map_err(|error| Problems(vec![Problem::error("report-template", error)]))
+}
+
+fn filled(frame: &str, data: &impl Serialize, figures: &[(String, String)]) -> Result<String, String> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build().map_err(said)?);
@@ -64,7 +77,7 @@ fn filled(data: &ReportData, figures: &[(String, String)]) -> Result<String, Str
     // The graph is wide and has styles of its own: an image keeps both to itself.
     let graph =
         figures.iter().find(|(name, _)| name == GRAPH).map(|(_, svg)| format!("data:image/svg+xml;base64,{}", base64(svg.as_bytes())));
-    let page = environment.get_template("report.html").map_err(said)?;
+    let page = environment.get_template(frame).map_err(said)?;
     page.render(context! {
         data => shown(&data),
         figures => drawn,

@@ -6,6 +6,7 @@ pub mod figure;
 pub mod html;
 pub mod json;
 pub mod number;
+pub mod study;
 pub mod tables;
 pub mod typst;
 pub mod view;

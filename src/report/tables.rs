@@ -9,13 +9,7 @@ use crate::result::Certification;
 pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Error> {
     let mut all = Vec::new();
     let mut add = |name: &str, header: &[&str], rows: Vec<Vec<String>>| -> Result<(), csv::Error> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(header)?;
-        for row in rows {
-            writer.write_record(row)?;
-        }
-        let bytes = writer.into_inner().map_err(|error| error.into_error())?;
-        all.push((format!("{name}.csv"), bytes));
+        all.push(csv_file(name, header, rows)?);
         Ok(())
     };
     let statistics = found.quantities.iter().flat_map(|quantity| {
@@ -127,6 +121,20 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
     let files = found.campaign.files.iter().map(|file| vec![file.path.clone(), file.bytes.to_string(), file.sha256.clone()]);
     add("files", &["file", "bytes", "sha256"], files.collect())?;
     Ok(all)
+}
+
+/// A table as a file of its name.
+///
+/// # Errors
+/// What the CSV writer says; it writes to memory.
+pub fn csv_file(name: &str, header: &[&str], rows: Vec<Vec<String>>) -> Result<(String, Vec<u8>), csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header)?;
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    Ok((format!("{name}.csv"), bytes))
 }
 
 fn section_header(found: &Certification) -> Vec<&str> {

@@ -2,6 +2,8 @@
 //!
 //! Numbers are in the display unit named beside them. What could not be computed is `None` with a reason, never NaN.
 
+pub mod study;
+
 use serde::Serialize;
 
 /// Everything a report prints, in the order of the protocol and of the campaign.

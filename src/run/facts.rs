@@ -7,7 +7,7 @@ use crate::problem::{Problem, Problems};
 use crate::result::DataItem;
 
 /// Values of the vehicle, one for each [`Plan::vehicle`].
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Facts {
     pub vehicle: Vec<Scalar>,
 }

@@ -41,20 +41,20 @@ pub fn compare(plan: &Plan, facts: &Facts, quantity: &Quantity, members: &[Membe
     all
 }
 
-fn applies(limit: &Limit, facts: &Facts) -> Result<bool, String> {
+pub fn applies(limit: &Limit, facts: &Facts) -> Result<bool, String> {
     limit.only_when.as_ref().map_or(Ok(true), |condition| flag(condition, &Known::vehicle(facts)))
 }
 
 /// What a statistic is taken over.
 #[derive(Clone, Debug)]
-enum Part<'a> {
+pub enum Part<'a> {
     All,
     Zones(Vec<String>),
     Where(&'a Scope),
 }
 
 /// A limit of zones that need no section and have none is left out.
-fn parts<'a>(plan: &Plan, limit: &'a Limit, members: &[Member<'_>]) -> Vec<Part<'a>> {
+pub fn parts<'a>(plan: &Plan, limit: &'a Limit, members: &[Member<'_>]) -> Vec<Part<'a>> {
     let needed = |name: &str| plan.zones.iter().any(|zone| zone.name == name && zone.minimum_sections > 0);
     let filled = |zone: &str| members.iter().any(|(unit, _, _)| unit.zone.as_deref() == Some(zone));
     match &limit.scope {
@@ -66,7 +66,12 @@ fn parts<'a>(plan: &Plan, limit: &'a Limit, members: &[Member<'_>]) -> Vec<Part<
 }
 
 impl Part<'_> {
-    fn in_words(&self) -> String {
+    /// What a limit of a single value is about: the zone of its section.
+    pub fn of_section(plan: &Plan, unit: &Unit) -> Self {
+        unit.zone.as_ref().filter(|_| !plan.zones.is_empty()).map_or(Part::All, |zone| Part::Zones(vec![zone.clone()]))
+    }
+
+    pub fn in_words(&self) -> String {
         match self {
             Self::All => "all".into(),
             Self::Zones(zones) => format!("{} {}", if zones.len() == 1 { "zone" } else { "zones" }, zones.join(", ")),
@@ -75,7 +80,7 @@ impl Part<'_> {
         }
     }
 
-    fn has(&self, unit: &Unit, facts: &Facts) -> Result<bool, String> {
+    pub fn has(&self, unit: &Unit, facts: &Facts) -> Result<bool, String> {
         match self {
             Self::All => Ok(true),
             Self::Zones(zones) => Ok(unit.zone.as_ref().is_some_and(|zone| zones.contains(zone))),
@@ -207,7 +212,7 @@ fn each(
     let mut all_hold = true;
     for (unit, _, pair) in members {
         // The limit of another statistic, if this one refers to it, is that of the section's zone.
-        let part = unit.zone.as_ref().filter(|_| !plan.zones.is_empty()).map_or(Part::All, |zone| Part::Zones(vec![zone.clone()]));
+        let part = Part::of_section(plan, unit);
         let bound = Bounds { quantity, part: &part, facts, known: &unit.known(facts) }
             .of(limit, 0)
             .map_err(|reason| format!("section {}: {}", unit.name, no_limit(&reason)))?;
@@ -236,16 +241,17 @@ fn against(value: f64, bound: f64, at_least: bool) -> (Option<f64>, bool) {
 }
 
 /// Limits in SI, for one part of one quantity.
-struct Bounds<'a> {
-    quantity: &'a Quantity,
-    part: &'a Part<'a>,
-    facts: &'a Facts,
-    known: &'a Known<'a>,
+#[derive(Debug)]
+pub struct Bounds<'a> {
+    pub quantity: &'a Quantity,
+    pub part: &'a Part<'a>,
+    pub facts: &'a Facts,
+    pub known: &'a Known<'a>,
 }
 
 impl Bounds<'_> {
     /// The limit with its factors; a reference to another statistic is that statistic's limit, factors included.
-    fn of(&self, limit: &Limit, depth: usize) -> Result<f64, String> {
+    pub fn of(&self, limit: &Limit, depth: usize) -> Result<f64, String> {
         if depth > self.quantity.limits.len() {
             return Err("it depends on itself".into());
         }

@@ -5,10 +5,12 @@ mod facts;
 mod judge;
 mod limits;
 mod pairs;
+pub mod pool;
 mod record;
 mod requirements;
 mod sections;
 mod signal;
+mod synchronisation;
 mod traces;
 
 use indexmap::IndexMap;
@@ -21,8 +23,11 @@ use crate::problem::{Problem, Problems};
 use crate::result::{DataItem, FileHash, QuantityResult, SectionResult, Trace, Verdict, ZoneResult};
 
 pub use facts::Facts;
+pub use judge::Judged;
 use pairs::SectionValues;
+use pool::Pool;
 use sections::Unit;
+pub use synchronisation::{Offset, Shifts};
 
 /// What a run computed; the report adds what the protocol and the campaign say about themselves.
 #[derive(Debug)]
@@ -51,53 +56,145 @@ pub struct Settings {
 /// Told whenever a record is done, from any thread.
 pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
 
+/// A campaign with every section evaluated, before anything is judged.
+#[derive(Debug)]
+pub struct Evaluated {
+    facts: Facts,
+    units: Vec<Unit>,
+    values: Vec<SectionValues>,
+    notes: Vec<String>,
+    /// Records in the order of the sections.
+    pub files: Vec<FileHash>,
+}
+
 /// Runs the whole protocol.
 ///
 /// # Errors
 /// What makes the campaign unusable as a whole: vehicle data missing, no usable section, or a fault where the protocol says to stop.
 pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Outcome, Problems> {
-    let mut problems = Problems::default();
-    let facts = Facts::read(plan, campaign, &mut problems);
-    let mut units = sections::units(plan, campaign, &mut problems);
-    if problems.any_error() {
-        return Err(problems);
-    }
-    let mut notes = Vec::new();
-    let present = record::present_columns(graph, campaign, &facts, &units, &mut notes);
-    requirements::check_data(plan, &facts, &mut units);
-    stop_on_fault(plan, &units, &[])?;
-    let work = record::Work { plan, graph, campaign, facts: &facts, present: &present };
-    let values: Vec<SectionValues> = units
-        .par_iter()
-        // Sections differ in length: shared out one by one, no worker is left with several while another has none.
-        .with_max_len(1)
-        .map(|unit| {
-            let values = if unit.fault.is_some() { SectionValues::default() } else { pairs::of_section(&work, unit) };
-            progress(&unit.name);
-            values
-        })
-        .collect();
-    requirements::take_over(plan, &mut units, &values, &mut notes)?;
-    stop_on_fault(plan, &units, &values)?;
-    if units.iter().all(|unit| unit.fault.is_some()) {
-        return Err(nothing_usable(&units, values));
-    }
-    let judged = judge::judge(plan, &facts, &units, &values);
-    let traces = traces::traces(&work, &units, &judged.quantities, settings.traces);
-    let files = values.iter().flat_map(|values| values.files.iter().cloned()).collect();
-    let domain = domain::domain(plan, &units);
+    let prepared = Prepared::new(plan, graph, campaign)?;
+    let evaluated = prepared.evaluate(&Shifts::NONE, progress)?.swap_remove(0);
+    let Evaluated { units, values, notes, files, .. } = &evaluated;
+    let judged = judge::judge(plan, &evaluated.facts, units, values);
+    let traces = traces::traces(&prepared.work(), units, &judged.quantities, settings.traces);
+    let domain = domain::domain(plan, units);
     Ok(Outcome {
         verdict: judged.verdict,
         reasons: judged.reasons,
         quantities: judged.quantities,
         zones: judged.zones,
-        sections: sections::results(plan, units),
         domain,
         traces,
-        vehicle: plan.vehicle.iter().zip(&facts.vehicle).map(|(datum, value)| facts::item(datum, Some(value))).collect(),
-        notes,
-        files,
+        vehicle: evaluated.vehicle(plan),
+        notes: notes.clone(),
+        files: files.clone(),
+        sections: sections::results(plan, evaluated.units),
     })
+}
+
+/// Evaluates every section with the measurement at each of several shifts; filters run once.
+///
+/// # Errors
+/// As [`run`].
+pub fn evaluate(
+    plan: &Plan,
+    graph: &Graph,
+    campaign: &Campaign,
+    shifts: &Shifts<'_>,
+    progress: Progress<'_>,
+) -> Result<Vec<Evaluated>, Problems> {
+    Prepared::new(plan, graph, campaign)?.evaluate(shifts, progress)
+}
+
+impl Evaluated {
+    /// What a certification of all usable sections finds.
+    pub fn judge(&self, plan: &Plan) -> Judged {
+        judge::judge(plan, &self.facts, &self.units, &self.values)
+    }
+
+    /// Every value and limit that the verdict rests on.
+    pub fn pool(&self, plan: &Plan) -> Pool {
+        pool::pool(plan, &self.facts, &self.units, &self.values)
+    }
+
+    /// Vehicle data that the protocol reads.
+    pub fn vehicle(&self, plan: &Plan) -> Vec<DataItem> {
+        plan.vehicle.iter().zip(&self.facts.vehicle).map(|(datum, value)| facts::item(datum, Some(value))).collect()
+    }
+
+    /// Remarks that do not change the verdict.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Each section with the shift found for it [SI of the axis], where that was asked for.
+    pub fn offsets(&self) -> impl Iterator<Item = (&str, Option<&str>, Option<&Offset>)> {
+        self.units.iter().zip(&self.values).map(|(unit, values)| (unit.name.as_str(), unit.zone.as_deref(), values.offset.as_ref()))
+    }
+}
+
+/// What is read before any record.
+struct Prepared<'a> {
+    plan: &'a Plan,
+    graph: &'a Graph,
+    campaign: &'a Campaign,
+    facts: Facts,
+    units: Vec<Unit>,
+    notes: Vec<String>,
+    present: Vec<Vec<bool>>,
+}
+
+impl<'a> Prepared<'a> {
+    fn new(plan: &'a Plan, graph: &'a Graph, campaign: &'a Campaign) -> Result<Self, Problems> {
+        let mut problems = Problems::default();
+        let facts = Facts::read(plan, campaign, &mut problems);
+        let mut units = sections::units(plan, campaign, &mut problems);
+        if problems.any_error() {
+            return Err(problems);
+        }
+        let mut notes = Vec::new();
+        let present = record::present_columns(graph, campaign, &facts, &units, &mut notes);
+        requirements::check_data(plan, &facts, &mut units);
+        stop_on_fault(plan, &units, &[])?;
+        Ok(Self { plan, graph, campaign, facts, units, notes, present })
+    }
+
+    fn work(&self) -> record::Work<'_> {
+        record::Work { plan: self.plan, graph: self.graph, campaign: self.campaign, facts: &self.facts, present: &self.present }
+    }
+
+    fn evaluate(&self, shifts: &Shifts<'_>, progress: Progress<'_>) -> Result<Vec<Evaluated>, Problems> {
+        let work = self.work();
+        let mut values: Vec<Vec<SectionValues>> = self
+            .units
+            .par_iter()
+            // Sections differ in length: shared out one by one, no worker is left with several while another has none.
+            .with_max_len(1)
+            .map(|unit| {
+                let faulty = || vec![SectionValues::default(); shifts.offsets.len()];
+                let values = if unit.fault.is_some() { faulty() } else { pairs::of_section(&work, unit, shifts) };
+                progress(&unit.name);
+                values
+            })
+            .collect();
+        let of_shift = |(at, offset): (usize, &f64)| {
+            let values = values.iter_mut().map(|all| std::mem::take(&mut all[at])).collect();
+            self.at(values, *offset == 0.0)
+        };
+        shifts.offsets.iter().enumerate().map(of_shift).collect()
+    }
+
+    /// All sections at one shift; without one, some section must be usable.
+    fn at(&self, values: Vec<SectionValues>, needed: bool) -> Result<Evaluated, Problems> {
+        let (mut units, mut notes) = (self.units.clone(), self.notes.clone());
+        requirements::take_over(self.plan, &mut units, &values, &mut notes)?;
+        stop_on_fault(self.plan, &units, &values)?;
+        if needed && units.iter().all(|unit| unit.fault.is_some()) {
+            return Err(nothing_usable(&units, values));
+        }
+        let files = values.iter().flat_map(|values| values.files.iter().cloned()).collect();
+        Ok(Evaluated { facts: self.facts.clone(), units, values, notes, files })
+    }
 }
 
 /// A protocol may say that a fault in one section ends the run. The problems of its records say where it is.

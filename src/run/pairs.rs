@@ -6,6 +6,7 @@ use super::facts::Known;
 use super::record::{Fault, Found, Opened, Work, needed, open};
 use super::sections::Unit;
 use super::signal::{Extent, Samples};
+use super::synchronisation::{self, Offset, Shifts};
 use crate::catalog::Pair;
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Check, Evaluation, Input, InputSide, Quantity, StepSpec};
@@ -18,7 +19,7 @@ use crate::result::{CheckResult, FileHash};
 use crate::units::Dimension;
 
 /// What one section came to.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct SectionValues {
     /// For each quantity and signal, SI; `None` where the position was not recorded or the quantity leaves the section out.
     pub pairs: Vec<Vec<Option<PairSi>>>,
@@ -28,6 +29,8 @@ pub struct SectionValues {
     pub extent: Option<Extent>,
     /// Record beyond the section [s], where it is too little for a slow filter to settle.
     pub short_margin: Option<f64>,
+    /// Where the measurement lies against the simulation, where that was asked for.
+    pub offset: Option<Offset>,
     pub fault: Option<String>,
     pub problems: Vec<Problem>,
 }
@@ -43,18 +46,25 @@ pub struct PairSi {
 /// Values of the wanted nodes of one record.
 type Evaluated = Vec<(NodeId, Found)>;
 
-pub fn of_section(work: &Work<'_>, unit: &Unit) -> SectionValues {
-    let mut values = SectionValues::default();
-    if let Err(fault) = fill(work, unit, &mut values) {
-        values.fault = Some(fault.says);
-        values.problems = fault.problems;
+/// The simulated record, evaluated.
+pub type Simulated<'a> = &'a [(NodeId, Found)];
+
+/// The section, once for each shift.
+pub fn of_section(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>) -> Vec<SectionValues> {
+    let mut common = SectionValues::default();
+    match fill(work, unit, shifts, &mut common) {
+        Ok(all) => all,
+        Err(fault) => {
+            common.fault = Some(fault.says);
+            common.problems = fault.problems;
+            vec![common; shifts.offsets.len()]
+        }
     }
-    values
 }
 
-fn fill(work: &Work<'_>, unit: &Unit, values: &mut SectionValues) -> Result<(), Fault> {
+fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionValues) -> Result<Vec<SectionValues>, Fault> {
     let known = unit.known(work.facts);
-    track_checks(work, unit, &known, values)?;
+    track_checks(work, unit, &known, common)?;
     let active: Vec<bool> = work
         .plan
         .quantities
@@ -62,17 +72,66 @@ fn fill(work: &Work<'_>, unit: &Unit, values: &mut SectionValues) -> Result<(), 
         .map(|quantity| quantity.only.as_ref().map_or(Ok(true), |only| flag(only, &known)))
         .collect::<Result<_, _>>()
         .map_err(Fault::new)?;
-    let wanted = wanted(work, &active);
+    let mut wanted = wanted(work, &active);
+    if shifts.farthest.is_some() {
+        wanted.extend(synchronisation::signals(work, &active));
+    }
     // The simulated record is reduced to numbers before the measured one is opened: one record in memory at a time.
-    let simulated = side(work, unit, RecordKind::Simulation, &wanted, &known, values).map(|(simulated, _)| simulated);
-    let measured = side(work, unit, RecordKind::Measurement, &wanted, &known, values);
-    let (simulated, (measured, opened)) = match (simulated, measured) {
+    let simulated = side(work, unit, RecordKind::Simulation, &wanted, &known, common).map(|(simulated, _)| simulated);
+    let measured = if shifts.plain() {
+        side(work, unit, RecordKind::Measurement, &wanted, &known, common).map(|(found, opened)| (vec![Ok(found)], opened.extent))
+    } else {
+        match &simulated {
+            Ok(simulated) => shifted(work, unit, shifts, &wanted, &known, simulated, common),
+            Err(_) => side(work, unit, RecordKind::Measurement, &wanted, &known, common).map(|(_, opened)| (Vec::new(), opened.extent)),
+        }
+    };
+    let (simulated, (measured, extent)) = match (simulated, measured) {
         (Ok(simulated), Ok(measured)) => (simulated, measured),
         (Err(first), Err(second)) => return Err(first.and(second)),
         (Err(fault), _) | (_, Err(fault)) => return Err(fault),
     };
-    values.extent = Some(opened.extent);
-    let sides = Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent };
+    common.extent = Some(extent);
+    let one = |measured: Result<Evaluated, String>| {
+        let mut values = common.clone();
+        let filled = measured.map_err(Fault::new).and_then(|measured| {
+            let sides = Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent };
+            quantities(work, &sides, &active, &mut values)?;
+            record_checks(work, &sides, &mut values);
+            Ok(())
+        });
+        if let Err(fault) = filled {
+            values.fault = Some(fault.says);
+            values.problems = fault.problems;
+        }
+        values
+    };
+    Ok(measured.into_iter().map(one).collect())
+}
+
+/// The measured record cut at every shift; its filters run once.
+fn shifted(
+    work: &Work<'_>,
+    unit: &Unit,
+    shifts: &Shifts<'_>,
+    wanted: &BTreeSet<NodeId>,
+    known: &Known<'_>,
+    simulated: &Evaluated,
+    common: &mut SectionValues,
+) -> Result<(Vec<Result<Evaluated, String>>, Extent), Fault> {
+    let needed = needed(work.graph, wanted, known).map_err(Fault::new)?;
+    let opened = open(work, unit, RecordKind::Measurement, &needed)?;
+    common.files.push(opened.file.clone());
+    note_margins(work, unit, &needed, &opened, common);
+    let placed = |says: String| format!("{}: {says}", opened.file.path);
+    let held = opened.hold(work.graph, &needed, wanted, known, work.plan.sections.percentiles).map_err(|says| Fault::new(placed(says)))?;
+    common.offset = shifts.farthest.and_then(|farthest| synchronisation::estimate(unit, farthest, simulated, &held));
+    let own = if shifts.correct { common.offset.as_ref().map_or(0.0, |offset| offset.shift) } else { 0.0 };
+    let all = shifts.offsets.iter().map(|offset| held.at(own + offset).map_err(placed)).collect();
+    Ok((all, opened.extent))
+}
+
+fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &[bool], values: &mut SectionValues) -> Result<(), Fault> {
     for (index, quantity) in work.plan.quantities.iter().enumerate() {
         let mut pairs = Vec::new();
         for (number, nodes) in work.graph.quantities[index].signals.iter().enumerate() {
@@ -85,7 +144,6 @@ fn fill(work: &Work<'_>, unit: &Unit, values: &mut SectionValues) -> Result<(), 
         }
         values.pairs.push(pairs);
     }
-    record_checks(work, &sides, values);
     Ok(())
 }
 

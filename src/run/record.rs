@@ -180,49 +180,119 @@ impl Opened {
         known: &Known<'_>,
         method: Method,
     ) -> Result<Vec<(NodeId, Found)>, String> {
-        let mut state = State {
-            opened: self,
-            graph,
-            known,
-            method,
-            values: vec![None; graph.nodes.len()],
-            uses: vec![0; graph.nodes.len()],
-            cutter: Cutter::new(self.extent),
-            found: Vec::new(),
-        };
-        let mut level = vec![0_usize; graph.nodes.len()];
-        let mut deepest = 0;
+        let mut state = State::new(self, graph, known, method);
+        let levels = state.count(needed);
+        state.run(&levels, wanted, |_| true)?;
+        Ok(state.found)
+    }
+
+    /// As far as nothing depends on where the section lies: filters have run, nothing is cut.
+    pub fn hold<'a>(
+        &'a self,
+        graph: &'a Graph,
+        needed: &BTreeSet<NodeId>,
+        wanted: &'a BTreeSet<NodeId>,
+        known: &'a Known<'a>,
+        method: Method,
+    ) -> Result<Held<'a>, String> {
+        let mut state = State::new(self, graph, known, method);
+        let levels = state.count(needed);
+        let mut placed = vec![false; graph.nodes.len()];
         for &id in needed {
-            for &input in &graph.nodes[id].inputs {
-                if needed.contains(&input) {
-                    state.uses[input] += 1;
-                    level[id] = level[id].max(level[input] + 1);
-                }
-            }
-            deepest = deepest.max(level[id]);
+            let node = &graph.nodes[id];
+            let here = matches!(node.operation, Operation::Cut | Operation::Window(_) | Operation::Reduce(_));
+            placed[id] = here || node.inputs.iter().any(|&input| placed[input]);
         }
-        for depth in 0..=deepest {
-            let here: Vec<NodeId> = needed.iter().copied().filter(|&id| level[id] == depth).collect();
-            state.filters(&here)?;
-            state.reducers(&here)?;
-            for &id in &here {
-                if state.values[id].is_none() && !matches!(graph.nodes[id].operation, Operation::Reduce(_)) {
-                    let value = state.one(id).map_err(|error| format!("{} ({})", error, graph.nodes[id].label))?;
-                    state.values[id] = Some(value);
-                }
-            }
-            for &id in &here {
-                if wanted.contains(&id) && state.values[id].is_some() {
-                    let samples = state.samples(id)?;
-                    state.found.push((id, Found::Samples(samples)));
-                }
-                state.release(id);
+        state.run(&levels, wanted, |id| !placed[id])?;
+        Ok(Held { state, levels, placed, wanted })
+    }
+}
+
+/// A record whose filters have run, to be cut at several places.
+#[derive(Debug)]
+pub struct Held<'a> {
+    state: State<'a>,
+    levels: Vec<Vec<NodeId>>,
+    /// Nodes that depend on where the section lies.
+    placed: Vec<bool>,
+    wanted: &'a BTreeSet<NodeId>,
+}
+
+impl Held<'_> {
+    /// A wanted signal of the whole record.
+    pub fn samples(&self, node: NodeId) -> Option<&Samples> {
+        self.state.found.iter().find_map(|(id, found)| match found {
+            Found::Samples(samples) if *id == node => Some(samples),
+            _ => None,
+        })
+    }
+
+    /// The part of the section that the moved record covers.
+    fn covered(&self, shift: f64) -> Result<Extent, String> {
+        let (start, end) = self.state.extent;
+        if shift == 0.0 {
+            return Ok((start, end));
+        }
+        let axis = &self.state.opened.along.axis;
+        let from = axis.first().map_or(start, |x| (x + shift).max(start));
+        let to = axis.last().map_or(end, |x| (x + shift).min(end));
+        let missing = (end - start) - (to - from);
+        if missing > MOST_MISSING * (end - start) {
+            return Err(format!("shifted by {shift} along the axis, the record ends {missing:.3} short of the section"));
+        }
+        Ok((from, to))
+    }
+
+    /// Values of the wanted nodes with the record moved along the axis by a shift (SI) before the section is cut.
+    ///
+    /// # Errors
+    /// Where the moved record covers too little of the section, and as evaluation.
+    pub fn at(&self, shift: f64) -> Result<Vec<(NodeId, Found)>, String> {
+        let mut moved = Moved { shift, known: Vec::new() };
+        let extent = self.covered(shift)?;
+        let mut state = self.state.clone();
+        state.cutter = Cutter::new(extent);
+        state.extent = extent;
+        for value in state.values.iter_mut().flatten() {
+            if let Signal::Samples(samples) = value {
+                *samples = moved.samples(samples);
             }
         }
+        for (_, found) in &mut state.found {
+            if let Found::Samples(samples) = found {
+                *samples = moved.samples(samples);
+            }
+        }
+        state.run(&self.levels, self.wanted, |id| self.placed[id])?;
         Ok(state.found)
     }
 }
 
+/// Share of a section that a moved record may leave uncovered: what there is of it is evaluated.
+const MOST_MISSING: f64 = 0.2;
+
+/// Signals of a record run along the same samples, which are moved once for all of them.
+struct Moved {
+    shift: f64,
+    known: Vec<(Arc<Along>, Arc<Along>)>,
+}
+
+impl Moved {
+    fn samples(&mut self, samples: &Samples) -> Samples {
+        if self.shift == 0.0 {
+            return samples.clone();
+        }
+        let known = self.known.iter().find(|(from, _)| Arc::ptr_eq(from, &samples.along)).map(|(_, to)| Arc::clone(to));
+        let along = known.unwrap_or_else(|| {
+            let to = Arc::new(samples.along.moved(self.shift));
+            self.known.push((Arc::clone(&samples.along), Arc::clone(&to)));
+            to
+        });
+        Samples { along, values: Arc::clone(&samples.values) }
+    }
+}
+
+#[derive(Clone, Debug)]
 struct State<'a> {
     opened: &'a Opened,
     graph: &'a Graph,
@@ -232,7 +302,67 @@ struct State<'a> {
     /// How many nodes still need a value.
     uses: Vec<usize>,
     cutter: Cutter,
+    /// The part of the section that is evaluated.
+    extent: Extent,
     found: Vec<(NodeId, Found)>,
+}
+
+impl<'a> State<'a> {
+    fn new(opened: &'a Opened, graph: &'a Graph, known: &'a Known<'a>, method: Method) -> Self {
+        let nodes = graph.nodes.len();
+        let cutter = Cutter::new(opened.extent);
+        Self {
+            opened,
+            graph,
+            known,
+            method,
+            values: vec![None; nodes],
+            uses: vec![0; nodes],
+            cutter,
+            extent: opened.extent,
+            found: Vec::new(),
+        }
+    }
+
+    /// The needed nodes by level, inputs before what uses them, and how often each is used.
+    fn count(&mut self, needed: &BTreeSet<NodeId>) -> Vec<Vec<NodeId>> {
+        let mut level = vec![0_usize; self.graph.nodes.len()];
+        let mut levels: Vec<Vec<NodeId>> = Vec::new();
+        for &id in needed {
+            for &input in &self.graph.nodes[id].inputs {
+                if needed.contains(&input) {
+                    self.uses[input] += 1;
+                    level[id] = level[id].max(level[input] + 1);
+                }
+            }
+            levels.resize_with(levels.len().max(level[id] + 1), Vec::new);
+            levels[level[id]].push(id);
+        }
+        levels
+    }
+
+    /// Runs the nodes that are chosen; values of the wanted ones are kept.
+    fn run(&mut self, levels: &[Vec<NodeId>], wanted: &BTreeSet<NodeId>, chosen: impl Fn(NodeId) -> bool) -> Result<(), String> {
+        for level in levels {
+            let here: Vec<NodeId> = level.iter().copied().filter(|&id| chosen(id)).collect();
+            self.filters(&here)?;
+            self.reducers(&here)?;
+            for &id in &here {
+                if self.values[id].is_none() && !matches!(self.graph.nodes[id].operation, Operation::Reduce(_)) {
+                    let value = self.one(id).map_err(|error| format!("{} ({})", error, self.graph.nodes[id].label))?;
+                    self.values[id] = Some(value);
+                }
+            }
+            for &id in &here {
+                if wanted.contains(&id) && self.values[id].is_some() {
+                    let samples = self.samples(id)?;
+                    self.found.push((id, Found::Samples(samples)));
+                }
+                self.release(id);
+            }
+        }
+        Ok(())
+    }
 }
 
 impl State<'_> {
@@ -343,7 +473,7 @@ impl State<'_> {
                 let samples = self.samples(node.inputs[0])?;
                 Ok(Signal::Samples(self.cutter.cut(&samples)?))
             }
-            Operation::Window(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.opened.extent)?)),
+            Operation::Window(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.extent)?)),
             _ => Err("this node joins records".into()),
         }
     }

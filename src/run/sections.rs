@@ -11,7 +11,7 @@ use crate::source::Span;
 use crate::units::Unit as OfMeasure;
 
 /// A section, or a whole record where there are none.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Unit {
     pub name: String,
     /// The name where it is written, which is also that of its records.

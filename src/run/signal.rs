@@ -59,6 +59,16 @@ impl Along {
         }
     }
 
+    /// The same samples further along the axis.
+    pub fn moved(&self, shift: f64) -> Self {
+        Self {
+            axis: Arc::new(self.axis.iter().map(|x| x + shift).collect()),
+            time: self.time.clone(),
+            rate: self.rate,
+            first_row: self.first_row,
+        }
+    }
+
     /// Where a sample is, in words.
     fn place(&self, sample: usize) -> String {
         match self.first_row {
@@ -69,7 +79,7 @@ impl Along {
 }
 
 /// Cuts to one section. Signals of a record run along the same samples, whose part is made once for all of them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Cutter {
     extent: Extent,
     known: Vec<(Arc<Along>, Range<usize>, Arc<Along>)>,

@@ -4,19 +4,25 @@
 //! the pointer and `data-section`, `data-zone` for the scripts of the HTML report.
 
 pub mod axis;
+mod boxes;
 pub mod canvas;
+mod choices;
 mod differences;
 mod domain;
 mod frame;
 mod legend;
 mod levels;
+mod offsets;
 mod overview;
 mod pairs;
 pub mod style;
 mod trace;
 mod zones;
 
+pub use boxes::boxes;
+pub use choices::choices;
 pub use domain::domain;
+pub use offsets::{selection, shares};
 pub use overview::overview;
 pub use pairs::pairs;
 pub use trace::trace;

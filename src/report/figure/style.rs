@@ -19,6 +19,7 @@ pub const TICK: f64 = 7.0;
 pub const SMALL: f64 = 6.0;
 
 pub const INK: RGBColor = RGBColor(0x1f, 0x24, 0x2b);
+pub const WHITE: RGBColor = RGBColor(0xff, 0xff, 0xff);
 pub const MUTED: RGBColor = RGBColor(0x55, 0x5e, 0x6a);
 pub const GRID: RGBColor = RGBColor(0xdd, 0xe1, 0xe6);
 /// Ground of what lies beyond a limit.
@@ -93,6 +94,11 @@ pub fn text_width(text: &str, size: f64) -> f64 {
         })
         .sum();
     em * size
+}
+
+/// A label without combining accents: a PDF cannot say what letters stand for where several drawings set them.
+pub fn plain(text: &str) -> String {
+    text.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).collect()
 }
 
 /// A text as it is drawn, cut to a width with an ellipsis.

@@ -6,6 +6,7 @@
 mod text;
 mod world;
 
+use serde::Serialize;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use typst::diag::SourceDiagnostic;
@@ -14,6 +15,7 @@ use typst_layout::PagedDocument;
 use typst_pdf::{PdfOptions, PdfStandard, PdfStandards, Timestamp};
 
 use crate::problem::{Problem, Problems};
+use crate::report::study::Document;
 use crate::report::view::ReportData;
 use text::Printable;
 use world::Files;
@@ -47,8 +49,22 @@ pub struct Pdf {
 ///
 /// `report-template`: a template cannot be filled, or Typst refuses it or a figure. `report-attachment`: a name is no file name.
 pub fn typeset(data: &ReportData, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> Result<Pdf, Problems> {
+    framed(filled(data)?, data, figures, attachments)
+}
+
+/// Typesets a study, as [`typeset`] does a certification.
+///
+/// # Errors
+///
+/// As [`typeset`].
+pub fn typeset_study(data: &Document, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> Result<Pdf, Problems> {
+    framed(world::STUDY.to_owned(), data, figures, attachments)
+}
+
+/// Typesets data in a frame of parts.
+fn framed(frame: String, data: &impl Serialize, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> Result<Pdf, Problems> {
     let printable = Printable::of(world::fonts());
-    let mut files = Files::new(filled(data)?);
+    let mut files = Files::new(frame);
     let mut value = serde_json::to_value(data).map_err(|error| one(Problem::error("report-template", error.to_string())))?;
     printable.clean(&mut value);
     let mut drawn = serde_json::Map::new();

@@ -15,6 +15,9 @@ use crate::problem::{Problem, Problems};
 /// The frame of the report: which parts, in which order; filled by minijinja.
 pub(super) const REPORT: &str = include_str!("../../../templates/report.typ");
 
+/// The frame of a study.
+pub(super) const STUDY: &str = include_str!("../../../templates/study.typ");
+
 /// Templates that stay as they are.
 const TEMPLATES: &[(&str, &str)] = &[
     ("/theme.typ", include_str!("../../../templates/theme.typ")),
@@ -28,6 +31,7 @@ const TEMPLATES: &[(&str, &str)] = &[
     ("/parts/domain.typ", include_str!("../../../templates/parts/domain.typ")),
     ("/parts/protocol.typ", include_str!("../../../templates/parts/protocol.typ")),
     ("/parts/provenance.typ", include_str!("../../../templates/parts/provenance.typ")),
+    ("/parts/study.typ", include_str!("../../../templates/parts/study.typ")),
     ("/parts/statements.typ", include_str!("../../../templates/parts/statements.typ")),
 ];
 

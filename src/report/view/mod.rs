@@ -11,9 +11,9 @@ mod summary;
 use serde::Serialize;
 
 use crate::report::number;
-use crate::result::{Certification, DataItem, Verdict};
+use crate::result::{CampaignInfo, Certification, DataItem, Verdict};
 
-pub use protocol::{ProtocolView, SourceFile};
+pub use protocol::{ProtocolView, SourceFile, view as protocol_view};
 pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair};
 pub use section::{CheckTable, ColumnHead, DomainView, SectionRow, SectionTable, ZoneView};
 pub use summary::{FurtherRow, SummaryRow};
@@ -69,7 +69,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    fn new(holds: Option<bool>, good: &str, bad: &str, open: &str) -> Self {
+    pub(crate) fn new(holds: Option<bool>, good: &str, bad: &str, open: &str) -> Self {
         let (class, sign, word) = match holds {
             Some(true) => ("good", "✓", good),
             Some(false) => ("bad", "✗", bad),
@@ -160,7 +160,7 @@ pub fn view(found: &Certification) -> ReportData {
         cover_reasons: found.reasons.iter().take(REASONS_ON_COVER).cloned().collect(),
         more_reasons: more_reasons(found.reasons.len()),
         key_facts: key_facts(found),
-        campaign: campaign(found),
+        campaign: campaign(&found.campaign),
         protocol: protocol::view(&found.protocol),
         summary,
         further,
@@ -252,8 +252,8 @@ fn fact(name: &str, value: String) -> Fact {
     Fact { name: name.to_owned(), value }
 }
 
-fn campaign(found: &Certification) -> CampaignView {
-    let campaign = &found.campaign;
+/// What a report says of the campaign.
+pub fn campaign(campaign: &CampaignInfo) -> CampaignView {
     let of = |used: bool| campaign.vehicle.iter().filter(|item| item.used == used).map(data_row).collect();
     CampaignView {
         name: campaign.name.clone(),

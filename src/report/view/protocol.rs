@@ -66,7 +66,8 @@ pub struct FilterView {
     pub source: Option<String>,
 }
 
-pub(super) fn view(protocol: &ProtocolInfo) -> ProtocolView {
+/// What a report says of the protocol.
+pub fn view(protocol: &ProtocolInfo) -> ProtocolView {
     ProtocolView {
         name: protocol.name.clone(),
         title: protocol.title.clone(),

@@ -1,0 +1,239 @@
+//! `study`: how far the verdict depends on sections, synchronisation and free choices.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+use super::inputs::{Prepared, prepare, progress_bar};
+use super::output::{Console, Exit};
+use super::values::{numbers, values};
+use crate::data::write::Outputs;
+use crate::problem::{Problem, Problems};
+use crate::report::{html, study as report, typst};
+use crate::result::study as found;
+use crate::robustness::{self, Settings, Synchronisation, Vary};
+use crate::study;
+
+#[derive(Debug, Subcommand)]
+pub enum Study {
+    /// Every selection of sections: the share validated, the scatter, and which sections matter.
+    #[command(after_help = "Example:\n  fishplate study sections examples/coach --out target/coach-sections")]
+    Sections {
+        #[command(flatten)]
+        common: Common,
+    },
+    /// The measurement shifted against the simulation.
+    #[command(after_help = "Example:\n  fishplate study sync examples/coach --offsets=-5,-1,1,5 --out target/coach-sync")]
+    Sync {
+        #[command(flatten)]
+        common: Common,
+        /// Offsets in the unit of the axis: a list, or `FROM..TO step STEP`; 0 is always among them.
+        #[arg(long, default_value = "-40,-20,-10,-5,-1,1,5,10,20,40", allow_hyphen_values = true)]
+        offsets: String,
+        /// Take the offset found in each section's signals out before the offsets are put in.
+        #[arg(long)]
+        correct: bool,
+        /// Farthest offset looked for in the signals, in the unit of the axis.
+        #[arg(long, default_value_t = 25.0)]
+        farthest: f64,
+    },
+    /// Parameters of the protocol, each varied by itself: which free choice decides the verdict.
+    #[command(
+        after_help = "Example:\n  fishplate study parameters examples/coach --vary \"lowpass_frequency=15..25 step 5 Hz\" --out target/coach-choices"
+    )]
+    Parameters {
+        #[command(flatten)]
+        common: Common,
+        /// A parameter and its values: a list, or `FROM..TO step STEP`; may be repeated [default: every parameter that is a
+        /// choice of words, over all its words]
+        #[arg(long, value_name = "NAME=VALUES")]
+        vary: Vec<String>,
+    },
+}
+
+#[derive(Debug, Args)]
+pub struct Common {
+    /// Folder of the campaign.
+    campaign: PathBuf,
+    /// Path of a protocol, or the name of a shipped one [default: what campaign.yaml names, else en14363-2016-annex-t]
+    #[arg(long, short)]
+    protocol: Option<String>,
+    /// Folder to write to; made if missing.
+    #[arg(long, short)]
+    out: PathBuf,
+    /// Set a parameter of the protocol.
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Sections of each zone that a selection takes [default: as many as the protocol needs]
+    #[arg(long)]
+    take: Option<NonZeroUsize>,
+    /// Keep at most so many sections of each zone, those that keep the highest standard deviation, before selecting.
+    #[arg(long, value_name = "SECTIONS")]
+    reduce: Option<NonZeroUsize>,
+    /// Selections that are all looked at; more are drawn from at random.
+    #[arg(long, value_name = "SELECTIONS", default_value_t = study::MOST)]
+    enumerate: f64,
+    /// Where selections are drawn: width of the 95 % interval of the share at which drawing ends.
+    #[arg(long, default_value_t = 0.01)]
+    width: f64,
+    /// Seed of all that is drawn at random.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Records worked on at a time [default: one per core]
+    #[arg(long, short)]
+    jobs: Option<NonZeroUsize>,
+}
+
+impl Study {
+    pub fn run(self, console: &Console) -> Exit {
+        let common = match &self {
+            Self::Sections { common } | Self::Sync { common, .. } | Self::Parameters { common, .. } => common,
+        };
+        if let Some(jobs) = common.jobs {
+            // Fails only if the pool was made before, which nothing does before here.
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
+        }
+        let mut problems = common.wrong();
+        let asked = self.asked(&mut problems);
+        let prepared = prepare(&common.campaign, common.protocol.as_deref(), &common.set, &mut problems);
+        console.problems(&problems);
+        let Some((asked, prepared)) = asked.zip(prepared).filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        match asked.found(common, &prepared, console) {
+            Ok(study) => write(common, &study, console),
+            Err(problems) => {
+                console.problems(&problems);
+                Exit::Wrong
+            }
+        }
+    }
+
+    /// What is asked for, as far as the command line says it.
+    fn asked(&self, problems: &mut Problems) -> Option<Asked> {
+        match self {
+            Self::Sections { .. } => Some(Asked::Sections),
+            Self::Sync { offsets, correct, farthest, .. } => {
+                if !(*farthest > 0.0 && farthest.is_finite()) {
+                    problems.push(Problem::error("farthest", format!("`--farthest {farthest}` is not above zero")));
+                    return None;
+                }
+                let offsets = numbers(offsets)
+                    .map_err(|says| problems.push(Problem::error("offsets", format!("`--offsets {offsets}`: {says}"))))
+                    .ok()?;
+                Some(Asked::Sync(Synchronisation { offsets, farthest: *farthest, correct: *correct }))
+            }
+            Self::Parameters { vary, .. } => {
+                let mut all = Vec::new();
+                for vary in vary {
+                    let Some((name, text)) = vary.split_once('=') else {
+                        problems.push(Problem::error("vary", format!("`--vary {vary}` has no `=`")).help("write `--vary name=values`"));
+                        return None;
+                    };
+                    match values(text) {
+                        Ok(values) => all.push(Vary { name: name.trim().to_owned(), values }),
+                        Err(says) => {
+                            problems.push(Problem::error("vary", format!("`--vary {vary}`: {says}")));
+                            return None;
+                        }
+                    }
+                }
+                Some(Asked::Parameters(all))
+            }
+        }
+    }
+}
+
+enum Asked {
+    Sections,
+    Sync(Synchronisation),
+    Parameters(Vec<Vary>),
+}
+
+impl Asked {
+    fn found(self, common: &Common, prepared: &Prepared, console: &Console) -> Result<found::Study, Problems> {
+        let Prepared { compiled, campaign, overrides } = prepared;
+        let settings = common.settings();
+        let vary = match &self {
+            Self::Parameters(vary) if vary.is_empty() => robustness::all_choices(&compiled.plan),
+            Self::Parameters(vary) => vary.clone(),
+            _ => Vec::new(),
+        };
+        let steps = match &self {
+            Self::Parameters(_) => 1 + vary.iter().map(|vary| vary.values.len()).sum::<usize>(),
+            _ => campaign.names.len(),
+        };
+        let bar = progress_bar(console, steps);
+        let progress = |step: &str| {
+            bar.set_message(step.to_owned());
+            bar.inc(1);
+        };
+        let found = match &self {
+            Self::Sections => robustness::sections(compiled, campaign, &settings, &progress),
+            Self::Sync(asked) => robustness::synchronisation(compiled, campaign, &settings, asked, &progress),
+            Self::Parameters(_) => robustness::parameters(compiled, campaign, overrides, &settings, &vary, &progress),
+        };
+        bar.finish_and_clear();
+        found
+    }
+}
+
+impl Common {
+    fn settings(&self) -> Settings {
+        Settings {
+            selections: study::Settings { most: self.enumerate.min(study::MOST), width: self.width, seed: self.seed },
+            take: self.take.map(NonZeroUsize::get),
+            reduce: self.reduce.map(NonZeroUsize::get),
+        }
+    }
+
+    fn wrong(&self) -> Problems {
+        let mut problems = Problems::default();
+        if !(self.width > 0.0 && self.width < 1.0) {
+            problems.push(Problem::error("width", format!("`--width {}` is not between 0 and 1", self.width)));
+        }
+        if self.enumerate.is_nan() || self.enumerate < 0.0 {
+            problems.push(Problem::error("enumerate", format!("`--enumerate {}` is no number of selections", self.enumerate)));
+        }
+        problems
+    }
+}
+
+/// Writes everything, or nothing.
+fn write(common: &Common, study: &found::Study, console: &Console) -> Exit {
+    let files = match files(study) {
+        Ok(files) => files,
+        Err(problems) => {
+            console.problems(&problems);
+            return Exit::Unfinished;
+        }
+    };
+    let mut outputs = Outputs::new(&common.out);
+    let written = files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes)).and_then(|()| outputs.commit());
+    if let Err(problem) = written {
+        return console.fail(problem, Exit::Unfinished);
+    }
+    if !console.quiet {
+        let document = report::document(study);
+        let facts: Vec<String> = document.key_facts.iter().map(|fact| format!("  {}: {}\n", fact.name, fact.value)).collect();
+        console.print(&format!("{}\n\n{}\n{}\n{}", document.title, document.headline.word, document.sentence, facts.concat()));
+        console.say(&format!("written: {}", common.out.display()));
+    }
+    Exit::Done
+}
+
+fn files(study: &found::Study) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+    let json = report::json::study(study);
+    let tables = report::tables::tables(study).map_err(|error| Problems(vec![Problem::error("table", error.to_string())]))?;
+    let mut files: Vec<(String, Vec<u8>)> = tables.into_iter().map(|(name, bytes)| (format!("tables/{name}"), bytes)).collect();
+    let (data, figures) = (report::document(study), report::figures(study));
+    let attachment = typst::Attachment {
+        name: "study.json",
+        mime: "application/json",
+        bytes: json.as_bytes(),
+        description: "Every number of this study",
+    };
+    files.push(("report.pdf".into(), typst::typeset_study(&data, &figures, &[attachment])?.bytes));
+    files.push(("report.html".into(), html::study_html(&data, &figures)?.into_bytes()));
+    files.push(("study.json".into(), json.into_bytes()));
+    Ok(files)
+}

@@ -1,0 +1,70 @@
+//! Lists of values on the command line: `2, 4, 6` or `10..30 step 5 Hz`.
+
+/// Values of a list or of a range, as written: a range gives its numbers with its unit.
+///
+/// # Errors
+/// What is wrong with a range.
+pub fn values(text: &str) -> Result<Vec<String>, String> {
+    let Some((from, rest)) = text.split_once("..") else {
+        let values: Vec<String> = text.split(',').map(|value| value.trim().to_owned()).filter(|value| !value.is_empty()).collect();
+        return if values.is_empty() { Err("no value is given".into()) } else { Ok(values) };
+    };
+    let (to, step) = rest.split_once("step").ok_or("a range is written `FROM..TO step STEP`")?;
+    let (from, to, step) = (with_unit(from)?, with_unit(to)?, with_unit(step)?);
+    let mut units: Vec<&str> = [from.1, to.1, step.1].into_iter().filter(|unit| !unit.is_empty()).collect();
+    units.dedup();
+    if units.len() > 1 {
+        return Err(format!("a range has one unit, not {}", units.join(" and ")));
+    }
+    let count = (to.0 - from.0) / step.0;
+    if !(step.0 != 0.0 && (0.0..MOST).contains(&(count + 1e-9))) {
+        return Err(format!("a range leads from its first value to its last in at most {MOST} steps"));
+    }
+    let unit = units.first().map_or(String::new(), |unit| format!(" {unit}"));
+    // What decimal steps add up to, without the tail that sums of binary fractions leave.
+    let shown = |value: f64| format!("{:.10}", value).trim_end_matches('0').trim_end_matches('.').to_owned();
+    Ok((0..=(count + 1e-9) as usize).map(|at| format!("{}{unit}", shown(from.0 + at as f64 * step.0))).collect())
+}
+
+/// Values of one range at most.
+const MOST: f64 = 200.0;
+
+/// `20 Hz` as number and unit.
+fn with_unit(text: &str) -> Result<(f64, &str), String> {
+    let text = text.trim();
+    let end = text.find(|c: char| c.is_alphabetic() || c == '%' || c == ' ').unwrap_or(text.len());
+    let number = text[..end].parse::<f64>().ok().filter(|number| number.is_finite());
+    Ok((number.ok_or_else(|| format!("`{text}` is not a number with or without a unit"))?, text[end..].trim()))
+}
+
+/// Plain numbers.
+///
+/// # Errors
+/// As [`values`]; a value that is no number.
+pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
+    let number = |value: &String| match value.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("`{value}` is not a number")),
+    };
+    values(text)?.iter().map(number).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_and_ranges() {
+        let of = |text: &str| values(text).map(|values| values.join("|"));
+        assert_eq!(of("2, 4,6"), Ok("2|4|6".into()));
+        assert_eq!(of("n-1, n"), Ok("n-1|n".into()));
+        assert_eq!(of("10..30 step 10 Hz"), Ok("10 Hz|20 Hz|30 Hz".into()));
+        assert_eq!(of("0.1..0.4 step 0.1"), Ok("0.1|0.2|0.3|0.4".into()));
+        assert_eq!(of("-2..2 step 2"), Ok("-2|0|2".into()));
+        assert_eq!(numbers("-5, 5"), Ok(vec![-5.0, 5.0]));
+        for wrong in ["", "1..2", "1..2 step 0", "3..1 step 1", "1 Hz..2 s step 1", "x..2 step 1", "1..1e9 step 1"] {
+            assert!(values(wrong).is_err(), "{wrong}");
+        }
+        assert!(numbers("1, x").is_err());
+    }
+}

@@ -1,0 +1,156 @@
+//! Box plots of normalised statistics over all selections of sections, in the manner of Götz and Polach, Figures 5, 6 and 8.
+
+use super::axis::{Scale, Tick};
+use super::canvas::{Canvas, Font, Group};
+use super::frame::Frame;
+use super::legend::{Entry, Legend};
+use super::style::{self, BEYOND, BLUE, DASHED, INK, MUTED, Mark, SHADE, SMALL, TEXT, VERMILION, WIDTH, cut, plain, text_width};
+use crate::report::number;
+use crate::result::study::{QuantitySpread, Spread, StatisticSpread};
+
+/// Heights of a panel's plotting area and of what stands below it, in points.
+const PANEL: f64 = 98.0;
+const LABELS: f64 = 22.0;
+/// Widest half of a box.
+const HALF: f64 = 9.0;
+/// No scale reaches farther from zero than this; what lies beyond is cut at the frame, and said so.
+const FARTHEST: f64 = 3.0;
+
+/// A panel: what its axis is called, and a box with its label for every statistic.
+struct Panel<'a> {
+    title: &'static str,
+    boxes: Vec<(String, &'a StatisticSpread, &'a QuantitySpread, Spread)>,
+    /// Values have a sign, and the limit is on both sides.
+    signed: bool,
+}
+
+/// One panel for means, one for standard deviations, one for all other statistics; empty ones are left out.
+pub fn boxes(quantities: &[QuantitySpread]) -> String {
+    let panels = panels(quantities);
+    let legend = Legend::new(
+        vec![
+            Entry::ground(SHADE, "middle half of all selections"),
+            Entry::line(VERMILION, 1.4, style::SOLID, "median"),
+            Entry::mark(Mark::Diamond, VERMILION, "farthest outlier, with the number of outliers"),
+            Entry::line(INK, 0.9, DASHED, "limit"),
+        ],
+        WIDTH - 40.0,
+    );
+    let top = legend.height() + 8.0;
+    let mut canvas = Canvas::new(WIDTH, top + panels.len() as f64 * (PANEL + LABELS + 8.0));
+    legend.draw(&mut canvas, (40.0, 0.0));
+    for (at, panel) in panels.iter().enumerate() {
+        draw(&mut canvas, panel, top + at as f64 * (PANEL + LABELS + 8.0));
+    }
+    canvas.finish()
+}
+
+fn panels(quantities: &[QuantitySpread]) -> Vec<Panel<'_>> {
+    let of = |wanted: &dyn Fn(&str) -> bool, scoped: bool| {
+        let statistics = quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
+        statistics
+            .filter(|(_, statistic)| wanted(&statistic.name))
+            .filter_map(|(quantity, statistic)| {
+                let mut label = quantity.symbol.clone();
+                if scoped {
+                    label = format!("{label} {}", statistic.name);
+                }
+                if statistic.scope != "all" {
+                    label = format!("{label}, {}", statistic.scope);
+                }
+                Some((label, statistic, quantity, statistic.spread?))
+            })
+            .collect::<Vec<_>>()
+    };
+    let mut panels = vec![
+        Panel { title: "mean / limit", boxes: of(&|name| name == "mean", false), signed: true },
+        Panel { title: "standard deviation / limit", boxes: of(&|name| name == "std", false), signed: false },
+        Panel { title: "statistic / limit", boxes: of(&|name| name != "mean" && name != "std", true), signed: true },
+    ];
+    panels[2].signed = panels[2].boxes.iter().any(|(.., spread)| spread.min < 0.0);
+    panels.retain(|panel| !panel.boxes.is_empty());
+    panels
+}
+
+fn draw(canvas: &mut Canvas, panel: &Panel<'_>, top: f64) {
+    let ends = panel.boxes.iter().flat_map(|(.., spread)| [spread.min, spread.max]);
+    let low = ends.clone().fold(if panel.signed { -1.15 } else { 0.0 }, f64::min).max(-FARTHEST);
+    let high = ends.fold(1.15, f64::max).min(FARTHEST);
+    let room = 0.04 * (high - low);
+    let low = if panel.signed { low - room } else { 0.0 };
+    let y = Scale { low, high: high + room, from: top + PANEL, to: top };
+    let ticks: Vec<Tick> = y.ticks(7);
+    let left = Frame::axis_room(&ticks).max(36.0);
+    let frame = Frame { x: Scale { low: 0.0, high: panel.boxes.len() as f64, from: left, to: WIDTH - 4.0 }, y };
+    beyond(canvas, &frame, panel.signed);
+    frame.y_axis(canvas, &ticks, panel.title);
+    canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
+        for limit in if panel.signed { &[-1.0, 1.0][..] } else { &[1.0][..] } {
+            layer.line((frame.left(), frame.y.at(*limit)), (frame.right(), frame.y.at(*limit)), INK, 0.9);
+        }
+    });
+    let width = (frame.right() - frame.left()) / panel.boxes.len() as f64;
+    let size = if width < 24.0 { SMALL } else { TEXT };
+    for (at, (label, statistic, quantity, spread)) in panel.boxes.iter().enumerate() {
+        let x = frame.x.at(at as f64 + 0.5);
+        let title = format!(
+            "{}, {}: least {}, quartiles {}, {}, {}, greatest {}, {} outliers",
+            quantity.title,
+            statistic.title,
+            number::fixed(spread.min, 3),
+            number::fixed(spread.q1, 3),
+            number::fixed(spread.median, 3),
+            number::fixed(spread.q3, 3),
+            number::fixed(spread.max, 3),
+            number::count(spread.outliers)
+        );
+        canvas.group(&Group { class: "mark", title: Some(&title), ..Group::default() }, |layer| {
+            one(layer, &frame, x, HALF.min(0.32 * width), spread);
+        });
+        canvas.draw(|layer| {
+            let down = if at % 2 == 1 && text_width(label, size) > width { 17.0 } else { 8.0 };
+            layer.text(&cut(&plain(label), size, 1.9 * width), (x, frame.bottom() + down), &Font::middle(size));
+        });
+    }
+    frame.spine(canvas);
+}
+
+/// A box, its whiskers and the farthest outlier on each side.
+fn one(layer: &mut super::canvas::Layer<'_>, frame: &Frame, x: f64, half: f64, spread: &Spread) {
+    let place = |value: f64| frame.y.at(value).clamp(frame.top(), frame.bottom());
+    let (low, high) = spread.whiskers();
+    layer.line((x, place(low)), (x, place(spread.q1)), INK, 0.6);
+    layer.line((x, place(spread.q3)), (x, place(high)), INK, 0.6);
+    for end in [low, high] {
+        if frame.y.contains(end) {
+            layer.line((x - 0.5 * half, place(end)), (x + 0.5 * half, place(end)), INK, 0.6);
+        }
+    }
+    layer.rect((x - half, place(spread.q1)), (x + half, place(spread.q3)), SHADE);
+    let corners = [(-half, spread.q1), (half, spread.q1), (half, spread.q3), (-half, spread.q3), (-half, spread.q1)];
+    layer.path(&corners.map(|(dx, value)| (x + dx, place(value))), BLUE, 0.9);
+    layer.line((x - half, place(spread.median)), (x + half, place(spread.median)), VERMILION, 1.4);
+    if spread.outliers > 0 {
+        for (outlier, whisker) in [(spread.min, low), (spread.max, high)] {
+            if outlier != whisker {
+                layer.mark(Mark::Diamond, (x, place(outlier)), 1.7, VERMILION);
+            }
+        }
+        let at = place(spread.max.max(high)) - 5.0;
+        layer.text(
+            &number::count(spread.outliers).replace('\u{202f}', " "),
+            (x, at.max(frame.top() - 3.0)),
+            &Font::middle(4.6).color(MUTED),
+        );
+    }
+}
+
+/// The ground beyond the limits.
+fn beyond(canvas: &mut Canvas, frame: &Frame, signed: bool) {
+    canvas.draw(|layer| {
+        layer.rect((frame.left(), frame.top()), (frame.right(), frame.y.at(1.0)), BEYOND);
+        if signed {
+            layer.rect((frame.left(), frame.y.at(-1.0)), (frame.right(), frame.bottom()), BEYOND);
+        }
+    });
+}

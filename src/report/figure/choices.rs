@@ -1,0 +1,85 @@
+//! Which free choice decides the verdict: for every value of every parameter the largest normalised statistic.
+
+use super::axis::Scale;
+use super::canvas::{Canvas, Font, Group};
+use super::frame::Frame;
+use super::legend::{Entry, Legend};
+use super::style::{BEYOND, BLUE, DASHED, GRID, INK, MUTED, Mark, SMALL, TEXT, VERMILION, WHITE, WIDTH, cut, text_width};
+use crate::report::number;
+use crate::result::Verdict;
+use crate::result::study::{AtValue, ParameterStudy};
+
+/// Height of a row, and of the line between parameters, in points.
+const ROW: f64 = 10.0;
+const GAP: f64 = 16.0;
+const NAMES: f64 = 118.0;
+const SHARES: f64 = 62.0;
+
+fn sign(verdict: Verdict) -> (Mark, plotters::style::RGBColor) {
+    match verdict {
+        Verdict::Validated => (Mark::Circle, BLUE),
+        Verdict::NotValidated => (Mark::Triangle, VERMILION),
+        Verdict::NotAssessable => (Mark::Bar, MUTED),
+    }
+}
+
+/// A row for each value; the limit at 1; shape and colour for the verdict; the share of selections validated at the right.
+pub fn choices(study: &ParameterStudy) -> String {
+    let legend = Legend::new(
+        [Verdict::Validated, Verdict::NotValidated, Verdict::NotAssessable]
+            .map(|verdict| Entry::mark(sign(verdict).0, sign(verdict).1, verdict.in_words()))
+            .to_vec(),
+        WIDTH - NAMES,
+    );
+    let rows: usize = study.parameters.iter().map(|parameter| parameter.values.len()).sum();
+    let top = legend.height() + 14.0;
+    let height = rows as f64 * ROW + study.parameters.len() as f64 * GAP;
+    let largest = |at: &AtValue| at.largest.as_ref().map(|(_, value)| *value);
+    let all = study.parameters.iter().flat_map(|parameter| parameter.values.iter().filter_map(largest));
+    let high = all.clone().fold(1.1, f64::max).min(4.0);
+    let low = all.fold(0.9, f64::min).max(0.0);
+    let room = 0.05 * (high - low);
+    let x = Scale { low: (low - room).max(0.0), high: high + room, from: NAMES, to: WIDTH - SHARES };
+    let frame = Frame { x, y: Scale { low: 0.0, high: 1.0, from: top + height, to: top } };
+    let mut canvas = Canvas::new(WIDTH, top + height + 28.0);
+    legend.draw(&mut canvas, (NAMES, 0.0));
+    canvas.draw(|layer| {
+        layer.rect((x.at(1.0), top), (frame.right(), frame.bottom()), BEYOND);
+        layer.text("validated", (WIDTH - 2.0, top - 6.0), &Font::right(SMALL).color(MUTED));
+    });
+    frame.x_axis(&mut canvas, &x.ticks(8), "largest statistic / limit, all sections");
+    let mut y = top;
+    for parameter in &study.parameters {
+        let title = cut(&parameter.title, TEXT, WIDTH - SHARES - 8.0);
+        canvas.draw(|layer| {
+            layer.rect((0.0, y + 3.0), (6.0 + text_width(&title, TEXT), y + 13.0), WHITE);
+            layer.text(&title, (2.0, y + 8.0), &Font::left(TEXT).bold(parameter.decides));
+        });
+        y += GAP;
+        for at in &parameter.values {
+            row(&mut canvas, &frame, at, y + 0.5 * ROW - 2.0);
+            y += ROW;
+        }
+    }
+    canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
+        layer.line((x.at(1.0), top), (x.at(1.0), frame.bottom()), INK, 0.9);
+    });
+    canvas.draw(|layer| layer.line((frame.left(), frame.bottom()), (frame.right(), frame.bottom()), INK, 0.7));
+    canvas.finish()
+}
+
+fn row(canvas: &mut Canvas, frame: &Frame, at: &AtValue, y: f64) {
+    let share = at.share.map_or_else(|| number::NONE.to_owned(), |share| format!("{} %", number::fixed(100.0 * share.share, 2)));
+    canvas.draw(|layer| {
+        layer.line((frame.left(), y), (frame.right(), y), GRID, 0.4);
+        layer.text(&cut(&at.value, SMALL, NAMES - 16.0), (NAMES - 5.0, y), &Font::right(SMALL).bold(at.is_base));
+        layer.text(&share, (WIDTH - 2.0, y), &Font::right(SMALL));
+    });
+    if let Some((which, value)) = &at.largest {
+        let (mark, color) = sign(at.verdict);
+        let title = format!("{}: {which} {} of its limit, {}", at.value, number::fixed(*value, 3), at.verdict.in_words());
+        canvas.group(&Group { class: "mark", title: Some(&title), ..Group::default() }, |layer| {
+            layer.mark(mark, (frame.x.at(value.clamp(frame.x.low, frame.x.high)), y), 2.2, color);
+        });
+    }
+}

@@ -1,0 +1,101 @@
+//! A study as a document: chapters of sentences, tables and figures, printed as PDF and as HTML from the same data.
+
+mod document;
+pub mod json;
+mod parameters;
+mod sections;
+mod sync;
+pub mod tables;
+
+pub use document::{Chapter, Document, Head, Item, Table};
+
+use crate::report::figure;
+use crate::report::number;
+use crate::report::view::{self, Fact, Finding};
+use crate::result::study::{Found, Share, Study};
+
+/// The study as both reports print it.
+pub fn document(study: &Study) -> Document {
+    let (title, opening, mut chapters) = match &study.found {
+        Found::Sections(found) => ("Selection of sections", sections::opening(found), sections::chapters(found)),
+        Found::Sync(found) => ("Synchronisation", sync::opening(found), sync::chapters(found)),
+        Found::Parameters(found) => ("Free choices of the protocol", parameters::opening(found), parameters::chapters(found)),
+    };
+    if !study.notes.is_empty() {
+        chapters.push(Chapter { id: "remarks".into(), title: "Remarks".into(), items: vec![Item::List { entries: study.notes.clone() }] });
+    }
+    chapters.push(settings(study));
+    Document {
+        title: format!("{title}: {}", study.campaign.name),
+        kind: title.to_owned(),
+        program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned(),
+        headline: opening.headline,
+        sentence: opening.sentence,
+        key_facts: opening.facts,
+        campaign: view::campaign(&study.campaign),
+        protocol: view::protocol_view(&study.protocol),
+        chapters,
+    }
+}
+
+/// What stands on the cover.
+struct Opening {
+    headline: Finding,
+    sentence: String,
+    facts: Vec<Fact>,
+}
+
+fn settings(study: &Study) -> Chapter {
+    let row = |parameter: &crate::result::ParameterInfo| {
+        [&parameter.name, &parameter.title, &parameter.value, &parameter.default, &parameter.set_by].map(Clone::clone).to_vec()
+    };
+    let table = Table {
+        caption: "Parameters of the protocol, values used and defaults".into(),
+        head: ["Name", "Meaning", "Used", "Default", "Set by"].map(Head::text).to_vec(),
+        rows: study.protocol.parameters.iter().map(row).collect(),
+    };
+    Chapter {
+        id: "protocol".into(),
+        title: "Protocol".into(),
+        items: vec![Item::Text { text: study.protocol.verdict_rule.clone() }, Item::Table { table }],
+    }
+}
+
+/// All figures of a study by the names the document gives them.
+pub fn figures(study: &Study) -> Vec<(String, String)> {
+    match &study.found {
+        Found::Sections(found) => vec![("boxes".into(), figure::boxes(&found.quantities))],
+        Found::Sync(found) => {
+            let mut drawn = vec![("selection".into(), figure::selection(found)), ("shares".into(), figure::shares(found))];
+            for (at, offset) in found.offsets.iter().enumerate() {
+                if let Ok(study) = &offset.study {
+                    drawn.push((format!("boxes-{at}"), figure::boxes(&study.quantities)));
+                }
+            }
+            drawn
+        }
+        Found::Parameters(found) => vec![("choices".into(), figure::choices(found))],
+    }
+}
+
+/// `93.84 %`, with as many decimals as it takes not to read as all or none.
+fn percent(share: f64) -> String {
+    let decimals = (2..=6).find(|decimals| {
+        let shown: f64 = format!("{:.decimals$}", 100.0 * share).parse().unwrap_or(0.0);
+        (share <= 0.0 || shown > 0.0) && (share >= 1.0 || shown < 100.0)
+    });
+    format!("{} %", number::fixed(100.0 * share, decimals.unwrap_or(6)))
+}
+
+/// The share with what is known of it.
+fn share(share: &Share) -> String {
+    match share.interval {
+        None => percent(share.share),
+        Some((low, high)) => format!("{} ({} to {})", percent(share.share), percent(low), percent(high)),
+    }
+}
+
+/// A count of selections, as a power of ten where it is beyond reading.
+fn combinations(count: f64) -> String {
+    if count < 1e12 { number::count(count as u64) } else { number::significant(count, 3) }
+}

@@ -1,0 +1,110 @@
+//! The study of the protocol's parameters, worded.
+
+use super::document::{Chapter, Head, Item, Table};
+use super::{Opening, share};
+use crate::report::number;
+use crate::report::view::{Fact, Finding};
+use crate::result::study::{AtValue, ParameterStudy, Varied};
+
+pub fn opening(found: &ParameterStudy) -> Opening {
+    let deciding: Vec<&str> =
+        found.parameters.iter().filter(|parameter| parameter.decides).map(|parameter| parameter.title.as_str()).collect();
+    let values: usize = found.parameters.iter().map(|parameter| parameter.values.len()).sum();
+    let sentence = if deciding.is_empty() {
+        format!("As it is, the verdict is {}. No value that was tried changes it.", found.base.verdict.in_words())
+    } else {
+        format!("As it is, the verdict is {}. It changes with: {}.", found.base.verdict.in_words(), deciding.join("; "))
+    };
+    Opening {
+        headline: Finding::new(
+            if deciding.is_empty() { Some(true) } else { None },
+            "No free choice decides the verdict",
+            "",
+            &format!("{} of {} free choices decide the verdict", deciding.len(), found.parameters.len()),
+        ),
+        sentence,
+        facts: [
+            ("Parameters varied", found.parameters.len().to_string()),
+            ("Values tried", values.to_string()),
+            ("Verdict as it is", found.base.verdict.in_words().to_owned()),
+            ("Selections validated", found.base.share.as_ref().map_or_else(|| number::NONE.to_owned(), share)),
+        ]
+        .map(|(name, value)| Fact { name: name.to_owned(), value })
+        .to_vec(),
+    }
+}
+
+pub fn chapters(found: &ParameterStudy) -> Vec<Chapter> {
+    let row = |parameter: &Varied, at: &AtValue| {
+        vec![
+            parameter.name.clone(),
+            if at.is_base { format!("{} (as it is)", at.value) } else { at.value.clone() },
+            at.verdict.in_words().to_owned(),
+            at.largest.as_ref().map_or_else(|| number::NONE.to_owned(), |(_, value)| number::beside(*value, 1.0, 3)),
+            at.largest.as_ref().map_or_else(String::new, |(which, _)| which.clone()),
+            at.share.as_ref().map_or_else(|| at.reason.clone().unwrap_or_default(), share),
+        ]
+    };
+    let rows = found.parameters.iter().flat_map(|parameter| parameter.values.iter().map(move |at| row(parameter, at)));
+    let mut chapters = vec![Chapter {
+        id: "choices".into(),
+        title: "Which free choice decides the verdict".into(),
+        items: vec![
+            Item::text(
+                "Each parameter is varied by itself, all others as they are. A value in bold in the figure is the one as it is; a parameter in bold decides.",
+            ),
+            Item::figure(
+                "choices",
+                "Largest statistic divided by its limit for every value, and the share of selections validated",
+                "For every value of every parameter the largest normalised statistic; the numbers are in the table.",
+            ),
+            Item::Table {
+                table: Table {
+                    caption: "Verdict on all sections, largest statistic divided by its limit, and share of selections validated".into(),
+                    head: vec![
+                        Head::text("Parameter"),
+                        Head::text("Value"),
+                        Head::short("Verdict"),
+                        Head::number("Largest"),
+                        Head::text("of"),
+                        Head::number("Validated"),
+                    ],
+                    rows: rows.collect(),
+                },
+            },
+        ],
+    }];
+    let mut items = Vec::new();
+    for parameter in &found.parameters {
+        items.push(statistics(parameter));
+    }
+    chapters.push(Chapter { id: "statistics".into(), title: "Statistics along the parameters".into(), items });
+    chapters
+}
+
+/// Values of a parameter in a table of their own; more than this many do not stand abreast.
+const ABREAST: usize = 9;
+
+fn statistics(parameter: &Varied) -> Item {
+    let values: Vec<&AtValue> = parameter.values.iter().take(ABREAST).collect();
+    let mut head = vec![Head::text("Quantity"), Head::short("Statistic")];
+    head.extend(values.iter().map(|at| Head::number(&at.value)));
+    let first = values.iter().find(|at| !at.statistics.is_empty());
+    let rows = first.map_or(&[][..], |at| &at.statistics).iter().map(|one| {
+        let scope = if one.scope == "all" { String::new() } else { format!(", {}", one.scope) };
+        let mut row = vec![one.symbol.clone(), format!("{}{scope}", one.name)];
+        row.extend(values.iter().map(|at| {
+            let same = at.statistics.iter().find(|other| other.id == one.id && other.name == one.name && other.scope == one.scope);
+            same.and_then(|other| other.normalised).map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 3))
+        }));
+        row
+    });
+    let more = if parameter.values.len() > ABREAST { "; further values are in the tables beside this report" } else { "" };
+    Item::Table {
+        table: Table {
+            caption: format!("{}: statistics of all sections divided by their limits{more}", parameter.title),
+            head,
+            rows: rows.collect(),
+        },
+    }
+}

@@ -1,0 +1,290 @@
+//! The study of selections, worded.
+
+use super::document::{Chapter, Head, Item, Table};
+use super::{Opening, combinations, percent, share};
+use crate::report::number;
+use crate::report::view::{Fact, Finding};
+use crate::result::Verdict;
+use crate::result::study::{Importance, QuantitySpread, Reduction, Removal, SelectionStudy};
+
+/// Sections and selections listed in a table; all of them stand in the tables beside the report.
+const MOST_ROWS: usize = 60;
+
+fn fact(name: &str, value: String) -> Fact {
+    Fact { name: name.to_owned(), value }
+}
+
+pub fn opening(found: &SelectionStudy) -> Opening {
+    let all = found.share.share;
+    let agrees = match found.verdict {
+        Verdict::Validated => all,
+        _ => 1.0 - all,
+    };
+    let (same, holds) = match agrees {
+        share if share >= 1.0 => ("does not depend on the sections chosen", Some(true)),
+        share if share >= 0.5 => ("depends on the sections chosen", None),
+        _ => ("is another for most selections than for all sections together", Some(false)),
+    };
+    let looked = if found.share.exact {
+        format!("All {} selections were looked at.", combinations(found.combinations))
+    } else {
+        format!(
+            "Of {} selections {} were drawn at random; the interval is at 95 %.",
+            combinations(found.combinations),
+            number::count(found.share.looked_at)
+        )
+    };
+    Opening {
+        headline: Finding::new(holds, &share(&found.share), &share(&found.share), &share(&found.share)),
+        sentence: format!(
+            "of the selections are validated. All usable sections together are {}: the verdict {same}. {looked}",
+            found.verdict.in_words()
+        ),
+        facts: vec![
+            fact("Selections", combinations(found.combinations)),
+            fact("Validated", if found.share.exact { number::count(found.share.validated) } else { share(&found.share) }),
+            fact("All sections", found.verdict.in_words().to_owned()),
+            fact(
+                "Sections",
+                found.strata.iter().map(|stratum| format!("{} of {}", stratum.take, stratum.sections.len())).collect::<Vec<_>>().join(", "),
+            ),
+        ],
+    }
+}
+
+pub fn chapters(found: &SelectionStudy) -> Vec<Chapter> {
+    let mut items = vec![strata(found)];
+    items.extend(found.methods.iter().map(Item::text));
+    let mut chapters = vec![
+        Chapter { id: "selections".into(), title: "Selections".into(), items },
+        Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items: spread(&found.quantities, "boxes", "") },
+        Chapter { id: "failing".into(), title: "What fails".into(), items: failing(found) },
+        Chapter { id: "sections".into(), title: "Which sections matter".into(), items: importance(&found.sections, &found.removal) },
+    ];
+    chapters.extend(found.reduction.as_ref().map(reduction));
+    chapters
+}
+
+fn strata(found: &SelectionStudy) -> Item {
+    let rows = found.strata.iter().map(|stratum| {
+        let not_used: Vec<String> = stratum.not_used.iter().map(|(section, why)| format!("{section}: {why}")).collect();
+        vec![
+            stratum.zone.clone(),
+            stratum.title.clone(),
+            stratum.take.to_string(),
+            stratum.sections.len().to_string(),
+            stratum.sections.join(", "),
+            if not_used.is_empty() { number::NONE.into() } else { not_used.join("; ") },
+        ]
+    });
+    Item::Table {
+        table: Table {
+            caption: "What a selection takes, and what it is taken from".into(),
+            head: vec![
+                Head::short("Zone"),
+                Head::text("Title"),
+                Head::number("Taken"),
+                Head::number("Usable"),
+                Head::text("Sections"),
+                Head::text("Not used"),
+            ],
+            rows: rows.collect(),
+        },
+    }
+}
+
+/// The box plots and their numbers.
+pub fn spread(quantities: &[QuantitySpread], figure: &str, at: &str) -> Vec<Item> {
+    let shown = |value: f64| number::beside(value, 1.0, 3);
+    let rows = quantities.iter().flat_map(|quantity| {
+        quantity.statistics.iter().map(move |statistic| {
+            let mut row = vec![quantity.symbol.clone(), statistic.name.clone(), statistic.scope.clone()];
+            row.push(statistic.overall.map_or_else(|| number::NONE.into(), shown));
+            match &statistic.spread {
+                Some(spread) => {
+                    row.extend([spread.min, spread.q1, spread.median, spread.q3, spread.max].map(shown));
+                    row.push(number::count(spread.outliers));
+                    row.push(if spread.exact { "exact" } else { "estimated" }.into());
+                }
+                None => row.extend((0..7).map(|_| number::NONE.to_owned())),
+            }
+            row.push(percent(statistic.failing));
+            row
+        })
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    let beyond = quantities.iter().flat_map(|quantity| &quantity.statistics).filter(|statistic| statistic.failing > 0.0).count();
+    vec![
+        Item::figure(
+            figure,
+            format!("Statistics of all selections divided by their limits{at}"),
+            format!(
+                "Box plots of {} normalised statistics; {beyond} reach beyond their limits in some selections. The numbers are in the table.",
+                rows.len()
+            ),
+        ),
+        Item::Table {
+            table: Table {
+                caption: format!("Statistics divided by their limits over the selections{at}; \"all\" is for all usable sections together"),
+                head: vec![
+                    Head::text("Quantity"),
+                    Head::short("Statistic"),
+                    Head::short("Pairs"),
+                    Head::number("All"),
+                    Head::number("Least"),
+                    Head::number("25 %"),
+                    Head::number("Median"),
+                    Head::number("75 %"),
+                    Head::number("Greatest"),
+                    Head::number("Outliers"),
+                    Head::short("Kind"),
+                    Head::number("Fails"),
+                ],
+                rows,
+            },
+        },
+    ]
+}
+
+fn failing(found: &SelectionStudy) -> Vec<Item> {
+    let fails: Vec<&QuantitySpread> = found.quantities.iter().filter(|quantity| quantity.failing > 0.0).collect();
+    if fails.is_empty() {
+        return vec![Item::text("No quantity fails in any selection that was looked at.")];
+    }
+    let mut items = vec![Item::Table {
+        table: Table {
+            caption: "Quantities that fail: in which share of the selections, and in which share they alone fail".into(),
+            head: vec![Head::text("Quantity"), Head::text("Title"), Head::number("Fails"), Head::number("Fails alone")],
+            rows: fails
+                .iter()
+                .map(|quantity| {
+                    vec![
+                        quantity.symbol.clone(),
+                        quantity.title.clone(),
+                        percent(quantity.failing),
+                        quantity.alone.map_or_else(|| number::NONE.to_owned(), percent),
+                    ]
+                })
+                .collect(),
+        },
+    }];
+    items.push(Item::Table {
+        table: Table {
+            caption: "The selection that is worst for each limit that some selection breaks".into(),
+            head: vec![
+                Head::short("Quantity"),
+                Head::short("Statistic"),
+                Head::number("Of its limit"),
+                Head::text("Sections of the selection"),
+            ],
+            rows: found
+                .worst
+                .iter()
+                .take(MOST_ROWS)
+                .map(|worst| {
+                    let scope = if worst.scope == "all" { String::new() } else { format!(", {}", worst.scope) };
+                    vec![
+                        worst.symbol.clone(),
+                        format!("{}{scope}", worst.title),
+                        number::beside(worst.normalised, 1.0, 3),
+                        worst.sections.join(", "),
+                    ]
+                })
+                .collect(),
+        },
+    });
+    items
+}
+
+fn importance(sections: &[Importance], removal: &Removal) -> Vec<Item> {
+    let mut sorted: Vec<&Importance> = sections.iter().collect();
+    let effect = |one: &Importance| one.with.zip(one.without).map_or(0.0, |(with, without)| with - without);
+    sorted.sort_by(|a, b| effect(b).abs().total_cmp(&effect(a).abs()));
+    let shown = |share: Option<f64>| share.map_or_else(|| number::NONE.to_owned(), percent);
+    vec![
+        Item::text(worded(removal)),
+        Item::Table {
+            table: Table {
+                caption: "Share of selections validated with and without each section, the largest difference first".into(),
+                head: vec![
+                    Head::text("Section"),
+                    Head::short("Zone"),
+                    Head::number("With it"),
+                    Head::number("Without it"),
+                    Head::number("Difference, points"),
+                ],
+                rows: sorted
+                    .iter()
+                    .take(MOST_ROWS)
+                    .map(|one| {
+                        let difference = one.with.zip(one.without).map(|(with, without)| 100.0 * (with - without));
+                        vec![one.section.clone(), one.zone.clone(), shown(one.with), shown(one.without), number::optional(difference, 2)]
+                    })
+                    .collect(),
+            },
+        },
+    ]
+}
+
+/// What is known of the sets whose removal changes the verdict.
+fn worded(removal: &Removal) -> String {
+    let verdict = removal.verdict.in_words();
+    match removal.sets.as_slice() {
+        [] if removal.complete => {
+            format!(
+                "No set of sections changes the verdict of all sections together ({verdict}) by its removal: all sets were tried that leave what a selection takes."
+            )
+        }
+        [] => format!(
+            "No set of up to {} sections changes the verdict of all sections together ({verdict}) by its removal; larger ones were not tried.",
+            removal.tried
+        ),
+        [first, rest @ ..] => {
+            let size = first.len();
+            let plural = if size == 1 { "section" } else { "sections" };
+            let others = match removal.count - 1 {
+                0 => "it is the only set of this size".to_owned(),
+                1 => "there is one other set of this size".to_owned(),
+                more => format!("there are {more} other sets of this size"),
+            };
+            let more: Vec<String> = rest.iter().take(5).map(|set| set.join(" and ")).collect();
+            let more = if more.is_empty() { String::new() } else { format!(": {}", more.join("; ")) };
+            format!(
+                "The verdict of all sections together ({verdict}) changes without {} {plural}: {}; {others}{more}. No smaller set changes it.",
+                size,
+                first.join(", ")
+            )
+        }
+    }
+}
+
+fn reduction(reduction: &Reduction) -> Chapter {
+    let kept = reduction.kept.iter().map(|(zone, sections)| vec![zone.clone(), sections.len().to_string(), sections.join(", ")]);
+    let scatter = reduction.scatter.iter().map(|(symbol, all, kept)| {
+        vec![symbol.clone(), number::beside(*all, 1.0, 3), number::beside(*kept, 1.0, 3), number::fixed(kept - all, 4)]
+    });
+    Chapter {
+        id: "reduction".into(),
+        title: "Representative sections".into(),
+        items: vec![
+            Item::text(format!(
+                "Before anything was selected, the sections were reduced to at most {} for each zone, so that the highest standard deviation of all sections stays.",
+                reduction.most
+            )),
+            Item::Table {
+                table: Table {
+                    caption: "Sections kept".into(),
+                    head: vec![Head::short("Zone"), Head::number("Kept"), Head::text("Sections")],
+                    rows: kept.collect(),
+                },
+            },
+            Item::Table {
+                table: Table {
+                    caption: "Standard deviations divided by their limits".into(),
+                    head: vec![Head::text("Quantity"), Head::number("All sections"), Head::number("Sections kept"), Head::number("Change")],
+                    rows: scatter.collect(),
+                },
+            },
+        ],
+    }
+}

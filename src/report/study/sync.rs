@@ -1,0 +1,160 @@
+//! The study of the synchronisation, worded.
+
+use super::document::{Chapter, Head, Item, Table};
+use super::{Opening, percent, sections, share};
+use crate::report::number;
+use crate::report::view::{Fact, Finding};
+use crate::result::study::{AtOffset, SyncStudy};
+
+fn shown(found: &SyncStudy, offset: f64) -> String {
+    format!("{} {}", number::significant(offset, 4), number::unit(&found.axis_unit))
+}
+
+pub fn opening(found: &SyncStudy) -> Opening {
+    let shares: Vec<f64> = found.offsets.iter().filter_map(|at| at.study.as_ref().ok().map(|study| study.share.share)).collect();
+    let (low, high) = shares.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), share| (low.min(*share), high.max(*share)));
+    let base = found.offsets.iter().find(|at| at.offset == 0.0);
+    let same = base.is_none_or(|base| found.offsets.iter().all(|at| at.verdict == base.verdict));
+    let (first, last) = (found.offsets.first().map_or(0.0, |at| at.offset), found.offsets.last().map_or(0.0, |at| at.offset));
+    let facts = [
+        ("Offsets", format!("{} to {}", shown(found, first), shown(found, last))),
+        ("Validated, least", percent(low)),
+        ("Validated, greatest", percent(high)),
+        ("Estimates taken out", if found.corrected { "yes" } else { "no" }.to_owned()),
+    ];
+    Opening {
+        headline: Finding::new(if same { Some(true) } else { None }, "The verdict stays", "The verdict changes", "The verdict changes"),
+        sentence: format!(
+            "The measurement was shifted against the simulation from {} to {}. The verdict on all sections together {}; the share of selections validated lies between {} and {}.",
+            shown(found, first),
+            shown(found, last),
+            if same { "is the same at every offset" } else { "is not the same at every offset" },
+            percent(low),
+            percent(high)
+        ),
+        facts: facts.map(|(name, value)| Fact { name: name.to_owned(), value }).to_vec(),
+    }
+}
+
+pub fn chapters(found: &SyncStudy) -> Vec<Chapter> {
+    let mut chapters = vec![
+        Chapter { id: "shares".into(), title: "Share validated".into(), items: shares(found) },
+        Chapter { id: "one".into(), title: "One selection".into(), items: one(found) },
+        Chapter { id: "estimates".into(), title: "Offsets found in the signals".into(), items: estimates(found) },
+    ];
+    let mut items = Vec::new();
+    for (at, offset) in found.offsets.iter().enumerate() {
+        if let Ok(study) = &offset.study {
+            let words = format!(", offset {}", shown(found, offset.offset));
+            items.push(Item::Heading { text: format!("Offset {}", shown(found, offset.offset)) });
+            items.extend(sections::spread(&study.quantities, &format!("boxes-{at}"), &words).into_iter().take(1));
+        }
+    }
+    chapters.push(Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items });
+    chapters
+}
+
+fn shares(found: &SyncStudy) -> Vec<Item> {
+    let row = |at: &AtOffset| {
+        let (validated, selections) = match &at.study {
+            Ok(study) => (share(&study.share), super::combinations(study.combinations)),
+            Err(reason) => (reason.clone(), number::NONE.to_owned()),
+        };
+        let changes = if at.changes.is_empty() { number::NONE.to_owned() } else { at.changes.join("; ") };
+        vec![shown(found, at.offset), validated, selections, at.verdict.in_words().to_owned(), changes]
+    };
+    let mut items = vec![
+        Item::figure(
+            "shares",
+            "Share of the selections validated over the offset of the measurement",
+            "Share of selections validated over the offset; the numbers are in the table.",
+        ),
+        Item::Table {
+            table: Table {
+                caption: "Influence of the synchronisation on the share of selections validated and on the verdict".into(),
+                head: vec![
+                    Head::number("Offset"),
+                    Head::number("Validated"),
+                    Head::number("Selections"),
+                    Head::short("All sections"),
+                    Head::text("What changes"),
+                ],
+                rows: found.offsets.iter().map(row).collect(),
+            },
+        },
+    ];
+    let lost: Vec<String> = found
+        .offsets
+        .iter()
+        .flat_map(|at| {
+            at.lost.iter().map(move |(section, reason)| format!("Offset {}: {section} is not used: {reason}", shown(found, at.offset)))
+        })
+        .collect();
+    if !lost.is_empty() {
+        items.push(Item::text("Sections that cannot be used at some offset, which changes what is selected from:"));
+        items.push(Item::List { entries: lost });
+    }
+    items
+}
+
+fn one(found: &SyncStudy) -> Vec<Item> {
+    let mut head = vec![Head::text("Quantity"), Head::short("Statistic")];
+    head.extend(found.offsets.iter().map(|at| Head::number(&shown(found, at.offset))));
+    let first = found.offsets.iter().find(|at| !at.selected.is_empty());
+    let rows = first.map_or(&[][..], |at| &at.selected).iter().enumerate().map(|(statistic, one)| {
+        let scope = if one.scope == "all" { String::new() } else { format!(", {}", one.scope) };
+        let mut row = vec![one.symbol.clone(), format!("{}{scope}", one.name)];
+        row.extend(found.offsets.iter().map(|at| {
+            let value = at.selected.get(statistic).and_then(|one| one.normalised);
+            value.map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 2))
+        }));
+        row
+    });
+    vec![
+        Item::text(format!("One selection drawn at random: {}.", found.selection.join(", "))),
+        Item::figure(
+            "selection",
+            "Statistics of the one selection divided by their limits, at every offset",
+            "Normalised statistics of one selection at every offset; the numbers are in the table.",
+        ),
+        Item::Table {
+            table: Table { caption: "Statistics of the one selection divided by their limits".into(), head, rows: rows.collect() },
+        },
+    ]
+}
+
+fn estimates(found: &SyncStudy) -> Vec<Item> {
+    let number = |value: Option<f64>| number::optional(value, 2);
+    let rows = found.estimates.iter().map(|one| {
+        vec![
+            one.section.clone(),
+            one.zone.clone().unwrap_or_default(),
+            number(one.shift),
+            one.low.map_or_else(|| number::NONE.to_owned(), |_| format!("{} to {}", number(one.low), number(one.high))),
+            number(one.correlation),
+        ]
+    });
+    let what = if found.corrected {
+        "These offsets were taken out before the offsets of this study were put in."
+    } else {
+        "They are reported only: nothing was corrected."
+    };
+    vec![
+        Item::text(format!(
+            "By cross-correlation of all filtered signals of both records of a section; the interval is at 95 %, from the section with an eighth left out in turn. {what}"
+        )),
+        Item::Table {
+            table: Table {
+                caption: format!("What would have to be added to the measurement's axis, in {}", number::unit(&found.axis_unit)),
+                head: vec![
+                    Head::text("Section"),
+                    Head::short("Zone"),
+                    Head::number("Offset"),
+                    Head::number("95 % interval"),
+                    Head::number("Correlation"),
+                ],
+                rows: rows.collect(),
+            },
+        },
+    ]
+}

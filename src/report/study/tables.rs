@@ -1,0 +1,145 @@
+//! Every table of a study as CSV, numbers in full precision.
+
+use crate::report::tables::csv_file;
+use crate::result::study::{AtValue, Found, ParameterStudy, QuantitySpread, SelectionStudy, Study, SyncStudy};
+
+type Row = Vec<String>;
+type Tables = Vec<(String, Vec<u8>)>;
+
+/// File names and contents, to be put into `tables/`.
+///
+/// # Errors
+/// What the CSV writer says; it writes to memory.
+pub fn tables(study: &Study) -> Result<Tables, csv::Error> {
+    match &study.found {
+        Found::Sections(found) => sections(found),
+        Found::Sync(found) => sync(found),
+        Found::Parameters(found) => parameters(found),
+    }
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or(String::new(), |value| value.to_string())
+}
+
+const SPREAD: [&str; 13] =
+    ["quantity", "statistic", "scope", "limit", "all sections", "min", "q1", "median", "q3", "max", "outliers", "exact", "share failing"];
+
+fn spread(quantities: &[QuantitySpread]) -> Vec<Row> {
+    let statistics = quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
+    statistics
+        .map(|(quantity, statistic)| {
+            let mut row = vec![quantity.id.clone(), statistic.name.clone(), statistic.scope.clone(), statistic.limit.to_string()];
+            row.push(number(statistic.overall));
+            match &statistic.spread {
+                Some(spread) => {
+                    row.extend([spread.min, spread.q1, spread.median, spread.q3, spread.max].map(|value| value.to_string()));
+                    row.extend([spread.outliers.to_string(), spread.exact.to_string()]);
+                }
+                None => row.extend((0..7).map(|_| String::new())),
+            }
+            row.push(statistic.failing.to_string());
+            row
+        })
+        .collect()
+}
+
+fn sections(found: &SelectionStudy) -> Result<Tables, csv::Error> {
+    let importance =
+        found.sections.iter().map(|one| vec![one.section.clone(), one.zone.clone(), number(one.with), number(one.without)]).collect();
+    let failing =
+        found.quantities.iter().map(|quantity| vec![quantity.id.clone(), quantity.failing.to_string(), number(quantity.alone)]).collect();
+    let worst = found
+        .worst
+        .iter()
+        .map(|one| vec![one.quantity.clone(), one.title.clone(), one.scope.clone(), one.normalised.to_string(), one.sections.join(" ")])
+        .collect();
+    let removal = found.removal.sets.iter().map(|set| vec![set.len().to_string(), set.join(" ")]).collect();
+    let mut all = vec![
+        csv_file("spread", &SPREAD, spread(&found.quantities))?,
+        csv_file("importance", &["section", "zone", "share validated with it", "share validated without it"], importance)?,
+        csv_file("failing", &["quantity", "share failing", "share failing alone"], failing)?,
+        csv_file("worst", &["quantity", "statistic", "scope", "normalised", "sections"], worst)?,
+        csv_file("removal", &["sections removed", "sections"], removal)?,
+    ];
+    if let Some(reduction) = &found.reduction {
+        let kept = reduction.kept.iter().flat_map(|(zone, kept)| kept.iter().map(move |section| vec![zone.clone(), section.clone()]));
+        all.push(csv_file("kept", &["zone", "section"], kept.collect())?);
+    }
+    Ok(all)
+}
+
+fn sync(found: &SyncStudy) -> Result<Tables, csv::Error> {
+    let (mut offsets, mut all, mut one) = (Vec::new(), Vec::new(), Vec::new());
+    for at in &found.offsets {
+        let offset = at.offset.to_string();
+        let (share, reason) = match &at.study {
+            Ok(study) => (study.share.share.to_string(), String::new()),
+            Err(reason) => (String::new(), reason.clone()),
+        };
+        offsets.push(vec![offset.clone(), share, at.verdict.in_words().to_owned(), at.changes.join("; "), reason]);
+        if let Ok(study) = &at.study {
+            all.extend(spread(&study.quantities).into_iter().map(|row| [vec![offset.clone()], row].concat()));
+        }
+        one.extend(at.selected.iter().map(|one| {
+            vec![offset.clone(), one.id.clone(), one.name.clone(), one.scope.clone(), number(one.normalised), one.holds.to_string()]
+        }));
+    }
+    let estimates = found
+        .estimates
+        .iter()
+        .map(|one| {
+            let mut row = vec![one.section.clone(), one.zone.clone().unwrap_or_default()];
+            row.extend([one.shift, one.low, one.high, one.correlation].map(number));
+            row
+        })
+        .collect();
+    let head = [&["offset"][..], &SPREAD[..]].concat();
+    Ok(vec![
+        csv_file("offsets", &["offset", "share validated", "verdict on all sections", "changes", "reason"], offsets)?,
+        csv_file("spread", &head, all)?,
+        csv_file("one_selection", &["offset", "quantity", "statistic", "scope", "normalised", "holds"], one)?,
+        csv_file("estimates", &["section", "zone", "offset", "low 95 %", "high 95 %", "correlation"], estimates)?,
+    ])
+}
+
+fn parameters(found: &ParameterStudy) -> Result<Tables, csv::Error> {
+    let (mut values, mut statistics) = (Vec::new(), Vec::new());
+    for parameter in &found.parameters {
+        for at in &parameter.values {
+            values.push(value(&parameter.name, at));
+            statistics.extend(at.statistics.iter().map(|one| {
+                vec![
+                    parameter.name.clone(),
+                    at.value.clone(),
+                    one.id.clone(),
+                    one.name.clone(),
+                    one.scope.clone(),
+                    number(one.normalised),
+                    one.holds.to_string(),
+                ]
+            }));
+        }
+    }
+    Ok(vec![
+        csv_file(
+            "parameters",
+            &["parameter", "value", "as it is", "verdict", "largest statistic", "normalised", "share validated", "reason"],
+            values,
+        )?,
+        csv_file("statistics", &["parameter", "value", "quantity", "statistic", "scope", "normalised", "holds"], statistics)?,
+    ])
+}
+
+fn value(name: &str, at: &AtValue) -> Row {
+    vec![
+        name.to_owned(),
+        at.value.clone(),
+        at.is_base.to_string(),
+        at.verdict.in_words().to_owned(),
+        at.largest.as_ref().map_or_else(String::new, |(which, _)| which.clone()),
+        number(at.largest.as_ref().map(|(_, value)| *value)),
+        number(at.share.map(|share| share.share)),
+        at.reason.clone().unwrap_or_default(),
+    ]
+}

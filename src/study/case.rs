@@ -1,0 +1,237 @@
+//! The values and limits of a campaign as a study asks them: by stratum, section and quantity, with their sums at hand.
+
+use crate::catalog::Statistic;
+use crate::run::pool::{Pool, PooledLimit, PooledQuantity, Rule};
+
+/// Room for rounding where a value equals its limit; a value equal to its limit passes.
+const EQUAL: f64 = 1e-12;
+
+/// What is selected from, and what a selection is judged by.
+#[derive(Clone, Debug)]
+pub struct Case {
+    pub strata: Vec<Stratum>,
+    /// Names by index.
+    pub sections: Vec<String>,
+    pub quantities: Vec<Quantity>,
+    pub rule: Rule,
+}
+
+#[derive(Clone, Debug)]
+pub struct Stratum {
+    pub zone: String,
+    pub title: String,
+    pub take: usize,
+    /// Usable sections.
+    pub members: Vec<usize>,
+    /// Others of the zone, with the reason.
+    pub not_used: Vec<(usize, String)>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    pub id: String,
+    pub title: String,
+    pub symbol: String,
+    pub unit: String,
+    /// Differences of every section.
+    pub values: Vec<Vec<f64>>,
+    /// Bit by bit the signals that a section has.
+    pub signals: Vec<u128>,
+    pub minimum_signals: usize,
+    pub minimum_pairs: usize,
+    pub measures: Vec<Measure>,
+}
+
+/// A statistic with its limit.
+#[derive(Clone, Debug)]
+pub struct Measure {
+    pub name: String,
+    pub title: String,
+    pub scope: String,
+    pub limit: f64,
+    pub at_least: bool,
+    pub kind: Kind,
+    /// What a value is multiplied by to be compared with `low` and `high`.
+    pub scale: f64,
+    /// The limit holds from `low` to `high`.
+    pub low: f64,
+    pub high: f64,
+    /// Values of each section that it is taken over, already divided by their own limits where each has one.
+    pub values: Vec<Vec<f64>>,
+}
+
+/// How a statistic of many sections follows from their parts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    Mean,
+    /// With the divisor's n - `ddof`.
+    Deviation {
+        ddof: usize,
+    },
+    RootMeanSquare,
+    Largest,
+    Smallest,
+    LargestMagnitude,
+    /// Only from all values together.
+    Pooled(Statistic),
+}
+
+/// Why a study cannot be made of a campaign.
+pub type Refusal = String;
+
+impl Case {
+    /// Takes over what a run pooled.
+    ///
+    /// `take` is the number of sections of each zone where it is not the protocol's.
+    ///
+    /// # Errors
+    /// A zone with fewer usable sections than a selection takes; a protocol that asks for none.
+    pub fn of(pool: &Pool, take: Option<usize>) -> Result<Self, Refusal> {
+        let mut strata = Vec::new();
+        let of_zone = |inside: &dyn Fn(Option<&str>) -> bool| {
+            let all = pool.sections.iter().enumerate().filter(|(_, section)| inside(section.zone.as_deref()));
+            let (mut members, mut not_used) = (Vec::new(), Vec::new());
+            for (at, section) in all {
+                if section.used {
+                    members.push(at);
+                } else {
+                    not_used.push((at, section.reason.clone().unwrap_or_default()));
+                }
+            }
+            (members, not_used)
+        };
+        for zone in pool.zones.iter().filter(|zone| zone.needed > 0) {
+            let (members, not_used) = of_zone(&|of| of == Some(zone.name.as_str()));
+            strata.push(Stratum {
+                zone: zone.name.clone(),
+                title: zone.title.clone(),
+                take: take.unwrap_or(zone.needed),
+                members,
+                not_used,
+            });
+        }
+        if strata.is_empty() {
+            let (members, not_used) = of_zone(&|_| true);
+            let wanted = take.unwrap_or(pool.minimum.max(1));
+            strata.push(Stratum { zone: "all".into(), title: "All sections".into(), take: wanted, members, not_used });
+        }
+        for stratum in &strata {
+            if stratum.members.len() < stratum.take {
+                let (has, needs) = (stratum.members.len(), stratum.take);
+                let why: Vec<String> =
+                    stratum.not_used.iter().take(3).map(|(at, why)| format!("{} is not used: {why}", pool.sections[*at].name)).collect();
+                let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
+                return Err(format!("zone {} has {has} usable sections, and a selection takes {needs}{why}", stratum.zone));
+            }
+        }
+        Ok(Self {
+            strata,
+            sections: pool.sections.iter().map(|section| section.name.clone()).collect(),
+            quantities: pool.quantities.iter().map(quantity).collect(),
+            rule: pool.rule,
+        })
+    }
+
+    /// Number of selections, rounded where it is beyond 2^53.
+    pub fn combinations(&self) -> f64 {
+        self.strata.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).product()
+    }
+
+    /// Every limit with its quantity.
+    pub fn measures(&self) -> impl Iterator<Item = (usize, &Measure)> {
+        self.quantities.iter().enumerate().flat_map(|(at, quantity)| quantity.measures.iter().map(move |measure| (at, measure)))
+    }
+}
+
+/// Binomial coefficient.
+pub fn choose(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |product, at| (product * (n - at) as f64 / (at + 1) as f64).round())
+}
+
+fn quantity(pooled: &PooledQuantity) -> Quantity {
+    Quantity {
+        id: pooled.id.clone(),
+        title: pooled.title.clone(),
+        symbol: pooled.symbol.clone(),
+        unit: pooled.unit.clone(),
+        values: pooled.values.iter().map(|values| values.iter().map(|(_, value)| *value).collect()).collect(),
+        signals: pooled.values.iter().map(|values| values.iter().fold(0, |all, (signal, _)| all | 1 << (signal % 128))).collect(),
+        minimum_signals: pooled.minimum_signals,
+        minimum_pairs: pooled.minimum_pairs,
+        measures: pooled.limits.iter().map(|limit| measure(pooled, limit)).collect(),
+    }
+}
+
+fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
+    let each = limit.statistic == Statistic::Each;
+    let kind = match limit.statistic {
+        Statistic::Each if limit.at_least => Kind::Smallest,
+        Statistic::Each => Kind::LargestMagnitude,
+        Statistic::Percentile(_) => Kind::Pooled(limit.statistic),
+        Statistic::Named(entry) => match entry.name {
+            "mean" => Kind::Mean,
+            "std" => Kind::Deviation { ddof: limit.ddof },
+            "rms" => Kind::RootMeanSquare,
+            "maximum" => Kind::Largest,
+            "minimum" => Kind::Smallest,
+            "peak" => Kind::LargestMagnitude,
+            _ => Kind::Pooled(limit.statistic),
+        },
+    };
+    let (bound, scale) = if each {
+        (1.0, 1.0)
+    } else {
+        let bound = limit.bounds[0];
+        if bound > 0.0 { (1.0, 1.0 / bound) } else { (bound, 1.0) }
+    };
+    let room = EQUAL * bound.abs();
+    let (low, high) = if limit.at_least { (bound - room, f64::INFINITY) } else { (-bound - room, bound + room) };
+    let of_section = |(at, values): (usize, &Vec<(usize, f64)>)| {
+        if !limit.inside[at] {
+            return Vec::new();
+        }
+        let own = if each && limit.bounds[at] > 0.0 { 1.0 / limit.bounds[at] } else { 1.0 };
+        values.iter().map(|(_, value)| value * own).collect()
+    };
+    Measure {
+        name: limit.statistic.name(),
+        title: limit.title.clone(),
+        scope: limit.scope.clone(),
+        limit: if each { 1.0 } else { limit.bounds[0] },
+        at_least: limit.at_least,
+        kind,
+        scale,
+        low,
+        high,
+        values: pooled.values.iter().enumerate().map(of_section).collect(),
+    }
+}
+
+impl Measure {
+    /// The value over some sections divided by the limit; `None` where it is not defined.
+    pub fn over(&self, sections: impl Iterator<Item = usize>) -> Option<f64> {
+        let values: Vec<f64> = sections.flat_map(|at| self.values[at].iter().copied()).collect();
+        let named = |name: &str, ddof: usize| match Statistic::named(name) {
+            Some(Statistic::Named(entry)) => (entry.run)(&values, ddof),
+            _ => None,
+        };
+        let value = match self.kind {
+            Kind::Mean => named("mean", 0),
+            Kind::Deviation { ddof } => named("std", ddof),
+            Kind::RootMeanSquare => named("rms", 0),
+            Kind::Largest => named("maximum", 0),
+            Kind::Smallest => named("minimum", 0),
+            Kind::LargestMagnitude => named("peak", 0),
+            Kind::Pooled(Statistic::Percentile(percent)) => {
+                crate::metrics::percentile::percentile(&values, percent, crate::metrics::percentile::Method::Linear).ok()
+            }
+            Kind::Pooled(Statistic::Named(entry)) => (entry.run)(&values, 0),
+            Kind::Pooled(Statistic::Each) => None,
+        };
+        value.map(|value| value * self.scale).filter(|value| value.is_finite())
+    }
+
+    pub fn holds(&self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value)
+    }
+}

@@ -1,0 +1,135 @@
+//! Which selections break a limit: one bit for each pair of halves.
+
+use super::groups::Column;
+
+/// A bit for every row and column.
+#[derive(Clone, Debug)]
+pub struct Fails {
+    pub rows: usize,
+    pub columns: usize,
+    words: usize,
+    bits: Vec<u64>,
+    /// For every `STEP`th place in the order of the columns, the set of all columns from there on.
+    from: Vec<u64>,
+}
+
+/// Columns marked one by one before whole sets are.
+const STEP: usize = 64;
+
+impl Fails {
+    pub fn new(rows: usize, columns: usize) -> Self {
+        let words = columns.div_ceil(64).max(1);
+        Self { rows, columns, words, bits: vec![0; rows * words], from: Vec::new() }
+    }
+
+    #[inline]
+    pub fn one(&mut self, row: u32, column: u32) {
+        self.bits[row as usize * self.words + column as usize / 64] |= 1 << (column % 64);
+    }
+
+    /// The order that the next calls of `after` and `before` speak of.
+    pub fn order(&mut self, columns: &[Column]) {
+        let cuts = columns.len().div_ceil(STEP);
+        self.from.clear();
+        self.from.resize((cuts + 1) * self.words, 0);
+        for cut in (0..cuts).rev() {
+            let (here, after) = self.from.split_at_mut((cut + 1) * self.words);
+            let here = &mut here[cut * self.words..];
+            here.copy_from_slice(&after[..self.words]);
+            for column in &columns[cut * STEP..((cut + 1) * STEP).min(columns.len())] {
+                here[column.at as usize / 64] |= 1 << (column.at % 64);
+            }
+        }
+    }
+
+    /// A row with all columns from a place in the order on.
+    pub fn after(&mut self, row: u32, columns: &[Column], place: usize) {
+        let cut = place.div_ceil(STEP);
+        let end = (cut * STEP).min(columns.len());
+        for column in &columns[place..end] {
+            self.one(row, column.at);
+        }
+        if end < columns.len() {
+            let start = row as usize * self.words;
+            let set = &self.from[cut * self.words..(cut + 1) * self.words];
+            for (word, set) in self.bits[start..start + self.words].iter_mut().zip(set) {
+                *word |= set;
+            }
+        }
+    }
+
+    /// A row with all columns before a place in the order.
+    pub fn before(&mut self, row: u32, columns: &[Column], place: usize) {
+        let cut = place / STEP;
+        for column in &columns[cut * STEP..place] {
+            self.one(row, column.at);
+        }
+        if cut > 0 {
+            let start = row as usize * self.words;
+            let (all, rest) = (&self.from[..self.words], &self.from[cut * self.words..(cut + 1) * self.words]);
+            for ((word, all), rest) in self.bits[start..start + self.words].iter_mut().zip(all).zip(rest) {
+                *word |= all & !rest;
+            }
+        }
+    }
+
+    pub fn has(&self, row: usize, column: usize) -> bool {
+        self.bits[row * self.words + column / 64] >> (column % 64) & 1 == 1
+    }
+
+    pub fn count(&self) -> u64 {
+        self.bits.iter().map(|word| u64::from(word.count_ones())).sum()
+    }
+
+    /// Takes over the marks of another; those both had are marked in `twice`.
+    pub fn join(&mut self, other: &Self, twice: &mut Self) {
+        for ((word, other), twice) in self.bits.iter_mut().zip(&other.bits).zip(&mut twice.bits) {
+            *twice |= *word & other;
+            *word |= other;
+        }
+    }
+
+    /// Takes over the marks of another.
+    pub fn join_all(&mut self, other: &Self) {
+        for (word, other) in self.bits.iter_mut().zip(&other.bits) {
+            *word |= other;
+        }
+    }
+
+    /// How many of these are not among others.
+    pub fn besides(&self, others: &Self) -> u64 {
+        self.bits.iter().zip(&others.bits).map(|(word, others)| u64::from((word & !others).count_ones())).sum()
+    }
+
+    /// Selections not marked, for every row and for every column.
+    pub fn unmarked(&self) -> (Vec<u64>, Vec<u64>) {
+        let mut columns = vec![self.rows as u64; self.columns];
+        let rows = self
+            .bits
+            .chunks(self.words)
+            .map(|words| {
+                let mut marked = 0;
+                for (at, word) in words.iter().enumerate() {
+                    let mut word = *word;
+                    marked += u64::from(word.count_ones());
+                    while word != 0 {
+                        columns[at * 64 + word.trailing_zeros() as usize] -= 1;
+                        word &= word - 1;
+                    }
+                }
+                self.columns as u64 - marked
+            })
+            .collect();
+        (rows, columns)
+    }
+
+    /// Adds one to the count of every marked selection.
+    pub fn tally(&self, counts: &mut [u8]) {
+        for row in 0..self.rows {
+            for column in 0..self.columns {
+                let count = &mut counts[row * self.columns + column];
+                *count = count.saturating_add(u8::from(self.has(row, column)));
+            }
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! Selections as pairs of two halves: every choice of sections of some zones with every choice of the others.
+//!
+//! Sums over a selection are sums of two numbers, one of each half, so that a selection costs an addition and not a look at its
+//! sections.
+
+use super::case::{Case, Kind, Measure, choose};
+use super::groups::{Block, Column, Row};
+
+/// All choices of sections from some strata.
+#[derive(Clone, Debug)]
+pub struct Half {
+    /// Sections of one choice.
+    pub width: usize,
+    /// `width` sections for each choice.
+    pub sections: Vec<u32>,
+    pub count: usize,
+}
+
+/// Rows with columns are all selections.
+#[derive(Clone, Debug)]
+pub struct Halves {
+    pub rows: Half,
+    pub columns: Half,
+}
+
+impl Halves {
+    /// The numbers of choices of both halves, split as evenly as the zones allow; the first is the larger.
+    pub fn sizes(case: &Case) -> (f64, f64) {
+        let (rows, columns, _) = split(case);
+        (rows, columns)
+    }
+
+    pub fn of(case: &Case) -> Self {
+        let (_, _, in_rows) = split(case);
+        let half = |wanted: bool| {
+            let mut half = Half { width: 0, sections: Vec::new(), count: 1 };
+            for (stratum, _) in case.strata.iter().zip(&in_rows).filter(|(_, in_rows)| **in_rows == wanted) {
+                half = half.with(&subsets(&stratum.members, stratum.take), stratum.take);
+            }
+            half
+        };
+        Self { rows: half(true), columns: half(false) }
+    }
+}
+
+/// Which strata make the rows: the larger product, and the split whose larger half is least.
+fn split(case: &Case) -> (f64, f64, Vec<bool>) {
+    let sizes: Vec<f64> = case.strata.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).collect();
+    let all: f64 = sizes.iter().product();
+    // Beyond 16 zones the first 16 are shared out and the others stay with the columns.
+    let shared = sizes.len().min(16);
+    let product = |mask: u32| (0..shared).filter(|at| mask >> at & 1 == 1).map(|at| sizes[at]).product::<f64>();
+    let best =
+        (0..1_u32 << shared).filter(|mask| product(*mask) * product(*mask) >= all).min_by(|a, b| product(*a).total_cmp(&product(*b)));
+    let mask = best.unwrap_or((1 << shared) - 1);
+    let rows = product(mask);
+    (rows, all / rows, (0..sizes.len()).map(|at| at < shared && mask >> at & 1 == 1).collect())
+}
+
+/// Every choice of `take` members, in the order of the members.
+pub fn subsets(members: &[usize], take: usize) -> Vec<Vec<u32>> {
+    let mut found = Vec::new();
+    let mut chosen: Vec<usize> = (0..take).collect();
+    if take > members.len() {
+        return found;
+    }
+    loop {
+        found.push(chosen.iter().map(|&at| members[at] as u32).collect());
+        // The last place that can still move on.
+        let Some(place) = (0..take).rev().find(|&place| chosen[place] < members.len() - take + place) else { return found };
+        chosen[place] += 1;
+        for next in place + 1..take {
+            chosen[next] = chosen[next - 1] + 1;
+        }
+    }
+}
+
+impl Half {
+    fn with(&self, choices: &[Vec<u32>], take: usize) -> Self {
+        let mut sections = Vec::with_capacity(self.count * choices.len() * (self.width + take));
+        for at in 0..self.count {
+            for choice in choices {
+                sections.extend_from_slice(self.choice(at));
+                sections.extend_from_slice(choice);
+            }
+        }
+        Self { width: self.width + take, sections, count: self.count * choices.len() }
+    }
+
+    /// Sections of one choice.
+    pub fn choice(&self, at: usize) -> &[u32] {
+        &self.sections[at * self.width..(at + 1) * self.width]
+    }
+
+    pub fn choices(&self) -> impl Iterator<Item = &[u32]> {
+        (0..self.count).map(|at| self.choice(at))
+    }
+}
+
+/// Count of values, sum and sum of squares of a choice.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    n: usize,
+    x: f64,
+    xx: f64,
+}
+
+/// A statistic over selections, in parts that its halves give.
+#[derive(Clone, Debug)]
+pub enum Parts {
+    /// Sums, whose sum the form maps to the value; choices of rows and columns that give none.
+    Sums { blocks: Vec<Block>, form: Form, undefined: Vec<(Vec<u32>, Vec<u32>)> },
+    /// The largest of both halves; negated for the smallest. `None` where a half has no value.
+    Extremes { rows: Vec<Option<f64>>, columns: Vec<Option<f64>>, negative: bool },
+    /// Not to be had from parts.
+    Pooled,
+}
+
+/// What the sum of the parts is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    Value,
+    /// The square of the value.
+    Square,
+}
+
+impl Form {
+    pub fn map(self, sum: f64) -> f64 {
+        match self {
+            Self::Value => sum,
+            Self::Square => sum.max(0.0).sqrt(),
+        }
+    }
+
+    /// The sums that map to values between two.
+    pub fn bounds(self, low: f64, high: f64) -> (f64, f64) {
+        match self {
+            Self::Value => (low, high),
+            Self::Square => (if low > 0.0 { low * low } else { f64::NEG_INFINITY }, high * high),
+        }
+    }
+}
+
+impl Measure {
+    pub fn parts(&self, halves: &Halves) -> Parts {
+        let extremes = |sign: f64, magnitude: bool| {
+            let of_section: Vec<Option<f64>> = self
+                .values
+                .iter()
+                .map(|values| {
+                    let scaled = values.iter().map(|value| sign * self.scale * if magnitude { value.abs() } else { *value });
+                    scaled.reduce(f64::max)
+                })
+                .collect();
+            let of = |half: &Half| {
+                half.choices().map(|choice| choice.iter().filter_map(|&at| of_section[at as usize]).reduce(f64::max)).collect()
+            };
+            Parts::Extremes { rows: of(&halves.rows), columns: of(&halves.columns), negative: sign < 0.0 }
+        };
+        match self.kind {
+            Kind::Mean | Kind::Deviation { .. } | Kind::RootMeanSquare => self.sums(halves),
+            Kind::Largest => extremes(1.0, false),
+            Kind::Smallest => extremes(-1.0, false),
+            Kind::LargestMagnitude => extremes(1.0, true),
+            Kind::Pooled(_) => Parts::Pooled,
+        }
+    }
+
+    fn sums(&self, halves: &Halves) -> Parts {
+        // Sums about the mean of all values keep their digits.
+        let all: Vec<f64> = self.values.iter().flatten().copied().collect();
+        let center = match self.kind {
+            Kind::RootMeanSquare => 0.0,
+            _ => all.iter().sum::<f64>() / all.len().max(1) as f64,
+        };
+        let of_section: Vec<Sums> = self
+            .values
+            .iter()
+            .map(|values| {
+                let centred = values.iter().map(|value| value - center);
+                Sums { n: values.len(), x: centred.clone().sum(), xx: centred.map(|value| value * value).sum() }
+            })
+            .collect();
+        let of = |half: &Half| -> Vec<Sums> {
+            let plus = |sums: Sums, &at: &u32| {
+                let one = &of_section[at as usize];
+                Sums { n: sums.n + one.n, x: sums.x + one.x, xx: sums.xx + one.xx }
+            };
+            half.choices().map(|choice| choice.iter().fold(Sums::default(), plus)).collect()
+        };
+        let (rows, columns) = (of(&halves.rows), of(&halves.columns));
+        let form = if self.kind == Kind::Mean { Form::Value } else { Form::Square };
+        let (mut blocks, mut undefined) = (Vec::new(), Vec::new());
+        // Choices with the same number of values share their divisor.
+        for row_count in counts(&rows) {
+            for column_count in counts(&columns) {
+                let n = (row_count + column_count) as f64;
+                let weights = match self.kind {
+                    Kind::Mean if n > 0.0 => Weights { x: self.scale / n, ..Weights::default() },
+                    Kind::RootMeanSquare if n > 0.0 => Weights { xx: self.scale * self.scale / n, ..Weights::default() },
+                    Kind::Deviation { ddof } if n > ddof as f64 && n >= 1.0 => {
+                        let xx = self.scale * self.scale / (n - ddof as f64);
+                        Weights { x: 0.0, xx, product: xx / n }
+                    }
+                    _ => {
+                        let of = |sums: &[Sums], count: usize| {
+                            sums.iter().enumerate().filter(|(_, sums)| sums.n == count).map(|(at, _)| at as u32).collect()
+                        };
+                        undefined.push((of(&rows, row_count), of(&columns, column_count)));
+                        continue;
+                    }
+                };
+                let shift = if self.kind == Kind::Mean { center * self.scale } else { 0.0 };
+                blocks.push(block((&rows, row_count), (&columns, column_count), weights, shift));
+            }
+        }
+        Parts::Sums { blocks, form, undefined }
+    }
+}
+
+/// What a sum, a sum of squares and the square of a sum count for.
+#[derive(Clone, Copy, Debug, Default)]
+struct Weights {
+    x: f64,
+    xx: f64,
+    product: f64,
+}
+
+fn counts(sums: &[Sums]) -> Vec<usize> {
+    let mut counts: Vec<usize> = sums.iter().map(|sums| sums.n).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    counts
+}
+
+fn block(rows: (&[Sums], usize), columns: (&[Sums], usize), weights: Weights, shift: f64) -> Block {
+    let part = |sums: &Sums| weights.x * sums.x + weights.xx * sums.xx - weights.product * sums.x * sums.x;
+    let of = |(sums, count): (&[Sums], usize)| {
+        let all = sums.iter().enumerate().filter(move |(_, sums)| sums.n == count);
+        all.map(|(at, sums)| (at as u32, *sums)).collect::<Vec<_>>()
+    };
+    Block {
+        rows: of(rows).iter().map(|(at, sums)| Row { p: part(sums) + shift, c: 2.0 * weights.product * sums.x, at: *at }).collect(),
+        columns: of(columns)
+            .iter()
+            .map(|(at, sums)| Column { q: part(sums), y: if weights.product == 0.0 { 0.0 } else { sums.x }, at: *at })
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn subsets_are_all_and_once() {
+        assert_eq!(subsets(&[4, 7, 9], 2), [vec![4, 7], vec![4, 9], vec![7, 9]]);
+        assert_eq!(subsets(&[1, 2], 0), [Vec::<u32>::new()]);
+        assert_eq!(subsets(&[1], 2), Vec::<Vec<u32>>::new());
+        assert_eq!(subsets(&(0..9).collect::<Vec<_>>(), 3).len(), 84);
+        assert_eq!([choose(9, 3), choose(40, 3), choose(5, 5), choose(5, 0)], [84.0, 9880.0, 1.0, 1.0]);
+    }
+}

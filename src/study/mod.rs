@@ -1,0 +1,82 @@
+//! How far a verdict depends on the sections chosen: every selection, counted and not run.
+//!
+//! | file | what |
+//! |---|---|
+//! | `case` | strata, values and limits of a campaign |
+//! | `halves` | selections as pairs of two halves; a statistic as a sum of their parts |
+//! | `groups`, `spread` | exact order statistics of such sums, without keeping them |
+//! | `listed` | order statistics where values can be listed or sums only added |
+//! | `fails` | a bit for every selection that breaks a limit |
+//! | `judged` | one selection from its sections |
+//! | `enumerate`, `sampling` | all selections, or some of them with an interval |
+//! | `removal`, `reduce` | smallest sets that change the verdict; fewer sections with the same scatter |
+
+pub mod case;
+pub mod enumerate;
+pub mod fails;
+pub mod groups;
+pub mod halves;
+pub mod judged;
+pub mod listed;
+mod reduce;
+mod removal;
+pub mod sampling;
+pub mod spread;
+
+use crate::result::study::{SelectionStudy, Stratum};
+use case::Case;
+pub use reduce::reduced;
+
+/// How a study is done where there is a choice.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Selections that are all looked at; more are drawn from.
+    pub most: f64,
+    /// Width of the interval of the share at which drawing ends.
+    pub width: f64,
+    pub seed: u64,
+}
+
+/// Selections that can be enumerated with a bit for each in some 25 MB.
+pub const MOST: f64 = 2e8;
+/// Selections enumerated where a statistic has to be taken from all values together.
+const MOST_POOLED: f64 = 2e6;
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { most: MOST, width: 0.01, seed: 1 }
+    }
+}
+
+/// Every selection of a case, or as many as it takes.
+pub fn selections(case: &Case, settings: &Settings) -> SelectionStudy {
+    let pooled = case.measures().any(|(_, measure)| matches!(measure.kind, case::Kind::Pooled(_)));
+    let combinations = case.combinations();
+    let most = if pooled { settings.most.min(MOST_POOLED) } else { settings.most };
+    let counted = if combinations <= most { enumerate::all(case) } else { sampling::some(case, settings) };
+    let usable = case.usable();
+    let (verdict, _) = case.judge(&usable);
+    SelectionStudy {
+        strata: case.strata.iter().map(|stratum| named(case, stratum)).collect(),
+        combinations,
+        share: counted.share,
+        verdict,
+        quantities: counted.quantities,
+        sections: counted.sections,
+        worst: counted.worst,
+        removal: removal::smallest(case, verdict),
+        reduction: None,
+        methods: counted.methods,
+    }
+}
+
+fn named(case: &Case, stratum: &case::Stratum) -> Stratum {
+    let name = |at: usize| case.sections[at].clone();
+    Stratum {
+        zone: stratum.zone.clone(),
+        title: stratum.title.clone(),
+        take: stratum.take,
+        sections: stratum.members.iter().map(|&at| name(at)).collect(),
+        not_used: stratum.not_used.iter().map(|(at, why)| (name(*at), why.clone())).collect(),
+    }
+}

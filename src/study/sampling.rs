@@ -1,0 +1,317 @@
+//! Selections drawn at random, where there are too many to look at all: the share with an interval, drawn until it is narrow
+//! enough. What can be had exactly all the same is had exactly.
+
+use rayon::prelude::*;
+
+use super::Settings;
+use super::case::{Case, Kind};
+use super::enumerate::Counted;
+use super::halves::{Halves, Parts};
+use super::judged::{Sums, Tally};
+use super::listed::{Listed, larger, sums, weighted};
+use crate::metrics::percentile::{Method, percentiles};
+use crate::result::Verdict;
+use crate::result::study::{Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection};
+
+/// Selections of a batch, and batches drawn before the width is looked at again.
+const BATCH: usize = 4096;
+const ROUND: usize = 8;
+/// No more are drawn, however narrow the interval is wanted.
+const MOST_DRAWN: usize = 1 << 22;
+/// Selections whose values are kept for the estimated quartiles.
+const KEPT: usize = 1 << 16;
+/// Choices of a half that are listed to have a statistic exactly.
+const MOST_LISTED: f64 = 2e6;
+/// 97.5 % value of the normal distribution.
+const NORMAL: f64 = 1.959_963_985;
+
+/// A stream of random numbers: SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
+#[derive(Clone, Debug)]
+pub struct Random(u64);
+
+impl Random {
+    /// Streams of different numbers are independent of each other.
+    pub fn new(seed: u64, stream: u64) -> Self {
+        let mut random = Self(seed ^ stream.wrapping_mul(0xd134_2543_de82_ef95));
+        random.number();
+        random
+    }
+
+    /// Any number of 64 bits, each as likely.
+    pub fn number(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A number below `n`, each as likely (Lemire's multiplication; its bias is below n / 2^64).
+    pub fn below(&mut self, n: usize) -> usize {
+        ((u128::from(self.number()) * n as u128) >> 64) as usize
+    }
+}
+
+/// One selection, every one as likely: sections of each stratum without repetition.
+pub fn draw(case: &Case, random: &mut Random) -> Vec<usize> {
+    let mut chosen = Vec::new();
+    for stratum in &case.strata {
+        let mut members = stratum.members.clone();
+        for at in 0..stratum.take {
+            let other = at + random.below(members.len() - at);
+            members.swap(at, other);
+        }
+        chosen.extend_from_slice(&members[..stratum.take]);
+    }
+    chosen.sort_unstable();
+    chosen
+}
+
+/// Wilson's 95 % interval of a share.
+pub fn wilson(good: u64, all: u64) -> (f64, f64) {
+    let (n, p) = (all as f64, good as f64 / all as f64);
+    let square = NORMAL * NORMAL;
+    let center = (p + square / (2.0 * n)) / (1.0 + square / n);
+    let half = NORMAL / (1.0 + square / n) * (p * (1.0 - p) / n + square / (4.0 * n * n)).sqrt();
+    ((center - half).max(0.0), (center + half).min(1.0))
+}
+
+/// What some selections came to.
+struct Drawn {
+    validated: u64,
+    /// Per section: selections with it, and validated ones.
+    with: Vec<(u64, u64)>,
+    /// Per quantity and per limit: selections that break it; per quantity, alone.
+    quantities: Vec<(u64, u64)>,
+    limits: Vec<u64>,
+    /// Values of each limit, and the worst with its selection.
+    values: Vec<Vec<f64>>,
+    worst: Vec<Option<(f64, Vec<usize>)>>,
+}
+
+impl Drawn {
+    fn none(case: &Case) -> Self {
+        let limits = case.measures().count();
+        Self {
+            validated: 0,
+            with: vec![(0, 0); case.sections.len()],
+            quantities: vec![(0, 0); case.quantities.len()],
+            limits: vec![0; limits],
+            values: vec![Vec::new(); limits],
+            worst: vec![None; limits],
+        }
+    }
+
+    fn batch(case: &Case, sums: &[Vec<Sums<'_>>], seed: u64, number: usize) -> Self {
+        let mut drawn = Self::none(case);
+        let mut random = Random::new(seed, number as u64);
+        for _ in 0..BATCH {
+            drawn.look(case, sums, draw(case, &mut random));
+        }
+        drawn
+    }
+
+    fn look(&mut self, case: &Case, sums: &[Vec<Sums<'_>>], selection: Vec<usize>) {
+        let mut tally = Tally::default();
+        let mut limit = 0;
+        let mut failing = Vec::new();
+        for (at, (quantity, sums)) in case.quantities.iter().zip(sums).enumerate() {
+            let before = tally;
+            let mut fails = !sums.is_empty() && !quantity.enough(selection.iter().copied());
+            tally.missing |= fails;
+            for sums in sums {
+                let value = sums.over(selection.iter().copied());
+                let holds = value.map(|value| sums.measure().holds(value));
+                tally.limit(holds);
+                fails |= holds != Some(true);
+                self.limits[limit] += u64::from(holds == Some(false));
+                if let Some(value) = value {
+                    self.values[limit].push(value);
+                    let badness = if sums.measure().at_least { -value } else { value.abs() };
+                    if self.worst[limit].as_ref().is_none_or(|(worst, _)| badness > *worst) {
+                        self.worst[limit] = Some((badness, selection.clone()));
+                    }
+                }
+                limit += 1;
+            }
+            tally.quantity(&before, sums.is_empty());
+            if fails {
+                failing.push(at);
+            }
+        }
+        let good = u64::from(tally.verdict(case.rule) == Verdict::Validated);
+        self.validated += good;
+        for &at in &selection {
+            self.with[at].0 += 1;
+            self.with[at].1 += good;
+        }
+        failing.iter().for_each(|&at| self.quantities[at].0 += 1);
+        if let [only] = failing[..] {
+            self.quantities[only].1 += 1;
+        }
+    }
+
+    /// Batches are joined in their order, so that the result does not depend on who was first.
+    fn join(&mut self, other: Self) {
+        self.validated += other.validated;
+        let pairs = |mine: &mut Vec<(u64, u64)>, others: Vec<(u64, u64)>| {
+            mine.iter_mut().zip(others).for_each(|(mine, other)| *mine = (mine.0 + other.0, mine.1 + other.1));
+        };
+        pairs(&mut self.with, other.with);
+        pairs(&mut self.quantities, other.quantities);
+        self.limits.iter_mut().zip(other.limits).for_each(|(mine, other)| *mine += other);
+        for (mine, other) in self.values.iter_mut().zip(other.values) {
+            let room = KEPT.saturating_sub(mine.len());
+            mine.extend(other.into_iter().take(room));
+        }
+        for (mine, other) in self.worst.iter_mut().zip(other.worst) {
+            if other.as_ref().is_some_and(|(new, _)| mine.as_ref().is_none_or(|(old, _)| new > old)) {
+                *mine = other;
+            }
+        }
+    }
+}
+
+/// As many selections as the wanted width takes.
+pub fn some(case: &Case, settings: &Settings) -> Counted {
+    let sums_of: Vec<Vec<Sums<'_>>> = case.quantities.iter().map(|quantity| quantity.measures.iter().map(Sums::of).collect()).collect();
+    let mut drawn = Drawn::none(case);
+    let mut batches = 0;
+    let interval = loop {
+        let round: Vec<Drawn> =
+            (batches..batches + ROUND).into_par_iter().map(|number| Drawn::batch(case, &sums_of, settings.seed, number)).collect();
+        round.into_iter().for_each(|batch| drawn.join(batch));
+        batches += ROUND;
+        let interval = wilson(drawn.validated, (batches * BATCH) as u64);
+        if interval.1 - interval.0 <= settings.width || batches * BATCH >= MOST_DRAWN {
+            break interval;
+        }
+    };
+    let all = (batches * BATCH) as u64;
+    let share_of = |count: u64| count as f64 / all as f64;
+    let exact = exact(case);
+    let usable = case.usable();
+    let mut limit = 0;
+    let mut worst = Vec::new();
+    let mut quantities = Vec::new();
+    for (at, quantity) in case.quantities.iter().enumerate() {
+        let mut statistics = Vec::new();
+        for measure in &quantity.measures {
+            let spread = match exact[limit] {
+                Some(listed) => Some(Spread {
+                    min: listed.min,
+                    q1: listed.quartiles[0],
+                    median: listed.quartiles[1],
+                    q3: listed.quartiles[2],
+                    max: listed.max,
+                    outliers: listed.outliers as u64,
+                    count: listed.count,
+                    exact: true,
+                }),
+                None => estimated(&drawn.values[limit]),
+            };
+            statistics.push(StatisticSpread {
+                name: measure.name.clone(),
+                title: measure.title.clone(),
+                scope: measure.scope.clone(),
+                limit: measure.limit,
+                at_least: measure.at_least,
+                spread,
+                failing: share_of(drawn.limits[limit]),
+                overall: measure.over(usable.iter().copied()),
+            });
+            if let (Some((_, selection)), true) = (&drawn.worst[limit], drawn.limits[limit] > 0) {
+                worst.push(WorstSelection {
+                    quantity: quantity.id.clone(),
+                    symbol: quantity.symbol.clone(),
+                    title: measure.title.clone(),
+                    scope: measure.scope.clone(),
+                    normalised: measure.over(selection.iter().copied()).unwrap_or(f64::MAX),
+                    sections: selection.iter().map(|&at| case.sections[at].clone()).collect(),
+                });
+            }
+            limit += 1;
+        }
+        quantities.push(QuantitySpread {
+            id: quantity.id.clone(),
+            title: quantity.title.clone(),
+            symbol: quantity.symbol.clone(),
+            unit: quantity.unit.clone(),
+            failing: share_of(drawn.quantities[at].0),
+            alone: Some(share_of(drawn.quantities[at].1)),
+            statistics,
+        });
+    }
+    let share = |(selections, good): (u64, u64)| (selections > 0).then(|| good as f64 / selections as f64);
+    let of = |zone: &str, at: usize| Importance {
+        section: case.sections[at].clone(),
+        zone: zone.to_owned(),
+        with: share(drawn.with[at]),
+        without: share((all - drawn.with[at].0, drawn.validated - drawn.with[at].1)),
+    };
+    Counted {
+        share: Share {
+            validated: drawn.validated,
+            looked_at: all,
+            share: share_of(drawn.validated),
+            exact: false,
+            interval: Some(interval),
+            seed: Some(settings.seed),
+        },
+        quantities,
+        sections: case.strata.iter().flat_map(|stratum| stratum.members.iter().map(|&at| of(&stratum.zone, at))).collect(),
+        worst,
+        methods: methods(case, all, &exact, settings),
+    }
+}
+
+fn methods(case: &Case, all: u64, exact: &[Option<Listed>], settings: &Settings) -> Vec<String> {
+    let mut methods = vec![format!(
+        "There are too many selections to look at all: {all} were drawn at random (seed {}), every one as likely, until the 95 % interval of the share (Wilson) was no wider than {}, or 4 million were drawn.",
+        settings.seed, settings.width
+    )];
+    let listed = exact.iter().filter(|listed| listed.is_some()).count();
+    if listed > 0 {
+        methods.push(format!(
+            "{listed} of {} statistics are exact all the same: a mean is a sum of two halves of a selection, and order statistics of such sums follow from sorted halves without forming them.",
+            case.measures().count()
+        ));
+    }
+    if listed < exact.len() {
+        methods.push(format!(
+            "Quartiles of the others are estimated from the first {} drawn selections; their least and greatest values are those that were drawn.",
+            KEPT.min(all as usize)
+        ));
+    }
+    methods
+}
+
+/// Statistics whose order statistics can be had without looking at every selection.
+fn exact(case: &Case) -> Vec<Option<Listed>> {
+    let (rows, columns) = Halves::sizes(case);
+    if rows > MOST_LISTED || columns > MOST_LISTED {
+        return case.measures().map(|_| None).collect();
+    }
+    let halves = Halves::of(case);
+    let measures: Vec<_> = case.measures().map(|(_, measure)| measure).collect();
+    measures
+        .par_iter()
+        .with_max_len(1)
+        .map(|measure| match measure.kind {
+            Kind::Deviation { .. } | Kind::Pooled(_) => None,
+            _ => match measure.parts(&halves) {
+                Parts::Sums { blocks, form, .. } => sums(&blocks, form),
+                Parts::Extremes { rows, columns, negative } => weighted(&larger(&rows, &columns, negative)),
+                Parts::Pooled => None,
+            },
+        })
+        .collect()
+}
+
+fn estimated(values: &[f64]) -> Option<Spread> {
+    let found = percentiles(values, &[0.0, 25.0, 50.0, 75.0, 100.0], Method::Linear).ok()?;
+    let [min, q1, median, q3, max] = found[..] else { return None };
+    let reach = 1.5 * (q3 - q1);
+    let outliers = values.iter().filter(|value| **value < q1 - reach || **value > q3 + reach).count() as u64;
+    Some(Spread { min, q1, median, q3, max, outliers, count: values.len() as f64, exact: false })
+}

@@ -1,0 +1,111 @@
+//! `study` as called: what is written, the same bytes on any number of cores, and what is said of wrong input.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+fn run(arguments: &[&str]) -> (i32, String, String) {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let output = Command::new(env!("CARGO_BIN_EXE_fishplate")).args(arguments).current_dir(root).output().expect("the program runs");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (output.status.code().unwrap_or(-1), text(&output.stdout), text(&output.stderr))
+}
+
+fn study(kind: &str, out: &Path, more: &[&str]) -> (i32, String, String) {
+    let out = out.display().to_string();
+    let mut arguments = vec!["study", kind, "examples/coach", "--out", &out];
+    arguments.extend(more);
+    run(&arguments)
+}
+
+fn json(out: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(out.join("study.json")).expect("study.json")).expect("JSON")
+}
+
+#[test]
+fn sections_are_counted_and_written() {
+    let out = tempfile::tempdir().expect("a folder");
+    let (one, two) = (out.path().join("one"), out.path().join("two"));
+    let (code, _, said) = study("sections", &one, &["--jobs", "1"]);
+    assert_eq!(code, 0, "{said}");
+    study("sections", &two, &["--jobs", "2", "--quiet"]);
+    for name in ["study.json", "report.pdf", "report.html", "tables/spread.csv", "tables/importance.csv", "tables/worst.csv"] {
+        let [a, b] = [&one, &two].map(|folder| fs::read(folder.join(name)).expect("a written file"));
+        assert!(a == b, "{name} is not the same");
+    }
+    let found = json(&one);
+    let zones: u64 = found["sections_per_zone"]
+        .as_object()
+        .expect("zones")
+        .values()
+        .filter_map(Value::as_u64)
+        .map(|n| n * (n - 1) * (n - 2) / 6)
+        .product();
+    assert_eq!(found["combinations"].as_u64(), Some(zones));
+    assert_eq!(found["exact"], Value::Bool(true));
+    let share = found["validated"].as_f64().expect("a count") / zones as f64;
+    assert_eq!(found["share_validated"].as_f64(), Some(share));
+    assert_eq!(found["quantities"].as_array().map(Vec::len), Some(12));
+    // Without scatter of choice the spread holds the value of all sections.
+    let html = fs::read_to_string(one.join("report.html")).expect("a page");
+    assert!(html.contains("Which sections matter") && !html.contains("NaN"));
+}
+
+#[test]
+fn offsets_of_nothing_change_nothing() {
+    let out = tempfile::tempdir().expect("a folder");
+    let (code, _, said) = study("sync", out.path(), &["--offsets=-1,5", "--quiet"]);
+    assert_eq!(code, 0, "{said}");
+    study("sections", &out.path().join("sections"), &["--quiet"]);
+    let (found, sections) = (json(out.path()), json(&out.path().join("sections")));
+    let offsets = found["offsets"].as_array().expect("offsets");
+    assert_eq!(offsets.iter().map(|at| at["offset_m"].as_f64()).collect::<Vec<_>>(), [Some(-1.0), Some(0.0), Some(5.0)]);
+    // Held filters, cut without shift, give the very numbers of a plain run.
+    assert_eq!(offsets[1]["quantities"], sections["quantities"]);
+    assert_eq!(offsets[1]["verdict_changes"], Value::Array(Vec::new()));
+    assert_ne!(offsets[2]["quantities"], sections["quantities"]);
+}
+
+#[test]
+fn parameters_say_which_choice_decides() {
+    let out = tempfile::tempdir().expect("a folder");
+    let vary = ["--vary", "variance_divisor=n-1, n", "--vary", "mean_limit_share=0.5..1.5 step 0.5", "--quiet"];
+    let (code, _, said) = study("parameters", out.path(), &vary);
+    assert_eq!(code, 0, "{said}");
+    let found = json(out.path());
+    let values = |at: usize| found["parameters"][at]["values"].as_array().expect("values").clone();
+    assert_eq!(values(0).len(), 2);
+    assert_eq!(values(1).iter().map(|at| at["value"].as_str().unwrap_or("")).collect::<Vec<_>>(), ["0.5", "1", "1.5"]);
+    assert_eq!(values(0)[0]["as_it_is"], Value::Bool(true));
+    let of = |at: &Value, name: &str| {
+        let all = at["statistics"].as_array().expect("statistics");
+        all.iter().find(|one| one["id"] == "Y_qst" && one["statistic"] == name).and_then(|one| one["normalised"].as_f64()).expect("a value")
+    };
+    // Divided by n, a standard deviation is smaller; with three times the limit, a mean is a third of it.
+    assert!(of(&values(0)[1], "std") < of(&values(0)[0], "std"));
+    assert!((of(&values(1)[0], "mean") / of(&values(1)[2], "mean") - 3.0).abs() < 1e-12);
+}
+
+#[test]
+fn wrong_input_is_told_and_nothing_is_written() {
+    let out = tempfile::tempdir().expect("a folder");
+    let folder = out.path().join("none");
+    for (kind, more, says) in [
+        ("sections", &["--take", "9"][..], "a selection takes 9"),
+        ("sections", &["--width", "2"], "is not between 0 and 1"),
+        ("sync", &["--offsets=5,x"], "`x` is not a number"),
+        ("sync", &["--farthest", "-1"], ""),
+        ("parameters", &["--vary", "lowpass_oder=2,4"], "did you mean `lowpass_order`?"),
+        ("parameters", &["--vary", "filter_phase=zero-fase"], "did you mean `zero-phase`?"),
+        ("parameters", &["--vary", "lowpass_order=99"], "outside the range"),
+        ("parameters", &["--vary", "lowpass_order"], "has no `=`"),
+        ("parameters", &["--vary", "lowpass_order=1..2"], "step"),
+    ] {
+        let (code, _, said) = study(kind, &folder, more);
+        assert_eq!(code, 2, "{more:?}: {said}");
+        assert!(said.contains(says), "{more:?}: {said}");
+        assert!(!folder.exists(), "{more:?}");
+    }
+}
