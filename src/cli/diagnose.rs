@@ -12,12 +12,13 @@ use super::simulate::load_catalogue;
 use super::simulator::{Chosen, SimulatorChoice};
 use crate::data::Campaign;
 use crate::data::write::Outputs;
-use crate::diagnose::result::Diagnosis;
 use crate::diagnose::run::Inputs;
 use crate::diagnose::settings::Settings;
 use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
 use crate::library;
 use crate::problem::{Problem, Problems, Severity};
+use crate::report::{diagnosis as report, html, typst};
+use crate::result::diagnosis::Diagnosis;
 use crate::simulate::{Builtin, Simulator, sections};
 
 #[derive(Debug, Args)]
@@ -105,8 +106,10 @@ impl Diagnose {
     }
 
     fn write(&self, campaign: &Campaign, outcome: &Outcome) -> Result<(), Problem> {
+        let files =
+            files(outcome).map_err(|problems| problems.0.into_iter().next().unwrap_or_else(|| Problem::error("report", "no report")))?;
         let mut outputs = Outputs::new(&self.out);
-        outputs.add("diagnosis.json", json(&outcome.diagnosis).as_bytes())?;
+        files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes))?;
         outputs.commit()?;
         if let Some(folder) = &self.write_improved {
             if outcome.improved.is_empty() {
@@ -119,7 +122,22 @@ impl Diagnose {
     }
 }
 
-/// The text of `diagnosis.json`: the time it took is not in it unless asked for, so that the same input gives the same bytes.
+/// All files of a diagnosis.
+fn files(outcome: &Outcome) -> Result<Vec<(&'static str, Vec<u8>)>, Problems> {
+    let json = json(&outcome.diagnosis);
+    let (data, figures) = (report::document(&outcome.diagnosis, &outcome.before), report::figures(&outcome.diagnosis));
+    let attachment = typst::Attachment {
+        name: "diagnosis.json",
+        mime: "application/json",
+        bytes: json.as_bytes(),
+        description: "Every number of this diagnosis",
+    };
+    let pdf = typst::typeset_study(&data, &figures, &[attachment])?.bytes;
+    let html = html::study_html(&data, &figures)?.into_bytes();
+    Ok(vec![("diagnosis.json", json.into_bytes()), ("report.pdf", pdf), ("report.html", html)])
+}
+
+/// The text of `diagnosis.json`.
 pub fn json(diagnosis: &Diagnosis) -> String {
     serde_json::to_string_pretty(diagnosis).unwrap_or_default() + "\n"
 }

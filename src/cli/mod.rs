@@ -8,9 +8,9 @@ mod inputs;
 mod output;
 mod protocols;
 mod simulate;
+mod simulator;
 mod study;
 mod values;
-mod simulator;
 
 use std::path::PathBuf;
 

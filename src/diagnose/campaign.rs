@@ -2,7 +2,6 @@
 
 use std::time::Instant;
 
-use super::result::Diagnosis;
 use super::run::{Found, Inputs, find};
 use super::shrink::{applied, compare, folds, improved, shares, trained};
 use crate::certify::{Compiled, certify};
@@ -10,6 +9,7 @@ use crate::data::Campaign;
 use crate::effects::{Applied, Signals};
 use crate::problem::{Problem, Problems};
 use crate::result::Certification;
+use crate::result::diagnosis::Diagnosis;
 use crate::run::Settings as RunSettings;
 use crate::simulate::{Section, Units, record_text, recorded, write_campaign};
 use crate::units::Unit;
@@ -62,13 +62,19 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, sections: Vec<Section>
         shrink = Some(compare(&before, &made, inputs.seed, shares(&found)));
         after = Some(made);
     }
-    let diagnosis = super::words::diagnosis(inputs, &found, shrink, start.elapsed().as_secs_f64());
+    let mut diagnosis = super::words::diagnosis(inputs, &found, shrink, start.elapsed().as_secs_f64());
+    diagnosis.pictures = super::pictures::pictures(inputs.settings, &found, &records, &units);
     Ok(Outcome { diagnosis, found, before, after, improved: records, units })
 }
 
 /// The protocol on a copy of the campaign with other simulated records.
 fn evaluated(
-    campaign: &Campaign, compiled: &Compiled, found: &Found, records: &[Signals], units: &Units, settings: RunSettings,
+    campaign: &Campaign,
+    compiled: &Compiled,
+    found: &Found,
+    records: &[Signals],
+    units: &Units,
+    settings: RunSettings,
 ) -> Result<Certification, Problems> {
     let one = |problem: Problem| Problems(vec![problem]);
     let folder = tempfile::tempdir().map_err(|error| one(Problem::error("unwritable", format!("no temporary folder: {error}"))))?;
@@ -82,7 +88,13 @@ fn evaluated(
 ///
 /// # Errors
 /// Of writing.
-pub fn write_improved(out: &std::path::Path, campaign: &Campaign, found: &Found, records: &[Signals], units: &Units) -> Result<(), Problem> {
+pub fn write_improved(
+    out: &std::path::Path,
+    campaign: &Campaign,
+    found: &Found,
+    records: &[Signals],
+    units: &Units,
+) -> Result<(), Problem> {
     let unit = |name: &str| units.iter().find(|(known, _)| known == name).map_or_else(Unit::one, |(_, unit)| unit.clone());
     let texts: Result<Vec<(&str, String)>, Problem> = found
         .seen

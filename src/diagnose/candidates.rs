@@ -136,7 +136,8 @@ impl Workshop<'_> {
         for fit in &effect.fits {
             let Some(((size, sizes), others)) = fit.axes.split_first() else { continue };
             let parameter = &effect.parameters[*size];
-            let neutral = parameter.neutral.or_else(|| parameter.model.as_ref().and_then(|(key, factor)| Some((self.neutral)(key)? / factor)));
+            let neutral =
+                parameter.neutral.or_else(|| parameter.model.as_ref().and_then(|(key, factor)| Some((self.neutral)(key)? / factor)));
             for fixed in combinations(others) {
                 let fixed: Vec<(String, f64)> = fixed.into_iter().map(|(at, value)| (effect.parameters[at].name.clone(), value)).collect();
                 let mut nodes = Vec::new();

@@ -23,7 +23,11 @@ pub struct Sensitivity {
 /// The covariance of `measured - simulated` without any effect. `simulated` are the features of the campaign's simulation.
 #[must_use]
 pub fn covariance(
-    seen: &Observations, settings: &Settings, simulated: &[f64], sensitivities: &[Sensitivity], declared: &dyn Fn(&str) -> Option<f64>,
+    seen: &Observations,
+    settings: &Settings,
+    simulated: &[f64],
+    sensitivities: &[Sensitivity],
+    declared: &dyn Fn(&str) -> Option<f64>,
     with_discrepancies: bool,
 ) -> Covariance {
     let size = seen.features.len();
@@ -50,7 +54,13 @@ pub fn covariance(
 }
 
 /// Gain and offset of a channel, as declared.
-fn calibration(seen: &Observations, settings: &Settings, simulated: &[f64], channel: usize, declared: &dyn Fn(&str) -> Option<f64>) -> Vec<Vec<f64>> {
+fn calibration(
+    seen: &Observations,
+    settings: &Settings,
+    simulated: &[f64],
+    channel: usize,
+    declared: &dyn Fn(&str) -> Option<f64>,
+) -> Vec<Vec<f64>> {
     let group = &settings.groups[seen.layout.channels[channel].group];
     let size = seen.features.len();
     let mut columns = Vec::new();
@@ -86,7 +96,8 @@ fn diagonal(seen: &Observations, settings: &Settings) -> Vec<f64> {
             let group = &settings.groups[of.group];
             variances.push(match feature.kind {
                 Kind::Level => {
-                    let (measured, simulated) = (piece(&observed.measured, &of.name, &observed.section), piece(&observed.simulated, &of.name, &observed.section));
+                    let (measured, simulated) =
+                        (piece(&observed.measured, &of.name, &observed.section), piece(&observed.simulated, &of.name, &observed.section));
                     let own = measured.zip(simulated).map_or(0.0, |(m, s)| {
                         let difference: Vec<f64> = m.values.iter().zip(&s.values).map(|(m, s)| m - s).collect();
                         bootstrap(&difference, m.rate, at as u64)
@@ -213,7 +224,13 @@ fn times(seen: &Observations, settings: &Settings, times: Times, section: usize)
     let over = |number: f64| section.number("radius").filter(|radius| *radius > 0.0).map_or(0.0, |radius| (number / radius).min(2.0));
     match times {
         Times::One => 1.0,
-        Times::Side => if section.number("radius").is_some() { side } else { 0.0 },
+        Times::Side => {
+            if section.number("radius").is_some() {
+                side
+            } else {
+                0.0
+            }
+        }
         Times::Over(number) => side * over(number),
         Times::Unsigned(number) => over(number),
     }

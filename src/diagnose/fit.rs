@@ -92,7 +92,8 @@ impl<'a> Fitter<'a> {
         let mut best: Option<(f64, usize, f64)> = None;
         let mut path = 0.0;
         for segment in 0..nodes.len().saturating_sub(1) {
-            let across = if nodes[segment].is_empty() || nodes[segment + 1].is_empty() { 0.0 } else { dot(&nodes[segment], &nodes[segment + 1]) };
+            let across =
+                if nodes[segment].is_empty() || nodes[segment + 1].is_empty() { 0.0 } else { dot(&nodes[segment], &nodes[segment + 1]) };
             // |z - (1-t) a - t b|^2 = |z|^2 + c0 + c1 t + c2 t^2
             let (aa, bb) = (length[segment], length[segment + 1]);
             let c0 = aa - 2.0 * along[segment];

@@ -16,7 +16,9 @@ impl Covariance {
     /// The covariance of some features of some sections.
     #[must_use]
     pub fn part(&self, sections: &[usize], features: &[usize]) -> Self {
-        let pick = |column: &[f64], section: usize| features.iter().map(move |feature| column[section * self.size + feature]).collect::<Vec<f64>>();
+        let pick = |column: &[f64], section: usize| {
+            features.iter().map(move |feature| column[section * self.size + feature]).collect::<Vec<f64>>()
+        };
         let whole = |column: &Vec<f64>| sections.iter().flat_map(|section| pick(column, *section)).collect::<Vec<f64>>();
         let inside = self.inside.iter().filter_map(|(section, column)| {
             let at = sections.iter().position(|of| of == section)?;
@@ -72,7 +74,8 @@ pub fn families(seen: &Observations, strata: &[Vec<usize>]) -> Vec<Vec<View>> {
     let mut groups: Vec<usize> = seen.layout.channels.iter().map(|channel| channel.group).collect();
     groups.dedup();
     let groups = groups.into_iter().map(|group| {
-        let named: Vec<&str> = seen.layout.channels.iter().filter(|channel| channel.group == group).map(|channel| channel.name.as_str()).collect();
+        let named: Vec<&str> =
+            seen.layout.channels.iter().filter(|channel| channel.group == group).map(|channel| channel.name.as_str()).collect();
         view(&named.join(", "), &all, features(&|channel, _| seen.layout.channels[channel].group == group))
     });
     let (even, odd): (Vec<usize>, Vec<usize>) = all.iter().partition(|at| *at % 2 == 0);

@@ -2,10 +2,10 @@
 
 use super::features::Kind;
 use super::guards::{View, part};
-use super::result::Where;
 use super::run::Found;
 use super::settings::{Position, Settings};
 use super::whiten::dot;
+use crate::result::diagnosis::Where;
 
 /// Share of false cells among those called significant.
 const FALSE_DISCOVERIES: f64 = 0.05;
@@ -31,9 +31,11 @@ pub fn locate(settings: &Settings, found: &Found) -> Vec<Where> {
     let mut order: Vec<usize> = (0..cells.len()).collect();
     order.sort_by(|a, b| tested[*a].1.total_cmp(&tested[*b].1));
     let harmonic: f64 = (1..=cells.len()).map(|i| 1.0 / i as f64).sum();
-    let passed = order.iter().enumerate().rev().find(|(rank, at)| {
-        tested[**at].1 <= FALSE_DISCOVERIES * (rank + 1) as f64 / (cells.len() as f64 * harmonic)
-    });
+    let passed = order
+        .iter()
+        .enumerate()
+        .rev()
+        .find(|(rank, at)| tested[**at].1 <= FALSE_DISCOVERIES * (rank + 1) as f64 / (cells.len() as f64 * harmonic));
     let limit = passed.map_or(-1.0, |(_, at)| tested[*at].1);
     let mut found_cells: Vec<Where> = cells
         .iter()
@@ -65,7 +67,8 @@ pub fn locate(settings: &Settings, found: &Found) -> Vec<Where> {
             }
         })
         .collect();
-    found_cells.sort_by(|a, b| (b.significant, b.share_of_gap).partial_cmp(&(a.significant, a.share_of_gap)).unwrap_or(std::cmp::Ordering::Equal));
+    found_cells
+        .sort_by(|a, b| (b.significant, b.share_of_gap).partial_cmp(&(a.significant, a.share_of_gap)).unwrap_or(std::cmp::Ordering::Equal));
     found_cells
 }
 
@@ -126,7 +129,8 @@ fn test(found: &Found, cell: &Cell) -> (f64, f64, f64) {
             *value = 0.0;
         }
     }
-    let mean = cell.members.iter().map(|(section, feature)| found.difference[found.seen.place(*section, *feature)]).sum::<f64>() / cell.members.len() as f64;
+    let mean = cell.members.iter().map(|(section, feature)| found.difference[found.seen.place(*section, *feature)]).sum::<f64>()
+        / cell.members.len() as f64;
     let z = found.tolerated.part(&view.sections, &features).whitener().apply(&rest);
     let (chi, freedom) = (dot(&z, &z), cell.members.len() as f64);
     let p = statrs::distribution::ChiSquared::new(freedom).map_or(1.0, |law| statrs::distribution::ContinuousCDF::sf(&law, chi));
@@ -143,8 +147,12 @@ pub fn covariate(settings: &Settings, found: &Found) -> Option<String> {
     let order: Vec<f64> = (0..values.len()).map(|at| at as f64 + 1.0).collect();
     let mut named: Vec<(String, Vec<f64>)> = vec![("the order of the sections".into(), order)];
     for column in ["radius", "cant deficiency", "speed", "cant"] {
-        let numbers: Option<Vec<f64>> =
-            found.seen.sections.iter().map(|observed| observed.section.number(column).or((column == "radius").then_some(f64::INFINITY))).collect();
+        let numbers: Option<Vec<f64>> = found
+            .seen
+            .sections
+            .iter()
+            .map(|observed| observed.section.number(column).or((column == "radius").then_some(f64::INFINITY)))
+            .collect();
         if let Some(numbers) = numbers {
             let numbers = if column == "radius" { numbers.iter().map(|radius| 1.0 / radius).collect() } else { numbers };
             named.push((if column == "radius" { "curvature".into() } else { column.to_string() }, numbers));

@@ -11,7 +11,7 @@ pub mod fit;
 pub mod guards;
 mod locate;
 pub mod observe;
-pub mod result;
+mod pictures;
 pub mod run;
 pub mod search;
 pub mod sensitivity;

@@ -37,7 +37,11 @@ impl Observations {
     ///
     /// Problems: no section can be read; no channel of the catalogue is in the records.
     pub fn read(
-        campaign: &Campaign, sections: Vec<Section>, catalogue: &Catalogue, settings: &Settings, declared: &dyn Fn(&str) -> Option<f64>,
+        campaign: &Campaign,
+        sections: Vec<Section>,
+        catalogue: &Catalogue,
+        settings: &Settings,
+        declared: &dyn Fn(&str) -> Option<f64>,
         problems: &mut Problems,
     ) -> Option<Self> {
         type Both = (Section, Result<(Signals, Signals), String>);
@@ -66,7 +70,8 @@ impl Observations {
         let mut noise = Vec::new();
         for (at, group) in settings.groups.iter().enumerate() {
             for name in catalogue.channels(&group.name).unwrap_or_default() {
-                let there = good.iter().all(|(_, simulated, measured)| simulated.channel(&name).is_some() && measured.channel(&name).is_some());
+                let there =
+                    good.iter().all(|(_, simulated, measured)| simulated.channel(&name).is_some() && measured.channel(&name).is_some());
                 if there {
                     noise.push(group.noise.as_deref().and_then(declared).unwrap_or(0.0));
                     let bands = group.bands.min(settings.edges.len().saturating_sub(1));

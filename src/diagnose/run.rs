@@ -109,8 +109,15 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         Some(bench) => sensitivities(bench, settings, &base, &value, &declared, &mut runs),
         None => Vec::new(),
     };
-    let workshop =
-        Workshop { seen: &seen, catalogue: inputs.catalogue, bench: bench.as_ref(), base, simulated: simulated.clone(), neutral: &value, trying: inputs.trying };
+    let workshop = Workshop {
+        seen: &seen,
+        catalogue: inputs.catalogue,
+        bench: bench.as_ref(),
+        base,
+        simulated: simulated.clone(),
+        neutral: &value,
+        trying: inputs.trying,
+    };
     let mut candidates = workshop.candidates(&mut runs);
     (inputs.trying)("weighing");
     let whole = covariance(&seen, settings, &simulated, &sensitivities, &declared, true);
@@ -227,7 +234,15 @@ fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
 }
 
 /// Refuses a member that views contradict, or that a single section carries.
-fn guard(covariance: &Covariance, families: &[Vec<View>], fitter: &Fitter<'_>, difference: &[f64], z: &[f64], rest: &[f64], fit: &Fitted) -> Option<String> {
+fn guard(
+    covariance: &Covariance,
+    families: &[Vec<View>],
+    fitter: &Fitter<'_>,
+    difference: &[f64],
+    z: &[f64],
+    rest: &[f64],
+    fit: &Fitted,
+) -> Option<String> {
     let change = fitter.change(fit);
     // What other members explain is taken away in whitened form only: the guard looks at the whole difference for the first.
     let _ = (z, rest);
@@ -244,7 +259,10 @@ fn polish(workshop: &Workshop<'_>, bench: &Bench<'_>, candidates: &mut [Candidat
     for member in &chosen.members {
         let candidate = &mut candidates[member.candidate];
         let Some(effect) = workshop.catalogue.effect(&candidate.effect) else { continue };
-        if candidate.channels.is_empty() && member.size.is_finite() && candidate.nodes.iter().all(|node| node.size.to_bits() != member.size.to_bits()) {
+        if candidate.channels.is_empty()
+            && member.size.is_finite()
+            && candidate.nodes.iter().all(|node| node.size.to_bits() != member.size.to_bits())
+        {
             let mut values = candidate.fixed.clone();
             values.push((candidate.size.clone(), member.size));
             runs.made += workshop.seen.sections.len();

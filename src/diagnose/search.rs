@@ -47,7 +47,12 @@ impl Chosen {
 
 /// Searches. `z` is the whitened difference; `far` says how many declared standard deviations a size is from neutral.
 pub fn search(
-    fitter: &Fitter<'_>, z: &[f64], bars: &Bars, far: &(dyn Fn(&Candidate, f64) -> f64 + Sync), guard: Guard<'_>, refused: &mut Vec<Refused>,
+    fitter: &Fitter<'_>,
+    z: &[f64],
+    bars: &Bars,
+    far: &(dyn Fn(&Candidate, f64) -> f64 + Sync),
+    guard: Guard<'_>,
+    refused: &mut Vec<Refused>,
 ) -> Chosen {
     let mut chosen = Chosen { members: Vec::new(), rest: z.to_vec() };
     let mut barred: Vec<usize> = Vec::new();

@@ -10,8 +10,12 @@ const STEP: f64 = 1.5;
 /// A column per tolerated parameter: the change of all features with one standard deviation of it.
 #[must_use]
 pub fn sensitivities(
-    bench: &Bench<'_>, settings: &Settings, base: &[f64], value: &dyn Fn(&str) -> Option<f64>,
-    declared: &dyn Fn(&str) -> Option<f64>, runs: &mut Runs,
+    bench: &Bench<'_>,
+    settings: &Settings,
+    base: &[f64],
+    value: &dyn Fn(&str) -> Option<f64>,
+    declared: &dyn Fn(&str) -> Option<f64>,
+    runs: &mut Runs,
 ) -> Vec<Sensitivity> {
     let mut columns = Vec::new();
     for tolerance in &settings.tolerances {

@@ -124,7 +124,8 @@ pub struct Position {
 }
 
 const TOP: [&str; 9] = ["bands", "alike", "groups", "tolerances", "discrepancies", "confine to", "mirrored", "strata", "positions"];
-const GROUP: [&str; 12] = ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says"];
+const GROUP: [&str; 12] =
+    ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says"];
 const TOLERANCE: [&str; 5] = ["default", "scales", "adds", "each section", "shared"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 

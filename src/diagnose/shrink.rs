@@ -4,11 +4,11 @@ use rayon::prelude::*;
 
 use super::fit::{Fitted, Fitter};
 use super::guards::View;
-use super::result::{QuantityShrink, Shrink};
 use super::run::Found;
 use super::whiten::dot;
 use crate::effects::{Applied, Catalogue, Confined, Gauss, Signals};
 use crate::problem::Problem;
+use crate::result::diagnosis::{QuantityShrink, Shrink};
 use crate::result::{Certification, QuantityResult};
 use crate::simulate::{Simulator, simulate};
 
@@ -61,10 +61,10 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     for candidate in &mut candidates {
         candidate.nodes.iter_mut().filter(|node| !node.change.is_empty()).for_each(|node| node.change = part(&node.change));
     }
-    let masks = found.masks.iter().map(|mask| super::fit::Mask {
-        confined: mask.confined.clone(),
-        sections: kept.iter().map(|at| mask.sections[*at]).collect(),
-    });
+    let masks = found
+        .masks
+        .iter()
+        .map(|mask| super::fit::Mask { confined: mask.confined.clone(), sections: kept.iter().map(|at| mask.sections[*at]).collect() });
     let fitter = Fitter::new(&whitener, &candidates, masks.collect(), size);
     let z = whitener.apply(&part(&found.difference));
     let mut chosen = super::search::Chosen { members: Vec::new(), rest: z.clone() };
@@ -82,7 +82,10 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
 /// # Errors
 /// The first section whose simulation fails.
 pub fn improved(
-    found: &Found, catalogue: &Catalogue, simulator: Option<&dyn Simulator>, members: &(dyn Fn(usize) -> Vec<Applied> + Sync),
+    found: &Found,
+    catalogue: &Catalogue,
+    simulator: Option<&dyn Simulator>,
+    members: &(dyn Fn(usize) -> Vec<Applied> + Sync),
 ) -> Result<Vec<Signals>, Problem> {
     let each = |at: usize| {
         let observed = &found.seen.sections[at];
@@ -166,7 +169,9 @@ fn measure(of: &Certification, names: &[String], drawn: &[usize]) -> f64 {
         }
         let mean = values.iter().sum::<f64>() / n;
         let std = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
-        let limit = |name: &str| quantity.statistics.iter().find(|statistic| statistic.name.starts_with(name)).and_then(|statistic| statistic.limit);
+        let limit = |name: &str| {
+            quantity.statistics.iter().find(|statistic| statistic.name.starts_with(name)).and_then(|statistic| statistic.limit)
+        };
         for (value, limit) in [(mean.abs(), limit("mean")), (std, limit("std"))] {
             if let Some(limit) = limit.filter(|limit| *limit > 0.0) {
                 sum += (value / limit).powi(2);

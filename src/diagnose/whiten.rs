@@ -38,8 +38,7 @@ impl Covariance {
         let mut blocks = Vec::with_capacity(sections);
         for section in 0..sections {
             let range = section * self.size..(section + 1) * self.size;
-            let columns: Vec<&[f64]> =
-                self.inside.iter().filter(|(of, _)| *of == section).map(|(_, values)| values.as_slice()).collect();
+            let columns: Vec<&[f64]> = self.inside.iter().filter(|(of, _)| *of == section).map(|(_, values)| values.as_slice()).collect();
             let mut block = DMatrix::from_diagonal(&DVector::from_iterator(self.size, self.diagonal[range].iter().map(|v| v.max(1e-12))));
             if !columns.is_empty() {
                 let all = DMatrix::from_fn(self.size, columns.len(), |i, j| columns[j][i]);

@@ -5,9 +5,9 @@ use serde_json::json;
 
 use super::features::Kind;
 use super::fit::Fitted;
-use super::result::{Cause, Detectable, Diagnosis, How, NamedEffect, Shrink, Value, Vetoed};
 use super::run::{Found, Inputs, LACK, chi, length};
 use crate::effects::{Action, Effect};
+use crate::result::diagnosis::{Cause, Detectable, Diagnosis, How, NamedEffect, Shrink, Value, Vetoed};
 
 /// Whitened length of a change that can be identified.
 const SEEN: f64 = 5.0;
@@ -80,6 +80,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>, sec
         notes,
         simulations_run: found.runs.made,
         seconds,
+        pictures: Vec::new(),
     }
 }
 
@@ -125,8 +126,8 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
     };
     // Uncertainty of the fit, and of what lies between the nodes.
     let error = if member.slope > 0.0 { 1.645 * (1.0 / member.slope).hypot(0.02 * member.size.abs().min(1e12)) } else { 0.0 };
-    let interval = (!of.discrete && member.size.is_finite())
-        .then(|| ((member.size - error).max(of.range.0), (member.size + error).min(of.range.1)));
+    let interval =
+        (!of.discrete && member.size.is_finite()).then(|| ((member.size - error).max(of.range.0), (member.size + error).min(of.range.1)));
     let mut push = |name: String, value: serde_json::Value, interval: Option<(f64, f64)>| {
         let unit = unit(&of.size);
         parameters.insert(name, Value { value, unit, low: interval.map(|(low, _)| low), high: interval.map(|(_, high)| high) });
@@ -141,10 +142,8 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
         push(of.size.clone(), json!(member.size), interval);
         let every = effect.is_some_and(|effect| matches!(&effect.action, Action::Signals(_, all) if all.len() > of.channels.len()));
         if every {
-            parameters.insert(
-                format!("{}_channels", of.size),
-                Value { value: json!(of.channels), unit: "-".into(), low: None, high: None },
-            );
+            parameters
+                .insert(format!("{}_channels", of.size), Value { value: json!(of.channels), unit: "-".into(), low: None, high: None });
         }
     }
     for (name, value) in &of.fixed {
@@ -182,7 +181,8 @@ fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
     let own = |at: usize| &found.candidates[found.chosen.members[at].candidate];
     for (at, fit, fall) in &found.rivals {
         let of = &found.candidates[fit.candidate];
-        if of.effect == own(*at).effect || found.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect) {
+        if of.effect == own(*at).effect || found.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect)
+        {
             continue;
         }
         if causes.len() >= 5 || causes.iter().any(|cause| cause.effects.iter().any(|effect| effect.name == of.effect)) {
@@ -279,7 +279,9 @@ fn detectable(inputs: &Inputs<'_>, found: &Found) -> Vec<Detectable> {
 fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shrink: Option<&Shrink>, unexplained: f64) -> Vec<String> {
     let mut lines = Vec::new();
     match verdict {
-        "no significant gap" => lines.push("What differs is within noise, declared tolerances and what a model of this kind is allowed to be wrong in.".into()),
+        "no significant gap" => {
+            lines.push("What differs is within noise, declared tolerances and what a model of this kind is allowed to be wrong in.".into())
+        }
         "explained" => lines.push(format!("{}.", causes[0].says)),
         "ambiguous" => {
             let set: Vec<&str> = causes.iter().filter(|cause| cause.in_ambiguity_set).map(|cause| cause.says.as_str()).collect();
@@ -293,7 +295,11 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
                 .take(4)
                 .map(|(channel, kind, ..)| format!("{channel} ({})", if *kind == Kind::Level { "quasi-static" } else { "dynamic" }))
                 .collect();
-            lines.push(format!("No effect of the catalogue `{}` explains the gap. It is left in {}.", inputs.catalogue.name, named.join(", ")));
+            lines.push(format!(
+                "No effect of the catalogue `{}` explains the gap. It is left in {}.",
+                inputs.catalogue.name,
+                named.join(", ")
+            ));
             if let Some(first) = causes.first() {
                 lines.push(format!("Explained in part: {}; {:.0} % of the excess is left.", first.says, 100.0 * unexplained));
             }

@@ -2,6 +2,7 @@
 //!
 //! [`view::view`] rounds, sorts and words; the templates only place what it gives.
 
+pub mod diagnosis;
 pub mod figure;
 pub mod html;
 pub mod json;

@@ -15,6 +15,7 @@ mod levels;
 mod offsets;
 mod overview;
 mod pairs;
+mod states;
 pub mod style;
 mod trace;
 mod zones;
@@ -25,6 +26,7 @@ pub use domain::domain;
 pub use offsets::{selection, shares};
 pub use overview::overview;
 pub use pairs::pairs;
+pub use states::{before_after, signals};
 pub use trace::trace;
 pub use zones::Zones;
 

@@ -27,7 +27,7 @@ pub fn document(study: &Study) -> Document {
     chapters.push(settings(study));
     Document {
         title: format!("{title}: {}", study.campaign.name),
-        kind: title.to_owned(),
+        kind: format!("How far the verdict depends on choices: {}", title.to_lowercase()),
         program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned(),
         headline: opening.headline,
         sentence: opening.sentence,

@@ -25,6 +25,31 @@ pub struct Diagnosis {
     pub notes: Vec<String>,
     pub simulations_run: usize,
     pub seconds: f64,
+    /// Signals of the worst sections, for figures.
+    #[serde(skip)]
+    pub pictures: Vec<Picture>,
+}
+
+/// Signals of one section, three states of each.
+#[derive(Clone, Debug, Default)]
+pub struct Picture {
+    pub section: String,
+    /// Where it is, in words.
+    pub says: String,
+    pub axis: String,
+    pub start: f64,
+    pub end: f64,
+    pub panels: Vec<Panel>,
+}
+
+/// One channel: measured, simulated, simulated with the effects.
+#[derive(Clone, Debug, Default)]
+pub struct Panel {
+    pub channel: String,
+    pub unit: String,
+    pub measured: super::Curve,
+    pub simulated: super::Curve,
+    pub improved: super::Curve,
 }
 
 /// A place where the gap lies.

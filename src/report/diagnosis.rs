@@ -1,0 +1,270 @@
+//! A diagnosis as a document: the answer first, then where, which, how far, and what would have been seen.
+
+use crate::report::figure;
+use crate::report::number;
+use crate::report::study::{Chapter, Document, Head, Item, Table};
+use crate::report::view::{self, Fact, Finding};
+use crate::result::Certification;
+use crate::result::diagnosis::{Cause, Diagnosis, QuantityShrink, Shrink, Value};
+
+/// Cells listed; all of them stand in diagnosis.json.
+const CELLS: usize = 30;
+
+/// The diagnosis as both reports print it. `before` is the protocol on the campaign as it is.
+#[must_use]
+pub fn document(found: &Diagnosis, before: &Certification) -> Document {
+    let mut chapters = vec![answer(found), places(found)];
+    if !found.causes.is_empty() || !found.vetoed.is_empty() {
+        chapters.push(causes(found));
+    }
+    if let Some(shrink) = &found.shrink {
+        chapters.push(shrunk(shrink));
+    }
+    chapters.extend(signals(found));
+    chapters.push(seen(found));
+    chapters.push(how(found));
+    let class = match found.verdict {
+        "explained" | "no significant gap" => "holds",
+        "ambiguous" => "open",
+        _ => "fails",
+    };
+    let share = |value: f64| format!("{} %", number::fixed(100.0 * value, 0));
+    Document {
+        title: format!("Diagnosis: {}", found.campaign),
+        kind: "Where simulation and measurement differ, and why".into(),
+        program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).into(),
+        headline: Finding { word: found.verdict.to_string(), class: class.into(), sign: sign(class).into() },
+        sentence: found.says.first().cloned().unwrap_or_default(),
+        key_facts: vec![
+            Fact { name: "Protocol before".into(), value: before.verdict.in_words().into() },
+            Fact {
+                name: "Protocol with the effects".into(),
+                value: found.shrink.as_ref().map_or("-".into(), |shrink| shrink.verdict_after.clone()),
+            },
+            Fact { name: "Gap removed".into(), value: found.shrink.as_ref().map_or("-".into(), |shrink| share(shrink.fraction_removed)) },
+            Fact { name: "Sections".into(), value: found.how.sections.to_string() },
+        ],
+        campaign: view::campaign(&before.campaign),
+        protocol: view::protocol_view(&before.protocol),
+        chapters,
+    }
+}
+
+fn sign(class: &str) -> &'static str {
+    match class {
+        "holds" => "\u{2713}",
+        "fails" => "\u{2717}",
+        _ => "?",
+    }
+}
+
+/// All figures by the names the document gives them.
+#[must_use]
+pub fn figures(found: &Diagnosis) -> Vec<(String, String)> {
+    let mut drawn = Vec::new();
+    if let Some(shrink) = &found.shrink {
+        drawn.push(("before-after".to_owned(), figure::before_after(shrink)));
+    }
+    for (at, picture) in found.pictures.iter().enumerate() {
+        drawn.push((format!("signals-{at}"), figure::signals(picture)));
+    }
+    drawn
+}
+
+fn chapter(id: &str, title: &str, items: Vec<Item>) -> Chapter {
+    Chapter { id: id.into(), title: title.into(), items }
+}
+
+fn answer(found: &Diagnosis) -> Chapter {
+    let mut items = vec![Item::List { entries: found.says.clone() }];
+    if let Some(measure) = &found.discriminating_measurement {
+        items.push(Item::text(format!("What would settle it: {measure}.")));
+    }
+    if !found.notes.is_empty() {
+        items.push(Item::Heading { text: "Remarks".into() });
+        items.push(Item::List { entries: found.notes.clone() });
+    }
+    chapter("answer", "Answer", items)
+}
+
+fn places(found: &Diagnosis) -> Chapter {
+    let rows = found.r#where.iter().take(CELLS).map(|place| {
+        vec![
+            place.quantity.clone(),
+            place.says.split(", ").skip(1).take(2).filter(|part| *part != place.wavelength_or_band).collect::<Vec<_>>().join(", "),
+            place.wavelength_or_band.clone(),
+            place.zones.join(", "),
+            if place.unit == "-" {
+                format!("{} %", number::fixed(100.0 * place.difference, 0))
+            } else {
+                number::significant(place.difference, 3)
+            },
+            format!("{} %", number::fixed(100.0 * place.share_of_gap, 1)),
+            if place.p_value < 1e-6 { "< 0.000001".into() } else { number::significant(place.p_value, 2) },
+            if place.significant { "yes".into() } else { "no".into() },
+        ]
+    });
+    let head = vec![
+        Head::text("Quantity"),
+        Head::text("Position"),
+        Head::short("Band"),
+        Head::short("Zone"),
+        Head::number("Measured - simulated"),
+        Head::number("Share of the gap"),
+        Head::number("p"),
+        Head::short("Significant"),
+    ];
+    let caption = "Cells by their share of the gap, tested against noise and declared tolerances; significant at a false discovery rate of 5 %. \
+                   Differences of levels are in the unit of the channel, those of bands relative";
+    let table = Table { caption: caption.into(), head, rows: rows.collect() };
+    let significant = found.r#where.iter().filter(|place| place.significant).count();
+    let text = format!("{significant} of {} cells differ by more than noise and tolerances.", found.r#where.len());
+    chapter("where", "Where the gap lies", vec![Item::text(text), Item::Table { table }])
+}
+
+fn value(value: &Value) -> String {
+    let unit = if value.unit == "-" { String::new() } else { format!(" {}", value.unit) };
+    value.value.as_f64().map_or_else(|| value.value.to_string(), |number| format!("{}{unit}", number::significant(number, 4)))
+}
+
+fn interval(value: &Value) -> String {
+    match (value.low, value.high) {
+        (Some(low), Some(high)) => format!("{} to {}", number::significant(low, 4), number::significant(high, 4)),
+        _ => "-".into(),
+    }
+}
+
+fn cause_rows(cause: &Cause) -> Vec<Vec<String>> {
+    let mut rows = Vec::new();
+    for effect in &cause.effects {
+        for (name, given) in &effect.parameters {
+            let first = rows.is_empty();
+            let only = |text: String| if first { text } else { String::new() };
+            rows.push(vec![
+                only(cause.rank.to_string()),
+                effect.title.clone(),
+                name.clone(),
+                value(given),
+                interval(given),
+                only(format!("{} %", number::fixed(100.0 * cause.probability, 1))),
+                only(number::fixed(cause.evidence, 0)),
+                only(if cause.in_ambiguity_set { "yes".into() } else { "no".into() }),
+            ]);
+        }
+    }
+    rows
+}
+
+fn causes(found: &Diagnosis) -> Chapter {
+    let head = vec![
+        Head::short("Rank"),
+        Head::text("Effect"),
+        Head::text("Parameter"),
+        Head::number("Value"),
+        Head::number("90 % interval"),
+        Head::number("Probability"),
+        Head::number("Evidence"),
+        Head::short("Possible"),
+    ];
+    let mut items = Vec::new();
+    if !found.causes.is_empty() {
+        let caption = "Causes and their rivals; evidence is twice the logarithm of the Bayes factor against no effect";
+        let rows = found.causes.iter().flat_map(cause_rows).collect();
+        items.push(Item::Table { table: Table { caption: caption.into(), head, rows } });
+        let added: Vec<String> = found.causes[0].effects.iter().map(|effect| format!("{}: {}", effect.title, effect.added_by)).collect();
+        items.push(Item::Heading { text: "How the effects were added".into() });
+        items.push(Item::List { entries: added });
+    }
+    if !found.vetoed.is_empty() {
+        items.push(Item::Heading { text: "Refused".into() });
+        items.push(Item::List { entries: found.vetoed.iter().map(|vetoed| vetoed.says.clone()).collect() });
+    }
+    chapter("which", "Which effect", items)
+}
+
+fn shrunk(shrink: &Shrink) -> Chapter {
+    let number = |value: Option<f64>| value.map_or_else(|| number::NONE.to_owned(), |value| number::fixed(value, 3));
+    let row = |quantity: &QuantityShrink| {
+        vec![
+            quantity.id.clone(),
+            number(quantity.normalised_mean_before),
+            number(quantity.normalised_mean_after),
+            number(quantity.normalised_std_before),
+            number(quantity.normalised_std_after),
+            quantity.variance_explained.map_or_else(|| number::NONE.to_owned(), |share| format!("{} %", number::fixed(100.0 * share, 0))),
+        ]
+    };
+    let head = vec![
+        Head::text("Quantity"),
+        Head::number("Mean before"),
+        Head::number("after"),
+        Head::number("Standard deviation before"),
+        Head::number("after"),
+        Head::number("Squares removed"),
+    ];
+    let mut items = vec![
+        Item::text(format!(
+            "Each section was simulated with sizes that were fitted to the other sections. The {} falls from {} to {}.",
+            shrink.measure,
+            number::fixed(shrink.before, 3),
+            number::fixed(shrink.after, 3)
+        )),
+        Item::figure("before-after", "Normalised values before and with the effects", "Two marks per statistic, joined by a line"),
+        Item::Table {
+            table: Table {
+                caption: "Normalised values before and with the effects".into(),
+                head,
+                rows: shrink.quantities.iter().map(row).collect(),
+            },
+        },
+    ];
+    if shrink.shares.len() > 1 {
+        let entries = shrink.shares.iter().map(|(name, share)| format!("{name}: {} %", number::fixed(100.0 * share, 0))).collect();
+        items.push(Item::Heading { text: "Shares of the effects".into() });
+        items.push(Item::List { entries });
+    }
+    chapter("how-far", "How far the gap shrinks", items)
+}
+
+fn signals(found: &Diagnosis) -> Option<Chapter> {
+    let item = |(at, picture): (usize, &crate::result::diagnosis::Picture)| {
+        let caption = format!("Section {}: {}", picture.section, picture.says);
+        Item::figure(format!("signals-{at}"), caption, "Measured and simulated signals over distance")
+    };
+    let items: Vec<Item> = found.pictures.iter().enumerate().map(item).collect();
+    (!items.is_empty()).then(|| chapter("signals", "Signals where the gap is widest", items))
+}
+
+fn seen(found: &Diagnosis) -> Chapter {
+    let rows = found.detectable.iter().map(|one| {
+        let size = one.smallest.map_or("beyond its range".into(), |size| number::significant(size, 3));
+        vec![one.effect.clone(), one.parameter.clone(), size, one.unit.clone()]
+    });
+    let head = vec![Head::text("Effect"), Head::text("Parameter"), Head::number("Change from neutral"), Head::short("Unit")];
+    let caption = "The smallest change of each effect that this campaign can show (five standard deviations of what is allowed for)";
+    let table = Table { caption: caption.into(), head, rows: rows.collect() };
+    chapter("seen", "What would have been seen", vec![Item::Table { table }])
+}
+
+fn how(found: &Diagnosis) -> Chapter {
+    let how = &found.how;
+    let rows = [
+        ("Catalogue of effects", how.catalogue.clone()),
+        ("Simulator", how.simulator.clone()),
+        ("Effects added as", how.mode.clone()),
+        ("Tolerances", how.tolerances.clone()),
+        ("Sections", how.sections.to_string()),
+        ("Features", how.features.to_string()),
+        ("Simulated sections", found.simulations_run.to_string()),
+        ("Evidence needed", number::fixed(how.threshold, 1)),
+        ("Chi-squared per feature, before", number::fixed(how.chi_squared_before, 3)),
+        ("Chi-squared per feature, after", number::fixed(how.chi_squared_after, 3)),
+        ("Seed", how.seed.to_string()),
+    ];
+    let table = Table {
+        caption: "Settings of the diagnosis".into(),
+        head: vec![Head::text("Setting"), Head::text("Value")],
+        rows: rows.map(|(name, value)| vec![name.to_string(), value]).to_vec(),
+    };
+    chapter("how", "How it was found", vec![Item::Table { table }])
+}
