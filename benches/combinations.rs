@@ -81,6 +81,8 @@ fn ours(case: &Case) -> (f64, u64, Vec<f64>) {
 
 struct Peer {
     seconds: f64,
+    /// Of all its threads.
+    cpu: f64,
     validated: u64,
     values: Vec<f64>,
 }
@@ -101,13 +103,21 @@ fn peer(script: &str, pool: &Pool, folder: &std::path::Path) -> Option<Peer> {
     let said = String::from_utf8_lossy(&run.stderr).into_owned();
     // `numba: 13829760 selections in 1.74 s (1.71 s CPU); validated ...`; compiling is told on a line of its own.
     let seconds = said.split("selections in ").nth(1)?.split(' ').next()?.parse().ok()?;
+    let cpu = said.split("selections in ").nth(1)?.split('(').nth(1)?.split(' ').next()?.parse().ok()?;
     let json: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&output).ok()?).ok()?;
     let of = |id: &str, statistic: &str| {
         let found = &json["quantities"][id][statistic];
         ["min", "q25", "q50", "q75", "max"].map(|key| found[key].as_f64().unwrap_or(f64::NAN))
     };
     let values = pool.quantities.iter().flat_map(|quantity| [of(&quantity.id, "std"), of(&quantity.id, "mean")].concat()).collect();
-    Some(Peer { seconds, validated: json["validated"].as_u64()?, values })
+    Some(Peer { seconds, cpu, validated: json["validated"].as_u64()?, values })
+}
+
+/// CPU time of this process and its threads so far [s]; the kernel counts hundredths.
+fn cpu() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
+    Some((fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?) / 100.0)
 }
 
 /// Most memory of this process so far [MB].
@@ -134,15 +144,19 @@ fn main() {
         let pool = pool(&counts);
         let case = Case::of(&pool, None).expect("a case");
         let (mut own, mut theirs, mut worst) = (Vec::new(), Vec::new(), 0.0_f64);
+        let (mut own_cpu, mut their_cpu) = (0.0, Vec::new());
         let mut validated = 0;
         for _ in 0..RUNS {
+            let before = cpu();
             let (seconds, good, values) = ours(&case);
+            own_cpu += cpu().zip(before).map_or(f64::NAN, |(after, before)| after - before) / RUNS as f64;
             own.push(seconds);
             validated = good;
             if let Some(peer) = script.as_ref().and_then(|script| peer(script, &pool, folder.path())) {
                 assert_eq!(peer.validated, good, "selections validated");
                 worst = values.iter().zip(&peer.values).fold(worst, |worst, (a, b)| worst.max((a - b).abs()));
                 theirs.push(peer.seconds);
+                their_cpu.push(peer.cpu);
             }
         }
         let own = median(own);
@@ -155,8 +169,9 @@ fn main() {
             memory().unwrap_or(f64::NAN)
         );
         if !theirs.is_empty() {
-            let theirs = median(theirs);
+            let (theirs, their_cpu) = (median(theirs), median(their_cpu));
             println!("  reference {:.0} ms: {:.1} times slower; largest difference {worst:.1e}", 1e3 * theirs, theirs / own);
+            println!("  CPU time {:.0} ms and {:.0} ms: {:.1} times", 1e3 * own_cpu, 1e3 * their_cpu, their_cpu / own_cpu);
             assert!(worst <= 1e-12, "results differ by {worst}");
         }
     }

@@ -32,9 +32,11 @@ const MOST: f64 = 200.0;
 /// `20 Hz` as number and unit.
 fn with_unit(text: &str) -> Result<(f64, &str), String> {
     let text = text.trim();
-    let end = text.find(|c: char| c.is_alphabetic() || c == '%' || c == ' ').unwrap_or(text.len());
-    let number = text[..end].parse::<f64>().ok().filter(|number| number.is_finite());
-    Ok((number.ok_or_else(|| format!("`{text}` is not a number with or without a unit"))?, text[end..].trim()))
+    // The longest beginning that is a number: `1e3 m` is a thousand metres.
+    let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
+    let number = |end: usize| text[..end].trim_end().parse::<f64>().ok().filter(|number| number.is_finite()).map(|number| (number, end));
+    let found = ends.filter(|&end| !text[..end].ends_with(char::is_alphabetic)).find_map(number);
+    found.map(|(number, end)| (number, text[end..].trim())).ok_or_else(|| format!("`{text}` is not a number with or without a unit"))
 }
 
 /// Plain numbers.
@@ -61,6 +63,7 @@ mod tests {
         assert_eq!(of("10..30 step 10 Hz"), Ok("10 Hz|20 Hz|30 Hz".into()));
         assert_eq!(of("0.1..0.4 step 0.1"), Ok("0.1|0.2|0.3|0.4".into()));
         assert_eq!(of("-2..2 step 2"), Ok("-2|0|2".into()));
+        assert_eq!(of("1e1m..2e1 m step 10"), Ok("10 m|20 m".into()));
         assert_eq!(numbers("-5, 5"), Ok(vec![-5.0, 5.0]));
         for wrong in ["", "1..2", "1..2 step 0", "3..1 step 1", "1 Hz..2 s step 1", "x..2 step 1", "1..1e9 step 1"] {
             assert!(values(wrong).is_err(), "{wrong}");

@@ -37,7 +37,8 @@ const STUDENT: f64 = 2.364_624;
 /// The shift at which the signals are most likely one another's, as far as both records reach.
 ///
 /// The criterion is the likelihood of signals that differ by white noise of unknown size each: the sum of -ln(1 - r^2), so that
-/// a signal that follows closely says more than one that hardly does. Between points of the grid the criterion is a parabola.
+/// a signal that follows closely says more than one that hardly does. Between points of the grid the geometric mean of 1 - r^2
+/// is taken as a parabola.
 /// `None`: no signal varies, none follows, or the best shift lies at the end of what was looked at.
 pub fn estimate(pairs: &[Pair<'_>], search: &Search) -> Option<Estimate> {
     let grid = uniform_grid(search.start, search.end, search.step).ok()?;
@@ -150,9 +151,12 @@ fn best(signals: &[Vec<[Sums; BLOCKS]>], lags: &[i64], step: f64, without: Optio
     if at == 0 || at + 1 == score.len() || score[at] <= 0.0 {
         return None;
     }
-    let (before, peak, after) = (score[at - 1], score[at], score[at + 1]);
-    let bend = before - 2.0 * peak + after;
-    let between = if bend < 0.0 { 0.5 * (before - after) / bend } else { 0.0 };
+    // The score has a sharp peak where signals follow closely, which a parabola does not fit; what is left unexplained, the
+    // geometric mean of 1 - r^2, is a parabola there at any size of noise.
+    let left = |at: usize| (-score[at] / signals.len() as f64).exp();
+    let (before, least, after) = (left(at - 1), left(at), left(at + 1));
+    let bend = before - 2.0 * least + after;
+    let between = if bend > 0.0 { 0.5 * (before - after) / bend } else { 0.0 };
     let mean_square = correlations(at).map(|r| r * r).sum::<f64>() / signals.len() as f64;
     Some(((lags[at] as f64 + between.clamp(-0.5, 0.5)) * step, mean_square.sqrt()))
 }

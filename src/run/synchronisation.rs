@@ -11,9 +11,9 @@ use crate::metrics::synchronise::{self, Estimate, Search};
 /// Where to evaluate the measurement.
 #[derive(Clone, Copy, Debug)]
 pub struct Shifts<'a> {
-    /// What is added to the measurement's axis before sections are cut [SI].
+    /// What is added to the measurement's axis before sections are cut, SI.
     pub offsets: &'a [f64],
-    /// Farthest shift looked for where each section's own is to be estimated [SI].
+    /// Farthest shift looked for where each section's own is to be estimated, SI.
     pub farthest: Option<f64>,
     /// Whether what was estimated is added, too.
     pub correct: bool,
@@ -28,7 +28,7 @@ impl Shifts<'_> {
     }
 }
 
-/// What would bring a section's measurement onto its simulation, [SI] of the axis.
+/// What would bring a section's measurement onto its simulation, in SI of the axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Offset {
     pub shift: f64,

@@ -60,7 +60,7 @@ const MARGIN: (f64, f64) = (0.0008, 0.004);
 const SAMPLE: f64 = 5.0;
 const MARGIN_FOR: f64 = 18_600.0;
 
-/// Some of the values, sorted: rows and columns, each in the order of their own parts, at the points of a sequence that fills
+/// Some of the values: rows and columns, each in the order of their own parts, at the points of a sequence that fills
 /// the unit square evenly (Roberts' R2: powers of the plastic number).
 fn pilot(blocks: &[Block], count: u64) -> Vec<f64> {
     let wanted = ((count as f64).sqrt() * SAMPLE).min(count as f64).max(1.0);
@@ -82,7 +82,6 @@ fn pilot(blocks: &[Block], count: u64) -> Vec<f64> {
             sample.push(value(row, column.q, column.y));
         }
     }
-    sample.sort_unstable_by(f64::total_cmp);
     sample
 }
 
@@ -92,12 +91,12 @@ pub fn order(blocks: &mut [Block], form: Form, limit: Option<&mut Limit<'_>>) ->
     if count == 0 {
         return None;
     }
-    let sample = pilot(blocks, count);
+    let mut sample = pilot(blocks, count);
     let flat = blocks.iter().all(|block| block.rows.iter().all(|row| row.c == 0.0));
     let mut margin = if flat { MARGIN.0 } else { MARGIN.1 } * (MARGIN_FOR / sample.len() as f64).powf(0.6);
     let mut limit = limit;
     loop {
-        let mut sweep = Sweep::new(&sample, margin, form);
+        let mut sweep = Sweep::new(&mut sample, margin, form);
         for block in blocks.iter_mut() {
             groups(block, |sorted| {
                 sorted.rows.iter().for_each(|row| sweep.row(sorted, row));
@@ -122,11 +121,18 @@ struct Sweep {
 }
 
 impl Sweep {
-    fn new(sample: &[f64], margin: f64, form: Form) -> Self {
+    fn new(sample: &mut [f64], margin: f64, form: Form) -> Self {
         let mut windows: [Window; WINDOWS] = std::array::from_fn(|_| Window::default());
-        let at = |share: f64| {
+        // Six places of the sample are looked at: it need not be sorted for that.
+        let mut at = |share: f64| {
             let at = share * sample.len() as f64;
-            if at < 0.0 { f64::NEG_INFINITY } else { sample.get(at as usize).copied().unwrap_or(f64::INFINITY) }
+            if at < 0.0 {
+                f64::NEG_INFINITY
+            } else if at as usize >= sample.len() {
+                f64::INFINITY
+            } else {
+                *sample.select_nth_unstable_by(at as usize, f64::total_cmp).1
+            }
         };
         for (window, share) in windows.iter_mut().zip([0.25, 0.5, 0.75]) {
             (window.low, window.high) = (at(share - margin), at(share + margin));
