@@ -46,6 +46,8 @@ impl State {
     pub const BODIES: usize = 31;
     /// All states.
     pub const ALL: usize = 2 * Self::BODIES + 22;
+    /// Which of the states in [`State::to_vec`] are forces and torques.
+    pub const FORCES: std::ops::Range<usize> = 2 * Self::BODIES + 4..Self::ALL - 2;
 
     /// `self + step * rates`.
     #[inline(always)]
