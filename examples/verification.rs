@@ -60,7 +60,8 @@ fn main() {
         std::process::exit(2);
     }
     let mut table = String::from(
-        "| campaign | channels | values | medians differ by | of values above | rms differs by | of values above | samples differ by |\n|---|---|---|---|---|---|---|---|\n",
+        "| campaign | channels | values | medians differ by | of values above | rms differs by | of values above | samples differ by |\n\
+         |---|---|---|---|---|---|---|---|\n",
     );
     let mut all = Vec::new();
     for (number, campaign) in campaigns.iter().enumerate() {

@@ -126,8 +126,10 @@ impl Linear {
     }
 }
 
-/// The speed in m/s, to 0.01 m/s, at which a small motion about rest begins to grow, between two speeds; `None` if it does not
-/// die out at the lower or not grow at the higher, or the eigenvalues are not found. `equations` gives the vehicle at a speed. Assumes one change of sign between the speeds.
+/// The speed in m/s, to 0.01 m/s, at which a small motion about rest begins to grow, between two speeds.
+///
+/// `equations` gives the vehicle at a speed; one change of sign between the speeds is assumed. `None` if the motion does not die
+/// out at the lower or not grow at the higher speed, or eigenvalues are not found.
 pub fn critical_speed<'a>(equations: impl Fn(f64) -> Equations<'a>, mut stable: f64, mut unstable: f64) -> Option<f64> {
     let grows = |speed: f64| {
         let equations = equations(speed);

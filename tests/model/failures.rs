@@ -9,7 +9,7 @@ fn fails(set: &[(&str, f64)], radius: f64, speed: f64, divided: Option<usize>) -
     let profile = profile(COACH, &vehicle);
     let track = curve(radius, 0.0);
     let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
-    let failure = simulate_with(&setup, Window::around(210.0, 310.0), divided).err().expect("no result");
+    let Err(failure) = simulate_with(&setup, Window::around(210.0, 310.0), divided) else { panic!("a record") };
     let words = failure.to_string();
     assert!(failure.time.is_finite() && failure.distance.is_finite(), "{words}");
     assert!(words.contains(&format!("{:.3} s after the start, at {:.1} m", failure.time, failure.distance)), "{words}");
@@ -47,7 +47,7 @@ fn hunting_beyond_the_table() {
     let mut track = even(&[(0.0, 0.0, 0.0), (20.0, 0.0, 0.0), (40.0, 0.0, 0.0), (2000.0, 0.0, 0.0)]);
     track.alignment[1] = 5.0;
     let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed: 240.0 / 3.6 };
-    let failure = simulate(&setup, Window::around(1000.0, 1500.0)).err().expect("no result");
+    let Err(failure) = simulate(&setup, Window::around(1000.0, 1500.0)) else { panic!("a record") };
     let FailureKind::Derailed { displacement, .. } = failure.kind else { panic!("{failure}") };
     assert!(displacement.is_finite() && failure.distance > 0.0 && failure.time > 0.0, "{failure}");
 }
@@ -59,7 +59,7 @@ fn too_early() {
     let profile = profile(COACH, &vehicle);
     let track = curve(300.0, 100.0);
     let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed: 20.0 };
-    let failure = simulate(&setup, Window::around(-100.0, 50.0)).err().expect("no result");
+    let Err(failure) = simulate(&setup, Window::around(-100.0, 50.0)) else { panic!("a record") };
     // The run starts at 9.5 + 1.28 - 2.5 * 20 m.
     assert!(matches!(failure.kind, FailureKind::TooEarly { by } if (by - (136.0 - 39.22)).abs() < 1e-9), "{failure}");
 }

@@ -73,9 +73,9 @@ impl System<f64, DVector<f64>> for Motion<'_> {
     }
 }
 
-/// Dormand and Prince's method of eighth order with step control (crate `ode_solvers`, tolerances 1e-7 relative, 1e-8 absolute), through the run-in and the
-/// transition into a curve of 280 m over uneven track, 8 s: displacements of the wheelsets within 2 micrometres and of the body within
-/// 1 micrometre at the end.
+/// Dormand and Prince's method of eighth order with step control (crate `ode_solvers`, tolerances 1e-7 relative, 1e-8 absolute),
+/// through the run-in and the transition into a curve of 280 m over uneven track, 8 s: displacements of the wheelsets within
+/// 2 micrometres and of the bodies within 1 micrometre at the end.
 #[test]
 fn an_independent_integrator_agrees() {
     let section = section(COACH, "S13");
