@@ -22,6 +22,9 @@ const LEAST_SHARE: f64 = 0.2;
 /// Least cosine of the contact angle in the lateral creepage.
 const LEAST_COSINE: f64 = 0.3;
 
+/// Upper bits of the guess of an inverse cube root.
+const GUESS: u64 = 0x553E_F400;
+
 /// Constants of the contact of one vehicle.
 #[derive(Clone, Debug)]
 pub struct Contact {
@@ -91,8 +94,9 @@ impl Contact {
         let lt = -self.f22 * area * eta - self.f23 * load * zeta;
         let linear = (lx * lx + lt * lt).sqrt();
         // F / L = 1 - r/3 + r^2/27 below saturation, mu N / L = 1/r above; at r = 3 both are 1/3.
-        let r = linear / (self.friction * normal);
-        let beyond = 1.0 / r;
+        let limit = self.friction * normal;
+        let r = linear / limit;
+        let beyond = limit / linear;
         let below = 1.0 - r * (1.0 / 3.0 - r * (1.0 / 27.0));
         let share = if r < 3.0 { below } else { beyond };
         (share * lx, share * lt)
@@ -135,17 +139,19 @@ fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// `x^(-1/3)` of a positive number to the last digits, by an iteration of third order without divisions from a guess by the
+/// `x^(-1/3)` of a positive number to the last digits, by an iteration of fourth order without divisions from a guess by the
 /// exponent. Branchless, and the same on every machine.
 #[inline(always)]
 fn inverse_cube_root(x: f64) -> f64 {
-    // A third of the bits is a third of the exponent: 1/4 + 1/16 + ... = 1/3, and the bias is put right.
-    let bits = x.to_bits();
-    let third = (bits >> 2) + (bits >> 4) + (bits >> 6) + (bits >> 8) + (bits >> 10) + (bits >> 12) + (bits >> 14) + (bits >> 16);
-    let mut root = f64::from_bits(0x553E_DC00_0000_0000 - third);
-    for _ in 0..3 {
-        let rest = 1.0 - x * root * root * root;
-        root += root * rest * (1.0 / 3.0 + rest * (2.0 / 9.0));
+    // A third of the upper bits is a third of the exponent; the bias is put right. 3.4 % off at most.
+    let third = ((x.to_bits() >> 32) * 0x5555_5556) >> 32;
+    let mut root = f64::from_bits((GUESS - third) << 32);
+    // 0.034^4 * 12 = 2e-5, and again: 1e-18.
+    for _ in 0..2 {
+        // In an order in which little has to wait for little.
+        let rest = 1.0 - (x * root) * (root * root);
+        let series = (1.0 / 3.0 + rest * (2.0 / 9.0)) + (rest * rest) * (14.0 / 81.0);
+        root += (root * rest) * series;
     }
     root
 }

@@ -88,6 +88,16 @@ pub struct Outputs {
     pub widest: (f64, usize),
 }
 
+/// What happens under the wheels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OnRails {
+    forces: Forces,
+    /// In N.
+    vertical: Wheels,
+    /// Relative to the rail, positive to the right, in m.
+    displacement: Wheels,
+}
+
 impl<'a> Equations<'a> {
     #[must_use]
     pub fn new(vehicle: &'a Vehicle, profile: &'a Profile, speed: f64) -> Self {
@@ -137,10 +147,42 @@ impl<'a> Equations<'a> {
         load * spin.max(yaw).max(lateral)
     }
 
+    /// Which entries of [`State::to_vec`] this vehicle moves; the others stay 0.
+    #[must_use]
+    pub fn states(&self) -> Vec<usize> {
+        let first_order = 2 * State::BODIES;
+        let groups = [
+            (4, true),
+            (2, self.has.yaw_damper),
+            (2, self.has.centre_friction),
+            (8, self.has.friction_z),
+            (4, self.has.friction_y),
+            (2, self.has.bending),
+        ];
+        let mut places: Vec<usize> = (0..first_order).collect();
+        let mut next = first_order;
+        for (count, has) in groups {
+            if has {
+                places.extend(next..next + count);
+            }
+            next += count;
+        }
+        places
+    }
+
     /// The track under the bodies when the car body's centre is at `s`.
+    #[inline(always)]
     pub fn input(&self, track: &Track, s: f64, hints: &mut Hints) -> Input {
+        let mut input = Input::default();
+        self.look(track, s, hints, &mut input);
+        input
+    }
+
+    /// As [`Self::input`], into an input that was made by this vehicle before, or the default.
+    #[inline(always)]
+    pub(super) fn look(&self, track: &Track, s: f64, hints: &mut Hints, input: &mut Input) {
         let v = self.vehicle;
-        let mut input = Input { car: track.line(s, &mut hints.0[0]), ..Input::default() };
+        input.car = track.line(s, &mut hints.0[0]);
         for i in 0..2 {
             let sb = s + [1.0, -1.0][i] * v.half_bogie_spacing;
             input.bogie[i] = track.line(sb, &mut hints.0[1 + i]);
@@ -164,7 +206,6 @@ impl<'a> Equations<'a> {
                 }
             }
         }
-        input
     }
 
     /// At rest under the payload, on straight level track; all in m.
@@ -187,15 +228,22 @@ impl<'a> Equations<'a> {
     /// Rates of all states, and the outputs.
     #[inline(always)]
     pub fn rates(&self, state: &State, input: &Input, rates: &mut State) -> Outputs {
-        let mut load = [0.0; State::BODIES];
         *rates = State::default();
+        let wheels = self.motion(state, input, rates);
+        self.outputs(state, input, rates, &wheels)
+    }
+
+    /// Rates of all states that the vehicle has, and what the outputs need besides.
+    #[inline(always)]
+    pub(super) fn motion(&self, state: &State, input: &Input, rates: &mut State) -> OnRails {
+        let mut load = [0.0; State::BODIES];
         rates.x = state.v;
         self.inertial(input, &mut load);
         self.secondary(state, input, &mut load, rates);
         self.primary(state, input, &mut load, rates);
-        let (forces, q, widest) = self.wheel_rail(state, input, &mut load, rates);
+        let wheels = self.wheel_rail(state, input, &mut load, rates);
         self.accelerations(&load, &mut rates.v);
-        self.outputs(state, input, rates, &forces, q, widest)
+        wheels
     }
 
     /// Gravity and centrifugal forces, wind and payload.
@@ -326,21 +374,14 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// Between wheels and rails. Gives the forces, the vertical forces and the widest displacement.
+    /// Between wheels and rails.
     #[inline(always)]
-    fn wheel_rail(
-        &self,
-        state: &State,
-        input: &Input,
-        load: &mut [f64; State::BODIES],
-        rates: &mut State,
-    ) -> (Forces, Wheels, (f64, usize)) {
+    fn wheel_rail(&self, state: &State, input: &Input, load: &mut [f64; State::BODIES], rates: &mut State) -> OnRails {
         let v = self.vehicle;
         let (x, u) = (&state.x, &state.v);
         let (b0, r0) = (v.half_contact_spacing, v.wheel_radius);
         let (per_speed, per_radius) = (1.0 / self.speed, 1.0 / r0);
         let mut motion = Motion::default();
-        let mut widest = (0.0, 0);
         let mut rho = [0.0; WHEELS];
         let mut displacement = [0.0; WHEELS];
         for j in 0..4 {
@@ -349,9 +390,6 @@ impl<'a> Equations<'a> {
             for (side, k) in [(0, 1.0), (1, -1.0)] {
                 let i = 4 * side + j;
                 displacement[i] = centre - k * 0.5 * track.gauge;
-                if displacement[i].abs() > widest.0 {
-                    widest = (displacement[i].abs(), j);
-                }
             }
         }
         for side in 0..2 {
@@ -391,7 +429,7 @@ impl<'a> Equations<'a> {
             load[WHEELSET.psi + j] -= b0 * (forces.longitudinal[right] - forces.longitudinal[left]);
             rates.spin[j] = -r0 * (forces.longitudinal[right] + forces.longitudinal[left]) / v.wheelset_inertia_spin;
         }
-        (forces, motion.vertical_force, widest)
+        OnRails { forces, vertical: motion.vertical_force, displacement }
     }
 
     #[inline(always)]
@@ -402,14 +440,19 @@ impl<'a> Equations<'a> {
     }
 
     #[inline(always)]
-    fn outputs(&self, state: &State, input: &Input, rates: &State, forces: &Forces, q: Wheels, widest: (f64, usize)) -> Outputs {
+    pub(super) fn outputs(&self, state: &State, input: &Input, rates: &State, wheels: &OnRails) -> Outputs {
         let v = self.vehicle;
         let (x, a) = (&state.x, &rates.v);
         let vv = self.speed * self.speed;
-        let mut outputs = Outputs { q, widest, ..Outputs::default() };
+        let mut outputs = Outputs { q: wheels.vertical, ..Outputs::default() };
         for j in 0..4 {
-            outputs.y[j] = -forces.lateral[j];
-            outputs.y[4 + j] = forces.lateral[4 + j];
+            outputs.y[j] = -wheels.forces.lateral[j];
+            outputs.y[4 + j] = wheels.forces.lateral[4 + j];
+        }
+        for (i, displacement) in wheels.displacement.iter().enumerate() {
+            if displacement.abs() > outputs.widest.0 {
+                outputs.widest = (displacement.abs(), i % 4);
+            }
         }
         let height = v.car_cog_height - v.floor_height;
         let field = vv * input.car.kappa - G * (input.car.cant + x[CAR + PHI]);

@@ -11,6 +11,9 @@ use super::track::Track;
 pub const SAMPLE: f64 = 1e-3;
 /// Largest product of step and fastest rate; the method is stable up to 2.78.
 const STABLE: f64 = 2.0;
+/// Largest rate of any state, in SI units, of a vehicle at rest: rounding. In the seconds before the track it moves nothing by a
+/// nanometre.
+const AT_REST: f64 = 1e-10;
 /// Longest that a wheelset may be beyond the contact table, in s.
 const BEYOND: f64 = 0.2;
 
@@ -94,16 +97,24 @@ impl<F: FnMut(usize, &State, &Outputs)> pulp::NullaryFnOnce for Run<'_, F> {
         let mut beyond = 0;
         let mut hints = Hints::default();
         let mut rates = State::default();
+        // At the beginning, in the middle and at the end of the step; then the end is the beginning.
         let mut inputs = [equations.input(track, self.from, &mut hints), Input::default(), Input::default()];
-        for n in 0..self.samples {
+        let (mut begin, mut end) = (0, 2);
+        let still = self.still(&inputs[0]);
+        if still > 0 {
+            equations.look(track, self.from + speed * (still as f64 * SAMPLE), &mut hints, &mut inputs[begin]);
+        }
+        for n in still..self.samples {
             for part in 0..self.steps_per_sample {
                 let t = n as f64 * SAMPLE + part as f64 * step;
-                inputs[1] = equations.input(track, self.from + speed * (t + 0.5 * step), &mut hints);
-                inputs[2] = equations.input(track, self.from + speed * (t + step), &mut hints);
+                equations.look(track, self.from + speed * (t + 0.5 * step), &mut hints, &mut inputs[1]);
+                equations.look(track, self.from + speed * (t + step), &mut hints, &mut inputs[end]);
                 let (start, mut probe) = (self.state, self.state);
                 for (stage, (next, weight)) in STAGES.into_iter().enumerate() {
-                    let outputs = equations.rates(&probe, &inputs[stage.div_ceil(2)], &mut rates);
+                    let input = &inputs[[begin, 1, 1, end][stage]];
+                    let wheels = equations.motion(&probe, input, &mut rates);
                     if stage == 0 && part == 0 {
+                        let outputs = equations.outputs(&probe, input, &rates, &wheels);
                         (self.sample)(n, &start, &outputs);
                         let (displacement, wheelset) = outputs.widest;
                         beyond = if displacement > most { beyond + 1 } else { 0 };
@@ -116,13 +127,29 @@ impl<F: FnMut(usize, &State, &Outputs)> pulp::NullaryFnOnce for Run<'_, F> {
                         }
                     }
                     self.state.add(weight * step, &rates);
-                    probe = start;
-                    probe.add(next * step, &rates);
+                    probe.follow(&start, next * step, &rates);
                 }
-                inputs.swap(0, 2);
+                (begin, end) = (end, begin);
             }
         }
         Ok(())
+    }
+}
+
+impl<F: FnMut(usize, &State, &Outputs)> Run<'_, F> {
+    /// Gives the samples of a vehicle at rest that has not reached the track yet, and how many they are.
+    fn still(&mut self, input: &Input) -> usize {
+        let mut rates = State::default();
+        let outputs = self.equations.rates(&self.state, input, &mut rates);
+        if rates.largest() > AT_REST || self.state.v != [0.0; State::BODIES] || self.equations.vehicle.roundness_amplitude > 0.0 {
+            return 0;
+        }
+        let free = self.track.start() - self.equations.wheelset_position(self.from, 0);
+        let still = ((free / (self.equations.speed * SAMPLE)).floor().max(0.0) as usize).min(self.samples);
+        for n in 0..still {
+            (self.sample)(n, &self.state, &outputs);
+        }
+        still
     }
 }
 

@@ -31,17 +31,13 @@ impl Spline {
         Self { values, bends }
     }
 
-    /// Value and slope in the interval from point `i`, which has `width`, at `share` (0 to 1) of it.
-    #[inline]
+    /// Coefficients of the powers 0 to 3 of the distance from point `i` in the interval behind it, which has `width`.
     #[must_use]
-    pub fn at(&self, i: usize, width: f64, share: f64) -> (f64, f64) {
-        let (b, a) = (share, 1.0 - share);
+    pub fn cubic(&self, i: usize, width: f64) -> [f64; 4] {
         let (low, high) = (self.values[i], self.values[i + 1]);
         let (low_bend, high_bend) = (self.bends[i], self.bends[i + 1]);
-        let sixth = width / 6.0;
-        let value = a * low + b * high + ((a * a * a - a) * low_bend + (b * b * b - b) * high_bend) * width * sixth;
-        let slope = (high - low) / width + ((3.0 * b * b - 1.0) * high_bend - (3.0 * a * a - 1.0) * low_bend) * sixth;
-        (value, slope)
+        let slope = (high - low) / width - width / 6.0 * (2.0 * low_bend + high_bend);
+        [low, slope, 0.5 * low_bend, (high_bend - low_bend) / (6.0 * width)]
     }
 }
 
@@ -55,9 +51,10 @@ mod tests {
         let spline = Spline::new(&[0.0, 1.0, 2.0], vec![0.0, 1.0, 0.0]);
         // Second derivative in the middle: 4 M = 6 (-1 - 1), M = -3.
         assert!((spline.bends[1] + 3.0).abs() < 1e-14);
-        let (value, slope) = spline.at(0, 1.0, 0.5);
-        // s(x) = 1.5 x - 0.5 x^3.
-        assert!((value - 0.6875).abs() < 1e-14 && (slope - 1.125).abs() < 1e-14);
-        assert!((spline.at(1, 1.0, 0.5).0 - 0.6875).abs() < 1e-14);
+        // s(x) = 1.5 x - 0.5 x^3, then mirrored.
+        let [c0, c1, c2, c3] = spline.cubic(0, 1.0);
+        assert!(c0.abs() < 1e-14 && (c1 - 1.5).abs() < 1e-14 && c2.abs() < 1e-14 && (c3 + 0.5).abs() < 1e-14);
+        let [c0, c1, c2, c3] = spline.cubic(1, 1.0);
+        assert!((c0 - 1.0).abs() < 1e-14 && c1.abs() < 1e-14 && (c2 + 1.5).abs() < 1e-14 && (c3 - 0.5).abs() < 1e-14);
     }
 }

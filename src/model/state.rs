@@ -46,16 +46,28 @@ impl State {
     pub const BODIES: usize = 31;
     /// All states.
     pub const ALL: usize = 2 * Self::BODIES + 22;
+    /// Which of the states in [`State::to_vec`] are forces and torques.
+    pub const FORCES: std::ops::Range<usize> = 2 * Self::BODIES + 4..Self::ALL - 2;
 
-    /// `self + step * rates`.
+    /// Becomes `start` plus `step` times `rates`.
     #[inline(always)]
-    #[must_use]
-    pub fn plus(&self, step: f64, rates: &Self) -> Self {
-        let mut sum = *self;
-        sum.add(step, rates);
-        sum
+    pub fn follow(&mut self, start: &Self, step: f64, rates: &Self) {
+        fn each<const N: usize>(to: &mut [f64; N], start: &[f64; N], step: f64, rates: &[f64; N]) {
+            for i in 0..N {
+                to[i] = start[i] + step * rates[i];
+            }
+        }
+        each(&mut self.x, &start.x, step, &rates.x);
+        each(&mut self.v, &start.v, step, &rates.v);
+        each(&mut self.spin, &start.spin, step, &rates.spin);
+        each(&mut self.yaw_damper, &start.yaw_damper, step, &rates.yaw_damper);
+        each(&mut self.centre_friction, &start.centre_friction, step, &rates.centre_friction);
+        each(&mut self.friction_z, &start.friction_z, step, &rates.friction_z);
+        each(&mut self.friction_y, &start.friction_y, step, &rates.friction_y);
+        each(&mut self.bending, &start.bending, step, &rates.bending);
     }
 
+    /// Adds `step` times `rates`.
     #[inline(always)]
     pub fn add(&mut self, step: f64, rates: &Self) {
         fn each<const N: usize>(to: &mut [f64; N], step: f64, rates: &[f64; N]) {
@@ -81,6 +93,18 @@ impl State {
         parts.concat()
     }
 
+    /// Writes the states one after the other into [`State::ALL`] numbers.
+    pub fn write(&self, to: &mut [f64]) {
+        let parts: [&[f64]; 8] =
+            [&self.x, &self.v, &self.spin, &self.yaw_damper, &self.centre_friction, &self.friction_z, &self.friction_y, &self.bending];
+        let mut rest = to;
+        for part in parts {
+            let (head, tail) = rest.split_at_mut(part.len());
+            head.copy_from_slice(part);
+            rest = tail;
+        }
+    }
+
     /// The inverse of [`State::to_vec`]; `values` has [`State::ALL`] numbers.
     #[must_use]
     pub fn from_slice(values: &[f64]) -> Self {
@@ -104,10 +128,23 @@ impl State {
         }
     }
 
-    /// Whether every state is a finite number.
+    /// Whether every displacement, rate and spin is a finite number.
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        let sum: f64 = self.x.iter().chain(&self.v).chain(&self.spin).chain(&self.bending).map(|value| value * 0.0).sum();
+        // 0 times infinity or NaN is NaN.
+        let mut sum = 0.0;
+        for i in 0..Self::BODIES {
+            sum += 0.0 * self.x[i] + 0.0 * self.v[i];
+        }
+        for spin in self.spin {
+            sum += 0.0 * spin;
+        }
         sum == 0.0
+    }
+
+    /// The largest magnitude of all.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        self.to_vec().into_iter().fold(0.0, |most, value| value.abs().max(most))
     }
 }

@@ -29,18 +29,19 @@ const FADE: f64 = 10.0;
 #[derive(Clone, Debug)]
 pub struct Track {
     distance: Vec<f64>,
-    curvature: Vec<f64>,
-    /// Cant angle in rad.
-    cant: Vec<f64>,
-    /// Integral of the curvature and its integral.
-    heading: Vec<f64>,
-    lateral: Vec<f64>,
-    alignment: Spline,
-    level: Spline,
-    cross_level: Spline,
-    gauge: Spline,
-    /// In m.
-    gauge_error: f64,
+    /// One per interval of `distance`.
+    pieces: Vec<Piece>,
+    /// What stands behind the last point.
+    end: Line,
+}
+
+/// Cubic polynomials of the distance u into an interval, side by side: c0 + u (c1 + u (c2 + u c3)) of four functions each.
+#[derive(Clone, Copy, Debug, Default)]
+struct Piece {
+    /// Curvature, cant angle, heading (integral of the curvature), lateral position (integral of the heading).
+    line: [[f64; 4]; 4],
+    /// Alignment, gauge, height of the right rail and of the left.
+    uneven: [[f64; 4]; 4],
 }
 
 /// The line at a body: curvature in 1/m, cant angle in rad, heading in rad, lateral position in m.
@@ -73,22 +74,30 @@ impl Track {
         let curvature: Vec<f64> = table.curvature.iter().map(|kappa| kappa * vehicle.curvature_scale).collect();
         let sharpest = curvature.iter().fold(0.0_f64, |most, kappa| most.max(kappa.abs()));
         let error = |kappa: f64| if sharpest > 0.0 { vehicle.cant_error * kappa / sharpest } else { 0.0 };
-        let cant =
-            table.cant.iter().zip(&curvature).map(|(cant, kappa)| (cant + error(*kappa)) * 1e-3 / (2.0 * vehicle.half_contact_spacing));
-        let cant = cant.collect();
-        let (mut heading, mut lateral) = (vec![0.0], vec![0.0]);
-        for i in 1..distance.len() {
-            let width = distance[i] - distance[i - 1];
-            let (from, to) = (curvature[i - 1], curvature[i]);
-            let theta = heading[i - 1];
-            lateral.push(lateral[i - 1] + width * (theta + width * (from / 3.0 + to / 6.0)));
-            heading.push(theta + 0.5 * width * (from + to));
-        }
+        let angle = |i: usize| (table.cant[i] + error(curvature[i])) * 1e-3 / (2.0 * vehicle.half_contact_spacing);
         let spline =
             |values: &[f64]| Spline::new(&distance, values.iter().map(|value| value * 1e-3 * vehicle.irregularity_scale).collect());
-        let (alignment, level) = (spline(&table.alignment), spline(&table.level));
-        let (cross_level, gauge) = (spline(&table.cross_level), spline(&table.gauge));
-        Self { distance, curvature, cant, heading, lateral, alignment, level, cross_level, gauge, gauge_error: vehicle.gauge_error * 1e-3 }
+        let (alignment, gauge) = (spline(&table.alignment), spline(&table.gauge));
+        let (level, cross_level) = (spline(&table.level), spline(&table.cross_level));
+        let (mut theta, mut y) = (0.0, 0.0);
+        let mut pieces = Vec::with_capacity(distance.len() - 1);
+        for i in 0..distance.len() - 1 {
+            let width = distance[i + 1] - distance[i];
+            let (from, rise) = (curvature[i], (curvature[i + 1] - curvature[i]) / width);
+            let (cant, cant_rise) = (angle(i), (angle(i + 1) - angle(i)) / width);
+            let line =
+                [[from, cant, theta, y], [rise, cant_rise, from, theta], [0.0, 0.0, 0.5 * rise, 0.5 * from], [0.0, 0.0, 0.0, rise / 6.0]];
+            let (level, cross) = (level.cubic(i, width), cross_level.cubic(i, width));
+            let (alignment, mut gauge) = (alignment.cubic(i, width), gauge.cubic(i, width));
+            gauge[0] += vehicle.gauge_error * 1e-3;
+            let uneven = [0, 1, 2, 3].map(|n| [alignment[n], gauge[n], level[n] + 0.5 * cross[n], level[n] - 0.5 * cross[n]]);
+            pieces.push(Piece { line, uneven });
+            y += width * (theta + width * (0.5 * from + width * rise / 6.0));
+            theta += width * (from + 0.5 * width * rise);
+        }
+        let last = distance.len() - 1;
+        let end = Line { kappa: curvature[last], cant: angle(last), theta, y };
+        Self { distance, pieces, end }
     }
 
     /// Distance of the first point in m.
@@ -103,6 +112,7 @@ impl Track {
         self.distance[self.distance.len() - 1]
     }
 
+    #[inline(always)]
     fn interval(&self, s: f64, hint: &mut Hint) -> usize {
         let last = self.distance.len() - 2;
         let mut i = (*hint).min(last);
@@ -117,47 +127,54 @@ impl Track {
     }
 
     /// Straight and level before the table; as at its end behind it.
+    #[inline(always)]
     pub fn line(&self, s: f64, hint: &mut Hint) -> Line {
         if s <= self.start() {
             return Line::default();
         }
-        let last = self.distance.len() - 1;
         if s >= self.end() {
-            let (kappa, u) = (self.curvature[last], s - self.end());
-            let theta = self.heading[last];
-            let y = self.lateral[last] + u * (theta + 0.5 * u * kappa);
-            return Line { kappa, cant: self.cant[last], theta: theta + u * kappa, y };
+            let (Line { kappa, cant, theta, y }, u) = (self.end, s - self.end());
+            return Line { kappa, cant, theta: theta + u * kappa, y: y + u * (theta + 0.5 * u * kappa) };
         }
         let i = self.interval(s, hint);
-        let width = self.distance[i + 1] - self.distance[i];
-        let u = s - self.distance[i];
-        let share = u / width;
-        let (from, rise) = (self.curvature[i], self.curvature[i + 1] - self.curvature[i]);
-        let cant = self.cant[i] + share * (self.cant[i + 1] - self.cant[i]);
-        let theta = self.heading[i] + u * (from + 0.5 * share * rise);
-        let y = self.lateral[i] + u * (self.heading[i] + u * (0.5 * from + share * rise / 6.0));
-        Line { kappa: from + share * rise, cant, theta, y }
+        let [kappa, cant, theta, y] = values(&self.pieces[i].line, s - self.distance[i]);
+        Line { kappa, cant, theta, y }
     }
 
     /// Zero outside the table; faded in over its first metres.
+    #[inline(always)]
     pub fn irregularity(&self, s: f64, hint: &mut Hint) -> Irregularity {
         if s <= self.start() || s >= self.end() {
             return Irregularity::default();
         }
         let i = self.interval(s, hint);
-        let width = self.distance[i + 1] - self.distance[i];
-        let share = (s - self.distance[i]) / width;
+        let (piece, u) = (&self.pieces[i].uneven, s - self.distance[i]);
+        let (value, slope) = (values(piece, u), slopes(piece, u));
         let into = (s - self.start()) / FADE;
         let (fade, fading) = if into < 1.0 { (into, 1.0 / FADE) } else { (1.0, 0.0) };
-        let (level, level_slope) = self.level.at(i, width, share);
-        let (cross, cross_slope) = self.cross_level.at(i, width, share);
-        let rail = |k: f64| level + k * 0.5 * cross;
-        let slope = |k: f64| fade * (level_slope + k * 0.5 * cross_slope) + fading * rail(k);
         Irregularity {
-            alignment: fade * self.alignment.at(i, width, share).0,
-            gauge: fade * (self.gauge.at(i, width, share).0 + self.gauge_error),
-            height: [fade * rail(1.0), fade * rail(-1.0)],
-            slope: [slope(1.0), slope(-1.0)],
+            alignment: fade * value[0],
+            gauge: fade * value[1],
+            height: [fade * value[2], fade * value[3]],
+            slope: [fade * slope[2] + fading * value[2], fade * slope[3] + fading * value[3]],
         }
     }
+}
+
+#[inline(always)]
+fn values(c: &[[f64; 4]; 4], u: f64) -> [f64; 4] {
+    let mut value = [0.0; 4];
+    for n in 0..4 {
+        value[n] = c[0][n] + u * (c[1][n] + u * (c[2][n] + u * c[3][n]));
+    }
+    value
+}
+
+#[inline(always)]
+fn slopes(c: &[[f64; 4]; 4], u: f64) -> [f64; 4] {
+    let mut slope = [0.0; 4];
+    for n in 0..4 {
+        slope[n] = c[1][n] + u * (2.0 * c[2][n] + u * (3.0 * c[3][n]));
+    }
+    slope
 }

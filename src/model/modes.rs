@@ -1,0 +1,147 @@
+//! Small motions about a state: linearisation by central differences, eigenvalues and mode shapes.
+//!
+//! Straight, level, even track, so that the equations do not depend on time: x' = A x near a state of rest. The eigenvalues of
+//! A give frequency and damping of each mode; the speed at which the first real part becomes positive is the linear critical
+//! speed (A. H. Wickens, Fundamentals of Rail Vehicle Dynamics, 2003, chapter 5).
+
+use nalgebra::linalg::{Schur, balancing};
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::equations::{Equations, Input};
+use super::state::State;
+
+/// Passes of the inverse iteration for a mode shape; each shrinks what is not of the mode many orders of magnitude.
+const PASSES: usize = 4;
+/// Most iterations of the QR method.
+const ITERATIONS: usize = 5_000;
+/// What counts as zero in it, relative; the next if it does not converge, as happens with the many equal eigenvalues of equal
+/// wheelsets.
+const PRECISIONS: [f64; 4] = [f64::EPSILON, 1e-15, 1e-14, 1e-13];
+/// Relative distance from the eigenvalue at which the inverse iteration solves.
+const BESIDE: f64 = 1e-7;
+
+/// The equations of motion near a state.
+#[derive(Clone, Debug)]
+pub struct Linear {
+    /// Square, one row and column per entry of `places`, SI units.
+    pub matrix: DMatrix<f64>,
+    /// Which entries of [`State::to_vec`] the rows and columns are: those that the vehicle has.
+    pub places: Vec<usize>,
+}
+
+/// A motion that keeps its shape: exp(`eigenvalue` t).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// In 1/s; of a conjugate pair the one with the positive imaginary part.
+    pub eigenvalue: Complex<f64>,
+}
+
+impl Mode {
+    /// Of the damped motion, in Hz; 0 if it does not oscillate.
+    #[must_use]
+    pub fn frequency(&self) -> f64 {
+        self.eigenvalue.im / std::f64::consts::TAU
+    }
+
+    /// Of the same motion without damping, in Hz.
+    #[must_use]
+    pub fn natural_frequency(&self) -> f64 {
+        self.eigenvalue.norm() / std::f64::consts::TAU
+    }
+
+    /// Share of the critical damping: -Re / |eigenvalue|; negative if the motion grows.
+    #[must_use]
+    pub fn damping_ratio(&self) -> f64 {
+        -self.eigenvalue.re / self.eigenvalue.norm()
+    }
+}
+
+impl Linear {
+    /// The matrix about `state`, from differences of `step` (m, rad, m/s, rad/s) to either side; first-order forces and torques
+    /// are moved by `step` times 1e6. A step well below the point distance of the contact table (a micrometre, say) gives the
+    /// slopes of the table at the state.
+    #[must_use]
+    pub fn about(equations: &Equations<'_>, state: &State, step: f64) -> Self {
+        let at = state.to_vec();
+        let places = equations.states();
+        let rates = |place: usize, by: f64| {
+            let mut moved = at.clone();
+            moved[place] += by;
+            let mut rates = State::default();
+            equations.rates(&State::from_slice(&moved), &Input::default(), &mut rates);
+            rates.to_vec()
+        };
+        let mut matrix = DMatrix::zeros(places.len(), places.len());
+        for (column, place) in places.iter().enumerate() {
+            let step = if State::FORCES.contains(place) { step * 1e6 } else { step };
+            let (above, below) = (rates(*place, step), rates(*place, -step));
+            for (row, of) in places.iter().enumerate() {
+                matrix[(row, column)] = (above[*of] - below[*of]) / (2.0 * step);
+            }
+        }
+        Self { matrix, places }
+    }
+
+    /// All modes, the fastest growing first; a conjugate pair is one mode. By the QR method on the balanced matrix; `None` if that
+    /// does not converge.
+    #[must_use]
+    pub fn modes(&self) -> Option<Vec<Mode>> {
+        let mut balanced = self.matrix.clone();
+        // Forces and displacements differ by ten powers of ten: their rows and columns are brought to one size.
+        balancing::balance_parlett_reinsch(&mut balanced);
+        let schur = PRECISIONS.iter().find_map(|precision| Schur::try_new(balanced.clone(), *precision, ITERATIONS));
+        let eigenvalues = schur?.complex_eigenvalues();
+        let mut modes: Vec<Mode> = eigenvalues.iter().filter(|value| value.im >= 0.0).map(|value| Mode { eigenvalue: *value }).collect();
+        modes.sort_by(|a, b| b.eigenvalue.re.total_cmp(&a.eigenvalue.re).then(a.eigenvalue.im.total_cmp(&b.eigenvalue.im)));
+        Some(modes)
+    }
+
+    /// The fastest growing mode; `None` as of [`Self::modes`].
+    #[must_use]
+    pub fn least_damped(&self) -> Option<Mode> {
+        self.modes()?.into_iter().next()
+    }
+
+    /// The shape of a mode over [`State::to_vec`], its largest displacement 1; entries that the vehicle has not are 0. By inverse
+    /// iteration (Wilkinson); `None` if the system beside the eigenvalue has no solution.
+    #[must_use]
+    pub fn shape(&self, mode: &Mode) -> Option<Vec<Complex<f64>>> {
+        let n = self.places.len();
+        let beside = mode.eigenvalue * (1.0 + BESIDE) + Complex::from(1e-9);
+        let shifted = self.matrix.map(Complex::from) - DMatrix::identity(n, n) * beside;
+        let solver = shifted.lu();
+        let mut shape = DVector::from_fn(n, |i, _| Complex::new(1.0 + 0.1 * i as f64, 0.3));
+        for _ in 0..PASSES {
+            shape = solver.solve(&shape)?;
+            let length = shape.norm();
+            shape /= Complex::from(length);
+        }
+        let displacements = shape.iter().zip(&self.places).filter(|(_, place)| **place < State::BODIES);
+        let largest = displacements.map(|(value, _)| *value).max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+        let mut all = vec![Complex::from(0.0); State::ALL];
+        for (value, place) in shape.iter().zip(&self.places) {
+            all[*place] = value / largest;
+        }
+        Some(all)
+    }
+}
+
+/// The speed in m/s, to 0.01 m/s, at which a small motion about rest begins to grow, between two speeds.
+///
+/// `equations` gives the vehicle at a speed; one change of sign between the speeds is assumed. `None` if the motion does not die
+/// out at the lower or not grow at the higher speed, or eigenvalues are not found.
+pub fn critical_speed<'a>(equations: impl Fn(f64) -> Equations<'a>, mut stable: f64, mut unstable: f64) -> Option<f64> {
+    let grows = |speed: f64| {
+        let equations = equations(speed);
+        let rest = equations.at_rest();
+        Linear::about(&equations, &rest, 1e-6).least_damped().map(|mode| mode.eigenvalue.re > 0.0)
+    };
+    if grows(stable)? || !grows(unstable)? {
+        return None;
+    }
+    while unstable - stable > 0.01 {
+        let middle = f64::midpoint(stable, unstable);
+        if grows(middle)? { unstable = middle } else { stable = middle }
+    }
+    Some(f64::midpoint(stable, unstable))
+}
