@@ -66,6 +66,9 @@ const FLOOR: f64 = 30.0;
 /// Lack of fit, in standard deviations of chi-squared of a channel, beyond which something is not explained.
 pub const LACK: f64 = 5.0;
 
+/// A member must bring the excess of the channels to this share of what it was, at the most.
+const HELPS: f64 = 0.9;
+
 /// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
 #[must_use]
 pub fn value_of(campaign: &Campaign, key: &str) -> Option<f64> {
@@ -145,10 +148,9 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let fitter = Fitter::new(&whitener, &candidates, masks.clone(), seen.features.len());
     // Nodes may have come between: the members are fitted again.
     refit(&fitter, &z, &mut chosen, 6);
-    let rivals = rivals(&fitter, &z, &chosen);
-    let rest = left(&fitter, &difference, &chosen);
     let lack_before = lack_of_fit(&whole, &seen, &difference);
-    let lack_after = lack_of_fit(&whole, &seen, &rest);
+    let lack_after = keep_what_helps(&fitter, (&whole, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
+    let rivals = rivals(&fitter, &z, &chosen);
     drop(fitter);
     drop(bench);
     Some(Found {
@@ -173,6 +175,37 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
 
 fn bars(threshold: f64) -> Bars {
     Bars { first: threshold, next: 1.25 * threshold, confined: 15.0, tolerance_sd: 3.0, share: 0.06, most: 3 }
+}
+
+/// What is beyond what is allowed for, over all channels.
+pub fn excess(lack: &[(String, Kind, f64, f64)]) -> f64 {
+    lack.iter().map(|(.., excess)| excess.max(0.0)).sum()
+}
+
+/// A member that leaves as much beyond what is allowed for as there was without it is no cause. Gives what is left.
+fn keep_what_helps(
+    fitter: &Fitter<'_>,
+    (covariance, seen): (&Covariance, &Observations),
+    (difference, z): (&[f64], &[f64]),
+    chosen: &mut Chosen,
+    refused: &mut Vec<Refused>,
+    before: &[(String, Kind, f64, f64)],
+) -> Vec<(String, Kind, f64, f64)> {
+    loop {
+        let now = lack_of_fit(covariance, seen, &left(fitter, difference, chosen));
+        let Some(last) = chosen.members.len().checked_sub(1) else { return now };
+        let mut without = chosen.clone();
+        without.members.remove(last);
+        refit(fitter, z, &mut without, 4);
+        let then =
+            if without.members.is_empty() { before.to_vec() } else { lack_of_fit(covariance, seen, &left(fitter, difference, &without)) };
+        if excess(&now) <= HELPS * excess(&then) {
+            return now;
+        }
+        let reason = format!("what channels show beyond what is allowed for goes from {:.0} to {:.0} only", excess(&then), excess(&now));
+        refused.push(Refused { fitted: chosen.members[last].clone(), reason });
+        *chosen = without;
+    }
 }
 
 /// What the members leave of the difference, in the features' own units.

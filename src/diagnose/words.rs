@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::features::Kind;
 use super::fit::Fitted;
-use super::run::{Found, Inputs, LACK, chi, length};
+use super::run::{Found, Inputs, LACK, chi, excess, length};
 use crate::effects::{Action, Effect};
 use crate::result::diagnosis::{Cause, Detectable, Diagnosis, How, NamedEffect, Shrink, Value, Vetoed};
 
@@ -18,7 +18,6 @@ const TEMPERATURE: f64 = 4.0;
 #[must_use]
 pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>, seconds: f64) -> Diagnosis {
     let (before, after) = chi(found);
-    let excess = |lack: &[(String, Kind, f64, f64)]| lack.iter().map(|(.., excess)| excess.max(0.0)).sum::<f64>();
     let (gap, rest) = (excess(&found.lack_before), excess(&found.lack_after));
     let most = |lack: &[(String, Kind, f64, f64)]| lack.iter().map(|(_, _, sigma, _)| *sigma).fold(f64::NEG_INFINITY, f64::max);
     let lacking = most(&found.lack_after) > LACK;
@@ -29,7 +28,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>, sec
     let verdict = match () {
         () if !named && !lacking => "no significant gap",
         () if !named => "unexplained",
-        () if lacking && (unexplained_share > 0.5 || worsened || most(&found.lack_after) > 3.0 * LACK) => "unexplained",
+        () if worsened || lacking && (unexplained_share > 0.5 || most(&found.lack_after) > 3.0 * LACK) => "unexplained",
         () if ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
         () => "explained",
     };
@@ -238,7 +237,7 @@ fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
             size: refused.fitted.size,
             parameter: of.size.clone(),
             evidence: refused.fitted.evidence,
-            says: format!("{title}{on} improves the fit as a whole, but contradicts itself: {}", refused.reason),
+            says: format!("{title}{on} improves the fit as a whole, but: {}", refused.reason),
         }
     };
     found.refused.iter().map(one).collect()

@@ -24,9 +24,9 @@ pub fn document(found: &Diagnosis, before: &Certification) -> Document {
     chapters.push(seen(found));
     chapters.push(how(found));
     let class = match found.verdict {
-        "explained" | "no significant gap" => "holds",
+        "explained" | "no significant gap" => "good",
         "ambiguous" => "open",
-        _ => "fails",
+        _ => "bad",
     };
     let share = |value: f64| format!("{} %", number::fixed(100.0 * value, 0));
     Document {
@@ -52,8 +52,8 @@ pub fn document(found: &Diagnosis, before: &Certification) -> Document {
 
 fn sign(class: &str) -> &'static str {
     match class {
-        "holds" => "\u{2713}",
-        "fails" => "\u{2717}",
+        "good" => "\u{2713}",
+        "bad" => "\u{2717}",
         _ => "?",
     }
 }
