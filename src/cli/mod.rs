@@ -1,5 +1,6 @@
 //! The command line: arguments to stages to an exit code.
 
+mod blind;
 mod certify;
 mod diagnose;
 mod effects;
@@ -59,6 +60,9 @@ enum Command {
     /// Say where simulation and measurement differ, which effect causes it, and how far the gap shrinks once it is added.
     #[command(after_help = "Example:\n  fishplate diagnose examples/coach --out target/coach-diagnosis")]
     Diagnose(diagnose::Diagnose),
+    /// Diagnose every campaign below folders, then score the answers against the truths that were withheld.
+    #[command(after_help = "Example:\n  fishplate blind campaigns --out target/blind")]
+    Blind(blind::Blinded),
     /// List the effects that can be added to a simulation, or print a shipped catalogue.
     #[command(after_help = "Example:\n  fishplate effects\n  fishplate effects --text > mine.yaml")]
     Effects(effects::Effects),
@@ -148,6 +152,7 @@ pub fn run() -> Exit {
         Command::Study { study } => study.run(&console),
         Command::Simulate(simulate) => simulate.run(&console),
         Command::Diagnose(diagnose) => diagnose.run(&console),
+        Command::Blind(blinded) => blinded.run(&console),
         Command::Effects(effects) => effects.run(&console),
         Command::Check { protocols } => protocols::check(&protocols, &console),
         Command::Fmt { protocols, check } => protocols::fmt(&protocols, check, &console),

@@ -6,12 +6,12 @@ use super::run::{Found, Inputs, find};
 use super::shrink::{applied, compare, folds, improved, shares, trained};
 use crate::certify::{Compiled, certify};
 use crate::data::Campaign;
-use crate::effects::{Applied, Signals};
+use crate::effects::{Applied, Catalogue, Signals};
 use crate::problem::{Problem, Problems};
 use crate::result::Certification;
 use crate::result::diagnosis::Diagnosis;
 use crate::run::Settings as RunSettings;
-use crate::simulate::{Section, Units, record_text, recorded, write_campaign};
+use crate::simulate::{Section, Simulator, Units, record_text, recorded, write_campaign};
 use crate::units::Unit;
 
 /// The answer with what it was made of.
@@ -65,6 +65,25 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, sections: Vec<Section>
     let mut diagnosis = super::words::diagnosis(inputs, &found, shrink, start.elapsed().as_secs_f64());
     diagnosis.pictures = super::pictures::pictures(inputs.settings, &found, &records, &units);
     Ok(Outcome { diagnosis, found, before, after, improved: records, units })
+}
+
+/// What effects that are known to be true would have done: their whitened size, and the share of the gap that they remove.
+#[must_use]
+pub fn effect_of_truth(
+    campaign: &Campaign,
+    compiled: &Compiled,
+    outcome: &Outcome,
+    catalogue: &Catalogue,
+    effects: &[Applied],
+) -> Option<(f64, f64)> {
+    let found = &outcome.found;
+    let model = crate::simulate::Builtin::new(campaign, &mut Problems::default());
+    let simulator = model.as_ref().map(|model| model as &dyn Simulator);
+    let records = improved(found, catalogue, simulator, &|_| effects.to_vec()).ok()?;
+    let features: Vec<f64> = records.iter().enumerate().flat_map(|(at, signals)| found.seen.of(at, signals, true)).collect();
+    let detectability = super::run::length(&found.whitener, &super::fit::less(&features, &found.simulated));
+    let made = evaluated(campaign, compiled, found, &records, &outcome.units, RunSettings { traces: 0 }).ok()?;
+    Some((detectability, compare(&outcome.before, &made, 1, Vec::new()).fraction_removed))
 }
 
 /// The protocol on a copy of the campaign with other simulated records.

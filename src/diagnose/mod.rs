@@ -13,6 +13,7 @@ mod locate;
 pub mod observe;
 mod pictures;
 pub mod run;
+pub mod score;
 pub mod search;
 pub mod sensitivity;
 pub mod settings;
@@ -21,4 +22,4 @@ pub mod whiten;
 mod words;
 
 pub use cache::Cache;
-pub use campaign::{Outcome, diagnose, write_improved};
+pub use campaign::{Outcome, diagnose, effect_of_truth, write_improved};

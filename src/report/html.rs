@@ -12,14 +12,16 @@ use serde_json::Value as Json;
 use sha2::{Digest, Sha256};
 
 use crate::problem::{Problem, Problems};
-use crate::report::study::Document;
+use crate::report::study::{Chapter, Document};
 use crate::report::view::ReportData;
 use crate::report::visible::visible;
 
 const CSS: &str = include_str!("../../templates/html/report.css");
 const SCRIPT: &str = include_str!("../../templates/html/report.js");
 
-const TEMPLATES: [(&str, &str); 15] = [
+const TEMPLATES: [(&str, &str); 17] = [
+    ("chapters.html", include_str!("../../templates/chapters.html")),
+    ("html/chapters.html", include_str!("../../templates/html/chapters.html")),
     ("report.html", include_str!("../../templates/report.html")),
     ("study.html", include_str!("../../templates/study.html")),
     ("html/study.html", include_str!("../../templates/html/study.html")),
@@ -59,6 +61,20 @@ pub fn html(data: &ReportData, figures: &[(String, String)]) -> Result<String, P
 /// As [`html`].
 pub fn study_html(data: &Document, figures: &[(String, String)]) -> Result<String, Problems> {
     filled("study.html", data, figures).map_err(|error| Problems(vec![Problem::error("report-template", error)]))
+}
+
+/// Chapters under a title as one HTML page.
+///
+/// # Errors
+///
+/// As [`html`].
+pub fn chapters_html(title: &str, chapters: &[Chapter]) -> Result<String, Problems> {
+    #[derive(Serialize)]
+    struct Page<'a> {
+        title: &'a str,
+        chapters: &'a [Chapter],
+    }
+    filled("chapters.html", &Page { title, chapters }, &[]).map_err(|error| Problems(vec![Problem::error("report-template", error)]))
 }
 
 fn filled(frame: &str, data: &impl Serialize, figures: &[(String, String)]) -> Result<String, String> {

@@ -2,6 +2,7 @@
 //!
 //! Numbers are in the display unit named beside them. What could not be computed is `None` with a reason, never NaN.
 
+pub mod blind;
 pub mod diagnosis;
 pub mod study;
 

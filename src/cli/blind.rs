@@ -1,0 +1,160 @@
+//! `blind`: diagnoses every campaign first, then opens the truths and scores.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::diagnose::{Asked, diagnosed, json};
+use super::output::{Console, Exit};
+use super::simulate::load_catalogue;
+use crate::data::write::write_whole;
+use crate::diagnose::score::{Truth, blind, case};
+use crate::diagnose::{Outcome, effect_of_truth};
+use crate::effects::Catalogue;
+use crate::library;
+use crate::problem::{Problem, Problems};
+use crate::report::blind as report;
+use crate::report::html;
+use crate::result::blind::Case;
+
+#[derive(Debug, Args)]
+pub struct Blinded {
+    /// Folders; every campaign below them is diagnosed.
+    #[arg(required = true, value_name = "DIR")]
+    folders: Vec<PathBuf>,
+    /// Path of a protocol, or the name of a shipped one.
+    #[arg(long, short)]
+    protocol: Option<String>,
+    /// Catalogue of effects: a path, or the name of a shipped one.
+    #[arg(long = "effects", value_name = "CATALOGUE", default_value = library::CATALOGUES[0].name)]
+    catalogue: String,
+    /// Folder for blind.json, blind.html and the diagnoses.
+    #[arg(long, short, default_value = "blind")]
+    out: PathBuf,
+    /// Folder in which what was simulated is kept, so that an interrupted run goes on where it was.
+    #[arg(long, value_name = "DIR")]
+    resume: Option<PathBuf>,
+    /// Seed of every random draw.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+impl Blinded {
+    pub fn run(self, console: &Console) -> Exit {
+        let mut campaigns = Vec::new();
+        self.folders.iter().for_each(|folder| find(folder, &mut campaigns, 0));
+        campaigns.sort();
+        if campaigns.is_empty() {
+            return console.fail(Problem::error("no-campaigns", "there is no campaign below these folders"), Exit::Wrong);
+        }
+        let mut problems = Problems::default();
+        let Some(catalogue) = load_catalogue(&self.catalogue, &mut problems) else {
+            console.problems(&problems);
+            return Exit::Wrong;
+        };
+        let mut cases = Vec::new();
+        for (at, folder) in campaigns.iter().enumerate() {
+            console.say(&format!("{} of {}: {}", at + 1, campaigns.len(), folder.display()));
+            match self.one(folder, &catalogue, console) {
+                Ok(found) => cases.push(found),
+                Err(problem) => return console.fail(problem, Exit::Unfinished),
+            }
+        }
+        let scored = blind(cases);
+        let text = serde_json::to_string_pretty(&scored).unwrap_or_default() + "\n";
+        let page = match html::chapters_html("Diagnoses against withheld truths", &report::chapters(&scored)) {
+            Ok(page) => page,
+            Err(problems) => {
+                console.problems(&problems);
+                return Exit::Unfinished;
+            }
+        };
+        let written = write_whole(&self.out.join("blind.json"), text.as_bytes())
+            .and_then(|()| write_whole(&self.out.join("blind.html"), page.as_bytes()));
+        if let Err(problem) = written {
+            return console.fail(problem, Exit::Unfinished);
+        }
+        for score in &scored.scores {
+            let value = score.value.map_or("-".to_string(), |value| format!("{value:.3}"));
+            let interval = score.low.zip(score.high).map_or(String::new(), |(low, high)| format!("  ({low:.2} to {high:.2})"));
+            console.say(&format!("{:52} {:4} cases  {value}{interval}", score.name, score.cases));
+        }
+        Exit::Done
+    }
+
+    /// The diagnosis is written and closed before the truth is opened.
+    fn one(&self, folder: &Path, catalogue: &Catalogue, console: &Console) -> Result<Case, Problem> {
+        let mut problems = Problems::default();
+        let asked = Asked {
+            folder,
+            protocol: self.protocol.as_deref(),
+            catalogue: &self.catalogue,
+            simulator: None,
+            resume: self.resume.as_deref(),
+            seed: self.seed,
+        };
+        let name = folder.file_name().map_or_else(|| "campaign".to_string(), |name| name.to_string_lossy().into_owned());
+        let found = diagnosed(&asked, &|_| {}, &mut problems);
+        console.problems(&problems);
+        let Some((campaign, outcome)) = found else {
+            let fault = problems.0.first().map_or("no diagnosis".to_string(), |problem| problem.says.clone());
+            return Ok(without(&name, fault));
+        };
+        write_whole(&self.out.join(&name).join("diagnosis.json"), json(&outcome.diagnosis).as_bytes())?;
+        let text = std::fs::read_to_string(folder.join("truth.json"));
+        let truth = match text.map_err(|error| error.to_string()).and_then(|text| Truth::read(&text)) {
+            Ok(truth) => truth,
+            Err(fault) => return Ok(without(&name, format!("truth.json: {fault}"))),
+        };
+        let (detectability, removed) = self.true_effect(folder, &campaign, &outcome, catalogue, &truth);
+        Ok(case(&name, &outcome.diagnosis, &truth, detectability, removed))
+    }
+
+    /// Whitened size of the true effects, and how much of the gap they remove.
+    fn true_effect(
+        &self,
+        folder: &Path,
+        campaign: &crate::data::Campaign,
+        outcome: &Outcome,
+        catalogue: &Catalogue,
+        truth: &Truth,
+    ) -> (Option<f64>, Option<f64>) {
+        let Some(effects) = truth.applied(catalogue).filter(|effects| !effects.is_empty()) else { return (None, None) };
+        let mut problems = Problems::default();
+        let Some(prepared) = super::inputs::prepare(folder, self.protocol.as_deref(), &[], &mut problems) else { return (None, None) };
+        effect_of_truth(campaign, &prepared.compiled, outcome, catalogue, &effects)
+            .map_or((None, None), |(d, removed)| (Some(d), Some(removed)))
+    }
+}
+
+fn without(campaign: &str, fault: String) -> Case {
+    Case {
+        campaign: campaign.to_string(),
+        kind: String::new(),
+        truth: Vec::new(),
+        verdict: String::new(),
+        named: Vec::new(),
+        ambiguity_set: Vec::new(),
+        detectability: None,
+        first_is_right: false,
+        in_first_two: false,
+        in_set: false,
+        parameter_error: None,
+        shrink_said: None,
+        shrink_true: None,
+        probability: None,
+        fault: Some(fault),
+    }
+}
+
+/// Campaigns at or below a folder.
+fn find(folder: &Path, found: &mut Vec<PathBuf>, depth: usize) {
+    if folder.join(crate::data::campaign::CAMPAIGN_FILE).is_file() {
+        found.push(folder.to_path_buf());
+        return;
+    }
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten().filter(|entry| entry.path().is_dir() && depth < 6) {
+        find(&entry.path(), found, depth + 1);
+    }
+}

@@ -1,0 +1,269 @@
+//! Scores diagnoses against truths. Nothing here is known to the diagnosis.
+
+use indexmap::IndexMap;
+use serde_json::Value;
+
+use crate::effects::{Action, Applied, CHANNEL, Catalogue, Confined};
+use crate::result::blind::{Blind, Case, Score};
+use crate::result::diagnosis::{Cause, Diagnosis, NamedEffect};
+
+/// An effect of a truth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct True {
+    pub name: String,
+    pub parameters: Vec<(String, Value)>,
+    pub confined: Option<Confined>,
+}
+
+/// What was done to a measurement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Truth {
+    /// `single`, `pair`, `none`, `outside` or `trap`.
+    pub kind: String,
+    pub effects: Vec<True>,
+}
+
+impl Truth {
+    /// Reads a `truth.json`.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    pub fn read(text: &str) -> Result<Self, String> {
+        let json: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let kind = json["kind"].as_str().ok_or("it has no `kind`")?.to_string();
+        let effects = json["effects"].as_array().cloned().unwrap_or_default();
+        let list = |value: &Value| -> Vec<String> {
+            let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_string);
+            value.as_array().map_or_else(|| vec![text(value)], |items| items.iter().map(text).collect())
+        };
+        let one = |effect: &Value| {
+            let confined = [("zones", "zone"), ("direction", "direction"), ("sections", "section")].iter().find_map(|(key, column)| {
+                let values = effect.get(*key).filter(|value| !value.is_null())?;
+                Some(Confined { column: (*column).to_string(), values: list(values) })
+            });
+            let parameters = effect["parameters"].as_object().into_iter().flatten().map(|(key, value)| (key.clone(), value.clone()));
+            Ok(True {
+                name: effect["name"].as_str().ok_or("an effect has no `name`")?.to_string(),
+                parameters: parameters.collect(),
+                confined,
+            })
+        };
+        Ok(Self { kind, effects: effects.iter().map(one).collect::<Result<_, String>>()? })
+    }
+
+    /// The effects as the catalogue applies them; nothing if it does not know one of them.
+    #[must_use]
+    pub fn applied(&self, catalogue: &Catalogue) -> Option<Vec<Applied>> {
+        self.effects.iter().map(|effect| effect.applied(catalogue)).collect()
+    }
+}
+
+impl True {
+    fn applied(&self, catalogue: &Catalogue) -> Option<Applied> {
+        let known = catalogue.effect(&self.name)?;
+        let mut applied = Applied { effect: self.name.clone(), values: Vec::new(), channels: Vec::new(), confined: self.confined.clone() };
+        for (key, value) in &self.parameters {
+            if key.ends_with("_channels") {
+                applied.channels = value.as_array()?.iter().filter_map(|name| Some(name.as_str()?.to_string())).collect();
+                continue;
+            }
+            let found = known.parameters.iter().find_map(|parameter| match parameter.name.strip_suffix(CHANNEL) {
+                Some(stem) => key.strip_prefix(stem).map(|channel| (parameter, Some(channel.to_string()))),
+                None => (parameter.name == *key).then_some((parameter, None)),
+            });
+            let (parameter, channel) = found?;
+            applied.channels.extend(channel);
+            let number = value.as_f64().or_else(|| match value.as_str() {
+                Some("both") => Some(0.0),
+                Some("R") => Some(1.0),
+                Some("L") => Some(-1.0),
+                _ => None,
+            });
+            match number {
+                Some(number) => applied.values.push((parameter.name.clone(), number)),
+                // Pairs of channels.
+                None => {
+                    applied.channels.extend(
+                        value
+                            .as_array()?
+                            .iter()
+                            .flat_map(|pair| pair.as_array().cloned().unwrap_or_default())
+                            .filter_map(|name| Some(name.as_str()?.to_string())),
+                    );
+                    applied.values.push((parameter.name.clone(), parameter.default));
+                }
+            }
+        }
+        if applied.channels.is_empty()
+            && let Action::Signals(_, all) = &known.action
+        {
+            applied.channels.clone_from(all);
+        }
+        applied.values.dedup_by(|a, b| a.0 == b.0);
+        Some(applied)
+    }
+
+    /// Whether a named effect is this one: the same name, and for a channel the same channel.
+    fn is(&self, named: &NamedEffect) -> bool {
+        if self.name != named.name {
+            return false;
+        }
+        let channels: Vec<&String> =
+            self.parameters.iter().map(|(key, _)| key).filter(|key| !named.parameters.contains_key(*key)).collect();
+        let by_channel = named.parameters.keys().any(|key| key.contains("gain.") || key.contains("offset.") || key.contains("polarity."));
+        !by_channel || channels.len() < self.parameters.len()
+    }
+
+    fn error(&self, named: &NamedEffect) -> Option<f64> {
+        self.parameters.iter().find_map(|(key, value)| {
+            let (truth, said) = (value.as_f64()?, named.parameters.get(key)?.value.as_f64()?);
+            (truth != 0.0).then(|| (said - truth).abs() / truth.abs())
+        })
+    }
+}
+
+/// One case: the diagnosis, which is written already, against the truth.
+#[must_use]
+pub fn case(campaign: &str, diagnosis: &Diagnosis, truth: &Truth, detectability: Option<f64>, shrink_true: Option<f64>) -> Case {
+    let names = |cause: &Cause| cause.effects.iter().map(|effect| effect.name.clone()).collect::<Vec<_>>();
+    let right = |cause: &Cause| {
+        !truth.effects.is_empty()
+            && truth.effects.len() == cause.effects.len()
+            && truth.effects.iter().all(|one| cause.effects.iter().any(|named| one.is(named)))
+    };
+    let answered = matches!(diagnosis.verdict, "explained" | "ambiguous");
+    let causes: &[Cause] = if answered { &diagnosis.causes } else { &[] };
+    let set: Vec<&Cause> = causes.iter().filter(|cause| cause.in_ambiguity_set).collect();
+    let first = causes.first();
+    let error = first.and_then(|cause| {
+        let pairs =
+            truth.effects.iter().filter_map(|one| cause.effects.iter().find(|named| one.is(named)).and_then(|named| one.error(named)));
+        pairs.reduce(f64::max)
+    });
+    Case {
+        campaign: campaign.to_string(),
+        kind: truth.kind.clone(),
+        truth: truth.effects.iter().map(|one| one.name.clone()).collect(),
+        verdict: diagnosis.verdict.to_string(),
+        named: first.map(names).unwrap_or_default(),
+        ambiguity_set: set.iter().flat_map(|cause| names(cause)).collect(),
+        detectability,
+        first_is_right: first.is_some_and(right),
+        in_first_two: causes.iter().take(2).any(right),
+        in_set: set.iter().any(|cause| right(cause)),
+        parameter_error: error,
+        shrink_said: diagnosis.shrink.as_ref().filter(|_| answered).map(|shrink| shrink.fraction_removed),
+        shrink_true,
+        probability: first.map(|cause| cause.probability),
+        fault: None,
+    }
+}
+
+/// Detectability from which an effect counts as one that can be named.
+const DETECTABLE: f64 = 5.0;
+
+/// All cases together.
+#[must_use]
+pub fn blind(cases: Vec<Case>) -> Blind {
+    let good: Vec<&Case> = cases.iter().filter(|case| case.fault.is_none()).collect();
+    let of = |kind: &str| good.iter().copied().filter(|case| case.kind == kind).collect::<Vec<_>>();
+    let seen = |case: &&Case| case.detectability.is_some_and(|d| d >= DETECTABLE);
+    let singles: Vec<&Case> = of("single").into_iter().filter(seen).collect();
+    let share = |name: &str, cases: &[&Case], holds: &dyn Fn(&Case) -> bool| {
+        let n = cases.len();
+        let k = cases.iter().filter(|case| holds(case)).count();
+        let interval = wilson(k, n);
+        Score {
+            name: name.into(),
+            cases: n,
+            value: (n > 0).then(|| k as f64 / n as f64),
+            low: interval.map(|i| i.0),
+            high: interval.map(|i| i.1),
+        }
+    };
+    let quantile = |name: &str, mut values: Vec<f64>, at: f64| {
+        values.sort_by(f64::total_cmp);
+        let value = (!values.is_empty()).then(|| values[((values.len() - 1) as f64 * at).round() as usize]);
+        Score { name: name.into(), cases: values.len(), value, low: None, high: None }
+    };
+    let size = |case: &&Case| case.ambiguity_set.len() as f64 / case.truth.len().max(1) as f64;
+    let shrink: Vec<f64> = good.iter().filter_map(|case| Some(100.0 * (case.shrink_said? - case.shrink_true?).abs())).collect();
+    let errors: Vec<f64> = good.iter().filter(|case| case.first_is_right).filter_map(|case| case.parameter_error).collect();
+    let sizes: Vec<f64> = singles.iter().filter(|case| !case.ambiguity_set.is_empty()).map(size).collect();
+    let mean_size = (!sizes.is_empty()).then(|| sizes.iter().sum::<f64>() / sizes.len() as f64);
+    let scores = vec![
+        share("single effects, d >= 5: named first", &singles, &|case| case.first_is_right),
+        share("single effects, d >= 5: among the first two", &singles, &|case| case.in_first_two),
+        share("single effects, d >= 5: in the ambiguity set", &singles, &|case| case.in_set),
+        Score { name: "mean size of the ambiguity set".into(), cases: sizes.len(), value: mean_size, low: None, high: None },
+        share("single effects, all: named first", &of("single"), &|case| case.first_is_right),
+        share("no effect: a cause named", &of("none"), &|case| !case.named.is_empty()),
+        share("outside the catalogue: named with confidence", &of("outside"), &|case| case.verdict == "explained"),
+        share("outside the catalogue: said to be unexplained", &of("outside"), &|case| case.verdict == "unexplained"),
+        share("traps avoided", &of("trap"), &|case| case.first_is_right || case.named.is_empty()),
+        share("pairs: both found", &of("pair"), &|case| case.truth.iter().all(|name| case.named.contains(name))),
+        share("pairs: at least one found", &of("pair"), &|case| case.truth.iter().any(|name| case.named.contains(name))),
+        quantile("error of the shrink, median, percentage points", shrink.clone(), 0.5),
+        quantile("error of the shrink, 90 %, percentage points", shrink, 0.9),
+        quantile("error of the parameter, median, relative", errors.clone(), 0.5),
+        quantile("error of the parameter, 90 %, relative", errors, 0.9),
+    ];
+    let mut confusion: IndexMap<String, IndexMap<String, usize>> = IndexMap::new();
+    for case in &good {
+        let join = |names: &[String], none: &str| if names.is_empty() { none.to_string() } else { names.join(" + ") };
+        let named = join(&case.named, &case.verdict);
+        *confusion.entry(join(&case.truth, &case.kind)).or_default().entry(named).or_default() += 1;
+    }
+    let edges = [0.0, 3.0, 5.0, 8.0, 12.0, 20.0, 40.0];
+    let by_detectability = edges.iter().enumerate().map(|(at, low)| {
+        let high = edges.get(at + 1).copied().unwrap_or(f64::INFINITY);
+        let inside: Vec<&&Case> =
+            good.iter().filter(|case| case.kind == "single" && case.detectability.is_some_and(|d| d >= *low && d < high)).collect();
+        (*low, inside.len(), inside.iter().filter(|case| case.first_is_right).count())
+    });
+    let by_detectability = by_detectability.collect();
+    let bins = (0..5).filter_map(|bin| {
+        let (low, high) = (0.2 * f64::from(bin), 0.2 * f64::from(bin + 1) + 1e-9);
+        let inside: Vec<&&Case> = good.iter().filter(|case| case.probability.is_some_and(|p| p >= low && p < high)).collect();
+        let n = inside.len();
+        (n > 0).then(|| {
+            let mean = inside.iter().filter_map(|case| case.probability).sum::<f64>() / n as f64;
+            (mean, inside.iter().filter(|case| case.first_is_right).count() as f64 / n as f64, n)
+        })
+    });
+    let calibration = bins.collect();
+    Blind { fishplate: env!("CARGO_PKG_VERSION"), scores, confusion, by_detectability, calibration, cases }
+}
+
+/// Interval of a share, 95 % (Wilson 1927).
+#[must_use]
+pub fn wilson(k: usize, n: usize) -> Option<(f64, f64)> {
+    if n == 0 {
+        return None;
+    }
+    let (z, n, p) = (1.959_963_984_540_054_f64, n as f64, k as f64 / n as f64);
+    let middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
+    let half = z / (1.0 + z * z / n) * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
+    Some(((middle - half).max(0.0), (middle + half).min(1.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 8 of 10: 0.490 to 0.943 (Newcombe 1998, method 3).
+    #[test]
+    fn wilson_of_eight_in_ten() {
+        let (low, high) = wilson(8, 10).expect("ten cases");
+        assert!((low - 0.4902).abs() < 1e-4 && (high - 0.9433).abs() < 1e-4, "{low} {high}");
+        assert_eq!(wilson(0, 0), None);
+    }
+
+    #[test]
+    fn truths_are_read() {
+        let text = r#"{"kind": "single", "effects": [{"name": "friction", "parameters": {"friction": 0.5}, "zones": [4]}]}"#;
+        let truth = Truth::read(text).expect("a truth");
+        assert_eq!(truth.effects[0].confined, Some(Confined { column: "zone".into(), values: vec!["4".into()] }));
+        assert!(Truth::read("{}").is_err() && Truth::read("no json").is_err());
+    }
+}

@@ -1,0 +1,94 @@
+//! Scores of blind diagnoses as chapters of a page.
+
+use crate::report::number;
+use crate::report::study::{Chapter, Head, Item, Table};
+use crate::result::blind::Blind;
+
+/// Scores, cases, confusion, detectability, calibration.
+#[must_use]
+pub fn chapters(blind: &Blind) -> Vec<Chapter> {
+    let number = |value: Option<f64>| value.map_or_else(|| number::NONE.to_owned(), |value| number::fixed(value, 3));
+    let chapter = |id: &str, title: &str, head: Vec<Head>, rows: Vec<Vec<String>>, caption: &str| Chapter {
+        id: id.into(),
+        title: title.into(),
+        items: vec![Item::Table { table: Table { caption: caption.into(), head, rows } }],
+    };
+    let scores = blind.scores.iter().map(|score| {
+        let interval = score
+            .low
+            .zip(score.high)
+            .map_or_else(String::new, |(low, high)| format!("{} to {}", number::fixed(low, 2), number::fixed(high, 2)));
+        vec![score.name.clone(), score.cases.to_string(), number(score.value), interval]
+    });
+    let cases = blind.cases.iter().map(|case| {
+        vec![
+            case.campaign.clone(),
+            case.kind.clone(),
+            case.truth.join(", "),
+            case.fault.clone().unwrap_or_else(|| case.verdict.clone()),
+            case.named.join(", "),
+            if case.first_is_right { "yes".into() } else { "no".into() },
+            number(case.detectability),
+            number(case.parameter_error),
+            number(case.shrink_said),
+            number(case.shrink_true),
+        ]
+    });
+    let mut confusion = Vec::new();
+    for (truth, named) in &blind.confusion {
+        confusion.extend(named.iter().map(|(name, count)| vec![truth.clone(), name.clone(), count.to_string()]));
+    }
+    let by_size =
+        blind.by_detectability.iter().map(|(low, cases, named)| vec![number::fixed(*low, 0), cases.to_string(), named.to_string()]);
+    let calibration =
+        blind.calibration.iter().map(|(said, right, cases)| vec![number::fixed(*said, 2), number::fixed(*right, 2), cases.to_string()]);
+    let (text, short, numeric) = (Head::text, Head::short, Head::number);
+    vec![
+        chapter(
+            "scores",
+            "Scores",
+            vec![text("Score"), numeric("Cases"), numeric("Value"), numeric("95 % interval")],
+            scores.collect(),
+            "Shares with Wilson's intervals",
+        ),
+        chapter(
+            "cases",
+            "Cases",
+            vec![
+                text("Campaign"),
+                short("Kind"),
+                text("Truth"),
+                text("Verdict"),
+                text("Named first"),
+                short("Right"),
+                numeric("d"),
+                numeric("Parameter error"),
+                numeric("Removed, said"),
+                numeric("Removed, true"),
+            ],
+            cases.collect(),
+            "Every campaign; d is the whitened size of the true effect",
+        ),
+        chapter(
+            "confusion",
+            "What was named for what",
+            vec![text("Truth"), text("Named first, or verdict"), numeric("Cases")],
+            confusion,
+            "Counts",
+        ),
+        chapter(
+            "detectability",
+            "Score against detectability",
+            vec![numeric("d from"), numeric("Cases"), numeric("Named first")],
+            by_size.collect(),
+            "Single effects",
+        ),
+        chapter(
+            "calibration",
+            "Probabilities",
+            vec![numeric("Said"), numeric("Right"), numeric("Cases")],
+            calibration.collect(),
+            "Mean probability of the first cause, and the share of cases in which it is right",
+        ),
+    ]
+}
