@@ -91,6 +91,7 @@ impl Blinded {
             catalogue: &self.catalogue,
             simulator: None,
             resume: self.resume.as_deref(),
+            references: &[],
             seed: self.seed,
         };
         let name = folder.file_name().map_or_else(|| "campaign".to_string(), |name| name.to_string_lossy().into_owned());

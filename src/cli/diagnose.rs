@@ -10,8 +10,9 @@ use super::inputs::{Prepared, prepare};
 use super::output::{Console, Exit};
 use super::simulate::load_catalogue;
 use super::simulator::{Chosen, SimulatorChoice};
-use crate::data::Campaign;
+use crate::data::hash::sha256;
 use crate::data::write::Outputs;
+use crate::data::{Campaign, RecordKind};
 use crate::diagnose::run::Inputs;
 use crate::diagnose::settings::Settings;
 use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
@@ -34,6 +35,9 @@ pub struct Diagnose {
     /// Folder to write to; made if missing.
     #[arg(long, short)]
     out: PathBuf,
+    /// Campaign of the same vehicle in a known state: what the simulation is wrong in anyway is learnt from it; may be repeated.
+    #[arg(long = "reference", value_name = "CAMPAIGN")]
+    references: Vec<PathBuf>,
     /// Folder for the simulation with the named effects added, as a campaign.
     #[arg(long, value_name = "DIR")]
     write_improved: Option<PathBuf>,
@@ -58,6 +62,7 @@ pub struct Asked<'a> {
     pub catalogue: &'a str,
     pub simulator: Option<&'a SimulatorChoice>,
     pub resume: Option<&'a Path>,
+    pub references: &'a [PathBuf],
     pub seed: u64,
 }
 
@@ -69,6 +74,7 @@ impl Diagnose {
             catalogue: &self.catalogue,
             simulator: Some(&self.simulator),
             resume: self.resume.as_deref(),
+            references: &self.references,
             seed: self.seed,
         }
     }
@@ -169,11 +175,18 @@ pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &m
     let simulator: Option<&dyn Simulator> = chosen.as_ref().map(Chosen::simulator);
     let cache = asked.resume;
     let seed = asked.seed;
-    let cache = cache.map(|cache| {
-        let files: String = campaign.files.iter().map(|file| file.sha256.as_str()).collect();
-        Cache::new(cache, format!("{} {files} {:?} {:?}", env!("CARGO_PKG_VERSION"), settings.edges, settings.groups))
-    });
-    let inputs = Inputs { campaign: &campaign, catalogue: &catalogue, settings: &settings, simulator, cache, seed, trying };
+    let cache = match cache.map(|cache| kept(cache, &campaign, &settings)) {
+        None => None,
+        Some(Ok(cache)) => Some(cache),
+        Some(Err(problem)) => {
+            problems.push(problem);
+            return None;
+        }
+    };
+    let references: Vec<Campaign> = asked.references.iter().map(|folder| Campaign::open(folder, problems)).collect::<Option<_>>()?;
+    let references: Vec<&Campaign> = references.iter().collect();
+    let inputs =
+        Inputs { references: &references, campaign: &campaign, catalogue: &catalogue, settings: &settings, simulator, cache, seed, trying };
     match diagnose(&inputs, &compiled, sections) {
         Ok(outcome) => Some((campaign, outcome)),
         Err(found) => {
@@ -181,6 +194,14 @@ pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &m
             None
         }
     }
+}
+
+/// Runs kept in a folder, by everything that they and their features depend on.
+fn kept(folder: &Path, campaign: &Campaign, settings: &Settings) -> Result<Cache, Problem> {
+    let files: Vec<String> =
+        campaign.other_files(RecordKind::Measurement)?.iter().map(|(path, bytes)| format!("{path} {}", sha256(bytes))).collect();
+    let of = format!("{} {} {:?} {:?} {:?}", env!("CARGO_PKG_VERSION"), files.join(" "), settings.edges, settings.alike, settings.groups);
+    Ok(Cache::new(folder, of))
 }
 
 fn summary(diagnosis: &Diagnosis) -> String {

@@ -1,7 +1,5 @@
 //! The diagnosis of a campaign: find, add, run the protocol again, say.
 
-use std::time::Instant;
-
 use super::run::{Found, Inputs, find};
 use super::shrink::{applied, compare, folds, improved, shares, trained};
 use crate::certify::{Compiled, certify};
@@ -34,7 +32,6 @@ pub struct Outcome {
 /// # Errors
 /// The campaign cannot be compared or evaluated; a simulation fails.
 pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, sections: Vec<Section>) -> Result<Outcome, Problems> {
-    let start = Instant::now();
     let mut problems = Problems::default();
     let (_, units, _) = match sections.first() {
         Some(first) => recorded(inputs.campaign, crate::data::RecordKind::Simulation, first).map_err(Problems)?,
@@ -62,7 +59,7 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, sections: Vec<Section>
         shrink = Some(compare(&before, &made, inputs.seed, shares(&found)));
         after = Some(made);
     }
-    let mut diagnosis = super::words::diagnosis(inputs, &found, shrink, start.elapsed().as_secs_f64());
+    let mut diagnosis = super::words::diagnosis(inputs, &found, shrink);
     diagnosis.pictures = super::pictures::pictures(inputs.settings, &found, &records, &units);
     Ok(Outcome { diagnosis, found, before, after, improved: records, units })
 }

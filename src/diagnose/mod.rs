@@ -12,6 +12,7 @@ pub mod guards;
 mod locate;
 pub mod observe;
 mod pictures;
+pub mod reference;
 pub mod run;
 pub mod score;
 pub mod search;

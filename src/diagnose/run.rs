@@ -7,6 +7,7 @@ use super::features::Kind;
 use super::fit::{Fitted, Fitter, Mask, less};
 use super::guards::{View, contradiction, families, lack_of_fit};
 use super::observe::Observations;
+use super::reference::Reference;
 use super::search::{Bars, Chosen, Refused, chi_squared, refit, rivals, search};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
@@ -24,6 +25,8 @@ pub struct Inputs<'a> {
     pub settings: &'a Settings,
     pub simulator: Option<&'a dyn Simulator>,
     pub cache: Option<Cache>,
+    /// Campaigns whose state is known.
+    pub references: &'a [&'a Campaign],
     pub seed: u64,
     pub trying: Trying<'a>,
 }
@@ -66,8 +69,8 @@ const FLOOR: f64 = 30.0;
 /// Lack of fit, in standard deviations of chi-squared of a channel, beyond which something is not explained.
 pub const LACK: f64 = 5.0;
 
-/// A member must bring the excess of the channels to this share of what it was, at the most.
-const HELPS: f64 = 0.9;
+/// With a member the excess of the channels may be this share of what it was without it, at the most: some effects show elsewhere.
+const WORSE: f64 = 1.1;
 
 /// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
 #[must_use]
@@ -93,7 +96,14 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let seen = Observations::read(inputs.campaign, sections, inputs.catalogue, settings, &declared, problems)?;
     let simulated = seen.all(true, |observed| &observed.simulated);
     let measured = seen.all(false, |observed| &observed.measured);
-    let difference = less(&measured, &simulated);
+    let mut difference = less(&measured, &simulated);
+    let mut reference = Reference::default();
+    for campaign in inputs.references {
+        let sections = crate::simulate::sections(campaign, problems);
+        reference.learn(&Observations::read(campaign, sections, inputs.catalogue, settings, &declared, problems)?, settings);
+    }
+    reference.take_off(&seen, settings, &mut difference);
+    let settings = &reference.narrowed(settings);
     let mut runs = Runs::default();
     let bench = inputs.simulator.map(|simulator| Bench { seen: &seen, simulator, cache: inputs.cache.clone() });
     (inputs.trying)("simulation without effects");
@@ -149,7 +159,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     // Nodes may have come between: the members are fitted again.
     refit(&fitter, &z, &mut chosen, 6);
     let lack_before = lack_of_fit(&whole, &seen, &difference);
-    let lack_after = keep_what_helps(&fitter, (&whole, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
+    let lack_after = drop_what_harms(&fitter, (&whole, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
     let rivals = rivals(&fitter, &z, &chosen);
     drop(fitter);
     drop(bench);
@@ -182,8 +192,8 @@ pub fn excess(lack: &[(String, Kind, f64, f64)]) -> f64 {
     lack.iter().map(|(.., excess)| excess.max(0.0)).sum()
 }
 
-/// A member that leaves as much beyond what is allowed for as there was without it is no cause. Gives what is left.
-fn keep_what_helps(
+/// A member that makes channels go further beyond what is allowed for is no cause. Gives what is left.
+fn drop_what_harms(
     fitter: &Fitter<'_>,
     (covariance, seen): (&Covariance, &Observations),
     (difference, z): (&[f64], &[f64]),
@@ -199,10 +209,10 @@ fn keep_what_helps(
         refit(fitter, z, &mut without, 4);
         let then =
             if without.members.is_empty() { before.to_vec() } else { lack_of_fit(covariance, seen, &left(fitter, difference, &without)) };
-        if excess(&now) <= HELPS * excess(&then) {
+        if excess(&now) <= WORSE * excess(&then) {
             return now;
         }
-        let reason = format!("what channels show beyond what is allowed for goes from {:.0} to {:.0} only", excess(&then), excess(&now));
+        let reason = format!("what channels show beyond what is allowed for grows from {:.0} to {:.0}", excess(&then), excess(&now));
         refused.push(Refused { fitted: chosen.members[last].clone(), reason });
         *chosen = without;
     }

@@ -16,7 +16,7 @@ const TEMPERATURE: f64 = 4.0;
 
 /// Puts what was found into an answer.
 #[must_use]
-pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>, seconds: f64) -> Diagnosis {
+pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>) -> Diagnosis {
     let (before, after) = chi(found);
     let (gap, rest) = (excess(&found.lack_before), excess(&found.lack_after));
     let most = |lack: &[(String, Kind, f64, f64)]| lack.iter().map(|(_, _, sigma, _)| *sigma).fold(f64::NEG_INFINITY, f64::max);
@@ -49,6 +49,10 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>, sec
         notes.push("the campaign declares no tolerances: documented defaults were taken, and the verdict is the weaker for it".into());
         "documented defaults"
     };
+    if !inputs.references.is_empty() {
+        let names: Vec<&str> = inputs.references.iter().map(|campaign| campaign.name.as_str()).collect();
+        notes.push(format!("what the simulation is wrong in anyway was learnt from: {}", names.join(", ")));
+    }
     if inputs.simulator.is_none() {
         notes.push("no simulator could be run: only effects of the measuring chain were tried".into());
     }
@@ -78,9 +82,15 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>, sec
         },
         notes,
         simulations_run: found.runs.made,
-        seconds,
+        seconds: simulated_time(found),
         pictures: Vec::new(),
     }
+}
+
+/// Simulated time in s: what a clock shows would make every answer another text.
+fn simulated_time(found: &Found) -> f64 {
+    let all: f64 = (0..found.seen.sections.len()).map(|at| found.seen.extent(at).1).sum();
+    all * found.runs.made as f64 / found.seen.sections.len().max(1) as f64
 }
 
 fn cause(inputs: &Inputs<'_>, found: &Found, members: &[Fitted], rank: usize) -> Cause {

@@ -24,6 +24,7 @@ pub struct Diagnosis {
     pub how: How,
     pub notes: Vec<String>,
     pub simulations_run: usize,
+    /// Simulated time of all runs in s, inside the sections. Not the clock's, so that the same input gives the same bytes.
     pub seconds: f64,
     /// Signals of the worst sections, for figures.
     #[serde(skip)]

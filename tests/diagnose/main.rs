@@ -1,0 +1,122 @@
+//! Diagnoses of campaigns whose truth is known: measurements made by the reference model with an effect and noise.
+//!
+//! One set of simulations serves all tests: the campaigns differ in their measurements alone.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use serde_json::Value;
+
+const NOISE: [&str; 2] = ["sensor_noise=0.3 on guiding forces, vertical forces", "sensor_noise=0.02 on accelerations, bogie accelerations"];
+
+fn fishplate(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fishplate")).args(arguments).output().unwrap()
+}
+
+fn folder() -> &'static Path {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("diagnose");
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        folder
+    })
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap().flatten() {
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            fs::copy(entry.path(), target).unwrap();
+        }
+    }
+}
+
+/// `examples/coach-good` with a measurement that the model made with these effects.
+fn campaign(name: &str, effects: &[&str]) -> PathBuf {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good");
+    let (made, to) = (folder().join(format!("{name}-made")), folder().join(name));
+    let mut arguments = vec!["simulate", example.to_str().unwrap(), "--out", made.to_str().unwrap(), "--quiet"];
+    for effect in effects.iter().chain(&NOISE) {
+        arguments.extend(["--effect", effect]);
+    }
+    let ran = fishplate(&arguments);
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    copy(&example, &to);
+    copy(&made.join("simulation"), &to.join("measurement"));
+    to
+}
+
+fn diagnose(campaign: &Path, more: &[&str]) -> (Value, Option<i32>) {
+    let out = campaign.with_extension("diagnosis");
+    let resume = folder().join("resume");
+    let mut arguments = vec!["diagnose", campaign.to_str().unwrap(), "--out", out.to_str().unwrap(), "--resume", resume.to_str().unwrap()];
+    arguments.extend(more);
+    let ran = fishplate(&arguments);
+    assert!(ran.status.code().is_some_and(|code| code <= 1), "{}", String::from_utf8_lossy(&ran.stderr));
+    for file in ["report.pdf", "report.html"] {
+        assert!(fs::metadata(out.join(file)).unwrap().len() > 10_000, "{file}");
+    }
+    (serde_json::from_str(&fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap(), ran.status.code())
+}
+
+/// In one test, one after the other: each uses the runs of the one before.
+#[test]
+fn what_is_hidden_is_found_and_nothing_is_invented() {
+    nothing_hidden();
+    payload();
+    gain_of_a_channel();
+    removed_from_the_catalogue();
+}
+
+fn nothing_hidden() {
+    let (found, code) = diagnose(&campaign("nothing", &[]), &[]);
+    assert_eq!((found["verdict"].as_str(), code), (Some("no significant gap"), Some(0)), "{found:#}");
+    assert_eq!(found["causes"], Value::Array(Vec::new()));
+    assert!(found["detectable"].as_array().unwrap().len() > 10);
+}
+
+/// 4 t within 8 %; the same bytes whatever `truth.json` says.
+fn payload() {
+    let campaign = campaign("payload", &["payload=4000"]);
+    let better = folder().join("payload-better");
+    let (found, code) = diagnose(&campaign, &["--write-improved", better.to_str().unwrap()]);
+    assert_eq!((found["verdict"].as_str(), code), (Some("explained"), Some(0)), "{:#}", found["says"]);
+    let effects = found["causes"][0]["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 1);
+    assert_eq!(effects[0]["name"], "payload");
+    let mass = effects[0]["parameters"]["payload.mass"]["value"].as_f64().unwrap();
+    assert!((mass / 4000.0 - 1.0).abs() < 0.08, "{mass}");
+    assert!(found["shrink"]["fraction_removed"].as_f64().unwrap() > 0.7, "{:#}", found["shrink"]);
+    assert!(fs::read_dir(better.join("simulation")).unwrap().count() >= 12);
+    let text = || fs::read_to_string(campaign.with_extension("diagnosis").join("diagnosis.json")).unwrap();
+    let before = text();
+    for truth in ["not JSON at all", r#"{"kind": "single", "effects": [{"name": "friction", "parameters": {"friction": 0.1}}]}"#] {
+        fs::write(campaign.join("truth.json"), truth).unwrap();
+        diagnose(&campaign, &[]);
+        assert_eq!(text(), before, "with truth.json: {truth}");
+    }
+}
+
+fn gain_of_a_channel() {
+    let (found, _) = diagnose(&campaign("gain", &["sensor_gain=0.75 on Y_3R"]), &[]);
+    let effect = &found["causes"][0]["effects"][0];
+    assert_eq!(effect["name"], "sensor_gain", "{:#}", found["says"]);
+    let gain = effect["parameters"]["measurement.gain.Y_3R"]["value"].as_f64().unwrap();
+    assert!((gain - 0.75).abs() < 0.05, "{gain}");
+}
+
+/// The gain with no gains in the catalogue: nothing else is named with confidence.
+fn removed_from_the_catalogue() {
+    let catalogue = folder().join("without.yaml");
+    fs::write(&catalogue, "catalogue: without\ntitle: No gains\nextends: bogie-vehicle\neffects:\n  sensor_gain: remove\n").unwrap();
+    let (found, _) = diagnose(&folder().join("gain"), &["--effects", catalogue.to_str().unwrap()]);
+    assert_ne!(found["verdict"], "explained", "{:#}", found["says"]);
+}
