@@ -171,7 +171,7 @@ pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &m
     let seed = asked.seed;
     let cache = cache.map(|cache| {
         let files: String = campaign.files.iter().map(|file| file.sha256.as_str()).collect();
-        Cache::new(cache, format!("{} {files} {:?} {:?}", env!("CARGO_PKG_VERSION"), settings.edges, settings.groups))
+        Cache::new(cache, format!("{} {files} {:?} {:?} {}", env!("CARGO_PKG_VERSION"), settings.edges, settings.groups, settings.furthest))
     });
     let inputs = Inputs { campaign: &campaign, catalogue: &catalogue, settings: &settings, simulator, cache, seed, trying };
     match diagnose(&inputs, &compiled, sections) {
