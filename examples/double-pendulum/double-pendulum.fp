@@ -22,32 +22,32 @@ quantity shoulder_rms "Torque at the shoulder, rms value"
   filter      LP6
   value       rms
   difference  simulated - measured
-  limit       std 0.03 N m
-  limit       mean 0.02 N m
+  limit       std 0.03 N*m
+  limit       mean 0.02 N*m
 
-quantity shoulder_high "Torque at the shoulder, 97.5 % value of the magnitude"
-  of          |tau at joint 1|
+quantity shoulder_high "Torque at the shoulder, 97.5 % value"
+  of          tau at joint 1
   filter      LP6
   value       p97.5
   difference  simulated - measured
-  limit       std 0.06 N m
-  limit       mean 0.04 N m
+  limit       std 0.06 N*m
+  limit       mean 0.04 N*m
 
 quantity elbow_rms "Torque at the elbow, rms value"
   of          tau at joint 2
   filter      LP6
   value       rms
   difference  simulated - measured
-  limit       std 0.03 N m
-  limit       mean 0.02 N m
+  limit       std 0.03 N*m
+  limit       mean 0.02 N*m
 
-quantity elbow_high "Torque at the elbow, 97.5 % value of the magnitude"
-  of          |tau at joint 2|
+quantity elbow_high "Torque at the elbow, 97.5 % value"
+  of          tau at joint 2
   filter      LP6
   value       p97.5
   difference  simulated - measured
-  limit       std 0.06 N m
-  limit       mean 0.04 N m
+  limit       std 0.06 N*m
+  limit       mean 0.04 N*m
 
 verdict
   validated  when every limit holds
