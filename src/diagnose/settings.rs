@@ -128,7 +128,8 @@ pub struct Position {
 /// Lag in m beyond which records belong to other places.
 const FURTHEST: f64 = 50.0;
 
-const TOP: [&str; 10] = ["bands", "alike", "furthest lag", "groups", "tolerances", "discrepancies", "confine to", "mirrored", "strata", "positions"];
+const TOP: [&str; 10] =
+    ["bands", "alike", "furthest lag", "groups", "tolerances", "discrepancies", "confine to", "mirrored", "strata", "positions"];
 const GROUP: [&str; 12] =
     ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says"];
 const TOLERANCE: [&str; 5] = ["default", "scales", "adds", "each section", "shared"];
