@@ -33,7 +33,7 @@ pub fn document(found: &Diagnosis, before: &Certification) -> Document {
         title: format!("Diagnosis: {}", found.campaign),
         kind: "Where simulation and measurement differ, and why".into(),
         program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).into(),
-        headline: Finding { word: found.verdict.to_string(), class: class.into(), sign: sign(class).into() },
+        headline: Finding { word: found.verdict.to_string(), class, sign: sign(class) },
         sentence: found.says.first().cloned().unwrap_or_default(),
         key_facts: vec![
             Fact { name: "Protocol before".into(), value: before.verdict.in_words().into() },
