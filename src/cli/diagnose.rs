@@ -200,7 +200,8 @@ pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &m
 fn kept(folder: &Path, campaign: &Campaign, settings: &Settings) -> Result<Cache, Problem> {
     let files: Vec<String> =
         campaign.other_files(RecordKind::Measurement)?.iter().map(|(path, bytes)| format!("{path} {}", sha256(bytes))).collect();
-    let of = format!("{} {} {:?} {:?} {:?}", env!("CARGO_PKG_VERSION"), files.join(" "), settings.edges, settings.alike, settings.groups);
+    let Settings { edges, alike, groups, furthest, .. } = settings;
+    let of = format!("{} {} {edges:?} {alike:?} {groups:?} {furthest}", env!("CARGO_PKG_VERSION"), files.join(" "));
     Ok(Cache::new(folder, of))
 }
 

@@ -136,8 +136,14 @@ impl Workshop<'_> {
         for fit in &effect.fits {
             let Some(((size, sizes), others)) = fit.axes.split_first() else { continue };
             let parameter = &effect.parameters[*size];
+            let moved = match bench.simulator.catalogue_name() {
+                Some(name) => parameter.simulators.iter().find(|(known, ..)| known == name).map(|(_, key, factor)| (key, factor)),
+                None => parameter.model.as_ref().map(|(key, factor)| (key, factor)),
+            };
+            // A program may know by another name what the vehicle file has as a parameter of the model.
+            let of_model = || parameter.model.as_ref().and_then(|(key, factor)| Some((self.neutral)(key)? / factor));
             let neutral =
-                parameter.neutral.or_else(|| parameter.model.as_ref().and_then(|(key, factor)| Some((self.neutral)(key)? / factor)));
+                parameter.neutral.or_else(|| moved.and_then(|(key, factor)| Some((self.neutral)(key)? / factor))).or_else(of_model);
             for fixed in combinations(others) {
                 let fixed: Vec<(String, f64)> = fixed.into_iter().map(|(at, value)| (effect.parameters[at].name.clone(), value)).collect();
                 let mut nodes = Vec::new();
@@ -305,6 +311,7 @@ impl Workshop<'_> {
         for (at, observed) in seen.sections.iter().enumerate() {
             let mut signals = Signals {
                 axis: observed.simulated.axis.clone(),
+                over_time: observed.simulated.over_time,
                 rate: observed.simulated.rate,
                 channels: observed.simulated.channels.iter().filter(|channel| touched(&channel.name)).cloned().collect(),
             };

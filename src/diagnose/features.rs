@@ -13,6 +13,8 @@ pub struct Layout {
     pub edges: Vec<f64>,
     /// Band in Hz over which gain and lag are taken.
     pub alike: (f64, f64),
+    /// The largest lag that is looked for, in the unit of the axis.
+    pub furthest: f64,
 }
 
 /// What is taken of one channel.
@@ -195,7 +197,7 @@ pub fn of_channel(layout: &Layout, of: &ChannelFeatures, piece: &Piece, referenc
     }
     if of.alike {
         let (gain, lag) = match reference {
-            Some(reference) => spectrum.alike(reference, layout.alike, (50.0 / piece.step.max(1e-9)) as usize),
+            Some(reference) => spectrum.alike(reference, layout.alike, (layout.furthest / piece.step.max(1e-9)) as usize),
             None => (1.0, 0.0),
         };
         out.push(gain);

@@ -66,7 +66,7 @@ impl Observations {
             problems.push(Problem::error("no-sections", format!("no section of the campaign can be compared{reason}")));
             return None;
         }
-        let mut layout = Layout { channels: Vec::new(), edges: settings.edges.clone(), alike: settings.alike };
+        let mut layout = Layout { channels: Vec::new(), edges: settings.edges.clone(), alike: settings.alike, furthest: settings.furthest };
         let mut noise = Vec::new();
         for (at, group) in settings.groups.iter().enumerate() {
             for name in catalogue.channels(&group.name).unwrap_or_default() {

@@ -11,6 +11,8 @@ pub struct Settings {
     pub edges: Vec<f64>,
     /// Band in Hz for gains and lags.
     pub alike: (f64, f64),
+    /// The largest lag that is looked for, in the unit of the axis.
+    pub furthest: f64,
     pub groups: Vec<GroupFeatures>,
     pub tolerances: Vec<Tolerance>,
     pub discrepancies: Vec<Discrepancy>,
@@ -123,7 +125,11 @@ pub struct Position {
     pub mirrored: Vec<String>,
 }
 
-const TOP: [&str; 9] = ["bands", "alike", "groups", "tolerances", "discrepancies", "confine to", "mirrored", "strata", "positions"];
+/// Lag in m beyond which records belong to other places.
+const FURTHEST: f64 = 50.0;
+
+const TOP: [&str; 10] =
+    ["bands", "alike", "furthest lag", "groups", "tolerances", "discrepancies", "confine to", "mirrored", "strata", "positions"];
 const GROUP: [&str; 12] =
     ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says"];
 const TOLERANCE: [&str; 5] = ["default", "scales", "adds", "each section", "shared"];
@@ -227,6 +233,7 @@ impl Reader<'_> {
         let mut settings = Settings {
             edges: node.get("bands").map_or(Vec::new(), |bands| self.numbers(bands)),
             alike: (alike.first().copied().unwrap_or(0.5), alike.get(1).copied().unwrap_or(8.0)),
+            furthest: self.number(node, "furthest lag", FURTHEST),
             confine: self.words(node.get("confine to")),
             mirror: mirror.map(|(key, value)| (key.text.clone(), value.raw.clone())),
             stratum: text("strata"),

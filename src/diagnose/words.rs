@@ -35,7 +35,10 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>) -> 
     let mut causes = vec![];
     if named {
         causes.push(cause(inputs, found, &found.chosen.members, 1));
-        causes.extend(ambiguous);
+        // Where the gap stays, what would have more evidence than the answer was refused: it is told there, and is no rival.
+        let best = causes[0].evidence;
+        causes.extend(ambiguous.into_iter().filter(|rival| verdict != "unexplained" || rival.evidence <= best));
+        causes.iter_mut().enumerate().for_each(|(at, cause)| cause.rank = at + 1);
     }
     probabilities(&mut causes, verdict);
     let discriminating_measurement = discriminating(inputs, &causes, verdict);

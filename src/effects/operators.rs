@@ -8,6 +8,8 @@ use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
 pub struct Signals {
     /// Position on the axis, in m for a record over distance.
     pub axis: Vec<f64>,
+    /// Whether the axis is the time itself, in s.
+    pub over_time: bool,
     /// Samples per second.
     pub rate: f64,
     pub channels: Vec<Channel>,
@@ -200,7 +202,12 @@ mod tests {
 
     fn two() -> Signals {
         let channel = |name: &str, values: &[f64]| Channel { name: name.into(), values: values.to_vec() };
-        Signals { axis: vec![0.0, 1.0, 2.0], rate: 2.0, channels: vec![channel("a", &[1.0, 2.0, 3.0]), channel("b", &[4.0, -5.0, 6.0])] }
+        Signals {
+            axis: vec![0.0, 1.0, 2.0],
+            over_time: false,
+            rate: 2.0,
+            channels: vec![channel("a", &[1.0, 2.0, 3.0]), channel("b", &[4.0, -5.0, 6.0])],
+        }
     }
 
     fn after(operator: Operator, value: f64, channels: &[&str]) -> Vec<Vec<f64>> {

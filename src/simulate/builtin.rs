@@ -102,7 +102,7 @@ impl Simulator for Builtin<'_> {
 fn made(setup: &Setup<'_>, window: Window) -> Result<Signals, Problem> {
     let record = model::simulate(setup, window).map_err(|failure| Problem::error("simulation-failed", failure.to_string()))?;
     let channels = CHANNELS.iter().zip(record.channels).map(|((name, _), values)| Channel { name: (*name).to_string(), values });
-    Ok(Signals { axis: record.distance, rate: SAMPLING_RATE, channels: channels.collect() })
+    Ok(Signals { axis: record.distance, over_time: false, rate: SAMPLING_RATE, channels: channels.collect() })
 }
 
 /// The vehicle of a vehicle file.

@@ -51,6 +51,7 @@ fn signals(record: &Record) -> Result<(Signals, Units), Vec<Problem>> {
     if record.rows < 2 || span <= 0.0 {
         return Err(vec![Problem::error("too-short", format!("{} has {} samples: too few", record.shown, record.rows))]);
     }
+    let over_time = record.column(AXIS).is_none();
     let axis = record.column(AXIS).unwrap_or(time);
     let mut units = Vec::new();
     let mut channels = Vec::new();
@@ -59,7 +60,7 @@ fn signals(record: &Record) -> Result<(Signals, Units), Vec<Problem>> {
         channels.push(Channel { name: column.name.clone(), values });
         units.push((column.name.clone(), column.unit.clone()));
     }
-    Ok((Signals { axis: axis.values.clone(), rate: (record.rows - 1) as f64 / span, channels }, units))
+    Ok((Signals { axis: axis.values.clone(), over_time, rate: (record.rows - 1) as f64 / span, channels }, units))
 }
 
 /// Turns channels into other units; those for which `to` has none stay in their own.
@@ -81,7 +82,8 @@ pub fn in_units(signals: &mut Signals, units: &Units, to: &dyn Fn(&str) -> Optio
     Ok(())
 }
 
-/// A record as text: time from 0, distance, channels; forces in kN to 0.01, accelerations in m/s^2 to 0.0001.
+/// A record as text: time from 0 and distance, or the time as it is where that is the axis; channels: forces in kN to 0.01,
+/// accelerations in m/s^2 to 0.0001, all else to six decimals.
 ///
 /// # Errors
 /// A value is not finite: a fault of the simulator, found before anything is written.
@@ -95,12 +97,19 @@ pub fn record_text(signals: &Signals, units: &dyn Fn(&str) -> Unit) -> Result<St
         .zip(&units)
         .map(|(channel, unit)| channel.values.iter().map(|value| unit.to_si(*value)).collect())
         .collect();
-    let mut columns = vec![
-        OutColumn { name: TIME, unit: &seconds, values: &time, decimals: 3 },
-        OutColumn { name: AXIS, unit: &metres, values: &signals.axis, decimals: 3 },
-    ];
+    let mut columns = match signals.over_time {
+        true => vec![OutColumn { name: TIME, unit: &seconds, values: &signals.axis, decimals: 6 }],
+        false => vec![
+            OutColumn { name: TIME, unit: &seconds, values: &time, decimals: 3 },
+            OutColumn { name: AXIS, unit: &metres, values: &signals.axis, decimals: 3 },
+        ],
+    };
     for ((channel, unit), values) in signals.channels.iter().zip(&units).zip(&values) {
-        let decimals = if unit.text == "kN" { 2 } else { 4 };
+        let decimals = match unit.text.as_str() {
+            "kN" => 2,
+            "m/s^2" => 4,
+            _ => 6,
+        };
         columns.push(OutColumn { name: &channel.name, unit, values, decimals });
     }
     record_csv(&columns)

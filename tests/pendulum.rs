@@ -1,0 +1,80 @@
+//! The diagnosis on measured data of a machine that is no rail vehicle, with a program as the simulator.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+fn example() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/double-pendulum")
+}
+
+/// The example's program, which is built beside the tests.
+fn simulator() -> PathBuf {
+    let program = Path::new(env!("CARGO_BIN_EXE_fishplate"));
+    let name = format!("double_pendulum_simulator{}", std::env::consts::EXE_SUFFIX);
+    program.parent().unwrap().join("examples").join(name)
+}
+
+fn diagnosed(folder: &Path) -> Value {
+    let written = std::fs::read_to_string(example().join("sim.yaml")).unwrap();
+    let path = simulator().display().to_string();
+    let sim = written.replace("../../target/release/examples/double_pendulum_simulator", &format!("{path:?}"));
+    std::fs::write(folder.join("sim.yaml"), sim).unwrap();
+    let out = Command::new(env!("CARGO_BIN_EXE_fishplate"))
+        .args(["diagnose", "--no-cache", "--quiet", "--protocol"])
+        .arg(example().join("double-pendulum.fp"))
+        .arg("--effects")
+        .arg(example().join("effects.yaml"))
+        .arg("--simulator")
+        .arg(folder.join("sim.yaml"))
+        .arg("--write-improved")
+        .arg(folder.join("improved"))
+        .arg("--out")
+        .arg(folder.join("out"))
+        .arg(example())
+        .output()
+        .unwrap();
+    assert_eq!(out.status.code(), Some(1), "{}", String::from_utf8_lossy(&out.stderr));
+    serde_json::from_str(&std::fs::read_to_string(folder.join("out/diagnosis.json")).unwrap()).unwrap()
+}
+
+/// What docs/double-pendulum.md says: friction at the elbow, and a shoulder that stays unexplained.
+#[test]
+fn the_elbow_is_named_and_the_shoulder_stays_open() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = diagnosed(folder.path());
+    assert_eq!(found["verdict"], "unexplained");
+    let effects = found["causes"][0]["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 1);
+    assert_eq!(effects[0]["name"], "elbow_friction");
+    let size = effects[0]["parameters"]["elbow.coulomb"]["value"].as_f64().unwrap();
+    assert!((0.05..0.15).contains(&size), "{size}");
+    let says = found["says"][0].as_str().unwrap();
+    assert!(says.contains("tau_1") && !says.contains("tau_2"), "{says}");
+    let shrink = &found["shrink"];
+    let removed = shrink["fraction_removed"].as_f64().unwrap();
+    assert!((0.1..0.3).contains(&removed), "{removed}");
+    for quantity in shrink["quantities"].as_array().unwrap() {
+        let elbow = quantity["id"].as_str().unwrap().starts_with("elbow");
+        let explained = quantity["variance_explained"].as_f64().unwrap();
+        assert!(if elbow { explained > 0.1 } else { explained.abs() < 0.05 }, "{quantity}");
+    }
+    improved_campaign_runs_over_time(folder.path());
+}
+
+/// Records of the improved campaign run over the same time, and only the elbow's torque is another.
+fn improved_campaign_runs_over_time(folder: &Path) {
+    let read = |path: PathBuf| std::fs::read_to_string(path).unwrap();
+    let (before, after) = (read(example().join("simulation/A3.csv")), read(folder.join("improved/simulation/A3.csv")));
+    assert_eq!(before.lines().next(), after.lines().next());
+    assert_eq!(before.lines().count(), after.lines().count());
+    let cells = |text: &str| -> Vec<Vec<f64>> {
+        text.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+    };
+    let pairs: Vec<_> = cells(&before).into_iter().zip(cells(&after)).collect();
+    assert!(pairs.iter().all(|(before, after)| (before[0] - after[0]).abs() < 1e-9 && (before[1] - after[1]).abs() < 1e-5));
+    assert!(pairs.iter().any(|(before, after)| (before[2] - after[2]).abs() > 0.05));
+}
