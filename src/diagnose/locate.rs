@@ -1,4 +1,5 @@
-//! Where the gap lies: cells of quantity, position, stratum and band, tested against noise and declared tolerances.
+//! Where the gap lies: cells of quantity, position, stratum and band, tested against noise, declared tolerances and what a model of
+//! this kind is allowed to be wrong in.
 
 use super::features::Kind;
 use super::guards::{View, part};
@@ -129,9 +130,14 @@ fn test(found: &Found, cell: &Cell) -> (f64, f64, f64) {
             *value = 0.0;
         }
     }
-    let mean = cell.members.iter().map(|(section, feature)| found.difference[found.seen.place(*section, *feature)]).sum::<f64>()
-        / cell.members.len() as f64;
-    let z = found.tolerated.part(&view.sections, &features).whitener().apply(&rest);
+    // Levels count towards the side of the simulated one, so that left and right curves do not cancel.
+    let oriented = |section: usize, feature: usize| {
+        let place = found.seen.place(section, feature);
+        let side = if cell.kind == Kind::Level { found.simulated[place].signum() } else { 1.0 };
+        side * found.difference[place]
+    };
+    let mean = cell.members.iter().map(|(section, feature)| oriented(*section, *feature)).sum::<f64>() / cell.members.len() as f64;
+    let z = found.covariance.part(&view.sections, &features).whitener().apply(&rest);
     let (chi, freedom) = (dot(&z, &z), cell.members.len() as f64);
     let p = statrs::distribution::ChiSquared::new(freedom).map_or(1.0, |law| statrs::distribution::ContinuousCDF::sf(&law, chi));
     (chi - freedom, p, mean)

@@ -62,6 +62,9 @@ fn sign(class: &str) -> &'static str {
 #[must_use]
 pub fn figures(found: &Diagnosis) -> Vec<(String, String)> {
     let mut drawn = Vec::new();
+    if !found.r#where.is_empty() {
+        drawn.push(("map".to_owned(), figure::map(&found.r#where)));
+    }
     if let Some(shrink) = &found.shrink {
         drawn.push(("before-after".to_owned(), figure::before_after(shrink)));
     }
@@ -114,12 +117,17 @@ fn places(found: &Diagnosis) -> Chapter {
         Head::number("p"),
         Head::short("Significant"),
     ];
-    let caption = "Cells by their share of the gap, tested against noise and declared tolerances; significant at a false discovery rate of 5 %. \
-                   Differences of levels are in the unit of the channel, those of bands relative";
+    let caption = "Cells by their share of the gap, tested against noise, declared tolerances and what a model may be wrong in; significant at a false discovery rate of 5 %. \
+                   Differences of levels are in the unit of the channel, towards the simulated side; those of bands relative";
     let table = Table { caption: caption.into(), head, rows: rows.collect() };
     let significant = found.r#where.iter().filter(|place| place.significant).count();
-    let text = format!("{significant} of {} cells differ by more than noise and tolerances.", found.r#where.len());
-    chapter("where", "Where the gap lies", vec![Item::text(text), Item::Table { table }])
+    let text = format!(
+        "{significant} of {} cells differ by more than noise, tolerances and what a model of this kind may be wrong in.",
+        found.r#where.len()
+    );
+    let caption = "Share of the gap by quantity and position, zone and band: the darker, the larger; a dot marks what is significant";
+    let map = Item::figure("map", caption, "A map of cells, darker where more of the gap lies");
+    chapter("where", "Where the gap lies", vec![Item::text(text), map, Item::Table { table }])
 }
 
 fn value(value: &Value) -> String {
@@ -159,7 +167,7 @@ fn causes(found: &Diagnosis) -> Chapter {
     let head = vec![
         Head::short("Rank"),
         Head::text("Effect"),
-        Head::text("Parameter"),
+        Head::short("Parameter"),
         Head::number("Value"),
         Head::number("90 % interval"),
         Head::number("Probability"),

@@ -61,7 +61,8 @@ pub struct Where {
     pub zones: Vec<String>,
     pub sections: Vec<String>,
     pub wavelength_or_band: String,
-    /// Mean difference, measured - simulated, in the unit (levels) or as a ratio of rms less one (bands).
+    /// Mean difference, measured - simulated: levels in the unit of the channel, towards the simulated side; bands as a ratio of rms
+    /// less one.
     pub difference: f64,
     pub unit: String,
     pub share_of_gap: f64,

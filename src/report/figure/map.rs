@@ -1,0 +1,86 @@
+//! The map of a gap: quantity and position by zone and band, as dark as its share of the gap.
+
+use plotters::style::RGBColor;
+
+use super::canvas::{Canvas, Font, Group};
+use super::style::{GRID, INK, MUTED, SMALL, TEXT, WHITE, WIDTH, cut};
+use crate::report::number;
+use crate::result::diagnosis::Where;
+
+const ROW: f64 = 11.0;
+const NAMES: f64 = 176.0;
+const HEAD: f64 = 52.0;
+
+/// Rows in the order of the shares they hold; a dot marks cells that are significant.
+pub fn map(places: &[Where]) -> String {
+    let mut rows: Vec<(String, f64)> = Vec::new();
+    let mut columns: Vec<(String, String)> = Vec::new();
+    for place in places {
+        let row = name(place);
+        match rows.iter_mut().find(|(known, _)| *known == row) {
+            Some((_, share)) => *share += place.share_of_gap,
+            None => rows.push((row, place.share_of_gap)),
+        }
+        let column = (place.zones.join(", "), place.wavelength_or_band.clone());
+        if !columns.contains(&column) {
+            columns.push(column);
+        }
+    }
+    rows.sort_by(|a, b| b.1.total_cmp(&a.1));
+    // Zones in their order; in each, quasi-static first, then bands by frequency.
+    let edge = |band: &str| band.split(' ').next().and_then(|word| word.parse::<f64>().ok()).unwrap_or(-1.0);
+    columns.sort_by(|a, b| a.0.cmp(&b.0).then(edge(&a.1).total_cmp(&edge(&b.1))));
+    let wide = (WIDTH - NAMES) / columns.len().max(1) as f64;
+    let most = places.iter().map(|place| place.share_of_gap).fold(1e-12, f64::max);
+    let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows.len() as f64 + 4.0);
+    canvas.draw(|layer| {
+        for (at, (zone, band)) in columns.iter().enumerate() {
+            let x = NAMES + wide * (at as f64 + 0.5);
+            layer.text(&cut(band, SMALL, HEAD - 14.0), (x, HEAD - 18.0), &Font::middle(SMALL).upward().color(MUTED));
+            if at == 0 || columns[at - 1].0 != *zone {
+                let count = columns.iter().filter(|(of, _)| of == zone).count() as f64;
+                layer.text(&format!("zone {zone}"), (NAMES + wide * (at as f64 + 0.5 * count), 5.0), &Font::middle(TEXT).bold(true));
+            }
+        }
+        for (at, (row, _)) in rows.iter().enumerate() {
+            layer.text(&cut(row, SMALL, NAMES - 6.0), (NAMES - 4.0, HEAD + ROW * (at as f64 + 0.5)), &Font::right(SMALL));
+        }
+    });
+    for place in places {
+        let row = rows.iter().position(|(known, _)| *known == name(place));
+        let column = columns.iter().position(|(zone, band)| *zone == place.zones.join(", ") && *band == place.wavelength_or_band);
+        let (Some(row), Some(column)) = (row, column) else { continue };
+        let (x, y) = (NAMES + wide * column as f64, HEAD + ROW * row as f64);
+        let share = (place.share_of_gap / most).sqrt();
+        let says = format!("{}: {} % of the gap", place.says, number::fixed(100.0 * place.share_of_gap, 1));
+        canvas.group(&Group { class: "mark", title: Some(&says), ..Group::default() }, |layer| {
+            layer.rect((x + 0.4, y + 0.4), (x + wide - 0.4, y + ROW - 0.4), shade(share));
+            if place.significant {
+                let middle = (x + 0.5 * wide, y + 0.5 * ROW);
+                layer.mark(super::style::Mark::Circle, middle, 0.9, if share > 0.55 { WHITE } else { INK });
+            }
+        });
+    }
+    canvas.draw(|layer| {
+        for at in 1..columns.len() {
+            if columns[at - 1].0 != columns[at].0 {
+                let x = NAMES + wide * at as f64;
+                layer.line((x, HEAD - 4.0), (x, HEAD + ROW * rows.len() as f64), INK, 0.6);
+            }
+        }
+        layer.line((NAMES, HEAD), (WIDTH, HEAD), GRID, 0.5);
+    });
+    canvas.finish()
+}
+
+fn name(place: &Where) -> String {
+    let position = place.says.strip_prefix(&format!("{}, ", place.quantity)).unwrap_or(&place.says);
+    let position = position.split(&format!(", {}", place.wavelength_or_band)).next().unwrap_or(position);
+    format!("{}, {position}", place.quantity)
+}
+
+/// From white to dark blue, readable in grey.
+fn shade(share: f64) -> RGBColor {
+    let mix = |to: u8| (f64::from(u8::MAX) + share.clamp(0.0, 1.0) * (f64::from(to) - f64::from(u8::MAX))).round() as u8;
+    RGBColor(mix(0x0b), mix(0x3c), mix(0x6f))
+}
