@@ -62,6 +62,8 @@ pub struct Found {
     pub strata: Vec<Vec<usize>>,
 }
 
+/// A size that is a declared tolerance is named from so many standard deviations on.
+pub const TOLERANCE_SD: f64 = 3.0;
 /// Draws for the threshold.
 const DRAWS: usize = 60;
 /// Evidence below which no cause is named: real discrepancies are not those of the covariance.
@@ -184,7 +186,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
 }
 
 fn bars(threshold: f64) -> Bars {
-    Bars { first: threshold, next: 1.25 * threshold, confined: 15.0, tolerance_sd: 3.0, share: 0.06, most: 3 }
+    Bars { first: threshold, next: 1.25 * threshold, confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.2, most: 3 }
 }
 
 /// What is beyond what is allowed for, over all channels.
@@ -251,8 +253,8 @@ fn masks(seen: &Observations, settings: &Settings) -> Vec<Mask> {
     masks
 }
 
-/// How many declared standard deviations a size is from neutral; many for an effect that is no tolerance.
-fn deviations(candidate: &Candidate, size: f64, value: &dyn Fn(&str) -> Option<f64>, declared: &dyn Fn(&str) -> Option<f64>) -> f64 {
+/// How many declared standard deviations a size is from neutral; infinitely many for an effect that is no tolerance.
+pub fn deviations(candidate: &Candidate, size: f64, value: &dyn Fn(&str) -> Option<f64>, declared: &dyn Fn(&str) -> Option<f64>) -> f64 {
     let Some(sd) = candidate.tolerance.as_deref().and_then(declared) else { return f64::INFINITY };
     let neutral = candidate.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size).or_else(|| value(&candidate.size));
     match neutral {

@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::features::Kind;
 use super::fit::Fitted;
-use super::run::{Found, Inputs, LACK, chi, excess, length};
+use super::run::{Found, Inputs, LACK, TOLERANCE_SD, chi, declared, deviations, excess, length, value_of};
 use crate::effects::{Action, Effect};
 use crate::result::diagnosis::{Cause, Detectable, Diagnosis, How, NamedEffect, Shrink, Value, Vetoed};
 
@@ -200,7 +200,9 @@ fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
         if causes.len() >= 5 || causes.iter().any(|cause| cause.effects.iter().any(|effect| effect.name == of.effect)) {
             continue;
         }
-        let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(8.0) && fit.evidence > found.threshold;
+        let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(8.0)
+            && fit.evidence > found.threshold
+            && deviations(of, fit.size, &|key| value_of(inputs.campaign, key), &|name| declared(inputs.campaign, name)) >= TOLERANCE_SD;
         let mut members = found.chosen.members.clone();
         members[*at] = fit.clone();
         let mut cause = cause(inputs, found, &members, causes.len() + 2);
