@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::cache::Cache;
 use super::observe::Observations;
-use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Signals};
+use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Parameter, Signals};
 use crate::problem::Problem;
 use crate::simulate::{Simulator, Task};
 
@@ -31,6 +31,23 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// An effect by one of its parameters, everywhere and on no channels of its own.
+    fn new(effect: &Effect, parameter: &Parameter, mut nodes: Vec<Node>) -> Self {
+        nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+        Self {
+            effect: effect.name.clone(),
+            channels: Vec::new(),
+            size: parameter.name.clone(),
+            range: (parameter.low, parameter.high),
+            fixed: Vec::new(),
+            nodes,
+            discrete: false,
+            confinable: effect.confinable,
+            tolerance: effect.tolerance.clone(),
+            alternatives: 1,
+        }
+    }
+
     /// Whether it exchanges two channels.
     #[must_use]
     pub fn effect_is_swap(&self) -> bool {
@@ -161,19 +178,7 @@ impl Workshop<'_> {
                     false => neutral.unwrap_or(0.0),
                 };
                 nodes.push(Node { size: none, change: Vec::new() });
-                nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
-                found.push(Candidate {
-                    effect: effect.name.clone(),
-                    channels: Vec::new(),
-                    size: parameter.name.clone(),
-                    range: (parameter.low, parameter.high),
-                    fixed,
-                    nodes,
-                    discrete: false,
-                    confinable: effect.confinable,
-                    tolerance: effect.tolerance.clone(),
-                    alternatives: 1,
-                });
+                found.push(Candidate { fixed, ..Candidate::new(effect, parameter, nodes) });
             }
         }
         found
@@ -216,21 +221,11 @@ impl Workshop<'_> {
                     nodes.push(Node { size: *size, change });
                 }
             }
-            nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
-            let low = nodes.first().map_or(parameter.low, |node| if operator == Operator::Offset { node.size } else { parameter.low });
-            let high = nodes.last().map_or(parameter.high, |node| if operator == Operator::Offset { node.size } else { parameter.high });
-            Some(Candidate {
-                effect: effect.name.clone(),
-                channels: list,
-                size: parameter.name.clone(),
-                range: (low, high),
-                fixed: Vec::new(),
-                nodes,
-                discrete,
-                confinable: effect.confinable,
-                tolerance: effect.tolerance.clone(),
-                alternatives: 1,
-            })
+            let mut made = Candidate { channels: list, discrete, ..Candidate::new(effect, parameter, nodes) };
+            if let (Operator::Offset, Some(first), Some(last)) = (operator, made.nodes.first(), made.nodes.last()) {
+                made.range = (first.size, last.size);
+            }
+            Some(made)
         };
         lists.into_par_iter().filter_map(make).collect()
     }
@@ -252,19 +247,7 @@ impl Workshop<'_> {
                         nodes.push(Node { size: *size, change });
                     }
                 }
-                nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
-                found.push(Candidate {
-                    effect: effect.name.clone(),
-                    channels: Vec::new(),
-                    size: parameter.name.clone(),
-                    range: (parameter.low, parameter.high),
-                    fixed,
-                    nodes,
-                    discrete: false,
-                    confinable: effect.confinable,
-                    tolerance: effect.tolerance.clone(),
-                    alternatives: 1,
-                });
+                found.push(Candidate { fixed, ..Candidate::new(effect, parameter, nodes) });
             }
         }
         found

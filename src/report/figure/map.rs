@@ -9,7 +9,7 @@ use crate::result::diagnosis::Where;
 
 const ROW: f64 = 11.0;
 const NAMES: f64 = 176.0;
-const HEAD: f64 = 52.0;
+const HEAD: f64 = 60.0;
 
 /// Rows in the order of the shares they hold; a dot marks cells that are significant.
 pub fn map(places: &[Where]) -> String {
