@@ -1,5 +1,9 @@
 //! One record through the signal part of the graph.
 
+mod held;
+
+pub use held::Held;
+
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -205,90 +209,6 @@ impl Opened {
         }
         state.run(&levels, wanted, |id| !placed[id])?;
         Ok(Held { state, levels, placed, wanted })
-    }
-}
-
-/// A record whose filters have run, to be cut at several places.
-#[derive(Debug)]
-pub struct Held<'a> {
-    state: State<'a>,
-    levels: Vec<Vec<NodeId>>,
-    /// Nodes that depend on where the section lies.
-    placed: Vec<bool>,
-    wanted: &'a BTreeSet<NodeId>,
-}
-
-impl Held<'_> {
-    /// A wanted signal of the whole record.
-    pub fn samples(&self, node: NodeId) -> Option<&Samples> {
-        self.state.found.iter().find_map(|(id, found)| match found {
-            Found::Samples(samples) if *id == node => Some(samples),
-            _ => None,
-        })
-    }
-
-    /// The part of the section that the moved record covers.
-    fn covered(&self, shift: f64) -> Result<Extent, String> {
-        let (start, end) = self.state.extent;
-        if shift == 0.0 {
-            return Ok((start, end));
-        }
-        let axis = &self.state.opened.along.axis;
-        let from = axis.first().map_or(start, |x| (x + shift).max(start));
-        let to = axis.last().map_or(end, |x| (x + shift).min(end));
-        let missing = (end - start) - (to - from);
-        if missing > MOST_MISSING * (end - start) {
-            return Err(format!("shifted by {shift} along the axis, the record ends {missing:.3} short of the section"));
-        }
-        Ok((from, to))
-    }
-
-    /// Values of the wanted nodes with the record moved along the axis by a shift (SI) before the section is cut.
-    ///
-    /// # Errors
-    /// Where the moved record covers too little of the section, and as evaluation.
-    pub fn at(&self, shift: f64) -> Result<Vec<(NodeId, Found)>, String> {
-        let mut moved = Moved { shift, known: Vec::new() };
-        let extent = self.covered(shift)?;
-        let mut state = self.state.clone();
-        state.cutter = Cutter::new(extent);
-        state.extent = extent;
-        for value in state.values.iter_mut().flatten() {
-            if let Signal::Samples(samples) = value {
-                *samples = moved.samples(samples);
-            }
-        }
-        for (_, found) in &mut state.found {
-            if let Found::Samples(samples) = found {
-                *samples = moved.samples(samples);
-            }
-        }
-        state.run(&self.levels, self.wanted, |id| self.placed[id])?;
-        Ok(state.found)
-    }
-}
-
-/// Share of a section that a moved record may leave uncovered: what there is of it is evaluated.
-const MOST_MISSING: f64 = 0.2;
-
-/// Signals of a record run along the same samples, which are moved once for all of them.
-struct Moved {
-    shift: f64,
-    known: Vec<(Arc<Along>, Arc<Along>)>,
-}
-
-impl Moved {
-    fn samples(&mut self, samples: &Samples) -> Samples {
-        if self.shift == 0.0 {
-            return samples.clone();
-        }
-        let known = self.known.iter().find(|(from, _)| Arc::ptr_eq(from, &samples.along)).map(|(_, to)| Arc::clone(to));
-        let along = known.unwrap_or_else(|| {
-            let to = Arc::new(samples.along.moved(self.shift));
-            self.known.push((Arc::clone(&samples.along), Arc::clone(&to)));
-            to
-        });
-        Samples { along, values: Arc::clone(&samples.values) }
     }
 }
 

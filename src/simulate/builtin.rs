@@ -119,10 +119,24 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
                 let key = match fault {
                     VehicleFault::Missing(parameter) | VehicleFault::Inadmissible(parameter, _) => parameter.key,
                 };
-                problems.push(inadmissible(&fault, &tree.lookup(key).map(|node| node.span.clone())).or_at(tree));
+                let problem = inadmissible(&fault, &tree.lookup(key).map(|node| node.span.clone())).or_at(tree);
+                problems.push(if matches!(fault, VehicleFault::Missing(_)) { misspelt(problem, tree, key) } else { problem });
             }
             None
         }
+    }
+}
+
+/// Where a key is missing, a key beside it that no parameter has and that looks like it is shown.
+fn misspelt(problem: Problem, tree: &Node, key: &str) -> Problem {
+    let (group, name) = key.rsplit_once('.').unwrap_or(("", key));
+    let beside = if group.is_empty() { Some(tree) } else { tree.lookup(group) };
+    let whole = |name: &str| if group.is_empty() { name.to_string() } else { format!("{group}.{name}") };
+    let strangers = beside.map_or(&[][..], Node::entries).iter().filter(|(key, _)| model::parameter(&whole(&key.text)).is_none());
+    let names: Vec<&str> = strangers.map(|(key, _)| key.text.as_str()).collect();
+    match crate::problem::nearest(name, names).and_then(|near| beside?.entry(near)) {
+        Some((near, _)) => problem.at(&near.span).help(format!("is `{}` meant to be `{name}`?", near.text)),
+        None => problem,
     }
 }
 
