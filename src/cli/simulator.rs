@@ -98,7 +98,7 @@ impl Chosen<'_> {
             Self::External(program) => program.baseline(section),
             Self::Builtin(model) => {
                 let (recorded, _) = self.recorded(campaign, section)?;
-                deviations(&model.run(&Task { section, settings: &[], shift: 0.0 })?, &recorded, section)
+                deviations(&model.run(&Task { section, settings: &[], shift: 0.0, inside_only: false })?, &recorded, section)
             }
         };
         let all: Vec<Result<Vec<Deviation>, Problem>> = sections.par_iter().map(one).collect();

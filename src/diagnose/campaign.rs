@@ -37,32 +37,76 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, sections: Vec<Section>
         Some(first) => recorded(inputs.campaign, crate::data::RecordKind::Simulation, first).map_err(Problems)?,
         None => return Err(Problems(vec![Problem::error("no-sections", "the campaign has no sections")])),
     };
-    let Some(found) = find(inputs, sections, &mut problems) else { return Err(problems) };
+    let Some(mut found) = find(inputs, sections, &mut problems) else { return Err(problems) };
     (inputs.trying)("the protocol");
     let quiet = |_: &str| {};
+    let one = |problem: Problem| Problems(vec![problem]);
     let settings = RunSettings { traces: 0 };
     let before = certify(compiled, inputs.campaign, settings, &quiet)?;
     let mut after = None;
     let mut shrink = None;
     let mut records = Vec::new();
-    if !found.chosen.members.is_empty() {
-        (inputs.trying)("adding the effects");
-        let one = |problem: Problem| Problems(vec![problem]);
-        let folds = folds(&found.strata);
-        let fitted: Vec<Vec<Applied>> = folds.iter().map(|fold| applied(&found, &trained(&found, fold))).collect();
-        let of = |at: usize| folds.iter().position(|fold| fold.contains(&at)).map_or_else(Vec::new, |fold| fitted[fold].clone());
-        let unseen = improved(&found, inputs.catalogue, inputs.simulator, &of).map_err(one)?;
-        let all = applied(&found, &found.chosen.members);
-        records = improved(&found, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
+    let evaluate = |found: &Found, records: &[Signals]| evaluated(inputs.campaign, compiled, found, records, &units, settings);
+    while !found.chosen.members.is_empty() {
         (inputs.trying)("the protocol with the effects");
-        let made = evaluated(inputs.campaign, compiled, &found, &unseen, &units, settings)?;
+        let made = evaluate(&found, &unseen(inputs, &found, None)?)?;
+        if let Some((idle, reason)) = idle(inputs, &found, &before, &made, &evaluate)? {
+            found.refuse(idle, reason);
+            continue;
+        }
         shrink = Some(compare(&before, &made, inputs.seed, shares(&found)));
         after = Some(made);
+        let all = applied(&found, &found.chosen.members);
+        records = improved(&found, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
+        break;
     }
     let mut diagnosis = super::words::diagnosis(inputs, &found, shrink);
     diagnosis.pictures = super::pictures::pictures(inputs.settings, &found, &records, &units);
     Ok(Outcome { diagnosis, found, before, after, improved: records, units })
 }
+
+/// Records with the effects, each section with the sizes that the others ask for; a member may be left out.
+fn unseen(inputs: &Inputs<'_>, found: &Found, without: Option<usize>) -> Result<Vec<Signals>, Problems> {
+    let folds = folds(&found.strata);
+    let effects = |fold: &Vec<usize>| {
+        let mut effects = applied(found, &trained(found, fold));
+        without.map(|member| effects.remove(member));
+        effects
+    };
+    let fitted: Vec<Vec<Applied>> = folds.iter().map(effects).collect();
+    let of = |at: usize| folds.iter().position(|fold| fold.contains(&at)).map_or_else(Vec::new, |fold| fitted[fold].clone());
+    improved(found, inputs.catalogue, inputs.simulator, &of).map_err(|problem| Problems(vec![problem]))
+}
+
+type Evaluate<'a> = &'a dyn Fn(&Found, &[Signals]) -> Result<Certification, Problems>;
+
+/// The member that removes least of the gap on sections that the fit did not see, if that is nothing to speak of, and what it does
+/// instead. Effects that the protocol does not see at all are not judged by it.
+fn idle(
+    inputs: &Inputs<'_>,
+    found: &Found,
+    before: &Certification,
+    after: &Certification,
+    evaluate: Evaluate<'_>,
+) -> Result<Option<(usize, String)>, Problems> {
+    let count = found.chosen.members.len();
+    let mut worst: Option<(usize, f64)> = None;
+    for member in 0..count {
+        let without = if count == 1 { before.clone() } else { evaluate(found, &unseen(inputs, found, Some(member))?)? };
+        let earned = compare(&without, after, inputs.seed, Vec::new());
+        let Some(touched) = earned.touched else { continue };
+        let most = touched.fraction_removed.max(earned.fraction_removed);
+        if most < EARNED && worst.is_none_or(|(_, least)| most < least) {
+            worst = Some((member, most));
+        }
+    }
+    Ok(worst.map(|(member, most)| {
+        (member, format!("on sections kept out of the fit it removes {:.0} % of the gap in the quantities that it changes", 100.0 * most))
+    }))
+}
+
+/// Share of the gap that an effect must remove, at least in the quantities that it changes.
+const EARNED: f64 = 0.05;
 
 /// What effects that are known to be true would have done: their whitened size, and the share of the gap that they remove.
 #[must_use]

@@ -28,6 +28,8 @@ pub struct Candidate {
     pub tolerance: Option<String>,
     /// How many candidates of the effect there are: what looking at all of them costs.
     pub alternatives: usize,
+    /// Sizes that are simulated only where the coarser ones say that it is worth it.
+    pub pending: Vec<f64>,
 }
 
 impl Candidate {
@@ -45,6 +47,7 @@ impl Candidate {
             confinable: effect.confinable,
             tolerance: effect.tolerance.clone(),
             alternatives: 1,
+            pending: Vec::new(),
         }
     }
 
@@ -116,7 +119,8 @@ impl Bench<'_> {
             return Ok(known);
         }
         let each = |at: usize| {
-            let signals = self.simulator.run(&Task { section: &self.seen.sections[at].section, settings, shift: 0.0 })?;
+            let signals =
+                self.simulator.run(&Task { section: &self.seen.sections[at].section, settings, shift: 0.0, inside_only: true })?;
             Ok(self.seen.of(at, &signals, true))
         };
         let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.seen.sections.len()).into_par_iter().map(each).collect();
@@ -163,25 +167,48 @@ impl Workshop<'_> {
                 parameter.neutral.or_else(|| moved.and_then(|(key, factor)| Some((self.neutral)(key)? / factor))).or_else(of_model);
             for fixed in combinations(others) {
                 let fixed: Vec<(String, f64)> = fixed.into_iter().map(|(at, value)| (effect.parameters[at].name.clone(), value)).collect();
-                let mut nodes = Vec::new();
-                for size in sizes.iter().filter(|size| neutral != Some(**size)) {
-                    let mut values = fixed.clone();
-                    values.push((parameter.name.clone(), *size));
-                    match self.run(bench, &applied(effect, values)) {
-                        Ok(change) => nodes.push(Node { size: *size, change }),
-                        Err(problem) => runs.failed.push(format!("{} = {size}: {}", parameter.name, problem.says)),
-                    }
-                    runs.made += self.seen.sections.len();
-                }
                 let none = match parameter.vanishes_high {
                     true => f64::INFINITY,
                     false => neutral.unwrap_or(0.0),
                 };
-                nodes.push(Node { size: none, change: Vec::new() });
-                found.push(Candidate { fixed, ..Candidate::new(effect, parameter, nodes) });
+                let (coarse, pending) = coarse(sizes, none);
+                let mut made =
+                    Candidate { fixed, pending, ..Candidate::new(effect, parameter, vec![Node { size: none, change: Vec::new() }]) };
+                self.simulate(bench, effect, &mut made, &coarse, runs);
+                found.push(made);
             }
         }
         found
+    }
+
+    /// Simulates more sizes of a candidate.
+    fn simulate(&self, bench: &Bench<'_>, effect: &Effect, candidate: &mut Candidate, sizes: &[f64], runs: &mut Runs) {
+        for size in sizes {
+            let mut values = candidate.fixed.clone();
+            values.push((candidate.size.clone(), *size));
+            match self.run(bench, &applied(effect, values)) {
+                Ok(change) => candidate.nodes.push(Node { size: *size, change }),
+                Err(problem) => runs.failed.push(format!("{} = {size}: {}", candidate.size, problem.says)),
+            }
+            runs.made += self.seen.sections.len();
+        }
+        candidate.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+    }
+
+    /// Simulates the sizes of a candidate that were left for later.
+    pub fn refine(&self, candidate: &mut Candidate, runs: &mut Runs) {
+        let pending = std::mem::take(&mut candidate.pending);
+        if let (Some(bench), Some(effect)) = (self.bench, self.catalogue.effect(&candidate.effect)) {
+            (self.trying)(&effect.title);
+            self.simulate(bench, effect, candidate, &pending, runs);
+        }
+    }
+
+    /// Simulates one more size of a candidate.
+    pub fn add_size(&self, candidate: &mut Candidate, size: f64, runs: &mut Runs) {
+        if let (Some(bench), Some(effect)) = (self.bench, self.catalogue.effect(&candidate.effect)) {
+            self.simulate(bench, effect, candidate, &[size], runs);
+        }
     }
 
     /// How the features change with an effect on the simulator.
@@ -314,6 +341,19 @@ impl Workshop<'_> {
         }
         Some(change)
     }
+}
+
+/// Every other size, counted from none to either side; the only one where there is one. And the others.
+fn coarse(sizes: &[f64], none: f64) -> (Vec<f64>, Vec<f64>) {
+    let (mut first, mut later) = (Vec::new(), Vec::new());
+    let below = sizes.iter().rev().filter(|size| **size < none).copied().collect::<Vec<_>>();
+    let above = sizes.iter().filter(|size| **size > none).copied().collect::<Vec<_>>();
+    for side in [below, above] {
+        for (at, size) in side.iter().enumerate() {
+            if at % 2 == 1 || side.len() == 1 { first.push(*size) } else { later.push(*size) }
+        }
+    }
+    (first, later)
 }
 
 /// An effect with values, everywhere.

@@ -38,8 +38,6 @@ pub struct Fitter<'a> {
     pub whitener: &'a Whitener,
     pub candidates: &'a [Candidate],
     pub masks: Vec<Mask>,
-    /// Features per section.
-    size: usize,
     /// By candidate and mask: the whitened nodes.
     whitened: HashMap<(usize, usize), Vec<Vec<f64>>>,
 }
@@ -47,14 +45,14 @@ pub struct Fitter<'a> {
 impl<'a> Fitter<'a> {
     /// Whitens the nodes of all candidates under all masks that they may have.
     #[must_use]
-    pub fn new(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>, size: usize) -> Self {
+    pub fn new(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>) -> Self {
         use rayon::prelude::*;
         let keys: Vec<(usize, usize)> = candidates
             .iter()
             .enumerate()
             .flat_map(|(at, candidate)| (0..if candidate.confinable { masks.len() } else { 1 }).map(move |mask| (at, mask)))
             .collect();
-        let mut fitter = Self { whitener, candidates, masks, size, whitened: HashMap::new() };
+        let mut fitter = Self { whitener, candidates, masks, whitened: HashMap::new() };
         let whitened: Vec<_> = keys.par_iter().map(|(at, mask)| ((*at, *mask), fitter.nodes(*at, *mask))).collect();
         fitter.whitened = whitened.into_iter().collect();
         fitter
@@ -65,21 +63,9 @@ impl<'a> Fitter<'a> {
             if change.is_empty() {
                 return Vec::new();
             }
-            self.whitener.apply(&self.masked(change, mask))
+            self.whitener.apply(&self.masks[mask].on(change))
         };
         self.candidates[candidate].nodes.iter().map(|node| all(&node.change)).collect()
-    }
-
-    /// A change where the mask is, nothing elsewhere.
-    #[must_use]
-    pub fn masked(&self, change: &[f64], mask: usize) -> Vec<f64> {
-        let mut masked = change.to_vec();
-        for (section, inside) in self.masks[mask].sections.iter().enumerate() {
-            if !inside {
-                masked[section * self.size..(section + 1) * self.size].fill(0.0);
-            }
-        }
-        masked
     }
 
     /// The best size of a candidate under a mask for the whitened difference `z`.
@@ -140,16 +126,33 @@ impl<'a> Fitter<'a> {
         let masks = if self.candidates[candidate].confinable { self.masks.len() } else { 1 };
         (0..masks).filter_map(|mask| self.fit(z, candidate, mask)).max_by(|a, b| a.evidence.total_cmp(&b.evidence))
     }
+}
 
-    /// Raw change of the features of a fit.
+impl Mask {
+    /// A change where the mask is, nothing elsewhere.
     #[must_use]
-    pub fn change(&self, fitted: &Fitted) -> Vec<f64> {
-        let of = &self.candidates[fitted.candidate];
-        let (a, b) = (&of.nodes[fitted.segment].change, &of.nodes[fitted.segment + 1].change);
+    pub fn on(&self, change: &[f64]) -> Vec<f64> {
+        let mut masked = change.to_vec();
+        let size = masked.len() / self.sections.len().max(1);
+        for (section, inside) in self.sections.iter().enumerate() {
+            if !inside {
+                masked[section * size..(section + 1) * size].fill(0.0);
+            }
+        }
+        masked
+    }
+}
+
+impl Fitted {
+    /// Raw change of the features.
+    #[must_use]
+    pub fn change(&self, candidates: &[Candidate], masks: &[Mask]) -> Vec<f64> {
+        let of = &candidates[self.candidate];
+        let (a, b) = (&of.nodes[self.segment].change, &of.nodes[self.segment + 1].change);
         let n = a.len().max(b.len());
         let get = |node: &Vec<f64>, i: usize| if node.is_empty() { 0.0 } else { node[i] };
-        let raw: Vec<f64> = (0..n).map(|i| (1.0 - fitted.share) * get(a, i) + fitted.share * get(b, i)).collect();
-        self.masked(&raw, fitted.mask)
+        let raw: Vec<f64> = (0..n).map(|i| (1.0 - self.share) * get(a, i) + self.share * get(b, i)).collect();
+        masks[self.mask].on(&raw)
     }
 }
 

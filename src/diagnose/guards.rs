@@ -1,6 +1,7 @@
 //! Guards: views that share no feature must agree on the size of an effect, and what is left must be within what is allowed for.
 
 use super::features::Kind;
+use super::fit::Mask;
 use super::observe::Observations;
 use super::whiten::{Covariance, dot};
 
@@ -81,6 +82,29 @@ pub fn families(seen: &Observations, strata: &[Vec<usize>]) -> Vec<Vec<View>> {
     let (even, odd): (Vec<usize>, Vec<usize>) = all.iter().partition(|at| *at % 2 == 0);
     let halves = vec![view("every second section", &even, every.clone()), view("the other sections", &odd, every.clone())];
     vec![kinds, strata.collect(), groups.collect(), halves]
+}
+
+/// Share of the evidence that must be left whichever section is taken away.
+const KEPT: f64 = 0.5;
+
+/// The section without which most of the evidence for a change is gone, if one carries it; one of few sections always does.
+#[must_use]
+pub fn carried(covariance: &Covariance, mask: &Mask, change: &[f64], rest: &[f64]) -> Option<String> {
+    use rayon::prelude::*;
+    let inside: Vec<usize> = (0..mask.sections.len()).filter(|at| mask.sections[*at]).collect();
+    let moved = |at: &usize| change[at * covariance.size..(at + 1) * covariance.size].iter().any(|x| *x != 0.0);
+    if inside.iter().filter(|at| moved(at)).count() < 4 {
+        return None;
+    }
+    let features: Vec<usize> = (0..covariance.size).collect();
+    let evidence = |without: Option<usize>| {
+        let sections = (0..mask.sections.len()).filter(|at| Some(*at) != without).collect();
+        let view = View { says: String::new(), sections, features: features.clone() };
+        share_seen(covariance, &view, change, rest).map_or(0.0, |(share, error)| (share / error).powi(2))
+    };
+    let all = evidence(None);
+    let (at, least) = inside.into_par_iter().map(|at| (at, evidence(Some(at)))).min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)))?;
+    (least < KEPT * all).then(|| format!("without section {} only {:.0} % of the evidence is left", at + 1, 100.0 * least / all))
 }
 
 /// How views of a family contradict each other: the two that differ most, if they differ by more than chance (Cochran's Q).

@@ -5,7 +5,7 @@ use super::candidates::{Bench, Candidate, Runs, Trying, Workshop};
 use super::covariance::{Sensitivity, covariance, strata};
 use super::features::Kind;
 use super::fit::{Fitted, Fitter, Mask, less};
-use super::guards::{View, contradiction, families, lack_of_fit};
+use super::guards::{View, carried, contradiction, families, lack_of_fit};
 use super::observe::Observations;
 use super::reference::Reference;
 use super::search::{Bars, Chosen, Refused, chi_squared, refit, rivals, search};
@@ -71,6 +71,10 @@ const FLOOR: f64 = 30.0;
 /// Lack of fit, in standard deviations of chi-squared of a channel, beyond which something is not explained.
 pub const LACK: f64 = 5.0;
 
+/// A candidate is simulated at all its sizes from this share of the best evidence on, and from this evidence on.
+const NEAR: f64 = 0.5;
+const WORTH: f64 = 10.0;
+
 /// With a member the excess of the channels may be this share of what it was without it, at the most: some effects show elsewhere.
 const WORSE: f64 = 1.1;
 
@@ -124,6 +128,9 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         Some(bench) => sensitivities(bench, settings, &base, &value, &declared, &mut runs),
         None => Vec::new(),
     };
+    for expected in sensitivities.iter().filter_map(|sensitivity| sensitivity.expected.as_ref()) {
+        difference = less(&difference, expected);
+    }
     let workshop = Workshop {
         seen: &seen,
         catalogue: inputs.catalogue,
@@ -144,20 +151,26 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let families = families(&seen, &strata);
     let far = |candidate: &Candidate, size: f64| deviations(candidate, size, &value, &declared);
     let mut refused = Vec::new();
-    let mut chosen;
-    let threshold;
-    // Twice: the sizes that were found are simulated themselves, and the search is made again.
-    {
-        let fitter = Fitter::new(&whitener, &candidates, masks.clone(), seen.features.len());
-        threshold = limit(&fitter, z.len(), inputs.seed).max(FLOOR);
-        let bars = bars(threshold);
-        let guard = |fit: &Fitted, rest: &[f64]| guard(&whole, &families, &fitter, &difference, z.as_slice(), rest, fit);
-        chosen = search(&fitter, &z, &bars, &far, &guard, &mut refused);
+    let (mut chosen, threshold);
+    // Until no candidate that matters has sizes left to be simulated.
+    loop {
+        let fitter = Fitter::new(&whitener, &candidates, masks.clone());
+        let limit = limit(&fitter, z.len(), inputs.seed).max(FLOOR);
+        let bars = bars(limit);
+        refused.clear();
+        let guard = |fit: &Fitted, chosen: &Chosen| guard(&whole, &families, &fitter, &difference, chosen, fit);
+        let found = search(&fitter, &z, &bars, &far, &guard, &mut refused);
+        let wanted = promising(&fitter, &z, &found);
+        drop(fitter);
+        if wanted.is_empty() {
+            (chosen, threshold) = (found, limit);
+            break;
+        }
+        wanted.into_iter().for_each(|at| workshop.refine(&mut candidates[at], &mut runs));
+        (inputs.trying)("weighing");
     }
-    if let Some(bench) = &bench {
-        polish(&workshop, bench, &mut candidates, &chosen, &mut runs);
-    }
-    let fitter = Fitter::new(&whitener, &candidates, masks.clone(), seen.features.len());
+    polish(&workshop, &mut candidates, &chosen, &mut runs);
+    let fitter = Fitter::new(&whitener, &candidates, masks.clone());
     // Nodes may have come between: the members are fitted again.
     refit(&fitter, &z, &mut chosen, 6);
     let lack_before = lack_of_fit(&whole, &seen, &difference);
@@ -204,13 +217,16 @@ fn drop_what_harms(
     before: &[(String, Kind, f64, f64)],
 ) -> Vec<(String, Kind, f64, f64)> {
     loop {
-        let now = lack_of_fit(covariance, seen, &left(fitter, difference, chosen));
+        let now = lack_of_fit(covariance, seen, &left(fitter.candidates, &fitter.masks, difference, chosen));
         let Some(last) = chosen.members.len().checked_sub(1) else { return now };
         let mut without = chosen.clone();
         without.members.remove(last);
         refit(fitter, z, &mut without, 4);
-        let then =
-            if without.members.is_empty() { before.to_vec() } else { lack_of_fit(covariance, seen, &left(fitter, difference, &without)) };
+        let then = if without.members.is_empty() {
+            before.to_vec()
+        } else {
+            lack_of_fit(covariance, seen, &left(fitter.candidates, &fitter.masks, difference, &without))
+        };
         if excess(&now) <= WORSE * excess(&then) {
             return now;
         }
@@ -222,8 +238,22 @@ fn drop_what_harms(
 
 /// What the members leave of the difference, in the features' own units.
 #[must_use]
-pub fn left(fitter: &Fitter<'_>, difference: &[f64], chosen: &Chosen) -> Vec<f64> {
-    chosen.members.iter().fold(difference.to_vec(), |rest, member| less(&rest, &fitter.change(member)))
+pub fn left(candidates: &[Candidate], masks: &[Mask], difference: &[f64], chosen: &Chosen) -> Vec<f64> {
+    chosen.members.iter().fold(difference.to_vec(), |rest, member| less(&rest, &member.change(candidates, masks)))
+}
+
+impl Found {
+    /// Without a member, the others fitted again.
+    pub fn refuse(&mut self, at: usize, reason: String) {
+        self.refused.push(Refused { fitted: self.chosen.members.remove(at), reason });
+        self.chosen.members = super::shrink::trained(self, &[]);
+        self.chosen.rest =
+            self.chosen.members.iter().fold(self.whitener.apply(&self.difference), |rest, member| less(&rest, &member.whitened));
+        self.lack_after = lack_of_fit(&self.covariance, &self.seen, &left(&self.candidates, &self.masks, &self.difference, &self.chosen));
+        let gone = at;
+        self.rivals.retain(|(member, ..)| *member != gone);
+        self.rivals.iter_mut().filter(|(member, ..)| *member > gone).for_each(|(member, ..)| *member -= 1);
+    }
 }
 
 /// The whole campaign, the values of the columns that an effect may be confined to, and pairs of neighbouring strata.
@@ -284,40 +314,40 @@ fn guard(
     families: &[Vec<View>],
     fitter: &Fitter<'_>,
     difference: &[f64],
-    z: &[f64],
-    rest: &[f64],
+    chosen: &Chosen,
     fit: &Fitted,
 ) -> Option<String> {
-    let change = fitter.change(fit);
-    // What other members explain is taken away in whitened form only: the guard looks at the whole difference for the first.
-    let _ = (z, rest);
-    for family in families {
-        if let Some(says) = contradiction(covariance, family, &change, difference) {
-            return Some(says);
-        }
-    }
-    None
+    let change = fit.change(fitter.candidates, &fitter.masks);
+    let rest = left(fitter.candidates, &fitter.masks, difference, chosen);
+    let contradicts = families.iter().find_map(|family| contradiction(covariance, family, &change, &rest));
+    contradicts.or_else(|| carried(covariance, &fitter.masks[fit.mask], &change, &rest))
 }
 
 /// Simulates the sizes that were found, so that nothing rests on interpolation.
-fn polish(workshop: &Workshop<'_>, bench: &Bench<'_>, candidates: &mut [Candidate], chosen: &Chosen, runs: &mut Runs) {
+fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], chosen: &Chosen, runs: &mut Runs) {
     for member in &chosen.members {
         let candidate = &mut candidates[member.candidate];
-        let Some(effect) = workshop.catalogue.effect(&candidate.effect) else { continue };
-        if candidate.channels.is_empty()
-            && member.size.is_finite()
-            && candidate.nodes.iter().all(|node| node.size.to_bits() != member.size.to_bits())
-        {
-            let mut values = candidate.fixed.clone();
-            values.push((candidate.size.clone(), member.size));
-            runs.made += workshop.seen.sections.len();
-            match workshop.run(bench, &super::candidates::applied(effect, values)) {
-                Ok(change) => candidate.nodes.push(super::candidates::Node { size: member.size, change }),
-                Err(problem) => runs.failed.push(problem.says),
-            }
-            candidate.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+        let known = candidate.nodes.iter().any(|node| node.size.to_bits() == member.size.to_bits());
+        if candidate.channels.is_empty() && member.size.is_finite() && !known {
+            workshop.add_size(candidate, member.size, runs);
         }
     }
+}
+
+/// Candidates that are worth their other sizes: those within reach of the best for the whole difference, or for what a first set
+/// of causes leaves; and the members of that set.
+fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<usize> {
+    let pending = |at: &usize| !fitter.candidates[*at].pending.is_empty();
+    let mut found: Vec<usize> = chosen.members.iter().map(|member| member.candidate).filter(pending).collect();
+    for rest in [z, &chosen.rest] {
+        let fits = fitter.all(rest);
+        let best = fits.iter().map(|fit| fit.evidence).fold(0.0, f64::max);
+        let near = |fit: &&Fitted| fit.evidence >= (NEAR * best).max(WORTH) && pending(&fit.candidate);
+        found.extend(fits.iter().filter(near).map(|fit| fit.candidate));
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// Whitened size of a change.

@@ -28,8 +28,8 @@ pub struct Chosen {
     pub rest: Vec<f64>,
 }
 
-/// Says why a member is refused, or nothing if it may stay.
-pub type Guard<'a> = &'a (dyn Fn(&Fitted, &[f64]) -> Option<String> + Sync);
+/// Says why a fit is refused as a further member, or nothing if it may stay.
+pub type Guard<'a> = &'a (dyn Fn(&Fitted, &Chosen) -> Option<String> + Sync);
 
 /// A refused member and why.
 #[derive(Clone, Debug)]
@@ -62,13 +62,14 @@ pub fn search(
         fits.iter_mut().for_each(|fit| unconfine(fitter, &chosen.rest, fit, bars));
         fits.retain(|fit| fit.evidence >= bar && !barred.contains(&fit.candidate) && !taken(fitter, &chosen, fit));
         fits.retain(|fit| far(&fitter.candidates[fit.candidate], fit.size) >= bars.tolerance_sd);
+        fits.retain(|fit| plausible(&fitter.candidates[fit.candidate], fit.size));
         if let Some(first) = chosen.members.first() {
             let least = bars.share * first.fall;
             fits.retain(|fit| fit.fall >= least);
         }
         fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         let Some(best) = fits.into_iter().next() else { break };
-        if let Some(reason) = guard(&best, &chosen.rest) {
+        if let Some(reason) = guard(&best, &chosen) {
             barred.push(best.candidate);
             refused.push(Refused { fitted: best, reason });
             continue;
@@ -83,6 +84,12 @@ pub fn search(
         }
     }
     chosen
+}
+
+/// Whether a size is within what the catalogue holds possible.
+#[must_use]
+pub fn plausible(candidate: &Candidate, size: f64) -> bool {
+    (candidate.range.0..=candidate.range.1).contains(&size)
 }
 
 /// A confinement must earn what it costs over the same candidate everywhere.

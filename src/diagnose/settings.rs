@@ -59,6 +59,11 @@ pub struct Tolerance {
     pub scales: Vec<String>,
     /// Parameters that are added to: the factor from the declared unit to theirs.
     pub adds: Vec<(String, f64)>,
+    /// Parameters that are set together, as another model of the same thing would have them: that model is one standard deviation.
+    pub sets: Vec<(String, f64)>,
+    /// Whether it is there for certain, in about this size: the simulation lacks it. Then the change is added to the simulation, and
+    /// half of it is uncertain.
+    pub expected: bool,
     /// Whether each section has its own.
     pub per_section: bool,
     /// Whether all sections share one.
@@ -132,7 +137,7 @@ const TOP: [&str; 10] =
     ["bands", "alike", "furthest lag", "groups", "tolerances", "discrepancies", "confine to", "mirrored", "strata", "positions"];
 const GROUP: [&str; 12] =
     ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says"];
-const TOLERANCE: [&str; 5] = ["default", "scales", "adds", "each section", "shared"];
+const TOLERANCE: [&str; 7] = ["default", "scales", "adds", "sets", "expected", "each section", "shared"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
 impl Settings {
@@ -265,15 +270,20 @@ impl Reader<'_> {
         }
         for (key, node) in node.get("tolerances").map_or(&[][..], Node::entries) {
             self.keys(node, &TOLERANCE);
-            let adds = node.get("adds").map_or(&[][..], Node::entries).iter();
-            let adds = adds.map(|(key, node)| (key.text.clone(), node.number().unwrap_or(1.0))).collect();
+            let map = |key: &str| {
+                let entries = node.get(key).map_or(&[][..], Node::entries).iter();
+                entries.map(|(key, node)| (key.text.clone(), node.number().unwrap_or(1.0))).collect()
+            };
             let per_section = self.flag(node, "each section");
+            let expected = self.flag(node, "expected");
             let shared = node.get("shared").is_none() && !per_section || self.flag(node, "shared");
             settings.tolerances.push(Tolerance {
                 name: key.text.clone(),
                 default: self.number(node, "default", 0.0),
                 scales: self.words(node.get("scales")),
-                adds,
+                adds: map("adds"),
+                sets: map("sets"),
+                expected,
                 per_section,
                 shared,
             });

@@ -8,7 +8,7 @@ use super::run::Found;
 use super::whiten::dot;
 use crate::effects::{Applied, Catalogue, Confined, Gauss, Signals};
 use crate::problem::Problem;
-use crate::result::diagnosis::{QuantityShrink, Shrink};
+use crate::result::diagnosis::{QuantityShrink, Shrink, Touched};
 use crate::result::{Certification, QuantityResult};
 use crate::simulate::{Simulator, simulate};
 
@@ -65,7 +65,7 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
         .masks
         .iter()
         .map(|mask| super::fit::Mask { confined: mask.confined.clone(), sections: kept.iter().map(|at| mask.sections[*at]).collect() });
-    let fitter = Fitter::new(&whitener, &candidates, masks.collect(), size);
+    let fitter = Fitter::new(&whitener, &candidates, masks.collect());
     let z = whitener.apply(&part(&found.difference));
     let mut chosen = super::search::Chosen { members: Vec::new(), rest: z.clone() };
     for (at, member) in found.chosen.members.iter().enumerate() {
@@ -102,22 +102,16 @@ pub fn improved(
     (0..found.seen.sections.len()).into_par_iter().map(each).collect()
 }
 
+/// Root mean square change of a quantity's values, as a share of the limit of their standard deviation, from which on an effect
+/// touches it.
+const TOUCHED: f64 = 0.1;
+
 /// Before and after, quantity by quantity, with the interval of what is removed.
 #[must_use]
 pub fn compare(before: &Certification, after: &Certification, seed: u64, shares: Vec<(String, f64)>) -> Shrink {
-    let names = sections(before);
-    let all: Vec<usize> = (0..names.len()).collect();
-    let (from, to) = (measure(before, &names, &all), measure(after, &names, &all));
-    let mut random = Gauss::new(seed);
-    let mut removed: Vec<f64> = (0..DRAWS)
-        .map(|_| {
-            let drawn: Vec<usize> = all.iter().map(|_| random.below(names.len().max(1))).collect();
-            let (from, to) = (measure(before, &names, &drawn), measure(after, &names, &drawn));
-            if from > 0.0 { 1.0 - to / from } else { 0.0 }
-        })
-        .collect();
-    removed.sort_by(f64::total_cmp);
-    let at = |share: f64| removed[((DRAWS - 1) as f64 * share) as usize];
+    let every: Vec<usize> = (0..before.quantities.len()).collect();
+    let whole = removed(before, after, &every, seed);
+    let touched: Vec<usize> = every.into_iter().filter(|at| change(&before.quantities[*at], &after.quantities[*at]) >= TOUCHED).collect();
     let quantities = before.quantities.iter().zip(&after.quantities).map(|(before, after)| QuantityShrink {
         id: before.id.clone(),
         normalised_std_before: normalised(before, "std"),
@@ -128,17 +122,51 @@ pub fn compare(before: &Certification, after: &Certification, seed: u64, shares:
     });
     Shrink {
         measure: "root mean square of the normalised means and standard deviations of all quantities".into(),
-        before: from,
-        after: to,
-        fraction_removed: if from > 0.0 { 1.0 - to / from } else { 0.0 },
-        low: at(0.05),
-        high: at(0.95),
+        before: whole.before,
+        after: whole.after,
+        fraction_removed: whole.fraction_removed,
+        low: whole.low,
+        high: whole.high,
         held_out: true,
         quantities: quantities.collect(),
         verdict_before: before.verdict.in_words().into(),
         verdict_after: after.verdict.in_words().into(),
+        touched: (!touched.is_empty()).then(|| removed(before, after, &touched, seed)),
         shares,
     }
+}
+
+/// What is removed from some quantities, with its interval by resampling sections.
+fn removed(before: &Certification, after: &Certification, quantities: &[usize], seed: u64) -> Touched {
+    let names = sections(before);
+    let all: Vec<usize> = (0..names.len()).collect();
+    let both = |drawn: &[usize]| (measure(before, quantities, &names, drawn), measure(after, quantities, &names, drawn));
+    let share = |(from, to): (f64, f64)| if from > 0.0 { 1.0 - to / from } else { 0.0 };
+    let mut random = Gauss::new(seed);
+    let mut shares: Vec<f64> =
+        (0..DRAWS).map(|_| share(both(&all.iter().map(|_| random.below(names.len().max(1))).collect::<Vec<_>>()))).collect();
+    shares.sort_by(f64::total_cmp);
+    let at = |share: f64| shares[((DRAWS - 1) as f64 * share) as usize];
+    let (from, to) = both(&all);
+    Touched {
+        quantities: quantities.iter().map(|at| before.quantities[*at].id.clone()).collect(),
+        before: from,
+        after: to,
+        fraction_removed: share((from, to)),
+        low: at(0.05),
+        high: at(0.95),
+    }
+}
+
+/// Root mean square of what changes in a quantity's differences, by the limit of their standard deviation.
+fn change(before: &QuantityResult, after: &QuantityResult) -> f64 {
+    let Some(limit) = limit_of(before, "std").filter(|limit| *limit > 0.0) else { return 0.0 };
+    let squares: f64 = before.values.iter().zip(&after.values).map(|(a, b)| (a.difference - b.difference).powi(2)).sum();
+    (squares / before.values.len().max(1) as f64).sqrt() / limit
+}
+
+fn limit_of(quantity: &QuantityResult, name: &str) -> Option<f64> {
+    quantity.statistics.iter().find(|statistic| statistic.name.starts_with(name)).and_then(|statistic| statistic.limit)
 }
 
 fn normalised(quantity: &QuantityResult, name: &str) -> Option<f64> {
@@ -155,10 +183,10 @@ fn sections(of: &Certification) -> Vec<String> {
     of.sections.iter().filter(|section| section.used).map(|section| section.section.clone()).collect()
 }
 
-/// Root mean square of normalised mean and standard deviation over all quantities, of the sections drawn.
-fn measure(of: &Certification, names: &[String], drawn: &[usize]) -> f64 {
+/// Root mean square of normalised mean and standard deviation over some quantities, of the sections drawn.
+fn measure(of: &Certification, quantities: &[usize], names: &[String], drawn: &[usize]) -> f64 {
     let (mut sum, mut count) = (0.0, 0);
-    for quantity in &of.quantities {
+    for quantity in quantities.iter().map(|at| &of.quantities[*at]) {
         let values: Vec<f64> = drawn
             .iter()
             .flat_map(|at| quantity.values.iter().filter(|value| value.section == names[*at]).map(|value| value.difference))
@@ -169,10 +197,7 @@ fn measure(of: &Certification, names: &[String], drawn: &[usize]) -> f64 {
         }
         let mean = values.iter().sum::<f64>() / n;
         let std = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
-        let limit = |name: &str| {
-            quantity.statistics.iter().find(|statistic| statistic.name.starts_with(name)).and_then(|statistic| statistic.limit)
-        };
-        for (value, limit) in [(mean.abs(), limit("mean")), (std, limit("std"))] {
+        for (value, limit) in [(mean.abs(), limit_of(quantity, "mean")), (std, limit_of(quantity, "std"))] {
             if let Some(limit) = limit.filter(|limit| *limit > 0.0) {
                 sum += (value / limit).powi(2);
                 count += 1;

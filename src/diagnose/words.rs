@@ -6,6 +6,7 @@ use serde_json::json;
 use super::features::Kind;
 use super::fit::Fitted;
 use super::run::{Found, Inputs, LACK, TOLERANCE_SD, chi, declared, deviations, excess, length, value_of};
+use super::search::plausible;
 use crate::effects::{Action, Effect};
 use crate::result::diagnosis::{Cause, Detectable, Diagnosis, How, NamedEffect, Shrink, Value, Vetoed};
 
@@ -24,11 +25,10 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>) -> 
     let unexplained_share = if gap > 0.0 { (rest / gap).clamp(0.0, 1.0) } else { 0.0 };
     let ambiguous = ambiguity(inputs, found);
     let named = !found.chosen.members.is_empty();
-    let worsened = shrink.as_ref().is_some_and(|shrink| shrink.fraction_removed < 0.0);
     let verdict = match () {
         () if !named && !lacking => "no significant gap",
         () if !named => "unexplained",
-        () if worsened || lacking && (unexplained_share > 0.5 || most(&found.lack_after) > 3.0 * LACK) => "unexplained",
+        () if lacking && (unexplained_share > 0.5 || most(&found.lack_after) > 3.0 * LACK) => "unexplained",
         () if ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
         () => "explained",
     };
@@ -198,6 +198,10 @@ fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
             continue;
         }
         if causes.len() >= 5 || causes.iter().any(|cause| cause.effects.iter().any(|effect| effect.name == of.effect)) {
+            continue;
+        }
+        // What a guard refused is told as such; it is no rival.
+        if found.refused.iter().any(|refused| refused.fitted.candidate == fit.candidate) || !plausible(of, fit.size) {
             continue;
         }
         let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(8.0)

@@ -4,6 +4,10 @@
 //! Z. Y. Shen, J. K. Hedrick, J. A. Elkins: A comparison of alternative creep force models for rail vehicle dynamic analysis,
 //! Vehicle System Dynamics 12 (1983) 79-83.
 //!
+//! Or, where the vehicle asks for it, saturated by one of two other laws: O. Polach, Creep forces in simulations of traction
+//! vehicles running on adhesion limit, Wear 258 (2005) 992-1000, with his reduction factors of the areas of adhesion and of slip;
+//! or Chartet's, as in J.-P. Pascal and G. Sauvage, Vehicle System Dynamics 22 (1993) 263-282.
+//!
 //! The eight wheels are worked side by side, so that the compiler can put several into one instruction.
 
 use super::parameters::Vehicle;
@@ -37,6 +41,17 @@ pub struct Contact {
     per_radius: f64,
     stop_displacement: f64,
     stop_stiffness: f64,
+    law: Law,
+}
+
+/// How creep forces saturate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Law {
+    ShenHedrickElkins,
+    /// Factors of the areas of adhesion and of slip.
+    Polach(f64, f64),
+    /// The exponent: the larger, the later and the sharper.
+    Chartet(f64),
 }
 
 /// What a wheel does on its rail; lateral quantities mirrored, positive towards the own flange.
@@ -74,6 +89,11 @@ impl Contact {
             per_radius: 1.0 / vehicle.wheel_radius,
             stop_displacement: vehicle.stop_displacement,
             stop_stiffness: vehicle.stop_stiffness,
+            law: match () {
+                () if vehicle.polach_adhesion > 0.0 => Law::Polach(vehicle.polach_adhesion, vehicle.polach_slip),
+                () if vehicle.chartet_exponent > 0.0 => Law::Chartet(vehicle.chartet_exponent),
+                () => Law::ShenHedrickElkins,
+            },
         }
     }
 
@@ -83,15 +103,20 @@ impl Contact {
         (self.f11, self.f22)
     }
 
-    /// Longitudinal and lateral creep force in N of one wheel at a normal force in N.
+    /// Creep forces in N before saturation.
     #[inline(always)]
-    #[must_use]
-    pub fn creep(&self, normal: f64, xi: f64, eta: f64, zeta: f64) -> (f64, f64) {
+    fn linear(&self, normal: f64, xi: f64, eta: f64, zeta: f64) -> (f64, f64) {
         // ab grows with N^(2/3), ab^1.5 with N.
         let load = normal * self.per_reference_load;
         let area = load * inverse_cube_root(load);
-        let lx = -self.f11 * area * xi;
-        let lt = -self.f22 * area * eta - self.f23 * load * zeta;
+        (-self.f11 * area * xi, -self.f22 * area * eta - self.f23 * load * zeta)
+    }
+
+    /// Longitudinal and lateral creep force in N of one wheel at a normal force in N, after Shen, Hedrick and Elkins.
+    #[inline(always)]
+    #[must_use]
+    pub fn creep(&self, normal: f64, xi: f64, eta: f64, zeta: f64) -> (f64, f64) {
+        let (lx, lt) = self.linear(normal, xi, eta, zeta);
         let linear = (lx * lx + lt * lt).sqrt();
         // F / L = 1 - r/3 + r^2/27 below saturation, mu N / L = 1/r above; at r = 3 both are 1/3.
         let limit = self.friction * normal;
@@ -106,6 +131,26 @@ impl Contact {
     #[inline(always)]
     #[must_use]
     pub fn forces(&self, motion: &Motion) -> Forces {
+        // Apart, so that the usual law stays free of branches.
+        match self.law {
+            Law::ShenHedrickElkins => self.forces_by(motion, |n, xi, eta, zeta| self.creep(n, xi, eta, zeta)),
+            Law::Polach(adhesion, slip) => self.forces_saturated(motion, |r| polach(r, (adhesion, slip))),
+            Law::Chartet(exponent) => self.forces_saturated(motion, |r| (1.0 + r.powf(exponent)).powf(-1.0 / exponent)),
+        }
+    }
+
+    /// By a law that gives the share of the linear force at the linear force per limit of friction.
+    #[inline(never)]
+    fn forces_saturated(&self, motion: &Motion, share: impl Fn(f64) -> f64) -> Forces {
+        self.forces_by(motion, |n, xi, eta, zeta| {
+            let (lx, lt) = self.linear(n, xi, eta, zeta);
+            let share = share((lx * lx + lt * lt).sqrt() / (self.friction * n));
+            (share * lx, share * lt)
+        })
+    }
+
+    #[inline(always)]
+    fn forces_by(&self, motion: &Motion, creep: impl Fn(f64, f64, f64, f64) -> (f64, f64)) -> Forces {
         let (mut sin, mut cos, mut eta, mut zeta, mut n) = ([0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS]);
         let (q, xi) = (&motion.vertical_force, &motion.longitudinal_creepage);
         for i in 0..WHEELS {
@@ -117,20 +162,32 @@ impl Contact {
         // N cos(gamma) + T sin(gamma) = Q
         for _ in 0..PASSES {
             for i in 0..WHEELS {
-                let (_, t) = self.creep(n[i], xi[i], eta[i], zeta[i]);
+                let (_, t) = creep(n[i], xi[i], eta[i], zeta[i]);
                 let vertical = greater(n[i] * cos[i] + t * sin[i], LEAST_SHARE * n[i]);
                 n[i] = greater(q[i] * n[i] / vertical, LEAST_NORMAL_FORCE);
             }
         }
         let mut forces = Forces::default();
         for i in 0..WHEELS {
-            let (fx, t) = self.creep(n[i], xi[i], eta[i], zeta[i]);
+            let (fx, t) = creep(n[i], xi[i], eta[i], zeta[i]);
             let stop = self.stop_stiffness * greater(motion.towards_flange[i] - self.stop_displacement, 0.0);
             forces.longitudinal[i] = fx;
             forces.lateral[i] = t * cos[i] - n[i] * sin[i] - stop;
         }
         forces
     }
+}
+
+/// Force per linear force, at the linear force per limit of friction `r`. The gradient of the stress is eps = pi r / 4, so that
+/// without reduction small creepages give the linear force.
+#[inline(never)]
+fn polach(r: f64, (adhesion, slip): (f64, f64)) -> f64 {
+    let eps = std::f64::consts::FRAC_PI_4 * r;
+    if eps < 1e-9 {
+        return 0.5 * (adhesion + slip);
+    }
+    let reduced = adhesion * eps;
+    std::f64::consts::FRAC_2_PI * (reduced / (1.0 + reduced * reduced) + (slip * eps).atan()) / r
 }
 
 /// The greater of two numbers, without the care for NaN that costs instructions.
@@ -178,6 +235,17 @@ mod tests {
             let x = 10f64.powf(f64::from(i) * 0.004 - 8.0);
             assert!((inverse_cube_root(x) * x.cbrt() - 1.0).abs() < 1e-15, "{x}");
         }
+    }
+
+    /// Without reduction the initial slope is Kalker's; far beyond, all of the friction is used: 2/pi (1/x + pi/2 - 1/x) -> 1.
+    #[test]
+    fn polach_is_linear_at_first_and_saturates() {
+        assert!((polach(1e-6, (1.0, 1.0)) - 1.0).abs() < 1e-9);
+        assert!((polach(1e-6, (0.8, 0.4)) - 0.6).abs() < 1e-9);
+        assert!((1e4 * polach(1e4, (1.0, 1.0)) - 1.0).abs() < 1e-6);
+        // eps = 1: 2/pi (1/2 + pi/4).
+        let r = 4.0 / std::f64::consts::PI;
+        assert!((r * polach(r, (1.0, 1.0)) - (1.0 / std::f64::consts::PI + 0.5)).abs() < 1e-12);
     }
 
     #[test]

@@ -139,6 +139,9 @@ parameters! {
     contact_cc "contact.vertical_damping" ["N s/m"] NotNegative, "damping of contact and track, per wheel";
     stop_displacement "contact.stop_displacement" ["m"] Positive, "lateral displacement of the wheel where the flange stop begins";
     stop_stiffness "contact.stop_stiffness" ["N/m"] NotNegative, "stiffness of the flange stop";
+    polach_adhesion "contact.polach_adhesion" ["-"] NotNegative = 0.0, "creep law of Polach: reduction in the area of adhesion; 0: the law of Shen, Hedrick and Elkins";
+    polach_slip "contact.polach_slip" ["-"] NotNegative = 0.4, "creep law of Polach: reduction in the area of slip";
+    chartet_exponent "contact.chartet_exponent" ["-"] NotNegative = 0.0, "creep law of Chartet: its exponent, about 2; 0: another law";
     worn_share "profile.worn_share" ["-"] Share = 0.0, "0 the profile as given, 1 the worn one, a blend between";
     conicity_scale "profile.conicity_scale" ["-"] NotNegative = 1.0, "factor of the radius deviations";
     payload_mass "payload.mass" ["kg"] NotNegative = 0.0, "payload in the car body";
@@ -154,6 +157,7 @@ parameters! {
     roundness_amplitude "out_of_roundness.amplitude" ["m"] NotNegative = 0.0, "amplitude of the radius deviation";
     roundness_harmonic "out_of_roundness.harmonic" ["-"] NotNegative = 1.0, "waves per revolution";
     irregularity_scale "track.irregularity_scale" ["-"] NotNegative = 1.0, "factor of all track irregularities";
+    residual_irregularity "track.residual_irregularity" ["mm"] NotNegative = 0.0, "short waves that the recording car did not see: standard deviation of what is added to each irregularity";
     curvature_scale "track.curvature_scale" ["-"] Positive = 1.0, "factor of the curvature";
     gauge_error "track.gauge_error" ["mm"] Any = 0.0, "gauge widening added everywhere";
     cant_error "track.cant_error" ["mm"] Any = 0.0, "cant added in curves, at full curvature";

@@ -75,10 +75,16 @@ impl Track {
         let sharpest = curvature.iter().fold(0.0_f64, |most, kappa| most.max(kappa.abs()));
         let error = |kappa: f64| if sharpest > 0.0 { vehicle.cant_error * kappa / sharpest } else { 0.0 };
         let angle = |i: usize| (table.cant[i] + error(curvature[i])) * 1e-3 / (2.0 * vehicle.half_contact_spacing);
-        let spline =
-            |values: &[f64]| Spline::new(&distance, values.iter().map(|value| value * 1e-3 * vehicle.irregularity_scale).collect());
-        let (alignment, gauge) = (spline(&table.alignment), spline(&table.gauge));
-        let (level, cross_level) = (spline(&table.level), spline(&table.cross_level));
+        let spline = |values: &[f64], function: u64| {
+            let mut uneven: Vec<f64> = values.iter().map(|value| value * 1e-3 * vehicle.irregularity_scale).collect();
+            if vehicle.residual_irregularity > 0.0 {
+                let unseen = short_waves(&distance, function);
+                uneven.iter_mut().zip(unseen).for_each(|(value, unseen)| *value += vehicle.residual_irregularity * 1e-3 * unseen);
+            }
+            Spline::new(&distance, uneven)
+        };
+        let (alignment, gauge) = (spline(&table.alignment, 1), spline(&table.gauge, 2));
+        let (level, cross_level) = (spline(&table.level, 3), spline(&table.cross_level, 4));
         let (mut theta, mut y) = (0.0, 0.0);
         let mut pieces = Vec::with_capacity(distance.len() - 1);
         for i in 0..distance.len() - 1 {
@@ -159,6 +165,30 @@ impl Track {
             slope: [fade * slope[2] + fading * value[2], fade * slope[3] + fading * value[3]],
         }
     }
+}
+
+/// Corner of the short waves, as a length in m: a noise of first order, twice.
+const SHORT_WAVES: f64 = 0.6;
+
+/// A random function of the distance with a standard deviation of 1 and waves of some metres and less, the same at every call.
+fn short_waves(distance: &[f64], function: u64) -> Vec<f64> {
+    let mut random = fastrand::Rng::with_seed(function.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ distance.len() as u64);
+    let mut state = [0.0; 2];
+    let mut last = distance[0];
+    let mut waves: Vec<f64> = distance
+        .iter()
+        .map(|s| {
+            let share = 1.0 - (-(s - last) / SHORT_WAVES).exp();
+            last = *s;
+            // Uniform numbers do: the filter makes their sum nearly normal.
+            state[0] += share * (random.f64() - 0.5 - state[0]);
+            state[1] += share * (state[0] - state[1]);
+            state[1]
+        })
+        .collect();
+    let rms = (waves.iter().map(|value| value * value).sum::<f64>() / waves.len() as f64).sqrt().max(1e-12);
+    waves.iter_mut().for_each(|value| *value /= rms);
+    waves
 }
 
 #[inline(always)]

@@ -58,6 +58,7 @@ pub struct Panel {
 pub struct Where {
     pub quantity: String,
     pub signals: Vec<String>,
+    #[serde(serialize_with = "as_numbers")]
     pub zones: Vec<String>,
     pub sections: Vec<String>,
     pub wavelength_or_band: String,
@@ -127,8 +128,22 @@ pub struct Shrink {
     pub quantities: Vec<QuantityShrink>,
     pub verdict_before: String,
     pub verdict_after: String,
+    /// The same over the quantities that the effects change.
+    pub touched: Option<Touched>,
     /// Share of the whitened excess that each effect removes, if several act.
     pub shares: Vec<(String, f64)>,
+}
+
+/// How far the gap shrinks where the effects act.
+#[derive(Clone, Debug, Serialize)]
+pub struct Touched {
+    pub quantities: Vec<String>,
+    pub before: f64,
+    pub after: f64,
+    pub fraction_removed: f64,
+    /// 90 %, by resampling sections.
+    pub low: f64,
+    pub high: f64,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -164,4 +179,9 @@ pub struct How {
     pub threshold: f64,
     pub chi_squared_before: f64,
     pub chi_squared_after: f64,
+}
+
+/// Names that are whole numbers are written as such.
+fn as_numbers<S: serde::Serializer>(names: &[String], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(names.iter().map(|name| name.parse::<i64>().map_or_else(|_| name.as_str().into(), serde_json::Value::from)))
 }

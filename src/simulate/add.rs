@@ -146,7 +146,7 @@ pub fn simulate(
     recorded: Option<&Signals>,
 ) -> Result<Simulated, Problem> {
     let plan = Plan::new(catalogue, effects, section, simulator.catalogue_name())?;
-    let run = |settings: &[(String, f64)], shift: f64| simulator.run(&Task { section, settings, shift });
+    let run = |settings: &[(String, f64)], shift: f64| simulator.run(&Task { section, settings, shift, inside_only: false });
     let mut made = match recorded {
         None => Simulated { signals: run(&plan.settings, plan.shift())?, runs: 1 },
         Some(recorded) if plan.settings.is_empty() => Simulated { signals: recorded.clone(), runs: 0 },

@@ -92,7 +92,10 @@ impl Simulator for Builtin<'_> {
         };
         let (vehicle, profile) = self.with(task.settings)?;
         let track = track_of(self.campaign, &section.cell)?;
-        let around = Window::around(section.start, section.end);
+        let mut around = Window::around(section.start, section.end);
+        if task.inside_only {
+            around.to = section.end;
+        }
         let window = Window { from: around.from - task.shift, to: around.to - task.shift };
         let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
         made(&setup, window).map_err(|problem| Problem { says: format!("section `{}`: {}", section.name(), problem.says), ..problem })

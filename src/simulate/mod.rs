@@ -29,6 +29,8 @@ pub struct Task<'a> {
     pub settings: &'a [(String, f64)],
     /// Recorded minus true position in m: the record is made where it will be shifted to.
     pub shift: f64,
+    /// Whether nothing but what lies inside the section is asked for; a simulator may make more.
+    pub inside_only: bool,
 }
 
 /// Something that makes records.

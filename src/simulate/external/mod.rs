@@ -96,7 +96,7 @@ impl<'a> External<'a> {
     /// Of the program; the campaign's record cannot be read; both have no place in common.
     pub fn baseline(&self, section: &Section) -> Result<Vec<Deviation>, Problem> {
         let (recorded, ..) = recorded(self.campaign, RecordKind::Simulation, section).map_err(first)?;
-        deviations(&self.run(&Task { section, settings: &[], shift: 0.0 })?, &recorded, section)
+        deviations(&self.run(&Task { section, settings: &[], shift: 0.0, inside_only: false })?, &recorded, section)
     }
 
     /// Headings of the campaign's simulation of a section; none if there is none.

@@ -1,0 +1,37 @@
+//! Campaigns whose truth is withheld, to test the diagnosis on:
+//! `cargo run --release --example blind_campaigns -- score --out target/campaigns`, then `fishplate blind target/campaigns`.
+//!
+//! The truth runs another law of creep, another profile, another step and other numbers in everything that the tolerances allow than
+//! the simulation that is delivered beside it, and hides effects in it: one, two, none, or something outside the catalogue.
+
+#![allow(clippy::print_stdout, clippy::print_stderr, clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+
+mod cases;
+mod line;
+mod truth;
+mod vehicles;
+mod write;
+
+use std::path::PathBuf;
+
+use cases::{Case, SETS};
+use rayon::prelude::*;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let after = |key: &str| arguments.iter().position(|one| one == key).and_then(|at| arguments.get(at + 1));
+    let set = arguments.first().and_then(|name| SETS.iter().find(|set| set.name == name));
+    let (Some(set), Some(out)) = (set, after("--out")) else {
+        let names: Vec<&str> = SETS.iter().map(|set| set.name).collect();
+        eprintln!("arguments: SET --out FOLDER [--only N], with SET one of {}", names.join(", "));
+        std::process::exit(2);
+    };
+    let only: Option<usize> = after("--only").and_then(|number| number.parse().ok());
+    let cases: Vec<Case> = (set.cases)().into_iter().filter(|case| only.is_none_or(|number| case.number == number)).collect();
+    let failed: Vec<String> = cases.par_iter().filter_map(|case| write::campaign(&PathBuf::from(out), set, case).err()).collect();
+    failed.iter().for_each(|why| eprintln!("{why}"));
+    println!("{} campaigns in {out}", cases.len() - failed.len());
+    if !failed.is_empty() {
+        std::process::exit(3);
+    }
+}
