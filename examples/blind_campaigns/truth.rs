@@ -119,7 +119,7 @@ impl World {
             track_stiffness: between(random, 0.7, 1.2),
             dry: between(random, 100.0, 400.0),
             bending: (between(random, 11.5, 14.0), between(random, 25_000.0, 45_000.0)),
-            bend_of_profile: [0.06 * random.next(), 0.06 * random.next()],
+            bend_of_profile: [0.02 * random.next(), 0.02 * random.next()],
             gains: (0..CHANNELS.len()).map(|_| 1.0 + declared.gain * random.next()).collect(),
             offsets: CHANNELS.iter().map(|(name, _)| declared.offset[kind(name)] * random.next()).collect(),
         }
@@ -173,7 +173,7 @@ impl World {
                     let u = sign * displacement;
                     bent.radius_deviation[side][i] +=
                         self.bend_of_profile[0] * (u / 2.5).sin() + self.bend_of_profile[1] * (u / 4.0).tanh();
-                    bent.contact_angle[side][i] *= 1.0 + 0.3 * self.bend_of_profile[1];
+                    bent.contact_angle[side][i] *= 1.0 + self.bend_of_profile[1];
                 }
                 if outside == Some(Outside::WheelRadii) {
                     bent.radius_deviation[0][i] += 0.8;

@@ -96,7 +96,11 @@ fn idle(
         let earned = compare(&without, after, inputs.seed, Vec::new());
         let Some(touched) = earned.touched else { continue };
         let most = touched.fraction_removed.max(earned.fraction_removed);
-        if most < EARNED && worst.is_none_or(|(_, least)| most < least) {
+        // The protocol judges few numbers: what the features say strongly, it must contradict to be heard.
+        let member_of = &found.chosen.members[member];
+        let strong = member_of.evidence >= STRONG * found.threshold && !member_of.doubtful;
+        let least = if strong { -EARNED } else { EARNED };
+        if most < least && worst.is_none_or(|(_, least)| most < least) {
             worst = Some((member, most));
         }
     }
@@ -107,6 +111,8 @@ fn idle(
 
 /// Share of the gap that an effect must remove, at least in the quantities that it changes.
 const EARNED: f64 = 0.05;
+/// Evidence, in thresholds, from which it need only not do harm.
+const STRONG: f64 = 3.0;
 
 /// What effects that are known to be true would have done: their whitened size, and the share of the gap that they remove.
 #[must_use]

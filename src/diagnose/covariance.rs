@@ -11,6 +11,9 @@ const BLOCK: f64 = 1.0;
 /// Draws of the block bootstrap.
 const DRAWS: usize = 60;
 
+/// Variance of what tells nothing.
+const NOTHING: f64 = 1e12;
+
 /// How the simulated features change with a tolerated parameter, per standard deviation.
 #[derive(Clone, Debug)]
 pub struct Sensitivity {
@@ -93,6 +96,10 @@ fn diagonal(seen: &Observations, settings: &Settings) -> Vec<f64> {
     let mut variances = Vec::with_capacity(seen.len());
     for (at, observed) in seen.sections.iter().enumerate() {
         let (_, length) = seen.extent(at);
+        if observed.again {
+            variances.extend(seen.features.iter().map(|_| NOTHING));
+            continue;
+        }
         for feature in &seen.features {
             let of = &seen.layout.channels[feature.channel];
             let group = &settings.groups[of.group];
@@ -191,7 +198,8 @@ fn discrepant(seen: &Observations, settings: &Settings, discrepancy: &Discrepanc
 #[must_use]
 pub fn strata(seen: &Observations, settings: &Settings) -> Vec<Vec<usize>> {
     let mut found: Vec<(String, Vec<usize>)> = Vec::new();
-    for (at, observed) in seen.sections.iter().enumerate() {
+    for at in seen.first_runs() {
+        let observed = &seen.sections[at];
         let value = settings.stratum.as_deref().and_then(|column| observed.section.fact(column)).unwrap_or("").to_string();
         match found.iter_mut().find(|(known, _)| *known == value) {
             Some((_, sections)) => sections.push(at),

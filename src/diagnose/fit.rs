@@ -11,6 +11,8 @@ pub struct Mask {
     /// Column and values, or nothing for all sections.
     pub confined: Option<(String, Vec<String>)>,
     pub sections: Vec<bool>,
+    /// The candidate that asks for it, if it was found in the data: it costs a free choice of sections.
+    pub asked_by: Option<usize>,
 }
 
 /// A candidate with its size, and what it explains.
@@ -30,6 +32,8 @@ pub struct Fitted {
     pub whitened: Vec<f64>,
     /// Length of the whitened change per unit of size.
     pub slope: f64,
+    /// Whether views ask for rather different sizes, though all ask for some.
+    pub doubtful: bool,
 }
 
 /// Candidates in whitened form.
@@ -39,22 +43,60 @@ pub struct Fitter<'a> {
     pub candidates: &'a [Candidate],
     pub masks: Vec<Mask>,
     /// By candidate and mask: the whitened nodes.
-    whitened: HashMap<(usize, usize), Vec<Vec<f64>>>,
+    pub whitened: Known,
+}
+
+/// Whitened nodes of candidates under masks.
+pub type Known = HashMap<(usize, usize), Path>;
+
+/// A candidate under a mask: its whitened nodes, and what of a fit does not depend on the difference.
+#[derive(Debug)]
+pub struct Path {
+    nodes: Vec<Vec<f64>>,
+    /// Squared lengths of the nodes, and products of each with the next.
+    lengths: Vec<f64>,
+    products: Vec<f64>,
+}
+
+/// Where on a path a difference is met best.
+#[derive(Clone, Copy, Debug)]
+struct Best {
+    segment: usize,
+    share: f64,
+    fall: f64,
+    evidence: f64,
+}
+
+impl Path {
+    fn new(nodes: Vec<Vec<f64>>) -> Self {
+        let product = |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
+        let lengths = nodes.iter().map(|node| product(node, node)).collect();
+        let products = nodes.windows(2).map(|pair| product(&pair[0], &pair[1])).collect();
+        Self { nodes, lengths, products }
+    }
 }
 
 impl<'a> Fitter<'a> {
     /// Whitens the nodes of all candidates under all masks that they may have.
     #[must_use]
     pub fn new(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>) -> Self {
+        Self::knowing(whitener, candidates, masks, Known::new())
+    }
+
+    /// As [`Self::new`], with what an earlier one whitened: candidates may have more nodes by now, and there may be more masks.
+    #[must_use]
+    pub fn knowing(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>, mut known: Known) -> Self {
         use rayon::prelude::*;
+        known.retain(|(candidate, _), path| path.nodes.len() == candidates[*candidate].nodes.len());
         let keys: Vec<(usize, usize)> = candidates
             .iter()
             .enumerate()
-            .flat_map(|(at, candidate)| (0..if candidate.confinable { masks.len() } else { 1 }).map(move |mask| (at, mask)))
+            .flat_map(|(at, _)| (0..masks.len()).map(move |mask| (at, mask)))
+            .filter(|(at, mask)| allowed(candidates, &masks, *at, *mask) && !known.contains_key(&(*at, *mask)))
             .collect();
-        let mut fitter = Self { whitener, candidates, masks, whitened: HashMap::new() };
-        let whitened: Vec<_> = keys.par_iter().map(|(at, mask)| ((*at, *mask), fitter.nodes(*at, *mask))).collect();
-        fitter.whitened = whitened.into_iter().collect();
+        let mut fitter = Self { whitener, candidates, masks, whitened: known };
+        let whitened: Vec<_> = keys.par_iter().map(|(at, mask)| ((*at, *mask), Path::new(fitter.nodes(*at, *mask)))).collect();
+        fitter.whitened.extend(whitened);
         fitter
     }
 
@@ -68,24 +110,20 @@ impl<'a> Fitter<'a> {
         self.candidates[candidate].nodes.iter().map(|node| all(&node.change)).collect()
     }
 
-    /// The best size of a candidate under a mask for the whitened difference `z`.
-    #[must_use]
-    pub fn fit(&self, z: &[f64], candidate: usize, mask: usize) -> Option<Fitted> {
-        let nodes = self.whitened.get(&(candidate, mask))?;
+    /// Where a candidate under a mask meets the whitened difference `z` best.
+    fn meet(&self, z: &[f64], candidate: usize, mask: usize) -> Option<Best> {
+        let path = self.whitened.get(&(candidate, mask))?;
         let of = &self.candidates[candidate];
-        let along: Vec<f64> = nodes.iter().map(|node| if node.is_empty() { 0.0 } else { dot(z, node) }).collect();
-        let length: Vec<f64> = nodes.iter().map(|node| if node.is_empty() { 0.0 } else { dot(node, node) }).collect();
+        let along: Vec<f64> = path.nodes.iter().map(|node| if node.is_empty() { 0.0 } else { dot(z, node) }).collect();
         let mut best: Option<(f64, usize, f64)> = None;
-        let mut path = 0.0;
-        for segment in 0..nodes.len().saturating_sub(1) {
-            let across =
-                if nodes[segment].is_empty() || nodes[segment + 1].is_empty() { 0.0 } else { dot(&nodes[segment], &nodes[segment + 1]) };
+        let mut long = 0.0;
+        for segment in 0..path.nodes.len().saturating_sub(1) {
             // |z - (1-t) a - t b|^2 = |z|^2 + c0 + c1 t + c2 t^2
-            let (aa, bb) = (length[segment], length[segment + 1]);
+            let (aa, bb, across) = (path.lengths[segment], path.lengths[segment + 1], path.products[segment]);
             let c0 = aa - 2.0 * along[segment];
             let c2 = (aa - 2.0 * across + bb).max(0.0);
             let c1 = 2.0 * (across - aa) - 2.0 * (along[segment + 1] - along[segment]);
-            path += c2.sqrt();
+            long += c2.sqrt();
             let t = if of.discrete {
                 if c1 + c2 < 0.0 { 1.0 } else { 0.0 }
             } else if c2 > 0.0 {
@@ -99,18 +137,49 @@ impl<'a> Fitter<'a> {
             }
         }
         let (fall, segment, share) = best?;
+        let freedom = 2.0 * (long / std::f64::consts::TAU.sqrt()).max(1.0).ln() + 2.0 * (of.alternatives as f64).ln();
+        Some(Best { segment, share, fall, evidence: fall - freedom - self.price(mask) })
+    }
+
+    /// What the choice of a mask costs.
+    fn price(&self, mask: usize) -> f64 {
+        let fixed = self.masks.iter().filter(|mask| mask.asked_by.is_none()).count();
+        match self.masks[mask].asked_by {
+            _ if mask == 0 => 0.0,
+            None => 2.0 * (fixed as f64).ln(),
+            Some(_) => 2.0 * std::f64::consts::LN_2 * self.masks[mask].sections.len() as f64,
+        }
+    }
+
+    /// The most evidence that any candidate has for `z`, everywhere.
+    #[must_use]
+    pub fn most(&self, z: &[f64]) -> f64 {
+        (0..self.candidates.len()).filter_map(|at| self.meet(z, at, 0)).map(|best| best.evidence).fold(0.0, f64::max)
+    }
+
+    /// The best size of a candidate under a mask for the whitened difference `z`.
+    #[must_use]
+    pub fn fit(&self, z: &[f64], candidate: usize, mask: usize) -> Option<Fitted> {
+        let best = self.meet(z, candidate, mask)?;
+        Some(self.fitted(candidate, mask, best))
+    }
+
+    fn fitted(&self, candidate: usize, mask: usize, best: Best) -> Fitted {
+        let Best { segment, share, fall, evidence } = best;
+        let path = &self.whitened[&(candidate, mask)];
+        let of = &self.candidates[candidate];
         let (from, to) = (&of.nodes[segment], &of.nodes[segment + 1]);
-        let size = between(from.size, to.size, share);
-        let freedom = 2.0 * (path / std::f64::consts::TAU.sqrt()).max(1.0).ln() + 2.0 * (of.alternatives as f64).ln();
-        let mask_freedom = if mask == 0 { 0.0 } else { 2.0 * (self.masks.len() as f64).ln() };
-        let n = z.len();
-        let (a, b) = (&nodes[segment], &nodes[segment + 1]);
-        let get = |node: &Vec<f64>, i: usize| if node.is_empty() { 0.0 } else { node[i] };
-        let whitened: Vec<f64> = (0..n).map(|i| (1.0 - share) * get(a, i) + share * get(b, i)).collect();
+        let whitened = match (&path.nodes[segment], &path.nodes[segment + 1]) {
+            (a, b) if a.is_empty() => b.iter().map(|b| share * b).collect(),
+            (a, b) if b.is_empty() => a.iter().map(|a| (1.0 - share) * a).collect(),
+            (a, b) => a.iter().zip(b).map(|(a, b)| (1.0 - share) * a + share * b).collect(),
+        };
         let width = (to.size - from.size).abs();
-        let difference: f64 = (0..n).map(|i| (get(b, i) - get(a, i)).powi(2)).sum::<f64>().sqrt();
+        let (aa, bb, across) = (path.lengths[segment], path.lengths[segment + 1], path.products[segment]);
+        let difference = (aa - 2.0 * across + bb).max(0.0).sqrt();
         let slope = if width.is_finite() && width > 0.0 { difference / width } else { 0.0 };
-        Some(Fitted { candidate, mask, segment, share, size, fall, evidence: fall - freedom - mask_freedom, whitened, slope })
+        let size = between(from.size, to.size, share);
+        Fitted { candidate, mask, segment, share, size, fall, evidence, whitened, slope, doubtful: false }
     }
 
     /// The best fit of every candidate, each under its best mask.
@@ -123,9 +192,40 @@ impl<'a> Fitter<'a> {
     /// The best fit of a candidate under any of its masks.
     #[must_use]
     pub fn best(&self, z: &[f64], candidate: usize) -> Option<Fitted> {
-        let masks = if self.candidates[candidate].confinable { self.masks.len() } else { 1 };
-        (0..masks).filter_map(|mask| self.fit(z, candidate, mask)).max_by(|a, b| a.evidence.total_cmp(&b.evidence))
+        let met = (0..self.masks.len()).filter_map(|mask| Some((mask, self.meet(z, candidate, mask)?)));
+        let (mask, best) = met.max_by(|a, b| a.1.evidence.total_cmp(&b.1.evidence))?;
+        Some(self.fitted(candidate, mask, best))
     }
+
+    /// The sections in which an effect seems to be, where it is in some and not in others: those that ask for more than half of what
+    /// the strongest ask for.
+    #[must_use]
+    pub fn seems_in(&self, z: &[f64], fit: &Fitted) -> Option<Vec<bool>> {
+        let sections = self.masks[0].sections.len();
+        let size = z.len() / sections.max(1);
+        let whole = self.fit(z, fit.candidate, 0)?;
+        let part = |values: &[f64], at: usize| values[at * size..(at + 1) * size].to_vec();
+        // How much of the fitted change each section asks for, and how sure it is of that.
+        let asked: Vec<Option<(f64, f64)>> = (0..sections)
+            .map(|at| {
+                let (change, rest) = (part(&whole.whitened, at), part(z, at));
+                let length = dot(&change, &change);
+                (length > 0.0).then(|| (dot(&change, &rest) / length, length))
+            })
+            .collect();
+        let strong: f64 = asked.iter().flatten().map(|(share, length)| share.max(0.0) * length).sum::<f64>();
+        let weight: f64 =
+            asked.iter().flatten().filter(|(share, _)| *share > 0.0).map(|(share, length)| share.max(0.0).powi(2) * length).sum();
+        let typical = if strong > 0.0 { weight / strong } else { 0.0 };
+        let inside: Vec<bool> = asked.iter().map(|asked| asked.is_some_and(|(share, _)| share > 0.5 * typical)).collect();
+        let some = inside.iter().filter(|inside| **inside).count();
+        // Without a few that fit worst, anything fits better: that is no confinement.
+        (some > 0 && 4 * some <= 3 * asked.iter().flatten().count()).then_some(inside)
+    }
+}
+
+fn allowed(candidates: &[Candidate], masks: &[Mask], candidate: usize, mask: usize) -> bool {
+    mask == 0 || masks[mask].asked_by.map_or(candidates[candidate].confinable, |by| by == candidate)
 }
 
 impl Mask {

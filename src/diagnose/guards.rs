@@ -1,9 +1,12 @@
 //! Guards: views that share no feature must agree on the size of an effect, and what is left must be within what is allowed for.
 
+use super::candidates::Candidate;
 use super::features::Kind;
-use super::fit::Mask;
+use super::fit::{Fitted, Fitter, Mask};
 use super::observe::Observations;
-use super::whiten::{Covariance, dot};
+use super::search::Judged;
+use super::whiten::Covariance;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Features of some sections: a part of the data that is looked at on its own.
 #[derive(Clone, Debug)]
@@ -48,17 +51,15 @@ pub fn share_seen(covariance: &Covariance, view: &View, change: &[f64], rest: &[
     if direction.iter().all(|x| *x == 0.0) {
         return None;
     }
-    let whitener = covariance.part(&view.sections, &view.features).whitener();
-    let direction = whitener.apply(&direction);
-    let rest = whitener.apply(&part(rest, covariance.size, view));
-    let length = dot(&direction, &direction);
-    (length > 0.0).then(|| (dot(&direction, &rest) / length, 1.0 / length.sqrt()))
+    let products = covariance.part(&view.sections, &view.features).products();
+    let (length, along) = products.of(&direction, &part(rest, covariance.size, view), false)[0];
+    (length > 0.0).then(|| (along / length, 1.0 / length.sqrt()))
 }
 
 /// Views by kind of feature, by stratum, and by group of channels; the views of a family share no feature.
 #[must_use]
 pub fn families(seen: &Observations, strata: &[Vec<usize>]) -> Vec<Vec<View>> {
-    let all: Vec<usize> = (0..seen.sections.len()).collect();
+    let all: Vec<usize> = seen.first_runs();
     let features = |keep: &dyn Fn(usize, Kind) -> bool| -> Vec<usize> {
         seen.features.iter().enumerate().filter(|(_, feature)| keep(feature.channel, feature.kind)).map(|(at, _)| at).collect()
     };
@@ -84,60 +85,106 @@ pub fn families(seen: &Observations, strata: &[Vec<usize>]) -> Vec<Vec<View>> {
     vec![kinds, strata.collect(), groups.collect(), halves]
 }
 
-/// Share of the evidence that must be left whichever section is taken away.
+/// Share of the evidence that must be left whichever section is taken away, unless so much is left that it would do by itself.
 const KEPT: f64 = 0.5;
+const ENOUGH: f64 = 60.0;
 
 /// The section without which most of the evidence for a change is gone, if one carries it; one of few sections always does.
 #[must_use]
 pub fn carried(covariance: &Covariance, mask: &Mask, change: &[f64], rest: &[f64]) -> Option<String> {
-    use rayon::prelude::*;
     let inside: Vec<usize> = (0..mask.sections.len()).filter(|at| mask.sections[*at]).collect();
     let moved = |at: &usize| change[at * covariance.size..(at + 1) * covariance.size].iter().any(|x| *x != 0.0);
     if inside.iter().filter(|at| moved(at)).count() < 4 {
         return None;
     }
-    let features: Vec<usize> = (0..covariance.size).collect();
-    let evidence = |without: Option<usize>| {
-        let sections = (0..mask.sections.len()).filter(|at| Some(*at) != without).collect();
-        let view = View { says: String::new(), sections, features: features.clone() };
-        share_seen(covariance, &view, change, rest).map_or(0.0, |(share, error)| (share / error).powi(2))
-    };
-    let all = evidence(None);
-    let (at, least) = inside.into_par_iter().map(|at| (at, evidence(Some(at)))).min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)))?;
-    (least < KEPT * all).then(|| format!("without section {} only {:.0} % of the evidence is left", at + 1, 100.0 * least / all))
+    let evidence = |(length, along): &(f64, f64)| if *length > 0.0 { along * along / length } else { 0.0 };
+    let products = covariance.products().of(change, rest, true);
+    let all = evidence(&products[0]);
+    let (at, least) = inside.into_iter().map(|at| (at, evidence(&products[at + 1]))).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (least < KEPT * all && least < ENOUGH)
+        .then(|| format!("without section {} only {:.0} % of the evidence is left", at + 1, 100.0 * least / all))
 }
 
-/// How views of a family contradict each other: the two that differ most, if they differ by more than chance (Cochran's Q).
-#[must_use]
-pub fn contradiction(covariance: &Covariance, family: &[View], change: &[f64], rest: &[f64]) -> Option<String> {
-    let seen: Vec<(&View, f64, f64)> =
-        family.iter().filter_map(|view| share_seen(covariance, view, change, rest).map(|(share, error)| (view, share, error))).collect();
-    let good: Vec<&(&View, f64, f64)> = seen.iter().filter(|(_, _, error)| *error < 0.35).collect();
-    if good.len() < 2 {
-        return None;
+/// The size that a view asks for, in shares of the size that all together ask for, and its standard error. Along the path of the
+/// candidate, since the change need not be linear in the size.
+fn size_seen(covariance: &Covariance, view: &View, candidate: &Candidate, mask: &Mask, fit: &Fitted, rest: &[f64]) -> Option<(f64, f64)> {
+    let neutral = candidate.nodes.iter().find(|node| node.change.is_empty()).map_or(0.0, |node| node.size);
+    if candidate.discrete || !neutral.is_finite() || fit.size == neutral {
+        let change = fit.change(std::slice::from_ref(candidate), std::slice::from_ref(mask));
+        return share_seen(covariance, view, &change, rest);
     }
+    let whitener = covariance.part(&view.sections, &view.features).whitener();
+    let mut seen = candidate.clone();
+    for node in seen.nodes.iter_mut().filter(|node| !node.change.is_empty()) {
+        node.change = part(&mask.on(&node.change), covariance.size, view);
+    }
+    let moved = seen.nodes.iter().any(|node| node.change.iter().any(|x| *x != 0.0));
+    let z = whitener.apply(&part(rest, covariance.size, view));
+    let all = Mask { confined: None, sections: vec![true; view.sections.len()], asked_by: None };
+    let fitted = Fitter::new(&whitener, std::slice::from_ref(&seen), vec![all]).fit(&z, 0, 0).filter(|_| moved)?;
+    let full = fit.size - neutral;
+    let slope = (fitted.slope * full).abs();
+    (slope > 0.0).then(|| ((fitted.size - neutral) / full, 1.0 / slope))
+}
+
+/// How views of a family contradict each other: the two that differ most, if they differ by more than chance (Cochran's Q). The fit is
+/// of the candidate under the mask.
+#[must_use]
+pub fn contradiction(
+    covariance: &Covariance,
+    family: &[View],
+    (candidate, mask, fit): (&Candidate, &Mask, &Fitted),
+    rest: &[f64],
+) -> Judged {
+    use rayon::prelude::*;
+    let only = Fitted { candidate: 0, mask: 0, ..fit.clone() };
+    let each = |view: &View| size_seen(covariance, view, candidate, mask, &only, rest);
+    let sizes: Vec<Option<(f64, f64)>> = family.par_iter().map(each).collect();
+    let seen: Vec<(&View, f64, f64)> =
+        family.iter().zip(sizes).filter_map(|(view, size)| size.map(|(share, error)| (view, share, error))).collect();
+    let good: Vec<&(&View, f64, f64)> = seen.iter().filter(|(_, _, error)| *error < 0.35).collect();
     let weight: f64 = good.iter().map(|(_, _, error)| error.powi(-2)).sum();
     let mean = good.iter().map(|(_, share, error)| share * error.powi(-2)).sum::<f64>() / weight;
-    // The change is not linear in the size: views may differ by a part of it.
+    // The model is wrong by a part of any size.
     let q: f64 = good.iter().map(|(_, share, error)| (share - mean).powi(2) / (error.powi(2) + 0.15_f64.powi(2))).sum();
-    let freedom = (good.len() - 1) as f64;
-    let limit = statrs::distribution::ContinuousCDF::inverse_cdf(&statrs::distribution::ChiSquared::new(freedom).ok()?, 0.99);
-    if q < limit {
-        return None;
+    let by_size = |a: &&&(&View, f64, f64), b: &&&(&View, f64, f64)| a.1.total_cmp(&b.1);
+    let (Ok(law), Some(low), Some(high)) =
+        (ChiSquared::new(good.len().saturating_sub(1) as f64), good.iter().min_by(by_size), good.iter().max_by(by_size))
+    else {
+        return Judged::Sound;
+    };
+    if q < law.inverse_cdf(0.99) || high.1 - low.1 < 0.6 {
+        return Judged::Sound;
     }
-    let low = good.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let high = good.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    if high.1 - low.1 < 0.6 {
-        return None;
+    if low.1 >= SOME {
+        return Judged::Doubtful;
     }
-    Some(format!("{} ask for {:.0} % of it, {} for {:.0} %", high.0.says, 100.0 * high.1, low.0.says, 100.0 * low.1))
+    Judged::Refused(format!("{} ask for {:.0} % of it, {} for {:.0} %", high.0.says, 100.0 * high.1, low.0.says, 100.0 * low.1))
+}
+
+/// A view that asks for less than this share of an effect contradicts it.
+const SOME: f64 = 0.45;
+
+/// Of the change that an effect makes, what the model that makes it is wrong by, feature by feature.
+const WRONG: f64 = 0.2;
+
+impl Covariance {
+    /// With room for what is wrong in changes that are taken off.
+    #[must_use]
+    pub fn allowing<'a>(&self, changes: impl Iterator<Item = &'a Vec<f64>>) -> Self {
+        let mut wider = self.clone();
+        for change in changes {
+            wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| *variance += (WRONG * change).powi(2));
+        }
+        wider
+    }
 }
 
 /// How far what is left goes beyond what is allowed for, channel by channel and kind by kind: standard deviations of chi-squared.
 #[must_use]
 pub fn lack_of_fit(covariance: &Covariance, seen: &Observations, rest: &[f64]) -> Vec<(String, Kind, f64, f64)> {
     use rayon::prelude::*;
-    let all: Vec<usize> = (0..seen.sections.len()).collect();
+    let all: Vec<usize> = seen.first_runs();
     let mut views = Vec::new();
     for (channel, of) in seen.layout.channels.iter().enumerate() {
         for level in [true, false] {
@@ -151,9 +198,9 @@ pub fn lack_of_fit(covariance: &Covariance, seen: &Observations, rest: &[f64]) -
         }
     }
     let each = |(name, kind, view): (String, Kind, View)| {
-        let z = covariance.part(&view.sections, &view.features).whitener().apply(&part(rest, covariance.size, &view));
-        let n = z.len() as f64;
-        let chi = dot(&z, &z);
+        let rest = part(rest, covariance.size, &view);
+        let n = rest.len() as f64;
+        let (chi, _) = covariance.part(&view.sections, &view.features).products().of(&rest, &rest, false)[0];
         (name, kind, (chi - n) / (2.0 * n).sqrt(), chi - n)
     };
     views.into_par_iter().map(each).collect()

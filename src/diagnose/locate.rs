@@ -5,7 +5,6 @@ use super::features::Kind;
 use super::guards::{View, part};
 use super::run::Found;
 use super::settings::{Position, Settings};
-use super::whiten::dot;
 use crate::result::diagnosis::Where;
 
 /// Share of false cells among those called significant.
@@ -137,8 +136,8 @@ fn test(found: &Found, cell: &Cell) -> (f64, f64, f64) {
         side * found.difference[place]
     };
     let mean = cell.members.iter().map(|(section, feature)| oriented(*section, *feature)).sum::<f64>() / cell.members.len() as f64;
-    let z = found.covariance.part(&view.sections, &features).whitener().apply(&rest);
-    let (chi, freedom) = (dot(&z, &z), cell.members.len() as f64);
+    let (chi, _) = found.covariance.part(&view.sections, &features).products().of(&rest, &rest, false)[0];
+    let freedom = cell.members.len() as f64;
     let p = statrs::distribution::ChiSquared::new(freedom).map_or(1.0, |law| statrs::distribution::ContinuousCDF::sf(&law, chi));
     (chi - freedom, p, mean)
 }

@@ -6,6 +6,7 @@ mod cache;
 mod campaign;
 pub mod candidates;
 pub mod covariance;
+mod faults;
 pub mod features;
 pub mod fit;
 pub mod guards;

@@ -2,11 +2,13 @@
 
 use rayon::prelude::*;
 
+use super::faults::faults;
 use super::features::{ChannelFeatures, Feature, Kind, Layout, Piece, Spectrum, of_channel};
-use super::settings::Settings;
+use super::settings::{GroupFeatures, Settings};
 use crate::data::{Campaign, RecordKind};
 use crate::effects::{Catalogue, Signals};
 use crate::problem::{Problem, Problems};
+use crate::result::diagnosis::Fault;
 use crate::simulate::{Section, recorded};
 
 /// One section with its records.
@@ -18,6 +20,8 @@ pub struct Observed {
     pub measured: Signals,
     /// Spectra of the simulated channels of the layout.
     pub references: Vec<Option<Spectrum>>,
+    /// Whether it is an earlier section measured again: it says nothing new about the simulation.
+    pub again: bool,
 }
 
 /// All sections of a campaign that have both records.
@@ -30,6 +34,8 @@ pub struct Observations {
     pub noise: Vec<f64>,
     /// Sections that could not be used, with the reason.
     pub left_out: Vec<(String, String)>,
+    /// Channels that cannot be used.
+    pub faults: Vec<Fault>,
 }
 
 impl Observations {
@@ -66,17 +72,25 @@ impl Observations {
             problems.push(Problem::error("no-sections", format!("no section of the campaign can be compared{reason}")));
             return None;
         }
+        let mut sections: Vec<Observed> = Vec::new();
+        for (section, simulated, measured) in good {
+            let again = section.fact("repeat of").is_some_and(|of| sections.iter().any(|known| known.section.name() == of))
+                || sections.iter().any(|known| known.measured.channels == measured.channels);
+            sections.push(Observed { section, simulated, measured, references: Vec::new(), again });
+        }
         let mut layout = Layout { channels: Vec::new(), edges: settings.edges.clone(), alike: settings.alike, furthest: settings.furthest };
+        let everywhere = |name: &String| {
+            sections.iter().all(|observed| observed.simulated.channel(name).is_some() && observed.measured.channel(name).is_some())
+        };
+        let channels = |group: &GroupFeatures| catalogue.channels(&group.name).unwrap_or_default().into_iter().filter(everywhere);
+        let all: Vec<String> = settings.groups.iter().flat_map(&channels).collect();
+        let faults = faults(&sections, &all);
         let mut noise = Vec::new();
         for (at, group) in settings.groups.iter().enumerate() {
-            for name in catalogue.channels(&group.name).unwrap_or_default() {
-                let there =
-                    good.iter().all(|(_, simulated, measured)| simulated.channel(&name).is_some() && measured.channel(&name).is_some());
-                if there {
-                    noise.push(group.noise.as_deref().and_then(declared).unwrap_or(0.0));
-                    let bands = group.bands.min(settings.edges.len().saturating_sub(1));
-                    layout.channels.push(ChannelFeatures { name, group: at, level: group.level, bands, alike: group.alike });
-                }
+            for name in channels(group).filter(|name| faults.iter().all(|fault| fault.channel != *name)) {
+                noise.push(group.noise.as_deref().and_then(declared).unwrap_or(0.0));
+                let bands = group.bands.min(settings.edges.len().saturating_sub(1));
+                layout.channels.push(ChannelFeatures { name, group: at, level: group.level, bands, alike: group.alike });
             }
         }
         if layout.channels.is_empty() {
@@ -86,15 +100,18 @@ impl Observations {
             return None;
         }
         let features = layout.features();
-        let sections = good
-            .into_par_iter()
-            .map(|(section, simulated, measured)| {
-                let references = layout.channels.iter().map(|of| piece(&simulated, &of.name, &section).map(|piece| Spectrum::new(&piece)));
-                let references = references.collect();
-                Observed { section, simulated, measured, references }
-            })
-            .collect();
-        Some(Self { layout, features, sections, noise, left_out })
+        sections.par_iter_mut().for_each(|observed| {
+            let spectrum =
+                |of: &ChannelFeatures| piece(&observed.simulated, &of.name, &observed.section).map(|piece| Spectrum::new(&piece));
+            observed.references = layout.channels.iter().map(spectrum).collect();
+        });
+        Some(Self { layout, features, sections, noise, left_out, faults })
+    }
+
+    /// Sections that say something of their own.
+    #[must_use]
+    pub fn first_runs(&self) -> Vec<usize> {
+        (0..self.sections.len()).filter(|at| !self.sections[*at].again).collect()
     }
 
     /// Number of features of all sections.

@@ -4,11 +4,11 @@ use super::cache::Cache;
 use super::candidates::{Bench, Candidate, Runs, Trying, Workshop};
 use super::covariance::{Sensitivity, covariance, strata};
 use super::features::Kind;
-use super::fit::{Fitted, Fitter, Mask, less};
+use super::fit::{Fitted, Fitter, Known, Mask, less};
 use super::guards::{View, carried, contradiction, families, lack_of_fit};
 use super::observe::Observations;
 use super::reference::Reference;
-use super::search::{Bars, Chosen, Refused, chi_squared, refit, rivals, search};
+use super::search::{Bars, Chosen, Judged, Refused, chi_squared, refit, rivals, search};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
 use super::whiten::{Covariance, Whitener, dot};
@@ -77,6 +77,8 @@ const WORTH: f64 = 10.0;
 
 /// With a member the excess of the channels may be this share of what it was without it, at the most: some effects show elsewhere.
 const WORSE: f64 = 1.1;
+/// And this much more of chi-squared, which is nothing beside some thousand features.
+const LITTLE: f64 = 10.0;
 
 /// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
 #[must_use]
@@ -145,32 +147,35 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let whole = covariance(&seen, settings, &simulated, &sensitivities, &declared, true);
     let tolerated = covariance(&seen, settings, &simulated, &sensitivities, &declared, false);
     let whitener = whole.whitener();
-    let masks = masks(&seen, settings);
+    let mut masks = masks(&seen, settings);
     let z = whitener.apply(&difference);
     let strata = strata(&seen, settings);
     let families = families(&seen, &strata);
     let far = |candidate: &Candidate, size: f64| deviations(candidate, size, &value, &declared);
     let mut refused = Vec::new();
-    let (mut chosen, threshold);
+    let mut chosen;
+    let mut threshold = None;
+    let mut known = Known::new();
     // Until no candidate that matters has sizes left to be simulated.
     loop {
-        let fitter = Fitter::new(&whitener, &candidates, masks.clone());
-        let limit = limit(&fitter, z.len(), inputs.seed).max(FLOOR);
-        let bars = bars(limit);
+        let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), std::mem::take(&mut known));
+        let bars = bars(*threshold.get_or_insert_with(|| limit(&fitter, z.len(), inputs.seed).max(FLOOR)));
         refused.clear();
         let guard = |fit: &Fitted, chosen: &Chosen| guard(&whole, &families, &fitter, &difference, chosen, fit);
         let found = search(&fitter, &z, &bars, &far, &guard, &mut refused);
         let wanted = promising(&fitter, &z, &found);
-        drop(fitter);
-        if wanted.is_empty() {
-            (chosen, threshold) = (found, limit);
+        let more = if wanted.is_empty() { section_masks(&fitter, &z, &found, &seen) } else { Vec::new() };
+        known = fitter.whitened;
+        if wanted.is_empty() && more.is_empty() {
+            chosen = found;
             break;
         }
+        masks.extend(more);
         wanted.into_iter().for_each(|at| workshop.refine(&mut candidates[at], &mut runs));
         (inputs.trying)("weighing");
     }
     polish(&workshop, &mut candidates, &chosen, &mut runs);
-    let fitter = Fitter::new(&whitener, &candidates, masks.clone());
+    let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), known);
     // Nodes may have come between: the members are fitted again.
     refit(&fitter, &z, &mut chosen, 6);
     let lack_before = lack_of_fit(&whole, &seen, &difference);
@@ -191,7 +196,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         rivals,
         lack_before,
         lack_after,
-        threshold,
+        threshold: threshold.unwrap_or(FLOOR),
         runs,
         strata,
         seen,
@@ -217,17 +222,14 @@ fn drop_what_harms(
     before: &[(String, Kind, f64, f64)],
 ) -> Vec<(String, Kind, f64, f64)> {
     loop {
-        let now = lack_of_fit(covariance, seen, &left(fitter.candidates, &fitter.masks, difference, chosen));
+        let lack = |chosen: &Chosen| lack_after(covariance, seen, (fitter.candidates, &fitter.masks), difference, chosen);
+        let now = lack(chosen);
         let Some(last) = chosen.members.len().checked_sub(1) else { return now };
         let mut without = chosen.clone();
         without.members.remove(last);
         refit(fitter, z, &mut without, 4);
-        let then = if without.members.is_empty() {
-            before.to_vec()
-        } else {
-            lack_of_fit(covariance, seen, &left(fitter.candidates, &fitter.masks, difference, &without))
-        };
-        if excess(&now) <= WORSE * excess(&then) {
+        let then = if without.members.is_empty() { before.to_vec() } else { lack(&without) };
+        if excess(&now) <= WORSE * excess(&then) + LITTLE {
             return now;
         }
         let reason = format!("what channels show beyond what is allowed for grows from {:.0} to {:.0}", excess(&then), excess(&now));
@@ -242,6 +244,19 @@ pub fn left(candidates: &[Candidate], masks: &[Mask], difference: &[f64], chosen
     chosen.members.iter().fold(difference.to_vec(), |rest, member| less(&rest, &member.change(candidates, masks)))
 }
 
+/// Where what the members leave is more than is allowed for.
+fn lack_after(
+    covariance: &Covariance,
+    seen: &Observations,
+    (candidates, masks): (&[Candidate], &[Mask]),
+    difference: &[f64],
+    chosen: &Chosen,
+) -> Vec<(String, Kind, f64, f64)> {
+    let changes: Vec<Vec<f64>> = chosen.members.iter().map(|member| member.change(candidates, masks)).collect();
+    let rest = changes.iter().fold(difference.to_vec(), |rest, change| less(&rest, change));
+    lack_of_fit(&covariance.allowing(changes.iter()), seen, &rest)
+}
+
 impl Found {
     /// Without a member, the others fitted again.
     pub fn refuse(&mut self, at: usize, reason: String) {
@@ -249,17 +264,38 @@ impl Found {
         self.chosen.members = super::shrink::trained(self, &[]);
         self.chosen.rest =
             self.chosen.members.iter().fold(self.whitener.apply(&self.difference), |rest, member| less(&rest, &member.whitened));
-        self.lack_after = lack_of_fit(&self.covariance, &self.seen, &left(&self.candidates, &self.masks, &self.difference, &self.chosen));
+        self.lack_after = lack_after(&self.covariance, &self.seen, (&self.candidates, &self.masks), &self.difference, &self.chosen);
         let gone = at;
         self.rivals.retain(|(member, ..)| *member != gone);
         self.rivals.iter_mut().filter(|(member, ..)| *member > gone).for_each(|(member, ..)| *member -= 1);
     }
 }
 
+/// Lists of sections that strong candidates seem to be confined to, and that are not among the masks yet.
+fn section_masks(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, seen: &Observations) -> Vec<Mask> {
+    let mut more: Vec<Mask> = Vec::new();
+    for rest in [z, &chosen.rest] {
+        let fits = fitter.all(rest);
+        let best = fits.iter().map(|fit| fit.evidence).fold(0.0, f64::max);
+        for fit in fits.iter().filter(|fit| fit.evidence >= (NEAR * best).max(WORTH)) {
+            let Some(sections) = fitter.seems_in(rest, fit) else { continue };
+            let asked_by = Some(fit.candidate);
+            let known = |mask: &Mask| mask.sections == sections && (mask.asked_by.is_none() || mask.asked_by == asked_by);
+            let asked = fitter.masks.iter().chain(&more).filter(|mask| mask.asked_by == asked_by).count();
+            // What a candidate asks for settles after one or two rounds; it need not be followed further.
+            if asked < 2 && !fitter.masks.iter().chain(&more).any(known) {
+                let names = (0..sections.len()).filter(|at| sections[*at]).map(|at| seen.sections[at].section.name().to_string());
+                more.push(Mask { confined: Some(("section".to_string(), names.collect())), sections, asked_by });
+            }
+        }
+    }
+    more
+}
+
 /// The whole campaign, the values of the columns that an effect may be confined to, and pairs of neighbouring strata.
 fn masks(seen: &Observations, settings: &Settings) -> Vec<Mask> {
     let all = seen.sections.len();
-    let mut masks = vec![Mask { confined: None, sections: vec![true; all] }];
+    let mut masks = vec![Mask { confined: None, sections: vec![true; all], asked_by: None }];
     for column in &settings.confine {
         let mut values: Vec<String> = Vec::new();
         for observed in &seen.sections {
@@ -274,7 +310,7 @@ fn masks(seen: &Observations, settings: &Settings) -> Vec<Mask> {
             let sections: Vec<bool> = seen.sections.iter().map(inside).collect();
             let some = sections.iter().filter(|inside| **inside).count();
             if some > 0 && some < all && !masks.iter().any(|mask| mask.sections == sections) {
-                masks.push(Mask { confined: Some((column.clone(), values)), sections });
+                masks.push(Mask { confined: Some((column.clone(), values)), sections, asked_by: None });
             }
         };
         values.iter().for_each(|value| push(vec![value.clone()]));
@@ -301,7 +337,7 @@ fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
         .map(|draw| {
             let mut random = Gauss::new(seed ^ (draw as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15));
             let z: Vec<f64> = (0..features).map(|_| random.next()).collect();
-            (0..fitter.candidates.len()).filter_map(|at| fitter.fit(&z, at, 0)).map(|fit| fit.evidence).fold(0.0, f64::max)
+            fitter.most(&z)
         })
         .collect();
     most.sort_by(f64::total_cmp);
@@ -316,11 +352,19 @@ fn guard(
     difference: &[f64],
     chosen: &Chosen,
     fit: &Fitted,
-) -> Option<String> {
-    let change = fit.change(fitter.candidates, &fitter.masks);
+) -> Judged {
     let rest = left(fitter.candidates, &fitter.masks, difference, chosen);
-    let contradicts = families.iter().find_map(|family| contradiction(covariance, family, &change, &rest));
-    contradicts.or_else(|| carried(covariance, &fitter.masks[fit.mask], &change, &rest))
+    let fitted = (&fitter.candidates[fit.candidate], &fitter.masks[fit.mask], fit);
+    let mut judged = Judged::Sound;
+    for family in families {
+        match contradiction(covariance, family, fitted, &rest) {
+            Judged::Sound => {}
+            Judged::Doubtful => judged = Judged::Doubtful,
+            refused @ Judged::Refused(_) => return refused,
+        }
+    }
+    let change = fit.change(fitter.candidates, &fitter.masks);
+    carried(covariance, &fitter.masks[fit.mask], &change, &rest).map_or(judged, Judged::Refused)
 }
 
 /// Simulates the sizes that were found, so that nothing rests on interpolation.

@@ -28,8 +28,17 @@ pub struct Chosen {
     pub rest: Vec<f64>,
 }
 
-/// Says why a fit is refused as a further member, or nothing if it may stay.
-pub type Guard<'a> = &'a (dyn Fn(&Fitted, &Chosen) -> Option<String> + Sync);
+/// What a guard says of a fit as a further member.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Judged {
+    Sound,
+    /// It may stay if it proves itself elsewhere.
+    Doubtful,
+    Refused(String),
+}
+
+/// Judges a fit as a further member.
+pub type Guard<'a> = &'a (dyn Fn(&Fitted, &Chosen) -> Judged + Sync);
 
 /// A refused member and why.
 #[derive(Clone, Debug)]
@@ -68,11 +77,15 @@ pub fn search(
             fits.retain(|fit| fit.fall >= least);
         }
         fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-        let Some(best) = fits.into_iter().next() else { break };
-        if let Some(reason) = guard(&best, &chosen) {
-            barred.push(best.candidate);
-            refused.push(Refused { fitted: best, reason });
-            continue;
+        let Some(mut best) = fits.into_iter().next() else { break };
+        match guard(&best, &chosen) {
+            Judged::Sound => {}
+            Judged::Doubtful => best.doubtful = true,
+            Judged::Refused(reason) => {
+                barred.push(best.candidate);
+                refused.push(Refused { fitted: best, reason });
+                continue;
+            }
         }
         chosen.members.push(best);
         refit(fitter, z, &mut chosen, 4);
@@ -92,13 +105,16 @@ pub fn plausible(candidate: &Candidate, size: f64) -> bool {
     (candidate.range.0..=candidate.range.1).contains(&size)
 }
 
+/// Share of the evidence that a confinement must add: leaving out the sections that fit worst adds some to anything.
+const CONFINED: f64 = 0.15;
+
 /// A confinement must earn what it costs over the same candidate everywhere.
 fn unconfine(fitter: &Fitter<'_>, rest: &[f64], fit: &mut Fitted, bars: &Bars) {
     if fit.mask == 0 {
         return;
     }
     let Some(whole) = fitter.fit(rest, fit.candidate, 0) else { return };
-    if fit.evidence < whole.evidence + bars.confined {
+    if fit.evidence < whole.evidence + bars.confined.max(CONFINED * whole.evidence) {
         *fit = whole;
     }
 }
@@ -124,7 +140,7 @@ pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen, sweeps: usize)
             }
             let (candidate, mask) = (chosen.members[at].candidate, chosen.members[at].mask);
             if let Some(fitted) = fitter.fit(&rest, candidate, mask) {
-                chosen.members[at] = fitted;
+                chosen.members[at] = Fitted { doubtful: chosen.members[at].doubtful, ..fitted };
             }
         }
     }

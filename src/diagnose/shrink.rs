@@ -61,10 +61,11 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     for candidate in &mut candidates {
         candidate.nodes.iter_mut().filter(|node| !node.change.is_empty()).for_each(|node| node.change = part(&node.change));
     }
-    let masks = found
-        .masks
-        .iter()
-        .map(|mask| super::fit::Mask { confined: mask.confined.clone(), sections: kept.iter().map(|at| mask.sections[*at]).collect() });
+    let masks = found.masks.iter().map(|mask| super::fit::Mask {
+        confined: mask.confined.clone(),
+        sections: kept.iter().map(|at| mask.sections[*at]).collect(),
+        asked_by: mask.asked_by.map(|by| found.chosen.members.iter().position(|member| member.candidate == by).unwrap_or(usize::MAX)),
+    });
     let fitter = Fitter::new(&whitener, &candidates, masks.collect());
     let z = whitener.apply(&part(&found.difference));
     let mut chosen = super::search::Chosen { members: Vec::new(), rest: z.clone() };
@@ -74,7 +75,12 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
         chosen.members.push(Fitted { candidate: at, ..fitted });
     }
     super::search::refit(&fitter, &z, &mut chosen, 4);
-    chosen.members.into_iter().zip(&found.chosen.members).map(|(new, old)| Fitted { candidate: old.candidate, ..new }).collect()
+    chosen
+        .members
+        .into_iter()
+        .zip(&found.chosen.members)
+        .map(|(new, old)| Fitted { candidate: old.candidate, doubtful: old.doubtful, ..new })
+        .collect()
 }
 
 /// Records of all sections with the effects added: `members` by section.

@@ -35,17 +35,7 @@ impl Covariance {
     #[must_use]
     pub fn whitener(&self) -> Whitener {
         let sections = self.diagonal.len() / self.size;
-        let mut blocks = Vec::with_capacity(sections);
-        for section in 0..sections {
-            let range = section * self.size..(section + 1) * self.size;
-            let columns: Vec<&[f64]> = self.inside.iter().filter(|(of, _)| *of == section).map(|(_, values)| values.as_slice()).collect();
-            let mut block = DMatrix::from_diagonal(&DVector::from_iterator(self.size, self.diagonal[range].iter().map(|v| v.max(1e-12))));
-            if !columns.is_empty() {
-                let all = DMatrix::from_fn(self.size, columns.len(), |i, j| columns[j][i]);
-                block += &all * all.transpose();
-            }
-            blocks.push(Cholesky::new_with_substitute(block, 1e-9).expect("a substitute makes every pivot positive"));
-        }
+        let blocks = (0..sections).map(|section| self.block(section)).collect();
         let mut whitener = Whitener { blocks, shared: DMatrix::zeros(self.diagonal.len(), 0), shrink: DVector::zeros(0), size: self.size };
         let columns: Vec<DVector<f64>> = self.shared.iter().map(|column| DVector::from_vec(whitener.apply(column))).collect();
         if !columns.is_empty() {
@@ -54,12 +44,91 @@ impl Covariance {
             let eigen = (all.transpose() * &all).symmetric_eigen();
             let largest = eigen.eigenvalues.max();
             let kept: Vec<usize> = (0..columns.len()).filter(|i| eigen.eigenvalues[*i] > largest * 1e-12).collect();
-            let vectors: Vec<DVector<f64>> =
-                kept.iter().map(|i| &all * eigen.eigenvectors.column(*i) / eigen.eigenvalues[*i].sqrt()).collect();
+            let scaled: Vec<DVector<f64>> = kept.iter().map(|i| eigen.eigenvectors.column(*i) / eigen.eigenvalues[*i].sqrt()).collect();
             whitener.shrink = DVector::from_iterator(kept.len(), kept.iter().map(|i| 1.0 - 1.0 / (1.0 + eigen.eigenvalues[*i]).sqrt()));
-            whitener.shared = DMatrix::from_columns(&vectors);
+            whitener.shared = if kept.is_empty() { whitener.shared } else { all * DMatrix::from_columns(&scaled) };
         }
         whitener
+    }
+}
+
+impl Covariance {
+    /// The covariance inside a section, without what sections share.
+    fn block(&self, section: usize) -> Cholesky<f64, Dyn> {
+        let range = section * self.size..(section + 1) * self.size;
+        let columns: Vec<&[f64]> = self.inside.iter().filter(|(of, _)| *of == section).map(|(_, values)| values.as_slice()).collect();
+        let mut block = DMatrix::from_diagonal(&DVector::from_iterator(self.size, self.diagonal[range].iter().map(|v| v.max(1e-12))));
+        if !columns.is_empty() {
+            let all = DMatrix::from_fn(self.size, columns.len(), |i, j| columns[j][i]);
+            block += &all * all.transpose();
+        }
+        Cholesky::new_with_substitute(block, 1e-9).expect("a substitute makes every pivot positive")
+    }
+
+    /// For inner products alone, of all sections or of all but one: cheaper than a [`Whitener`].
+    #[must_use]
+    pub fn products(&self) -> Products {
+        let one = |section: usize| {
+            let block = self.block(section);
+            let range = section * self.size..(section + 1) * self.size;
+            let mut shared = DMatrix::from_fn(self.size, self.shared.len(), |i, j| self.shared[j][range.start + i]);
+            block.l_dirty().solve_lower_triangular_mut(&mut shared);
+            let gram = shared.tr_mul(&shared);
+            (block, shared, gram)
+        };
+        let sections: Vec<_> = (0..self.diagonal.len() / self.size).map(one).collect();
+        let none = DMatrix::identity(self.shared.len(), self.shared.len());
+        let gram = sections.iter().fold(none, |sum, (.., gram)| sum + gram);
+        Products { sections, gram, size: self.size }
+    }
+}
+
+/// Inner products `a' C^-1 b` by the matrix inversion lemma.
+#[derive(Debug)]
+pub struct Products {
+    /// By section: its block, the whitened columns that sections share, and their products.
+    sections: Vec<(Cholesky<f64, Dyn>, DMatrix<f64>, DMatrix<f64>)>,
+    /// Unity and the products of all sections.
+    gram: DMatrix<f64>,
+    size: usize,
+}
+
+impl Products {
+    /// A column by section, whitened in its block.
+    fn inside(&self, column: &[f64]) -> Vec<DVector<f64>> {
+        let one = |(section, (block, ..)): (usize, &(Cholesky<f64, Dyn>, DMatrix<f64>, DMatrix<f64>))| {
+            let mut part = DVector::from_column_slice(&column[section * self.size..(section + 1) * self.size]);
+            block.l_dirty().solve_lower_triangular_mut(&mut part);
+            part
+        };
+        self.sections.iter().enumerate().map(one).collect()
+    }
+
+    /// `a' C^-1 a` and `a' C^-1 b`, of all sections and of all but each.
+    #[must_use]
+    pub fn of(&self, a: &[f64], b: &[f64], one_out: bool) -> Vec<(f64, f64)> {
+        let (a, b) = (self.inside(a), self.inside(b));
+        let along = |parts: &[DVector<f64>]| -> Vec<DVector<f64>> {
+            self.sections.iter().zip(parts).map(|((_, shared, _), part)| shared.tr_mul(part)).collect()
+        };
+        let (ga, gb) = (along(&a), along(&b));
+        let product = |without: Option<usize>| {
+            let kept = || (0..self.sections.len()).filter(move |at| Some(*at) != without);
+            let mut gram = self.gram.clone();
+            if let Some(without) = without {
+                gram -= &self.sections[without].2;
+            }
+            let (aa, ab) = kept().fold((0.0, 0.0), |(aa, ab), at| (aa + a[at].dot(&a[at]), ab + a[at].dot(&b[at])));
+            let sum = |parts: &[DVector<f64>]| kept().fold(DVector::zeros(gram.nrows()), |sum, at| sum + &parts[at]);
+            let (ga, gb) = (sum(&ga), sum(&gb));
+            let solved = Cholesky::new_with_substitute(gram, 1e-9).expect("a substitute makes every pivot positive").solve(&ga);
+            (aa - solved.dot(&ga), ab - solved.dot(&gb))
+        };
+        let mut all = vec![product(None)];
+        if one_out {
+            all.extend((0..self.sections.len()).map(|at| product(Some(at))));
+        }
+        all
     }
 }
 
@@ -123,5 +192,10 @@ mod tests {
         let direct = (DVector::from_row_slice(&r).transpose() * full.try_inverse().expect("regular") * DVector::from_row_slice(&r))[0];
         let z = covariance.whitener().apply(&r);
         assert!((dot(&z, &z) - direct).abs() < 1e-10 * direct);
+        let products = covariance.products().of(&r, &r, true);
+        assert!((products[0].0 - direct).abs() < 1e-10 * direct && products[0].0 == products[0].1);
+        // Without the first section: the covariance of the second alone.
+        let rest = covariance.part(&[1], &[0, 1]).whitener().apply(&r[2..]);
+        assert!((products[1].0 - dot(&rest, &rest)).abs() < 1e-10 * direct);
     }
 }

@@ -8,7 +8,7 @@ use super::fit::Fitted;
 use super::run::{Found, Inputs, LACK, TOLERANCE_SD, chi, declared, deviations, excess, length, value_of};
 use super::search::plausible;
 use crate::effects::{Action, Effect};
-use crate::result::diagnosis::{Cause, Detectable, Diagnosis, How, NamedEffect, Shrink, Value, Vetoed};
+use crate::result::diagnosis::{Cause, Detectable, Diagnosis, Fault, How, NamedEffect, Shrink, Value, Vetoed};
 
 /// Whitened length of a change that can be identified.
 const SEEN: f64 = 5.0;
@@ -26,7 +26,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>) -> 
     let ambiguous = ambiguity(inputs, found);
     let named = !found.chosen.members.is_empty();
     let verdict = match () {
-        () if !named && !lacking => "no significant gap",
+        () if !named && !lacking && found.seen.faults.is_empty() => "no significant gap",
         () if !named => "unexplained",
         () if lacking && (unexplained_share > 0.5 || most(&found.lack_after) > 3.0 * LACK) => "unexplained",
         () if ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
@@ -45,7 +45,9 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>) -> 
     let says = says(inputs, found, verdict, &causes, shrink.as_ref(), unexplained_share);
     let noted = found.runs.failed.iter().map(|failed| format!("a run failed and was left out: {failed}"));
     let left_out = found.seen.left_out.iter().map(|(section, reason)| format!("section {section} was left out: {reason}"));
-    let mut notes: Vec<String> = noted.chain(left_out).collect();
+    let again = found.seen.sections.iter().filter(|observed| observed.again).map(|observed| observed.section.name());
+    let again = again.map(|name| format!("section {name} is another one measured again: it does not count twice"));
+    let mut notes: Vec<String> = noted.chain(left_out).chain(again).collect();
     let tolerances = if inputs.campaign.facts.iter().any(|fact| fact.group == "declared_tolerances") {
         "declared by the campaign"
     } else {
@@ -64,6 +66,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>) -> 
         campaign: inputs.campaign.name.clone(),
         verdict,
         says,
+        faults: found.seen.faults.clone(),
         r#where: super::locate::locate(inputs.settings, found),
         causes,
         vetoed: vetoed(inputs, found),
@@ -295,7 +298,8 @@ fn detectable(inputs: &Inputs<'_>, found: &Found) -> Vec<Detectable> {
 }
 
 fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shrink: Option<&Shrink>, unexplained: f64) -> Vec<String> {
-    let mut lines = Vec::new();
+    let faulty = |fault: &Fault| format!("Fault of the recording: {} (sections {}).", fault.says, fault.sections.join(", "));
+    let mut lines: Vec<String> = found.seen.faults.iter().map(faulty).collect();
     match verdict {
         "no significant gap" => {
             lines.push("What differs is within noise, declared tolerances and what a model of this kind is allowed to be wrong in.".into())
@@ -313,11 +317,11 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
                 .take(4)
                 .map(|(channel, kind, ..)| format!("{channel} ({})", if *kind == Kind::Level { "quasi-static" } else { "dynamic" }))
                 .collect();
-            lines.push(format!(
-                "No effect of the catalogue `{}` explains the gap. It is left in {}.",
-                inputs.catalogue.name,
-                named.join(", ")
-            ));
+            let catalogue = &inputs.catalogue.name;
+            lines.push(match named.is_empty() {
+                true => format!("Beside that, nothing is left that an effect of the catalogue `{catalogue}` should explain."),
+                false => format!("No effect of the catalogue `{catalogue}` explains the gap. It is left in {}.", named.join(", ")),
+            });
             if let Some(first) = causes.first() {
                 lines.push(format!("Explained in part: {}; {:.0} % of the excess is left.", first.says, 100.0 * unexplained));
             }

@@ -226,6 +226,16 @@ fn shrunk(shrink: &Shrink) -> Chapter {
             },
         },
     ];
+    if let Some(touched) = &shrink.touched {
+        let share = |value: f64| number::fixed(100.0 * value, 0);
+        items.push(Item::text(format!(
+            "In the quantities that the effects change ({}) {} % is removed ({} to {} %, 90 %, by resampling sections).",
+            touched.quantities.join(", "),
+            share(touched.fraction_removed),
+            share(touched.low),
+            share(touched.high)
+        )));
+    }
     if shrink.shares.len() > 1 {
         let entries = shrink.shares.iter().map(|(name, share)| format!("{name}: {} %", number::fixed(100.0 * share, 0))).collect();
         items.push(Item::Heading { text: "Shares of the effects".into() });

@@ -12,6 +12,8 @@ pub struct Diagnosis {
     pub verdict: &'static str,
     /// The verdict in a sentence or two.
     pub says: Vec<String>,
+    /// Faults of the recording; the channels are left out of everything else.
+    pub faults: Vec<Fault>,
     pub r#where: Vec<Where>,
     pub causes: Vec<Cause>,
     pub vetoed: Vec<Vetoed>,
@@ -51,6 +53,16 @@ pub struct Panel {
     pub measured: super::Curve,
     pub simulated: super::Curve,
     pub improved: super::Curve,
+}
+
+/// A channel that cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Fault {
+    /// `dropout` or `clipping`.
+    pub fault: &'static str,
+    pub channel: String,
+    pub sections: Vec<String>,
+    pub says: String,
 }
 
 /// A place where the gap lies.

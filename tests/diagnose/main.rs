@@ -2,7 +2,29 @@
 //!
 //! One set of simulations serves all tests: the campaigns differ in their measurements alone.
 
-#![allow(clippy::unwrap_used)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_possible_wrap
+)]
+
+// The generator of withheld truths.
+#[path = "../../examples/blind_campaigns/cases.rs"]
+#[allow(dead_code)]
+mod cases;
+#[path = "../../examples/blind_campaigns/line.rs"]
+mod line;
+#[path = "../../examples/blind_campaigns/truth.rs"]
+mod truth;
+#[path = "../../examples/blind_campaigns/vehicles.rs"]
+mod vehicles;
+#[path = "../../examples/blind_campaigns/write.rs"]
+mod write;
+
+mod blind;
+mod metamorphic;
 
 use std::fs;
 use std::path::{Path, PathBuf};
