@@ -85,7 +85,8 @@ impl Outside {
                     let from = (s % 18.0).min(18.0 - s % 18.0);
                     track.level[i] += 3.0 * (-(from / 1.2).powi(2)).exp();
                 }
-                Self::WideCurves if track.curvature[i].abs() > 1.0 / 700.0 => track.gauge[i] += 14.0,
+                // Wider with the curvature, so that the rail has no step.
+                Self::WideCurves => track.gauge[i] += 8.0 * (350.0 * track.curvature[i].abs()).min(1.0),
                 _ => {}
             }
         }
@@ -144,7 +145,7 @@ fn derive() -> Vec<Case> {
     let outside = [
         (&COACH, Outside::Drift),
         (&RAILCAR, Outside::SoftLateral),
-        (&WAGON, Outside::WideCurves),
+        (&COACH, Outside::WideCurves),
         (&COACH, Outside::StiffSecondary),
         (&RAILCAR, Outside::Joints),
     ];
@@ -210,7 +211,7 @@ fn score() -> Vec<Case> {
     let outside = [
         (&RAILCAR, Outside::Drift),
         (&COACH, Outside::WheelRadii),
-        (&WAGON, Outside::Joints),
+        (&COACH, Outside::Joints),
         (&COACH, Outside::WideCurves),
         (&COACH, Outside::Speed),
         (&RAILCAR, Outside::StiffSecondary),

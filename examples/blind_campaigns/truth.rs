@@ -114,7 +114,7 @@ impl World {
             clearance: declared.clearance * random.next(),
             irregularity: (declared.irregularity * random.next()).exp(),
             lateral: between(random, 1.0, 1.2),
-            law: between(random, 1.3, 3.0),
+            law: between(random, 1.8, 3.0),
             kalker: between(random, 1.0, 1.25),
             track_stiffness: between(random, 0.7, 1.2),
             dry: between(random, 100.0, 400.0),
@@ -221,7 +221,7 @@ impl World {
         let around = Window::around(made.stretch.start, made.stretch.end);
         let window = Window { from: around.from - made.shift, to: around.to - made.shift };
         let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
-        let record = simulate_with(&setup, window, Some(3)).map_err(|failure| failure.to_string())?;
+        let record = simulate_with(&setup, window, Some(2)).map_err(|failure| failure.to_string())?;
         let channels = CHANNELS.iter().zip(record.channels).map(|((name, _), values)| Channel { name: (*name).to_string(), values });
         Ok(Signals { axis: record.distance, over_time: false, rate: SAMPLING_RATE, channels: channels.collect() })
     }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use rayon::prelude::*;
 
 use super::diagnose::{Asked, diagnosed, json};
 use super::output::{Console, Exit};
@@ -52,15 +53,15 @@ impl Blinded {
             console.problems(&problems);
             return Exit::Wrong;
         };
-        let mut cases = Vec::new();
-        for (at, folder) in campaigns.iter().enumerate() {
+        // Side by side: a diagnosis alone does not fill all cores all the time.
+        let one = |(at, folder): (usize, &PathBuf)| {
             console.say(&format!("{} of {}: {}", at + 1, campaigns.len(), folder.display()));
-            match self.one(folder, &catalogue, console) {
-                Ok(found) => cases.push(found),
-                Err(problem) => return console.fail(problem, Exit::Unfinished),
-            }
-        }
-        let scored = blind(cases);
+            self.one(folder, &catalogue, console)
+        };
+        let scored = match campaigns.par_iter().enumerate().with_max_len(1).map(one).collect::<Result<Vec<Case>, Problem>>() {
+            Ok(cases) => blind(cases),
+            Err(problem) => return console.fail(problem, Exit::Unfinished),
+        };
         let text = serde_json::to_string_pretty(&scored).unwrap_or_default() + "\n";
         let page = match html::chapters_html("Diagnoses against withheld truths", &report::chapters(&scored)) {
             Ok(page) => page,

@@ -112,7 +112,7 @@ fn idle(
 /// Share of the gap that an effect must remove, at least in the quantities that it changes.
 const EARNED: f64 = 0.05;
 /// Evidence, in thresholds, from which it need only not do harm.
-const STRONG: f64 = 3.0;
+const STRONG: f64 = 4.0 / 3.0;
 
 /// What effects that are known to be true would have done: their whitened size, and the share of the gap that they remove.
 #[must_use]

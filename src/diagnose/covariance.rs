@@ -19,8 +19,6 @@ const NOTHING: f64 = 1e12;
 pub struct Sensitivity {
     pub tolerance: String,
     pub column: Vec<f64>,
-    /// Whether the change is there for certain; `column` is then what of it is uncertain.
-    pub expected: Option<Vec<f64>>,
     pub per_section: bool,
     pub shared: bool,
 }

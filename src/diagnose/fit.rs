@@ -220,7 +220,8 @@ impl<'a> Fitter<'a> {
         let inside: Vec<bool> = asked.iter().map(|asked| asked.is_some_and(|(share, _)| share > 0.5 * typical)).collect();
         let some = inside.iter().filter(|inside| **inside).count();
         // Without a few that fit worst, anything fits better: that is no confinement.
-        (some > 0 && 4 * some <= 3 * asked.iter().flatten().count()).then_some(inside)
+        // And what is in one or two sections may be anything.
+        (some > 2 && 4 * some <= 3 * asked.iter().flatten().count()).then_some(inside)
     }
 }
 

@@ -94,7 +94,7 @@ const ENOUGH: f64 = 60.0;
 pub fn carried(covariance: &Covariance, mask: &Mask, change: &[f64], rest: &[f64]) -> Option<String> {
     let inside: Vec<usize> = (0..mask.sections.len()).filter(|at| mask.sections[*at]).collect();
     let moved = |at: &usize| change[at * covariance.size..(at + 1) * covariance.size].iter().any(|x| *x != 0.0);
-    if inside.iter().filter(|at| moved(at)).count() < 4 {
+    if inside.iter().filter(|at| moved(at)).count() < 3 {
         return None;
     }
     let evidence = |(length, along): &(f64, f64)| if *length > 0.0 { along * along / length } else { 0.0 };

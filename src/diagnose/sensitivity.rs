@@ -7,9 +7,6 @@ use super::settings::Settings;
 /// Finite differences are taken over so many standard deviations: beyond the noise of branches, within what is linear.
 const STEP: f64 = 1.5;
 
-/// Share of an expected change that is uncertain.
-const UNCERTAIN: f64 = 0.5;
-
 /// A column per tolerated parameter: the change of all features with one standard deviation of it.
 #[must_use]
 pub fn sensitivities(
@@ -28,9 +25,8 @@ pub fn sensitivities(
         for key in &tolerance.scales {
             tried.extend(value(key).map(|from| (vec![(key.clone(), from + STEP * from * sd)], STEP)));
         }
-        let step = if tolerance.expected { 1.0 } else { STEP };
         for (key, factor) in &tolerance.adds {
-            tried.extend(value(key).map(|from| (vec![(key.clone(), from + step * factor * sd)], step)));
+            tried.extend(value(key).map(|from| (vec![(key.clone(), from + STEP * factor * sd)], STEP)));
         }
         if !tolerance.sets.is_empty() && sd > 0.0 {
             tried.push((tolerance.sets.clone(), 1.0 / sd));
@@ -38,17 +34,12 @@ pub fn sensitivities(
         for (set, deviations) in tried.into_iter().filter(|(set, _)| set.iter().any(|(key, to)| value(key) != Some(*to))) {
             runs.made += bench.seen.sections.len();
             match bench.features(&set) {
-                Ok(made) => {
-                    let change: Vec<f64> = made.iter().zip(base).map(|(made, base)| (made - base) / deviations).collect();
-                    let uncertain = |change: &[f64]| change.iter().map(|change| UNCERTAIN * change).collect();
-                    columns.push(Sensitivity {
-                        tolerance: tolerance.name.clone(),
-                        column: if tolerance.expected { uncertain(&change) } else { change.clone() },
-                        expected: tolerance.expected.then_some(change),
-                        per_section: tolerance.per_section,
-                        shared: tolerance.shared,
-                    });
-                }
+                Ok(made) => columns.push(Sensitivity {
+                    tolerance: tolerance.name.clone(),
+                    column: made.iter().zip(base).map(|(made, base)| (made - base) / deviations).collect(),
+                    per_section: tolerance.per_section,
+                    shared: tolerance.shared,
+                }),
                 Err(problem) => runs.failed.push(format!("{}: {}", tolerance.name, problem.says)),
             }
         }

@@ -61,9 +61,6 @@ pub struct Tolerance {
     pub adds: Vec<(String, f64)>,
     /// Parameters that are set together, as another model of the same thing would have them: that model is one standard deviation.
     pub sets: Vec<(String, f64)>,
-    /// Whether it is there for certain, in about this size: the simulation lacks it. Then the change is added to the simulation, and
-    /// half of it is uncertain.
-    pub expected: bool,
     /// Whether each section has its own.
     pub per_section: bool,
     /// Whether all sections share one.
@@ -137,7 +134,7 @@ const TOP: [&str; 10] =
     ["bands", "alike", "furthest lag", "groups", "tolerances", "discrepancies", "confine to", "mirrored", "strata", "positions"];
 const GROUP: [&str; 12] =
     ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says"];
-const TOLERANCE: [&str; 7] = ["default", "scales", "adds", "sets", "expected", "each section", "shared"];
+const TOLERANCE: [&str; 6] = ["default", "scales", "adds", "sets", "each section", "shared"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
 impl Settings {
@@ -275,7 +272,6 @@ impl Reader<'_> {
                 entries.map(|(key, node)| (key.text.clone(), node.number().unwrap_or(1.0))).collect()
             };
             let per_section = self.flag(node, "each section");
-            let expected = self.flag(node, "expected");
             let shared = node.get("shared").is_none() && !per_section || self.flag(node, "shared");
             settings.tolerances.push(Tolerance {
                 name: key.text.clone(),
@@ -283,7 +279,6 @@ impl Reader<'_> {
                 scales: self.words(node.get("scales")),
                 adds: map("adds"),
                 sets: map("sets"),
-                expected,
                 per_section,
                 shared,
             });
