@@ -37,8 +37,6 @@ pub enum Outside {
     WheelRadii,
     /// Rail joints dip every 18 m.
     Joints,
-    /// Curves are wider than recorded.
-    WideCurves,
     /// The vehicle ran faster than the table says.
     Speed,
     /// Air springs or springs between body and bogie are far too stiff, vertically.
@@ -57,7 +55,6 @@ impl Outside {
             Self::Drift => "drift_over_sections",
             Self::WheelRadii => "wheel_radius_difference",
             Self::Joints => "rail_joints",
-            Self::WideCurves => "gauge_widening_in_curves",
             Self::Speed => "speed_error",
             Self::StiffSecondary => "stiff_secondary_springs",
             Self::SoftLateral => "soft_lateral_springs",
@@ -85,8 +82,6 @@ impl Outside {
                     let from = (s % 18.0).min(18.0 - s % 18.0);
                     track.level[i] += 3.0 * (-(from / 1.2).powi(2)).exp();
                 }
-                // Wider with the curvature, so that the rail has no step.
-                Self::WideCurves => track.gauge[i] += 8.0 * (350.0 * track.curvature[i].abs()).min(1.0),
                 _ => {}
             }
         }
@@ -142,13 +137,8 @@ fn derive() -> Vec<Case> {
         (&COACH, &["worn_profile.profile.conicity_scale=~1.8", "sync_shift=~5"]),
     ];
     rows.extend(pairs.into_iter().map(|(design, effects)| ("pair", design, effects, None)));
-    let outside = [
-        (&COACH, Outside::Drift),
-        (&RAILCAR, Outside::SoftLateral),
-        (&COACH, Outside::WideCurves),
-        (&COACH, Outside::StiffSecondary),
-        (&RAILCAR, Outside::Joints),
-    ];
+    let outside =
+        [(&COACH, Outside::Drift), (&RAILCAR, Outside::SoftLateral), (&COACH, Outside::StiffSecondary), (&RAILCAR, Outside::Joints)];
     rows.extend(outside.into_iter().map(|(design, outside)| ("outside", design, &[][..], Some(outside))));
     numbered(rows)
 }
@@ -211,8 +201,7 @@ fn score() -> Vec<Case> {
     let outside = [
         (&RAILCAR, Outside::Drift),
         (&COACH, Outside::WheelRadii),
-        (&COACH, Outside::Joints),
-        (&COACH, Outside::WideCurves),
+        (&WAGON, Outside::Joints),
         (&COACH, Outside::Speed),
         (&RAILCAR, Outside::StiffSecondary),
         (&COACH, Outside::SoftLateral),
