@@ -76,13 +76,10 @@ impl Outside {
     }
 
     pub fn on_track(self, track: &mut TrackTable) {
-        for (i, s) in track.distance.iter().enumerate() {
-            match self {
-                Self::Joints => {
-                    let from = (s % 18.0).min(18.0 - s % 18.0);
-                    track.level[i] += 3.0 * (-(from / 1.2).powi(2)).exp();
-                }
-                _ => {}
+        if self == Self::Joints {
+            for (i, s) in track.distance.iter().enumerate() {
+                let from = (s % 18.0).min(18.0 - s % 18.0);
+                track.level[i] += 3.0 * (-(from / 1.2).powi(2)).exp();
             }
         }
     }

@@ -8,7 +8,6 @@ use rayon::prelude::*;
 use crate::data::text::read_text;
 use crate::data::{Campaign, RecordKind};
 use crate::effects::Signals;
-use crate::model::CHANNELS;
 use crate::problem::{Problem, Problems};
 use crate::simulate::{
     Builtin, Cache, Deviation, External, Section, Simulator, Task, baseline_warning, deviations, in_units, read_program, recorded,
@@ -75,7 +74,7 @@ impl Chosen<'_> {
     /// The unit of a channel of a section's record.
     pub fn unit(&self, section: &Section, channel: &str) -> Unit {
         match self {
-            Self::Builtin(..) => model_unit(channel).unwrap_or_else(Unit::one),
+            Self::Builtin(model) => model.unit(channel).unwrap_or_else(Unit::one),
             Self::External(program) => program.unit(section, channel),
         }
     }
@@ -85,9 +84,9 @@ impl Chosen<'_> {
         let none = || Problem::error("unreadable", "the record cannot be read");
         let found = recorded(campaign, RecordKind::Simulation, section);
         let (mut signals, mut units, _) = found.map_err(|problems| problems.into_iter().next().unwrap_or_else(none))?;
-        if let Self::Builtin(..) = self {
-            in_units(&mut signals, &units, &model_unit)?;
-            units.iter_mut().for_each(|(name, unit)| *unit = model_unit(name).unwrap_or_else(|| unit.clone()));
+        if let Self::Builtin(model) = self {
+            in_units(&mut signals, &units, &|name| model.unit(name))?;
+            units.iter_mut().for_each(|(name, unit)| *unit = model.unit(name).unwrap_or_else(|| unit.clone()));
         }
         Ok((signals, units))
     }
@@ -118,8 +117,4 @@ impl Chosen<'_> {
         let (calls, found) = program.effort();
         format!(" ({calls} calls of {}, {found} records from the cache)", program.program().name)
     }
-}
-
-fn model_unit(channel: &str) -> Option<Unit> {
-    CHANNELS.iter().find(|(known, _)| *known == channel).and_then(|(_, unit)| Unit::parse(unit).ok())
 }

@@ -33,10 +33,13 @@ pub struct Outcome {
 /// The campaign cannot be compared or evaluated; a simulation fails.
 pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, sections: Vec<Section>) -> Result<Outcome, Problems> {
     let mut problems = Problems::default();
-    let (_, units, _) = match sections.first() {
+    let (_, mut units, _) = match sections.first() {
         Some(first) => recorded(inputs.campaign, crate::data::RecordKind::Simulation, first).map_err(Problems)?,
         None => return Err(Problems(vec![Problem::error("no-sections", "the campaign has no sections")])),
     };
+    if let Some(simulator) = inputs.simulator {
+        units.iter_mut().for_each(|(name, unit)| *unit = simulator.unit(name).unwrap_or_else(|| unit.clone()));
+    }
     let Some(mut found) = find(inputs, sections, &mut problems) else { return Err(problems) };
     (inputs.trying)("the protocol");
     let quiet = |_: &str| {};

@@ -9,7 +9,8 @@ use crate::data::{Campaign, RecordKind};
 use crate::effects::{Catalogue, Signals};
 use crate::problem::{Problem, Problems};
 use crate::result::diagnosis::Fault;
-use crate::simulate::{Section, recorded};
+use crate::simulate::{Section, in_units, recorded};
+use crate::units::Unit;
 
 /// One section with its records.
 #[derive(Debug)]
@@ -39,7 +40,8 @@ pub struct Observations {
 }
 
 impl Observations {
-    /// Reads the records of a campaign and finds which channels both sides have.
+    /// Reads the records of a campaign, in the units that `unit` gives or else the simulation's own, and finds which channels both
+    /// sides have.
     ///
     /// Problems: no section can be read; no channel of the catalogue is in the records.
     pub fn read(
@@ -48,14 +50,14 @@ impl Observations {
         catalogue: &Catalogue,
         settings: &Settings,
         declared: &dyn Fn(&str) -> Option<f64>,
+        unit: &(dyn Fn(&str) -> Option<Unit> + Sync),
         problems: &mut Problems,
     ) -> Option<Self> {
         type Both = (Section, Result<(Signals, Signals), String>);
         let read: Vec<Both> = sections
             .into_par_iter()
             .map(|section| {
-                let side = |kind| recorded(campaign, kind, &section).map(|(signals, ..)| signals).map_err(|problems| first(&problems));
-                let both = side(RecordKind::Simulation).and_then(|simulated| Ok((simulated, side(RecordKind::Measurement)?)));
+                let both = both_sides(campaign, &section, unit);
                 (section, both)
             })
             .collect();
@@ -187,6 +189,18 @@ pub fn piece(signals: &Signals, name: &str, section: &Section) -> Option<Piece> 
     }
     let step = (signals.axis[to - 1] - signals.axis[from]) / (to - from - 1) as f64;
     Some(Piece { values: channel.values[from..to].to_vec(), rate: signals.rate, step })
+}
+
+/// Simulated and measured in the same units: those of `unit`, else of the simulation.
+fn both_sides(campaign: &Campaign, section: &Section, unit: &dyn Fn(&str) -> Option<Unit>) -> Result<(Signals, Signals), String> {
+    let side = |kind| recorded(campaign, kind, section).map(|(signals, units, _)| (signals, units)).map_err(|problems| first(&problems));
+    let (mut simulated, units) = side(RecordKind::Simulation)?;
+    let (mut measured, others) = side(RecordKind::Measurement)?;
+    let to = |name: &str| unit(name).or_else(|| units.iter().find(|(known, _)| known == name).map(|(_, unit)| unit.clone()));
+    let says = |problem: Problem| problem.says;
+    in_units(&mut simulated, &units, &to).map_err(says)?;
+    in_units(&mut measured, &others, &to).map_err(says)?;
+    Ok((simulated, measured))
 }
 
 fn first(problems: &[Problem]) -> String {

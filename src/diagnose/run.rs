@@ -101,14 +101,15 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let value = |key: &str| value_of(inputs.campaign, key);
     let settings = inputs.settings;
     (inputs.trying)("reading records");
-    let seen = Observations::read(inputs.campaign, sections, inputs.catalogue, settings, &declared, problems)?;
+    let unit = |channel: &str| inputs.simulator?.unit(channel);
+    let seen = Observations::read(inputs.campaign, sections, inputs.catalogue, settings, &declared, &unit, problems)?;
     let simulated = seen.all(true, |observed| &observed.simulated);
     let measured = seen.all(false, |observed| &observed.measured);
     let mut difference = less(&measured, &simulated);
     let mut reference = Reference::default();
     for campaign in inputs.references {
         let sections = crate::simulate::sections(campaign, problems);
-        reference.learn(&Observations::read(campaign, sections, inputs.catalogue, settings, &declared, problems)?, settings);
+        reference.learn(&Observations::read(campaign, sections, inputs.catalogue, settings, &declared, &unit, problems)?, settings);
     }
     reference.take_off(&seen, settings, &mut difference);
     let settings = &reference.narrowed(settings);

@@ -74,20 +74,27 @@ impl Covariance {
             let mut shared = DMatrix::from_fn(self.size, self.shared.len(), |i, j| self.shared[j][range.start + i]);
             block.l_dirty().solve_lower_triangular_mut(&mut shared);
             let gram = shared.tr_mul(&shared);
-            (block, shared, gram)
+            Inside { block, shared, gram }
         };
-        let sections: Vec<_> = (0..self.diagonal.len() / self.size).map(one).collect();
+        let sections: Vec<Inside> = (0..self.diagonal.len() / self.size).map(one).collect();
         let none = DMatrix::identity(self.shared.len(), self.shared.len());
-        let gram = sections.iter().fold(none, |sum, (.., gram)| sum + gram);
+        let gram = sections.iter().fold(none, |sum, inside| sum + &inside.gram);
         Products { sections, gram, size: self.size }
     }
+}
+
+/// A section: its block, the columns that sections share whitened by it, and their products.
+#[derive(Debug)]
+struct Inside {
+    block: Cholesky<f64, Dyn>,
+    shared: DMatrix<f64>,
+    gram: DMatrix<f64>,
 }
 
 /// Inner products `a' C^-1 b` by the matrix inversion lemma.
 #[derive(Debug)]
 pub struct Products {
-    /// By section: its block, the whitened columns that sections share, and their products.
-    sections: Vec<(Cholesky<f64, Dyn>, DMatrix<f64>, DMatrix<f64>)>,
+    sections: Vec<Inside>,
     /// Unity and the products of all sections.
     gram: DMatrix<f64>,
     size: usize,
@@ -96,9 +103,9 @@ pub struct Products {
 impl Products {
     /// A column by section, whitened in its block.
     fn inside(&self, column: &[f64]) -> Vec<DVector<f64>> {
-        let one = |(section, (block, ..)): (usize, &(Cholesky<f64, Dyn>, DMatrix<f64>, DMatrix<f64>))| {
+        let one = |(section, inside): (usize, &Inside)| {
             let mut part = DVector::from_column_slice(&column[section * self.size..(section + 1) * self.size]);
-            block.l_dirty().solve_lower_triangular_mut(&mut part);
+            inside.block.l_dirty().solve_lower_triangular_mut(&mut part);
             part
         };
         self.sections.iter().enumerate().map(one).collect()
@@ -109,14 +116,14 @@ impl Products {
     pub fn of(&self, a: &[f64], b: &[f64], one_out: bool) -> Vec<(f64, f64)> {
         let (a, b) = (self.inside(a), self.inside(b));
         let along = |parts: &[DVector<f64>]| -> Vec<DVector<f64>> {
-            self.sections.iter().zip(parts).map(|((_, shared, _), part)| shared.tr_mul(part)).collect()
+            self.sections.iter().zip(parts).map(|(inside, part)| inside.shared.tr_mul(part)).collect()
         };
         let (ga, gb) = (along(&a), along(&b));
         let product = |without: Option<usize>| {
             let kept = || (0..self.sections.len()).filter(move |at| Some(*at) != without);
             let mut gram = self.gram.clone();
             if let Some(without) = without {
-                gram -= &self.sections[without].2;
+                gram -= &self.sections[without].gram;
             }
             let (aa, ab) = kept().fold((0.0, 0.0), |(aa, ab), at| (aa + a[at].dot(&a[at]), ab + a[at].dot(&b[at])));
             let sum = |parts: &[DVector<f64>]| kept().fold(DVector::zeros(gram.nrows()), |sum, at| sum + &parts[at]);

@@ -10,7 +10,7 @@ use crate::effects::{Channel, Signals};
 use crate::model::{self, CHANNELS, PARAMETERS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, VehicleFault, Window};
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Spanned};
-use crate::units::Dimension;
+use crate::units::{Dimension, Unit};
 use crate::yaml::Node;
 
 /// Sides of a wheelset as the vehicle file writes them.
@@ -83,6 +83,11 @@ impl Simulator for Builtin<'_> {
 
     fn catalogue_name(&self) -> Option<&str> {
         None
+    }
+
+    fn unit(&self, channel: &str) -> Option<Unit> {
+        let (_, unit) = CHANNELS.iter().find(|(name, _)| *name == channel)?;
+        Unit::parse(unit).ok()
     }
 
     fn run(&self, task: &Task<'_>) -> Result<Signals, Problem> {

@@ -20,6 +20,7 @@ pub use write::write_campaign;
 
 use crate::effects::Signals;
 use crate::problem::Problem;
+use crate::units::Unit;
 
 /// A record to be made.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +41,11 @@ pub trait Simulator: Sync {
 
     /// The name by which a catalogue says which parameters of it an effect moves; `None` for the built-in model.
     fn catalogue_name(&self) -> Option<&str>;
+
+    /// The unit that it makes a channel in; `None`: that of the campaign's simulation.
+    fn unit(&self, _channel: &str) -> Option<Unit> {
+        None
+    }
 
     /// Makes a record.
     ///
