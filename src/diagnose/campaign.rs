@@ -98,7 +98,9 @@ fn idle(
         let without = if count == 1 { before.clone() } else { evaluate(found, &unseen(inputs, found, Some(member))?)? };
         let earned = compare(&without, after, inputs.seed, Vec::new());
         let Some(touched) = earned.touched else { continue };
-        let most = touched.fraction_removed.max(earned.fraction_removed);
+        // Means over signals may hide what single values show.
+        let by_value = 1.0 - (1.0 - touched.variance_explained).max(0.0).sqrt();
+        let most = touched.fraction_removed.max(earned.fraction_removed).max(by_value);
         // The protocol judges few numbers: what the features say strongly, it must contradict to be heard.
         let member_of = &found.chosen.members[member];
         let strong = member_of.evidence >= STRONG * found.threshold && !member_of.doubtful;

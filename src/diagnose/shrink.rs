@@ -161,7 +161,18 @@ fn removed(before: &Certification, after: &Certification, quantities: &[usize], 
         fraction_removed: share((from, to)),
         low: at(0.05),
         high: at(0.95),
+        variance_explained: {
+            let sum = |of: &Certification| -> f64 { quantities.iter().map(|at| squares(&of.quantities[*at])).sum() };
+            let from = sum(before);
+            if from > 0.0 { 1.0 - sum(after) / from } else { 0.0 }
+        },
     }
+}
+
+/// Sum of squared differences, each divided by the limit of their standard deviation; 0 without such a limit.
+fn squares(quantity: &QuantityResult) -> f64 {
+    let limit = limit_of(quantity, "std").filter(|limit| *limit > 0.0);
+    limit.map_or(0.0, |limit| quantity.values.iter().map(|value| (value.difference / limit).powi(2)).sum())
 }
 
 /// Root mean square of what changes in a quantity's differences, by the limit of their standard deviation.

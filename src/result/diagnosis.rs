@@ -156,6 +156,8 @@ pub struct Touched {
     /// 90 %, by resampling sections.
     pub low: f64,
     pub high: f64,
+    /// Share removed of the squared differences of all values, each divided by the limit of its quantity's standard deviation.
+    pub variance_explained: f64,
 }
 
 #[derive(Clone, Debug, Serialize)]

@@ -20,10 +20,16 @@ pub fn opening(found: &SelectionStudy) -> Opening {
         Verdict::Validated => all,
         _ => 1.0 - all,
     };
-    let (same, holds) = match agrees {
-        share if share >= 1.0 => ("does not depend on the sections chosen", Some(true)),
-        share if share >= 0.5 => ("depends on the sections chosen", None),
-        _ => ("is another for most selections than for all sections together", Some(false)),
+    let same = match agrees {
+        share if share >= 1.0 => "does not depend on the sections chosen",
+        share if share >= 0.5 => "depends on the sections chosen",
+        _ => "is another for most selections than for all sections together",
+    };
+    // What stands in the box is the share: good where all are validated, bad where none is.
+    let holds = match all {
+        share if share >= 1.0 => Some(true),
+        share if share <= 0.0 => Some(false),
+        _ => None,
     };
     let looked = if found.share.exact {
         format!("All {} selections were looked at.", combinations(found.combinations))
