@@ -174,8 +174,13 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     }
     polish(&workshop, &mut candidates, &chosen, &mut runs);
     let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), known);
-    // Nodes may have come between: the members are fitted again.
+    // Nodes may have come between: the members are fitted again, and one that was above the bar by interpolation alone goes.
     refit(&fitter, &z, &mut chosen, 6);
+    while let Some(weak) = chosen.members.iter().position(|member| member.evidence < threshold.unwrap_or(FLOOR)) {
+        let fitted = chosen.members.remove(weak);
+        refused.push(Refused { fitted, reason: "simulated at the size that was found, it has too little evidence".into() });
+        refit(&fitter, &z, &mut chosen, 6);
+    }
     let lack_before = lack_of_fit(&whole, &seen, &difference);
     let lack_after = drop_what_harms(&fitter, (&whole, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
     let rivals = rivals(&fitter, &z, &chosen);
@@ -202,7 +207,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
 }
 
 fn bars(threshold: f64) -> Bars {
-    Bars { first: threshold, next: 1.25 * threshold, confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.2, most: 3 }
+    Bars { first: threshold, next: 1.25 * threshold, confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.12, most: 3 }
 }
 
 /// What is beyond what is allowed for, over all channels.

@@ -72,6 +72,8 @@ pub fn search(
         fits.retain(|fit| fit.evidence >= bar && !barred.contains(&fit.candidate) && !taken(fitter, &chosen, fit));
         fits.retain(|fit| far(&fitter.candidates[fit.candidate], fit.size) >= bars.tolerance_sd);
         fits.retain(|fit| plausible(&fitter.candidates[fit.candidate], fit.size));
+        // Sections that the data chose themselves must say it twice as loud.
+        fits.retain(|fit| fitter.masks[fit.mask].asked_by.is_none() || fit.evidence >= 2.0 * bar);
         if let Some(first) = chosen.members.first() {
             let least = bars.share * first.fall;
             fits.retain(|fit| fit.fall >= least);
