@@ -52,7 +52,7 @@ pub(super) fn fonts() -> &'static [Font] {
 
 /// The files of one report.
 pub(super) struct Files {
-    library: LazyHash<Library>,
+    standard: LazyHash<Library>,
     book: LazyHash<FontBook>,
     main: Source,
     templates: IndexMap<FileId, Source>,
@@ -64,7 +64,7 @@ impl Files {
         let source = |(path, text): &(&str, &str)| Some(Source::new(id(path)?, (*text).to_owned()));
         let templates = TEMPLATES.iter().filter_map(source).map(|source| (source.id(), source)).collect();
         Self {
-            library: LazyHash::new(Library::default()),
+            standard: LazyHash::new(Library::default()),
             book: LazyHash::new(FontBook::from_fonts(fonts())),
             main: id("/report.typ").map_or_else(|| Source::detached(report.clone()), |main| Source::new(main, report.clone())),
             templates,
@@ -95,7 +95,7 @@ fn id(path: &str) -> Option<FileId> {
 
 impl World for Files {
     fn library(&self) -> &LazyHash<Library> {
-        &self.library
+        &self.standard
     }
 
     fn book(&self) -> &LazyHash<FontBook> {
