@@ -10,6 +10,7 @@ use super::output::{Console, Exit};
 use super::simulate::load_catalogue;
 use crate::data::write::write_whole;
 use crate::diagnose::score::{Truth, blind, case};
+use crate::diagnose::settings::Settings;
 use crate::diagnose::{Outcome, effect_of_truth};
 use crate::effects::Catalogue;
 use crate::library;
@@ -49,7 +50,10 @@ impl Blinded {
             return console.fail(Problem::error("no-campaigns", "there is no campaign below these folders"), Exit::Wrong);
         }
         let mut problems = Problems::default();
-        let Some(catalogue) = load_catalogue(&self.catalogue, &mut problems) else {
+        // A fault of the catalogue is told once, not for every campaign.
+        let usable = |catalogue: &Catalogue, problems: &mut Problems| Settings::read(catalogue, problems).is_some();
+        let catalogue = load_catalogue(&self.catalogue, &mut problems);
+        let Some(catalogue) = catalogue.filter(|catalogue| usable(catalogue, &mut problems)) else {
             console.problems(&problems);
             return Exit::Wrong;
         };

@@ -188,7 +188,10 @@ pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &m
     let inputs =
         Inputs { references: &references, campaign: &campaign, catalogue: &catalogue, settings: &settings, simulator, cache, seed, trying };
     match diagnose(&inputs, &compiled, sections) {
-        Ok(outcome) => Some((campaign, outcome)),
+        Ok(outcome) => {
+            problems.0.extend(outcome.warnings.0.iter().cloned());
+            Some((campaign, outcome))
+        }
         Err(found) => {
             found.0.into_iter().for_each(|problem| problems.push(problem));
             None

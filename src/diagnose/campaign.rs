@@ -25,6 +25,8 @@ pub struct Outcome {
     pub improved: Vec<Signals>,
     /// Units of their channels.
     pub units: Units,
+    /// What could not be taken into account.
+    pub warnings: Problems,
 }
 
 /// Diagnoses a campaign with a protocol.
@@ -63,9 +65,9 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, sections: Vec<Section>
         records = improved(&found, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
         break;
     }
-    let mut diagnosis = super::words::diagnosis(inputs, &found, shrink);
+    let mut diagnosis = super::words::diagnosis(inputs, &found, &units, shrink);
     diagnosis.pictures = super::pictures::pictures(inputs.settings, &found, &records, &units);
-    Ok(Outcome { diagnosis, found, before, after, improved: records, units })
+    Ok(Outcome { diagnosis, found, before, after, improved: records, units, warnings: problems })
 }
 
 /// Records with the effects, each section with the sizes that the others ask for; a member may be left out.

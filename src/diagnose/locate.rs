@@ -6,6 +6,7 @@ use super::guards::{View, part};
 use super::run::Found;
 use super::settings::{Position, Settings};
 use crate::result::diagnosis::Where;
+use crate::simulate::Units;
 
 /// Share of false cells among those called significant.
 const FALSE_DISCOVERIES: f64 = 0.05;
@@ -22,7 +23,7 @@ struct Cell {
 
 /// All cells, the largest share of the gap first.
 #[must_use]
-pub fn locate(settings: &Settings, found: &Found) -> Vec<Where> {
+pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
     use rayon::prelude::*;
     let cells = cells(settings, found);
     let tested: Vec<(f64, f64, f64)> = cells.par_iter().map(|cell| test(found, cell)).collect();
@@ -52,6 +53,8 @@ pub fn locate(settings: &Settings, found: &Found) -> Vec<Where> {
             }
             let named: Vec<String> = cell.sections.iter().map(|at| found.seen.sections[*at].section.name().to_string()).collect();
             let stratum = settings.stratum.as_deref().unwrap_or("all");
+            let unit =
+                units.iter().find(|(name, _)| Some(name) == signals.first()).map_or_else(|| "-".into(), |(_, unit)| unit.text.clone());
             Where {
                 quantity: group.says.clone(),
                 says: format!("{}, {}, {band}, {stratum} {}", group.says, cell.position, cell.stratum),
@@ -60,7 +63,7 @@ pub fn locate(settings: &Settings, found: &Found) -> Vec<Where> {
                 sections: named,
                 wavelength_or_band: band,
                 difference: if cell.kind == Kind::Level { *mean } else { mean.exp() - 1.0 },
-                unit: if cell.kind == Kind::Level { "unit of the channel".into() } else { "-".into() },
+                unit: if cell.kind == Kind::Level { unit } else { "-".into() },
                 share_of_gap: excess.max(0.0) / total,
                 p_value: *p_value,
                 significant: *p_value <= limit,
@@ -142,6 +145,9 @@ fn test(found: &Found, cell: &Cell) -> (f64, f64, f64) {
     (chi - freedom, p, mean)
 }
 
+/// Before the name of a column whose reciprocal is meant.
+const INVERSE: &str = "1 / ";
+
 /// Which number of the section table what is left grows with, in words; nothing if with none.
 #[must_use]
 pub fn covariate(settings: &Settings, found: &Found) -> Option<String> {
@@ -151,19 +157,18 @@ pub fn covariate(settings: &Settings, found: &Found) -> Option<String> {
     let values: Vec<f64> = (0..found.seen.sections.len()).map(|at| found.difference[found.seen.place(at, feature)]).collect();
     let order: Vec<f64> = (0..values.len()).map(|at| at as f64 + 1.0).collect();
     let mut named: Vec<(String, Vec<f64>)> = vec![("the order of the sections".into(), order)];
-    for column in ["radius", "cant deficiency", "speed", "cant"] {
-        let numbers: Option<Vec<f64>> = found
-            .seen
-            .sections
-            .iter()
-            .map(|observed| observed.section.number(column).or((column == "radius").then_some(f64::INFINITY)))
-            .collect();
-        if let Some(numbers) = numbers {
-            let numbers = if column == "radius" { numbers.iter().map(|radius| 1.0 / radius).collect() } else { numbers };
-            named.push((if column == "radius" { "curvature".into() } else { column.to_string() }, numbers));
+    for covariate in &settings.covariates {
+        let column = covariate.strip_prefix(INVERSE).unwrap_or(covariate);
+        let inverse = column.len() < covariate.len();
+        let numbers = found.seen.sections.iter().map(|observed| {
+            let number = observed.section.number(column);
+            // What has no radius is straight.
+            if inverse { Some(number.map_or(0.0, |number| 1.0 / number)) } else { number }
+        });
+        if let Some(numbers) = numbers.collect::<Option<Vec<f64>>>() {
+            named.push((covariate.clone(), numbers));
         }
     }
-    let _ = settings;
     let best = named.into_iter().map(|(name, x)| (name, correlation(&x, &values))).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     (best.1.abs() > 0.7).then(|| format!("What is left in {} follows {} (correlation {:.2}).", worst.0, best.0, best.1))
 }

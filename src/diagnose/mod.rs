@@ -6,6 +6,7 @@ mod cache;
 mod campaign;
 pub mod candidates;
 pub mod covariance;
+pub mod declared;
 mod faults;
 pub mod features;
 pub mod fit;

@@ -3,6 +3,7 @@
 use super::cache::Cache;
 use super::candidates::{Bench, Candidate, Runs, Trying, Workshop};
 use super::covariance::{Sensitivity, covariance, strata};
+use super::declared::Declared;
 use super::features::Kind;
 use super::fit::{Fitted, Fitter, Known, Mask, less};
 use super::guards::{View, carried, contradiction, families, lack_of_fit};
@@ -15,7 +16,7 @@ use super::whiten::{Covariance, Whitener, dot};
 use crate::data::Campaign;
 use crate::effects::{Catalogue, Gauss};
 use crate::model::parameter;
-use crate::problem::Problems;
+use crate::problem::{Problem, Problems};
 use crate::simulate::{Section, Simulator};
 
 /// What a diagnosis is made of.
@@ -60,6 +61,7 @@ pub struct Found {
     pub threshold: f64,
     pub runs: Runs,
     pub strata: Vec<Vec<usize>>,
+    pub declared: Declared,
 }
 
 /// A size that is a declared tolerance is named from so many standard deviations on.
@@ -86,18 +88,30 @@ pub fn value_of(campaign: &Campaign, key: &str) -> Option<f64> {
     campaign.vehicle.lookup(key).and_then(crate::yaml::Node::number).or_else(|| parameter(key)?.neutral)
 }
 
-/// A tolerance that the campaign declares.
-#[must_use]
-pub fn declared(campaign: &Campaign, name: &str) -> Option<f64> {
-    let fact = campaign.facts.iter().find(|fact| fact.group == "declared_tolerances" && fact.name == name)?;
-    fact.text.parse().ok()
+/// Tolerances that name a parameter which neither the vehicle file nor the model has cannot be sent through the simulator.
+fn check_tolerated(inputs: &Inputs<'_>, problems: &mut Problems) {
+    if inputs.simulator.is_none() {
+        return;
+    }
+    let model = crate::simulate::model_parameters();
+    for (key, span) in inputs.settings.tolerances.iter().flat_map(|tolerance| &tolerance.named) {
+        if value_of(inputs.campaign, key).is_none() && parameter(key).is_none() {
+            let says = format!("neither the vehicle file nor the model has `{key}`: this tolerance is not allowed for");
+            problems.push(Problem::warning("unknown-parameter", says).at(span).suggest(key, model.iter().map(|(name, _)| *name)));
+        }
+    }
 }
 
 /// Finds what explains the difference of measurement and simulation.
 ///
 /// Problems: of reading; nothing to compare.
 pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems) -> Option<Found> {
-    let declared = |name: &str| declared(inputs.campaign, name);
+    let admitted = Declared::read(inputs.campaign, inputs.settings, problems);
+    if problems.errors() > 0 {
+        return None;
+    }
+    check_tolerated(inputs, problems);
+    let declared = |name: &str| admitted.get(name);
     let value = |key: &str| value_of(inputs.campaign, key);
     let settings = inputs.settings;
     (inputs.trying)("reading records");
@@ -149,7 +163,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let z = whitener.apply(&difference);
     let strata = strata(&seen, settings);
     let families = families(&seen, &strata);
-    let far = |candidate: &Candidate, size: f64| deviations(candidate, size, &value, &declared);
+    let far = |candidate: &Candidate, size: f64| deviations(candidate, size, &value, &|name| one_sd(settings, &admitted, name));
     let mut refused = Vec::new();
     let mut chosen;
     let mut threshold = None;
@@ -203,6 +217,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         runs,
         strata,
         seen,
+        declared: admitted,
     })
 }
 
@@ -322,7 +337,14 @@ fn masks(seen: &Observations, settings: &Settings) -> Vec<Mask> {
     masks
 }
 
+/// One standard deviation of a tolerance: as declared, or the catalogue's default.
+#[must_use]
+pub fn one_sd(settings: &Settings, declared: &Declared, name: &str) -> Option<f64> {
+    declared.get(name).or_else(|| settings.tolerances.iter().find(|one| one.name == name).map(|one| one.default))
+}
+
 /// How many declared standard deviations a size is from neutral; infinitely many for an effect that is no tolerance.
+#[must_use]
 pub fn deviations(candidate: &Candidate, size: f64, value: &dyn Fn(&str) -> Option<f64>, declared: &dyn Fn(&str) -> Option<f64>) -> f64 {
     let Some(sd) = candidate.tolerance.as_deref().and_then(declared) else { return f64::INFINITY };
     let neutral = candidate.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size).or_else(|| value(&candidate.size));

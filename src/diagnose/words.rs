@@ -5,10 +5,11 @@ use serde_json::json;
 
 use super::features::Kind;
 use super::fit::Fitted;
-use super::run::{Found, Inputs, LACK, TOLERANCE_SD, chi, declared, deviations, excess, length, value_of};
+use super::run::{Found, Inputs, LACK, TOLERANCE_SD, chi, deviations, excess, length, one_sd, value_of};
 use super::search::plausible;
 use crate::effects::{Action, Effect};
 use crate::result::diagnosis::{Cause, Detectable, Diagnosis, Fault, How, NamedEffect, Shrink, Value, Vetoed};
+use crate::simulate::Units;
 
 /// Whitened length of a change that can be identified.
 const SEEN: f64 = 5.0;
@@ -17,7 +18,7 @@ const TEMPERATURE: f64 = 4.0;
 
 /// Puts what was found into an answer.
 #[must_use]
-pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>) -> Diagnosis {
+pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Option<Shrink>) -> Diagnosis {
     let (before, after) = chi(found);
     let (gap, rest) = (excess(&found.lack_before), excess(&found.lack_after));
     let most = |lack: &[(String, Kind, f64, f64)]| lack.iter().map(|(_, _, sigma, _)| *sigma).fold(f64::NEG_INFINITY, f64::max);
@@ -50,7 +51,11 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>) -> 
     let again = found.seen.sections.iter().filter(|observed| observed.again).map(|observed| observed.section.name());
     let again = again.map(|name| format!("section {name} is another one measured again: it does not count twice"));
     let mut notes: Vec<String> = noted.chain(left_out).chain(again).collect();
-    let tolerances = if inputs.campaign.facts.iter().any(|fact| fact.group == "declared_tolerances") {
+    let unknown = found.declared.unknown.iter();
+    notes.extend(
+        unknown.map(|name| format!("the catalogue knows no tolerance `{name}`: what the campaign declares there is not allowed for")),
+    );
+    let tolerances = if found.declared.any {
         "declared by the campaign"
     } else {
         notes.push("the campaign declares no tolerances: documented defaults were taken, and the verdict is the weaker for it".into());
@@ -69,7 +74,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, shrink: Option<Shrink>) -> 
         verdict,
         says,
         faults: found.seen.faults.clone(),
-        r#where: super::locate::locate(inputs.settings, found),
+        r#where: super::locate::locate(inputs.settings, found, units),
         causes,
         vetoed: vetoed(inputs, found),
         shrink,
@@ -211,7 +216,8 @@ fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
         }
         let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(8.0)
             && fit.evidence > found.threshold
-            && deviations(of, fit.size, &|key| value_of(inputs.campaign, key), &|name| declared(inputs.campaign, name)) >= TOLERANCE_SD;
+            && deviations(of, fit.size, &|key| value_of(inputs.campaign, key), &|name| one_sd(inputs.settings, &found.declared, name))
+                >= TOLERANCE_SD;
         let mut members = found.chosen.members.clone();
         members[*at] = fit.clone();
         let mut cause = cause(inputs, found, &members, causes.len() + 2);

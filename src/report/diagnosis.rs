@@ -100,7 +100,7 @@ fn places(found: &Diagnosis) -> Chapter {
             if place.unit == "-" {
                 format!("{} %", number::fixed(100.0 * place.difference, 0))
             } else {
-                number::significant(place.difference, 3)
+                format!("{} {}", number::significant(place.difference, 3), place.unit)
             },
             format!("{} %", number::fixed(100.0 * place.share_of_gap, 1)),
             if place.p_value < 1e-6 { "< 0.000001".into() } else { number::significant(place.p_value, 2) },
@@ -118,7 +118,7 @@ fn places(found: &Diagnosis) -> Chapter {
         Head::short("Significant"),
     ];
     let caption = "Cells by their share of the gap, tested against noise, declared tolerances and what a model may be wrong in; significant at a false discovery rate of 5 %. \
-                   Differences of levels are in the unit of the channel, towards the simulated side; those of bands relative";
+                   Quasi-static differences count towards the simulated side; those of bands are relative";
     let table = Table { caption: caption.into(), head, rows: rows.collect() };
     let significant = found.r#where.iter().filter(|place| place.significant).count();
     let text = format!(

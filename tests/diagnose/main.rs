@@ -89,6 +89,32 @@ fn diagnose(campaign: &Path, more: &[&str]) -> (Value, Option<i32>) {
     (serde_json::from_str(&fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap(), ran.status.code())
 }
 
+/// A declared tolerance that the catalogue does not know, or in a unit that it cannot be in, is told where it stands. Without a
+/// track nothing is simulated, so that this takes no time.
+#[test]
+fn a_tolerance_that_cannot_be_used_is_told() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good");
+    let to = folder().join("tolerances");
+    copy(&example, &to);
+    fs::remove_dir_all(to.join("track")).unwrap();
+    let text = fs::read_to_string(to.join("campaign.yaml")).unwrap();
+    let text = text.lines().filter(|line| !line.starts_with("track:")).fold(String::new(), |all, line| all + line + "\n");
+    let run = |from: &str, into: &str| {
+        assert!(text.contains(from), "{text}");
+        fs::write(to.join("campaign.yaml"), text.replace(from, into)).unwrap();
+        let out = to.with_extension("diagnosis");
+        let ran = fishplate(&["diagnose", to.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        (ran.status.code(), String::from_utf8(ran.stderr).unwrap())
+    };
+    let (code, says) = run("  cant [mm]:", "  cnt [mm]:");
+    assert!(code.is_some_and(|code| code <= 1), "{says}");
+    assert!(says.contains("the catalogue knows no tolerance `cnt`") && says.contains("did you mean `cant`?"), "{says}");
+    assert!(says.contains("campaign.yaml:"), "{says}");
+    let (code, says) = run("  cant [mm]:", "  cant [kN]:");
+    assert_eq!(code, Some(2), "{says}");
+    assert!(says.contains("declared in kN") && says.contains("cant [mm]"), "{says}");
+}
+
 /// In one test, one after the other: each uses the runs of the one before.
 #[test]
 fn what_is_hidden_is_found_and_nothing_is_invented() {

@@ -1,140 +1,31 @@
-//! What a catalogue says about diagnosing: features, tolerances, and what the simulation is allowed to be wrong in.
+//! Reads the `diagnosis` part of a catalogue.
 
+use super::{Discrepancy, FeatureKind, GroupFeatures, Moves, Over, Position, Settings, Times, Tolerance};
 use crate::effects::Catalogue;
 use crate::problem::{Problem, Problems};
+use crate::source::Span;
+use crate::units::Unit;
 use crate::yaml::{Node, Value};
-
-/// The `diagnosis` part of a catalogue.
-#[derive(Clone, Debug, Default)]
-pub struct Settings {
-    /// Edges of the bands in Hz.
-    pub edges: Vec<f64>,
-    /// Band in Hz for gains and lags.
-    pub alike: (f64, f64),
-    /// The largest lag that is looked for, in the unit of the axis.
-    pub furthest: f64,
-    pub groups: Vec<GroupFeatures>,
-    pub tolerances: Vec<Tolerance>,
-    pub discrepancies: Vec<Discrepancy>,
-    /// Columns of the section table whose values an effect may be confined to.
-    pub confine: Vec<String>,
-    /// The column whose sign folds left and right, and the value that is mirrored.
-    pub mirror: Option<(String, String)>,
-    /// The column that sections are stratified by.
-    pub stratum: Option<String>,
-    pub positions: Vec<Position>,
-}
-
-/// Features of a group of channels.
-#[derive(Clone, Debug)]
-pub struct GroupFeatures {
-    pub name: String,
-    pub level: bool,
-    pub bands: usize,
-    pub alike: bool,
-    /// Standard deviation of a level beyond what the record itself shows, in the unit of the channels.
-    pub level_sd: f64,
-    /// Of the logarithm of a band's rms.
-    pub band_sd: f64,
-    pub gain_sd: f64,
-    pub lag_sd: f64,
-    /// Names of the declared tolerances of these channels.
-    pub noise: Option<String>,
-    pub offset: Option<String>,
-    pub gain: Option<String>,
-    /// Which axis of motion: groups of one axis share discrepancies.
-    pub axis: String,
-    /// What an engineer calls it.
-    pub says: String,
-}
-
-/// Something that the test engineer admits not to know.
-#[derive(Clone, Debug)]
-pub struct Tolerance {
-    /// As in `declared_tolerances`, without unit.
-    pub name: String,
-    /// One standard deviation where the campaign declares none.
-    pub default: f64,
-    /// Parameters that are scaled, each on its own.
-    pub scales: Vec<String>,
-    /// Parameters that are added to: the factor from the declared unit to theirs.
-    pub adds: Vec<(String, f64)>,
-    /// Parameters that are set together, as another model of the same thing would have them: that model is one standard deviation.
-    pub sets: Vec<(String, f64)>,
-    /// Whether each section has its own.
-    pub per_section: bool,
-    /// Whether all sections share one.
-    pub shared: bool,
-}
-
-/// What the simulation may be wrong in without an effect being missing: one standard deviation.
-#[derive(Clone, Debug)]
-pub struct Discrepancy {
-    pub feature: FeatureKind,
-    /// Weights by channel for levels; all channels of the groups otherwise.
-    pub channels: Vec<(String, f64)>,
-    /// In the unit of the channel, or of the logarithm; one number, or one per band.
-    pub sd: Vec<f64>,
-    pub moves: Moves,
-    pub over: Over,
-    pub times: Times,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FeatureKind {
-    Level,
-    /// Each band on its own.
-    Bands,
-    /// All bands alike.
-    Amplitude,
-    Gain,
-    Lag,
-}
-
-/// Which channels move together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Moves {
-    All,
-    Group,
-    Channel,
-}
-
-/// Which sections move together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Over {
-    All,
-    Strata,
-    Sections,
-}
-
-/// What it grows with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Times {
-    One,
-    /// The number in a column over this number; and its sign by the mirrored column.
-    Over(f64),
-    /// 1, or -1 in mirrored sections.
-    Side,
-    /// As `Over`, without the sign.
-    Unsigned(f64),
-}
-
-/// A position as an engineer speaks of it: channels where the section is not mirrored, and where it is.
-#[derive(Clone, Debug)]
-pub struct Position {
-    pub name: String,
-    pub straight: Vec<String>,
-    pub mirrored: Vec<String>,
-}
 
 /// Lag in m beyond which records belong to other places.
 const FURTHEST: f64 = 50.0;
 
-const TOP: [&str; 10] =
-    ["bands", "alike", "furthest lag", "groups", "tolerances", "discrepancies", "confine to", "mirrored", "strata", "positions"];
-const GROUP: [&str; 12] =
-    ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says"];
-const TOLERANCE: [&str; 6] = ["default", "scales", "adds", "sets", "each section", "shared"];
+const TOP: [&str; 11] = [
+    "bands",
+    "alike",
+    "furthest lag",
+    "groups",
+    "tolerances",
+    "discrepancies",
+    "confine to",
+    "covariates",
+    "mirrored",
+    "strata",
+    "positions",
+];
+const GROUP: [&str; 13] =
+    ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says", "unit"];
+const TOLERANCE: [&str; 7] = ["default", "unit", "scales", "adds", "sets", "each section", "shared"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
 impl Settings {
@@ -205,6 +96,14 @@ impl Reader<'_> {
         }
     }
 
+    fn unit(&mut self, node: &Node) -> Unit {
+        let Some(found) = node.get("unit") else { return Unit::one() };
+        found.scalar_text().and_then(|text| Unit::parse(text).ok()).unwrap_or_else(|| {
+            self.wrong("`unit` is a unit such as kN or mm", found);
+            Unit::one()
+        })
+    }
+
     fn words(&self, node: Option<&Node>) -> Vec<String> {
         let Some(node) = node else { return Vec::new() };
         match node.scalar_text() {
@@ -237,6 +136,7 @@ impl Reader<'_> {
             alike: (alike.first().copied().unwrap_or(0.5), alike.get(1).copied().unwrap_or(8.0)),
             furthest: self.number(node, "furthest lag", FURTHEST),
             confine: self.words(node.get("confine to")),
+            covariates: self.words(node.get("covariates")),
             mirror: mirror.map(|(key, value)| (key.text.clone(), value.raw.clone())),
             stratum: text("strata"),
             ..Settings::default()
@@ -258,6 +158,7 @@ impl Reader<'_> {
                 band_sd: self.number(node, "band sd", 0.1),
                 gain_sd: self.number(node, "gain sd", 0.1),
                 lag_sd: self.number(node, "lag sd", 1.0),
+                unit: self.unit(node),
                 noise: text("noise"),
                 offset: text("offset"),
                 gain: text("gain"),
@@ -275,10 +176,12 @@ impl Reader<'_> {
             let shared = node.get("shared").is_none() && !per_section || self.flag(node, "shared");
             settings.tolerances.push(Tolerance {
                 name: key.text.clone(),
+                unit: self.unit(node),
                 default: self.number(node, "default", 0.0),
                 scales: self.words(node.get("scales")),
                 adds: map("adds"),
                 sets: map("sets"),
+                named: named(node),
                 per_section,
                 shared,
             });
@@ -350,4 +253,12 @@ impl Reader<'_> {
         let sd = node.get("sd").map_or(Vec::new(), |sd| self.numbers(sd));
         Some(Discrepancy { feature, channels, sd, moves, over, times })
     }
+}
+
+/// The parameters that a tolerance moves.
+fn named(node: &Node) -> Vec<(String, Span)> {
+    let maps = ["adds", "sets"].into_iter().filter_map(|key| node.get(key)).flat_map(Node::entries);
+    let maps = maps.map(|(key, _)| (key.text.clone(), key.span.clone()));
+    let scaled = node.get("scales").into_iter().flat_map(Node::items);
+    scaled.filter_map(|item| Some((item.scalar_text()?.to_string(), item.span.clone()))).chain(maps).collect()
 }

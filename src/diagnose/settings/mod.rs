@@ -1,0 +1,150 @@
+//! What a catalogue says about diagnosing: features, tolerances, and what the simulation is allowed to be wrong in.
+
+mod read;
+
+use crate::source::Span;
+use crate::units::Unit;
+
+/// The `diagnosis` part of a catalogue.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// Edges of the bands in Hz.
+    pub edges: Vec<f64>,
+    /// Band in Hz for gains and lags.
+    pub alike: (f64, f64),
+    /// The largest lag that is looked for, in the unit of the axis.
+    pub furthest: f64,
+    pub groups: Vec<GroupFeatures>,
+    pub tolerances: Vec<Tolerance>,
+    pub discrepancies: Vec<Discrepancy>,
+    /// Columns of the section table whose values an effect may be confined to.
+    pub confine: Vec<String>,
+    /// Columns of the section table that what is left may follow; `1 / ` before one for its reciprocal.
+    pub covariates: Vec<String>,
+    /// The column whose sign folds left and right, and the value that is mirrored.
+    pub mirror: Option<(String, String)>,
+    /// The column that sections are stratified by.
+    pub stratum: Option<String>,
+    pub positions: Vec<Position>,
+}
+
+/// Features of a group of channels.
+#[derive(Clone, Debug)]
+pub struct GroupFeatures {
+    pub name: String,
+    pub level: bool,
+    pub bands: usize,
+    pub alike: bool,
+    /// Standard deviation of a level beyond what the record itself shows, in the unit of the channels.
+    pub level_sd: f64,
+    /// Of the logarithm of a band's rms.
+    pub band_sd: f64,
+    pub gain_sd: f64,
+    pub lag_sd: f64,
+    /// The unit of its channels, in which tolerances are declared.
+    pub unit: Unit,
+    /// Names of the declared tolerances of these channels.
+    pub noise: Option<String>,
+    pub offset: Option<String>,
+    pub gain: Option<String>,
+    /// Which axis of motion: groups of one axis share discrepancies.
+    pub axis: String,
+    /// What an engineer calls it.
+    pub says: String,
+}
+
+/// Something that the test engineer admits not to know.
+#[derive(Clone, Debug)]
+pub struct Tolerance {
+    /// As in `declared_tolerances`, without unit.
+    pub name: String,
+    /// The unit that it is read in.
+    pub unit: Unit,
+    /// One standard deviation where the campaign declares none.
+    pub default: f64,
+    /// Parameters that are scaled, each on its own.
+    pub scales: Vec<String>,
+    /// Parameters that are added to: the factor from the declared unit to theirs.
+    pub adds: Vec<(String, f64)>,
+    /// Parameters that are set together, as another model of the same thing would have them: that model is one standard deviation.
+    pub sets: Vec<(String, f64)>,
+    /// Every parameter that is named, and where.
+    pub named: Vec<(String, Span)>,
+    /// Whether each section has its own.
+    pub per_section: bool,
+    /// Whether all sections share one.
+    pub shared: bool,
+}
+
+/// What the simulation may be wrong in without an effect being missing: one standard deviation.
+#[derive(Clone, Debug)]
+pub struct Discrepancy {
+    pub feature: FeatureKind,
+    /// Weights by channel for levels; all channels of the groups otherwise.
+    pub channels: Vec<(String, f64)>,
+    /// In the unit of the channel, or of the logarithm; one number, or one per band.
+    pub sd: Vec<f64>,
+    pub moves: Moves,
+    pub over: Over,
+    pub times: Times,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FeatureKind {
+    Level,
+    /// Each band on its own.
+    Bands,
+    /// All bands alike.
+    Amplitude,
+    Gain,
+    Lag,
+}
+
+/// Which channels move together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moves {
+    All,
+    Group,
+    Channel,
+}
+
+/// Which sections move together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    All,
+    Strata,
+    Sections,
+}
+
+/// What it grows with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Times {
+    One,
+    /// The number in a column over this number; and its sign by the mirrored column.
+    Over(f64),
+    /// 1, or -1 in mirrored sections.
+    Side,
+    /// As `Over`, without the sign.
+    Unsigned(f64),
+}
+
+/// A position as an engineer speaks of it: channels where the section is not mirrored, and where it is.
+#[derive(Clone, Debug)]
+pub struct Position {
+    pub name: String,
+    pub straight: Vec<String>,
+    pub mirrored: Vec<String>,
+}
+
+impl Settings {
+    /// Everything that a campaign may declare, with the unit that it is read in.
+    #[must_use]
+    pub fn tolerated(&self) -> Vec<(&str, Unit)> {
+        let mut all: Vec<(&str, Unit)> = self.tolerances.iter().map(|one| (one.name.as_str(), one.unit.clone())).collect();
+        for group in &self.groups {
+            all.extend(group.gain.as_deref().map(|name| (name, Unit::one())));
+            all.extend([&group.noise, &group.offset].into_iter().flatten().map(|name| (name.as_str(), group.unit.clone())));
+        }
+        all
+    }
+}
