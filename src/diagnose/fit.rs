@@ -67,6 +67,64 @@ struct Best {
     evidence: f64,
 }
 
+/// Where on a path a difference is met best, and how long the path is.
+struct Closest {
+    segment: usize,
+    share: f64,
+    fall: f64,
+    long: f64,
+}
+
+/// From squared lengths of the nodes, products of each with the next, and products of each with the difference.
+fn closest(lengths: &[f64], products: &[f64], along: &[f64], discrete: bool) -> Option<Closest> {
+    let mut best: Option<Closest> = None;
+    let mut long = 0.0;
+    for segment in 0..products.len() {
+        // |z - (1-t) a - t b|^2 = |z|^2 + c0 + c1 t + c2 t^2
+        let (aa, bb, across) = (lengths[segment], lengths[segment + 1], products[segment]);
+        let c0 = aa - 2.0 * along[segment];
+        let c2 = (aa - 2.0 * across + bb).max(0.0);
+        let c1 = 2.0 * (across - aa) - 2.0 * (along[segment + 1] - along[segment]);
+        long += c2.sqrt();
+        let share = if discrete {
+            if c1 + c2 < 0.0 { 1.0 } else { 0.0 }
+        } else if c2 > 0.0 {
+            (-0.5 * c1 / c2).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let fall = -(c0 + c1 * share + c2 * share * share);
+        if best.as_ref().is_none_or(|best| fall > best.fall) {
+            best = Some(Closest { segment, share, fall, long: 0.0 });
+        }
+    }
+    best.map(|best| Closest { long, ..best })
+}
+
+/// A path section by section: what a fit to a choice of sections needs.
+#[derive(Debug)]
+pub struct BySection {
+    lengths: Vec<Vec<f64>>,
+    products: Vec<Vec<f64>>,
+    along: Vec<Vec<f64>>,
+    sizes: Vec<f64>,
+    discrete: bool,
+}
+
+impl BySection {
+    /// Fall of chi-squared and size where each section counts so many times; nothing where no section that counts is changed.
+    #[must_use]
+    pub fn fit(&self, times: &[f64]) -> Option<(f64, f64)> {
+        let sum = |parts: &Vec<f64>| dot(parts, times);
+        let [lengths, products, along] = [&self.lengths, &self.products, &self.along].map(|all| all.iter().map(sum).collect::<Vec<f64>>());
+        if lengths.iter().all(|length| *length == 0.0) {
+            return None;
+        }
+        let Closest { segment, share, fall, .. } = closest(&lengths, &products, &along, self.discrete)?;
+        Some((fall, between(self.sizes[segment], self.sizes[segment + 1], share)))
+    }
+}
+
 impl Path {
     fn new(nodes: Vec<Vec<f64>>) -> Self {
         let product = |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
@@ -115,30 +173,29 @@ impl<'a> Fitter<'a> {
         let path = self.whitened.get(&(candidate, mask))?;
         let of = &self.candidates[candidate];
         let along: Vec<f64> = path.nodes.iter().map(|node| if node.is_empty() { 0.0 } else { dot(z, node) }).collect();
-        let mut best: Option<(f64, usize, f64)> = None;
-        let mut long = 0.0;
-        for segment in 0..path.nodes.len().saturating_sub(1) {
-            // |z - (1-t) a - t b|^2 = |z|^2 + c0 + c1 t + c2 t^2
-            let (aa, bb, across) = (path.lengths[segment], path.lengths[segment + 1], path.products[segment]);
-            let c0 = aa - 2.0 * along[segment];
-            let c2 = (aa - 2.0 * across + bb).max(0.0);
-            let c1 = 2.0 * (across - aa) - 2.0 * (along[segment + 1] - along[segment]);
-            long += c2.sqrt();
-            let t = if of.discrete {
-                if c1 + c2 < 0.0 { 1.0 } else { 0.0 }
-            } else if c2 > 0.0 {
-                (-0.5 * c1 / c2).clamp(0.0, 1.0)
-            } else {
-                0.0
-            };
-            let fall = -(c0 + c1 * t + c2 * t * t);
-            if best.is_none_or(|(most, ..)| fall > most) {
-                best = Some((fall, segment, t));
-            }
-        }
-        let (fall, segment, share) = best?;
+        let Closest { segment, share, fall, long } = closest(&path.lengths, &path.products, &along, of.discrete)?;
         let freedom = 2.0 * (long / std::f64::consts::TAU.sqrt()).max(1.0).ln() + 2.0 * (of.alternatives as f64).ln();
         Some(Best { segment, share, fall, evidence: fall - freedom - self.price(mask) })
+    }
+
+    /// A candidate under a mask and the whitened difference `z`, section by section.
+    #[must_use]
+    pub fn by_section(&self, z: &[f64], candidate: usize, mask: usize) -> Option<BySection> {
+        let path = self.whitened.get(&(candidate, mask))?;
+        let sections = self.masks[0].sections.len().max(1);
+        let size = z.len() / sections;
+        let parts = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            let part = |at: usize| if a.is_empty() || b.is_empty() { 0.0 } else { dot(&a[at * size..][..size], &b[at * size..][..size]) };
+            (0..sections).map(part).collect()
+        };
+        let of = &self.candidates[candidate];
+        Some(BySection {
+            lengths: path.nodes.iter().map(|node| parts(node, node)).collect(),
+            products: path.nodes.windows(2).map(|pair| parts(&pair[0], &pair[1])).collect(),
+            along: path.nodes.iter().map(|node| parts(node, z)).collect(),
+            sizes: of.nodes.iter().map(|node| node.size).collect(),
+            discrete: of.discrete,
+        })
     }
 
     /// What the choice of a mask costs.

@@ -1,4 +1,4 @@
-//! Guards: views that share no feature must agree on the size of an effect, and what is left must be within what is allowed for.
+//! Guards: views that share no feature must agree on the size of an effect, and no single section may carry it.
 
 use super::candidates::Candidate;
 use super::features::Kind;
@@ -164,44 +164,3 @@ pub fn contradiction(
 
 /// A view that asks for less than this share of an effect contradicts it.
 const SOME: f64 = 0.45;
-
-/// Of the change that an effect makes, what the model that makes it is wrong by, feature by feature.
-const WRONG: f64 = 0.2;
-
-impl Covariance {
-    /// With room for what is wrong in changes that are taken off.
-    #[must_use]
-    pub fn allowing<'a>(&self, changes: impl Iterator<Item = &'a Vec<f64>>) -> Self {
-        let mut wider = self.clone();
-        for change in changes {
-            wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| *variance += (WRONG * change).powi(2));
-        }
-        wider
-    }
-}
-
-/// How far what is left goes beyond what is allowed for, channel by channel and kind by kind: standard deviations of chi-squared.
-#[must_use]
-pub fn lack_of_fit(covariance: &Covariance, seen: &Observations, rest: &[f64]) -> Vec<(String, Kind, f64, f64)> {
-    use rayon::prelude::*;
-    let all: Vec<usize> = seen.first_runs();
-    let mut views = Vec::new();
-    for (channel, of) in seen.layout.channels.iter().enumerate() {
-        for level in [true, false] {
-            let keep = |kind: Kind| (kind == Kind::Level) == level;
-            let features: Vec<usize> =
-                seen.features.iter().enumerate().filter(|(_, f)| f.channel == channel && keep(f.kind)).map(|(at, _)| at).collect();
-            if !features.is_empty() {
-                let kind = if level { Kind::Level } else { Kind::Band(0) };
-                views.push((of.name.clone(), kind, View { says: String::new(), sections: all.clone(), features }));
-            }
-        }
-    }
-    let each = |(name, kind, view): (String, Kind, View)| {
-        let rest = part(rest, covariance.size, &view);
-        let n = rest.len() as f64;
-        let (chi, _) = covariance.part(&view.sections, &view.features).products().of(&rest, &rest, false)[0];
-        (name, kind, (chi - n) / (2.0 * n).sqrt(), chi - n)
-    };
-    views.into_par_iter().map(each).collect()
-}

@@ -11,7 +11,9 @@ mod faults;
 pub mod features;
 pub mod fit;
 pub mod guards;
+pub mod lack;
 mod locate;
+mod masks;
 pub mod observe;
 mod pictures;
 pub mod reference;
@@ -21,6 +23,7 @@ pub mod search;
 pub mod sensitivity;
 pub mod settings;
 pub mod shrink;
+pub mod stability;
 pub mod whiten;
 mod words;
 

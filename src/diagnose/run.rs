@@ -6,12 +6,15 @@ use super::covariance::{Sensitivity, covariance, strata};
 use super::declared::Declared;
 use super::features::Kind;
 use super::fit::{Fitted, Fitter, Known, Mask, less};
-use super::guards::{View, carried, contradiction, families, lack_of_fit};
+use super::guards::{View, carried, contradiction, families};
+use super::lack::{drop_what_harms, lack_after, lack_of_fit, left};
+use super::masks::{masks, section_masks};
 use super::observe::Observations;
 use super::reference::Reference;
-use super::search::{Bars, Chosen, Judged, Refused, chi_squared, refit, rivals, search};
+use super::search::{Bars, Chosen, Judged, Refused, chi_squared, plausible, refit, rivals, search};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
+use super::stability::{Stability, stability};
 use super::whiten::{Covariance, Whitener, dot};
 use crate::data::Campaign;
 use crate::effects::{Catalogue, Gauss};
@@ -55,6 +58,8 @@ pub struct Found {
     pub refused: Vec<Refused>,
     /// Other candidates in the place of a member: member, fit, how much less evidence.
     pub rivals: Vec<(usize, Fitted, f64)>,
+    /// By member: whether it stands when other sections are drawn.
+    pub stability: Vec<Stability>,
     /// Channels and kinds where what is left, and what was there, is more than is allowed for.
     pub lack_before: Vec<(String, Kind, f64, f64)>,
     pub lack_after: Vec<(String, Kind, f64, f64)>,
@@ -70,17 +75,9 @@ pub const TOLERANCE_SD: f64 = 3.0;
 const DRAWS: usize = 60;
 /// Evidence below which no cause is named: real discrepancies are not those of the covariance.
 const FLOOR: f64 = 30.0;
-/// Lack of fit, in standard deviations of chi-squared of a channel, beyond which something is not explained.
-pub const LACK: f64 = 5.0;
-
 /// A candidate is simulated at all its sizes from this share of the best evidence on, and from this evidence on.
-const NEAR: f64 = 0.5;
-const WORTH: f64 = 10.0;
-
-/// With a member the excess of the channels may be this share of what it was without it, at the most: some effects show elsewhere.
-const WORSE: f64 = 1.1;
-/// And this much more of chi-squared, which is nothing beside some thousand features.
-const LITTLE: f64 = 10.0;
+pub const NEAR: f64 = 0.5;
+pub const WORTH: f64 = 10.0;
 
 /// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
 #[must_use]
@@ -190,14 +187,22 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), known);
     // Nodes may have come between: the members are fitted again, and one that was above the bar by interpolation alone goes.
     refit(&fitter, &z, &mut chosen, 6);
-    while let Some(weak) = chosen.members.iter().position(|member| member.evidence < threshold.unwrap_or(FLOOR)) {
-        let fitted = chosen.members.remove(weak);
-        refused.push(Refused { fitted, reason: "simulated at the size that was found, it has too little evidence".into() });
+    let fault = |member: &Fitted| {
+        if member.evidence < threshold.unwrap_or(FLOOR) {
+            return Some("simulated at the size that was found, it has too little evidence");
+        }
+        (!plausible(&fitter.candidates[member.candidate], member.size))
+            .then_some("beside the others it asks for a size that is not plausible")
+    };
+    while let Some((at, reason)) = chosen.members.iter().enumerate().find_map(|(at, member)| Some((at, fault(member)?))) {
+        let fitted = chosen.members.remove(at);
+        refused.push(Refused { fitted, reason: reason.into() });
         refit(&fitter, &z, &mut chosen, 6);
     }
     let lack_before = lack_of_fit(&whole, &seen, &difference);
     let lack_after = drop_what_harms(&fitter, (&whole, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
     let rivals = rivals(&fitter, &z, &chosen);
+    let stability = stability(&fitter, &z, &chosen, &strata, inputs.seed);
     drop(fitter);
     drop(bench);
     Some(Found {
@@ -211,6 +216,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         chosen,
         refused,
         rivals,
+        stability,
         lack_before,
         lack_after,
         threshold: threshold.unwrap_or(FLOOR),
@@ -225,56 +231,6 @@ fn bars(threshold: f64) -> Bars {
     Bars { first: threshold, next: 1.25 * threshold, confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.12, most: 3 }
 }
 
-/// What is beyond what is allowed for, over all channels.
-pub fn excess(lack: &[(String, Kind, f64, f64)]) -> f64 {
-    lack.iter().map(|(.., excess)| excess.max(0.0)).sum()
-}
-
-/// A member that makes channels go further beyond what is allowed for is no cause. Gives what is left.
-fn drop_what_harms(
-    fitter: &Fitter<'_>,
-    (covariance, seen): (&Covariance, &Observations),
-    (difference, z): (&[f64], &[f64]),
-    chosen: &mut Chosen,
-    refused: &mut Vec<Refused>,
-    before: &[(String, Kind, f64, f64)],
-) -> Vec<(String, Kind, f64, f64)> {
-    loop {
-        let lack = |chosen: &Chosen| lack_after(covariance, seen, (fitter.candidates, &fitter.masks), difference, chosen);
-        let now = lack(chosen);
-        let Some(last) = chosen.members.len().checked_sub(1) else { return now };
-        let mut without = chosen.clone();
-        without.members.remove(last);
-        refit(fitter, z, &mut without, 4);
-        let then = if without.members.is_empty() { before.to_vec() } else { lack(&without) };
-        if excess(&now) <= WORSE * excess(&then) + LITTLE {
-            return now;
-        }
-        let reason = format!("what channels show beyond what is allowed for grows from {:.0} to {:.0}", excess(&then), excess(&now));
-        refused.push(Refused { fitted: chosen.members[last].clone(), reason });
-        *chosen = without;
-    }
-}
-
-/// What the members leave of the difference, in the features' own units.
-#[must_use]
-pub fn left(candidates: &[Candidate], masks: &[Mask], difference: &[f64], chosen: &Chosen) -> Vec<f64> {
-    chosen.members.iter().fold(difference.to_vec(), |rest, member| less(&rest, &member.change(candidates, masks)))
-}
-
-/// Where what the members leave is more than is allowed for.
-fn lack_after(
-    covariance: &Covariance,
-    seen: &Observations,
-    (candidates, masks): (&[Candidate], &[Mask]),
-    difference: &[f64],
-    chosen: &Chosen,
-) -> Vec<(String, Kind, f64, f64)> {
-    let changes: Vec<Vec<f64>> = chosen.members.iter().map(|member| member.change(candidates, masks)).collect();
-    let rest = changes.iter().fold(difference.to_vec(), |rest, change| less(&rest, change));
-    lack_of_fit(&covariance.allowing(changes.iter()), seen, &rest)
-}
-
 impl Found {
     /// Without a member, the others fitted again.
     pub fn refuse(&mut self, at: usize, reason: String) {
@@ -283,58 +239,10 @@ impl Found {
         self.chosen.rest =
             self.chosen.members.iter().fold(self.whitener.apply(&self.difference), |rest, member| less(&rest, &member.whitened));
         self.lack_after = lack_after(&self.covariance, &self.seen, (&self.candidates, &self.masks), &self.difference, &self.chosen);
-        let gone = at;
-        self.rivals.retain(|(member, ..)| *member != gone);
-        self.rivals.iter_mut().filter(|(member, ..)| *member > gone).for_each(|(member, ..)| *member -= 1);
+        self.stability.remove(at);
+        self.rivals.retain(|(member, ..)| *member != at);
+        self.rivals.iter_mut().filter(|(member, ..)| *member > at).for_each(|(member, ..)| *member -= 1);
     }
-}
-
-/// Lists of sections that strong candidates seem to be confined to, and that are not among the masks yet.
-fn section_masks(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, seen: &Observations) -> Vec<Mask> {
-    let mut more: Vec<Mask> = Vec::new();
-    for rest in [z, &chosen.rest] {
-        let fits = fitter.all(rest);
-        let best = fits.iter().map(|fit| fit.evidence).fold(0.0, f64::max);
-        for fit in fits.iter().filter(|fit| fit.evidence >= (NEAR * best).max(WORTH)) {
-            let Some(sections) = fitter.seems_in(rest, fit) else { continue };
-            let asked_by = Some(fit.candidate);
-            let known = |mask: &Mask| mask.sections == sections && (mask.asked_by.is_none() || mask.asked_by == asked_by);
-            let asked = fitter.masks.iter().chain(&more).filter(|mask| mask.asked_by == asked_by).count();
-            // What a candidate asks for settles after one or two rounds; it need not be followed further.
-            if asked < 2 && !fitter.masks.iter().chain(&more).any(known) {
-                let names = (0..sections.len()).filter(|at| sections[*at]).map(|at| seen.sections[at].section.name().to_string());
-                more.push(Mask { confined: Some(("section".to_string(), names.collect())), sections, asked_by });
-            }
-        }
-    }
-    more
-}
-
-/// The whole campaign, the values of the columns that an effect may be confined to, and pairs of neighbouring strata.
-fn masks(seen: &Observations, settings: &Settings) -> Vec<Mask> {
-    let all = seen.sections.len();
-    let mut masks = vec![Mask { confined: None, sections: vec![true; all], asked_by: None }];
-    for column in &settings.confine {
-        let mut values: Vec<String> = Vec::new();
-        for observed in &seen.sections {
-            if let Some(value) = observed.section.fact(column)
-                && !values.iter().any(|known| known == value)
-            {
-                values.push(value.to_string());
-            }
-        }
-        let mut push = |values: Vec<String>| {
-            let inside = |at: &super::observe::Observed| at.section.fact(column).is_some_and(|value| values.iter().any(|one| one == value));
-            let sections: Vec<bool> = seen.sections.iter().map(inside).collect();
-            let some = sections.iter().filter(|inside| **inside).count();
-            if some > 0 && some < all && !masks.iter().any(|mask| mask.sections == sections) {
-                masks.push(Mask { confined: Some((column.clone(), values)), sections, asked_by: None });
-            }
-        };
-        values.iter().for_each(|value| push(vec![value.clone()]));
-        values.windows(2).for_each(|pair| push(pair.to_vec()));
-    }
-    masks
 }
 
 /// One standard deviation of a tolerance: as declared, or the catalogue's default.
@@ -354,7 +262,7 @@ pub fn deviations(candidate: &Candidate, size: f64, value: &dyn Fn(&str) -> Opti
     }
 }
 
-/// The evidence that the best candidate reaches by chance: 99 % of draws from the covariance stay below.
+/// More evidence than the best candidate reaches by chance in any draw from the covariance.
 fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
     use rayon::prelude::*;
     let mut most: Vec<f64> = (0..DRAWS)

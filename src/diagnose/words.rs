@@ -5,8 +5,10 @@ use serde_json::json;
 
 use super::features::Kind;
 use super::fit::Fitted;
-use super::run::{Found, Inputs, LACK, TOLERANCE_SD, chi, deviations, excess, length, one_sd, value_of};
+use super::lack::{LACK, excess};
+use super::run::{Found, Inputs, TOLERANCE_SD, chi, deviations, length, one_sd, value_of};
 use super::search::plausible;
+use super::stability::Stability;
 use crate::effects::{Action, Effect};
 use crate::result::diagnosis::{Cause, Detectable, Diagnosis, Fault, How, NamedEffect, Shrink, Value, Vetoed};
 use crate::simulate::Units;
@@ -146,10 +148,13 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
         let known = effect.and_then(|effect| effect.parameters.iter().find(|parameter| parameter.name == name));
         known.map_or("-".to_string(), |parameter| parameter.unit.text.clone())
     };
-    // Uncertainty of the fit, and of what lies between the nodes.
+    let stability = stability_of(found, member);
+    // Uncertainty of the fit, of what lies between the nodes, and of which sections there are.
     let error = if member.slope > 0.0 { 1.645 * (1.0 / member.slope).hypot(0.02 * member.size.abs().min(1e12)) } else { 0.0 };
+    let (low, high) = stability.map_or((member.size, member.size), |stability| (stability.low, stability.high));
+    let (below, above) = (error.hypot((member.size - low).max(0.0)), error.hypot((high - member.size).max(0.0)));
     let interval =
-        (!of.discrete && member.size.is_finite()).then(|| ((member.size - error).max(of.range.0), (member.size + error).min(of.range.1)));
+        (!of.discrete && member.size.is_finite()).then(|| ((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)));
     let mut push = |name: String, value: serde_json::Value, interval: Option<(f64, f64)>| {
         let unit = unit(&of.size);
         parameters.insert(name, Value { value, unit, low: interval.map(|(low, _)| low), high: interval.map(|(_, high)| high) });
@@ -176,12 +181,19 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
         title: effect.map_or_else(|| of.effect.clone(), |effect| effect.title.clone()),
         parameters,
         confined_to: found.masks[member.mask].confined.as_ref().map(|(column, values)| confined(column, values)),
+        stability: stability.map(|stability| stability.first),
         added_by: match effect.map(|effect| &effect.action) {
             Some(Action::Signals(operator, _)) => format!("an operation on the signals: {}", operator.name()),
             Some(Action::Formulas(_)) => "expressions on the signals".into(),
             _ => inputs.simulator.map_or(String::new(), |simulator| format!("increments of the {}", simulator.name())),
         },
     }
+}
+
+/// Of a member of the answer; a rival has none.
+fn stability_of(found: &Found, member: &Fitted) -> Option<Stability> {
+    let own = |known: &Fitted| known.candidate == member.candidate && known.mask == member.mask;
+    found.chosen.members.iter().position(own).and_then(|at| found.stability.get(at).copied())
 }
 
 /// `zones` and `sections` are lists, a direction is one word.

@@ -5,7 +5,7 @@ use crate::report::number;
 use crate::report::study::{Chapter, Document, Head, Item, Table};
 use crate::report::view::{self, Fact, Finding};
 use crate::result::Certification;
-use crate::result::diagnosis::{Cause, Diagnosis, QuantityShrink, Shrink, Value};
+use crate::result::diagnosis::{Cause, Diagnosis, NamedEffect, QuantityShrink, Shrink, Value};
 
 /// Cells listed; all of them stand in diagnosis.json.
 const CELLS: usize = 30;
@@ -163,6 +163,13 @@ fn cause_rows(cause: &Cause) -> Vec<Vec<String>> {
     rows
 }
 
+fn found_by(effect: &NamedEffect) -> String {
+    let stands = effect.stability.map_or(String::new(), |first| {
+        format!("; in {} % of resamples of the sections no other effect has more evidence", number::fixed(100.0 * first, 0))
+    });
+    format!("{}: {}{stands}", effect.title, effect.added_by)
+}
+
 fn causes(found: &Diagnosis) -> Chapter {
     let head = vec![
         Head::short("Rank"),
@@ -179,9 +186,9 @@ fn causes(found: &Diagnosis) -> Chapter {
         let caption = "Causes and their rivals; evidence is twice the logarithm of the Bayes factor against no effect";
         let rows = found.causes.iter().flat_map(cause_rows).collect();
         items.push(Item::Table { table: Table { caption: caption.into(), head, rows } });
-        let added: Vec<String> = found.causes[0].effects.iter().map(|effect| format!("{}: {}", effect.title, effect.added_by)).collect();
-        items.push(Item::Heading { text: "How the effects were added".into() });
-        items.push(Item::List { entries: added });
+        let entries: Vec<String> = found.causes[0].effects.iter().map(found_by).collect();
+        items.push(Item::Heading { text: "How the effects were added, and how firmly they stand".into() });
+        items.push(Item::List { entries });
     }
     if !found.vetoed.is_empty() {
         items.push(Item::Heading { text: "Refused".into() });

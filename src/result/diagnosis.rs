@@ -105,6 +105,8 @@ pub struct NamedEffect {
     pub confined_to: Option<IndexMap<String, serde_json::Value>>,
     /// How it was added: by which simulator, or an operation on the signals.
     pub added_by: String,
+    /// Share of resamples of the sections in which no other effect has more evidence; of the answer, not of its rivals.
+    pub stability: Option<f64>,
 }
 
 /// A parameter with its interval (90 %).
