@@ -343,14 +343,16 @@ impl Workshop<'_> {
     }
 }
 
-/// Every other size, counted from none to either side; the only one where there is one. And the others.
+/// Every other size, counted from none to either side; the nearer of two, since halfway to the farther one an effect that sets in at a
+/// threshold would not be there at all. And the others.
 fn coarse(sizes: &[f64], none: f64) -> (Vec<f64>, Vec<f64>) {
     let (mut first, mut later) = (Vec::new(), Vec::new());
     let below = sizes.iter().rev().filter(|size| **size < none).copied().collect::<Vec<_>>();
     let above = sizes.iter().filter(|size| **size > none).copied().collect::<Vec<_>>();
     for side in [below, above] {
         for (at, size) in side.iter().enumerate() {
-            if at % 2 == 1 || side.len() == 1 { first.push(*size) } else { later.push(*size) }
+            let chosen = if side.len() <= 2 { at == 0 } else { at % 2 == 1 };
+            if chosen { first.push(*size) } else { later.push(*size) }
         }
     }
     (first, later)

@@ -145,8 +145,7 @@ pub fn contradiction(
     let good: Vec<&(&View, f64, f64)> = seen.iter().filter(|(_, _, error)| *error < 0.35).collect();
     let weight: f64 = good.iter().map(|(_, _, error)| error.powi(-2)).sum();
     let mean = good.iter().map(|(_, share, error)| share * error.powi(-2)).sum::<f64>() / weight;
-    // The model is wrong by a part of any size.
-    let q: f64 = good.iter().map(|(_, share, error)| (share - mean).powi(2) / (error.powi(2) + 0.15_f64.powi(2))).sum();
+    let q: f64 = good.iter().map(|(_, share, error)| (share - mean).powi(2) / (error.powi(2) + MODEL.powi(2))).sum();
     let by_size = |a: &&&(&View, f64, f64), b: &&&(&View, f64, f64)| a.1.total_cmp(&b.1);
     let (Ok(law), Some(low), Some(high)) =
         (ChiSquared::new(good.len().saturating_sub(1) as f64), good.iter().min_by(by_size), good.iter().max_by(by_size))
@@ -156,11 +155,16 @@ pub fn contradiction(
     if q < law.inverse_cdf(0.99) || high.1 - low.1 < 0.6 {
         return Judged::Sound;
     }
-    if low.1 >= SOME {
+    // A view that could as well ask for what the others do contradicts nothing.
+    let below = (mean - low.1) / low.2.hypot(MODEL);
+    if low.1 >= SOME || below < SURE {
         return Judged::Doubtful;
     }
     Judged::Refused(format!("{} ask for {:.0} % of it, {} for {:.0} %", high.0.says, 100.0 * high.1, low.0.says, 100.0 * low.1))
 }
 
-/// A view that asks for less than this share of an effect contradicts it.
+/// A view that asks for less than this share of an effect contradicts it, if it is by so many standard errors below what all ask for.
 const SOME: f64 = 0.45;
+const SURE: f64 = 3.0;
+/// The model is wrong by this part of any size.
+const MODEL: f64 = 0.15;

@@ -1,6 +1,6 @@
 //! Sections that an effect may be confined to.
 
-use super::fit::{Fitter, Mask};
+use super::fit::{Fitted, Fitter, Mask};
 use super::observe::Observations;
 use super::run::{NEAR, WORTH};
 use super::search::Chosen;
@@ -12,7 +12,8 @@ pub fn section_masks(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, seen: &Obs
     for rest in [z, &chosen.rest] {
         let fits = fitter.all(rest);
         let best = fits.iter().map(|fit| fit.evidence).fold(0.0, f64::max);
-        for fit in fits.iter().filter(|fit| fit.evidence >= (NEAR * best).max(WORTH)) {
+        let confinable = |fit: &&Fitted| fitter.candidates[fit.candidate].confinable;
+        for fit in fits.iter().filter(confinable).filter(|fit| fit.evidence >= (NEAR * best).max(WORTH)) {
             let Some(sections) = fitter.seems_in(rest, fit) else { continue };
             let asked_by = Some(fit.candidate);
             let known = |mask: &Mask| mask.sections == sections && (mask.asked_by.is_none() || mask.asked_by == asked_by);

@@ -311,13 +311,18 @@ fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], chosen: &Chosen
     }
 }
 
-/// Candidates that are worth their other sizes: those within reach of the best for the whole difference, or for what a first set
-/// of causes leaves; and the members of that set.
+/// Candidates that are worth their other sizes: those within reach of the best for the whole difference, for what a first set of
+/// causes leaves, or for what it leaves without one of them; and the members of that set.
 fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<usize> {
     let pending = |at: &usize| !fitter.candidates[*at].pending.is_empty();
     let mut found: Vec<usize> = chosen.members.iter().map(|member| member.candidate).filter(pending).collect();
-    for rest in [z, &chosen.rest] {
-        let fits = fitter.all(rest);
+    let without = |member: &Fitted| chosen.rest.iter().zip(&member.whitened).map(|(rest, own)| rest + own).collect();
+    let mut rests: Vec<Vec<f64>> = vec![z.to_vec(), chosen.rest.clone()];
+    if chosen.members.len() > 1 {
+        rests.extend(chosen.members.iter().map(without));
+    }
+    for rest in rests {
+        let fits = fitter.all(&rest);
         let best = fits.iter().map(|fit| fit.evidence).fold(0.0, f64::max);
         let near = |fit: &&Fitted| fit.evidence >= (NEAR * best).max(WORTH) && pending(&fit.candidate);
         found.extend(fits.iter().filter(near).map(|fit| fit.candidate));
