@@ -4,11 +4,13 @@ use std::sync::Mutex;
 
 use rayon::prelude::*;
 
-use super::case::{Case, Measure, Quantity};
+use super::case::Case;
 use super::fails::Fails;
-use super::halves::{Half, Halves, Parts};
-use super::listed::{Listed, larger, weighted};
-use super::spread::{Limit, order};
+use super::halves::Halves;
+use super::listed::Listed;
+use super::overall::{OverAll, over_all, too_few};
+use super::spread::Memory;
+use super::verdicts::Verdicts;
 use crate::result::study::{Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection};
 use crate::run::pool::Rule;
 
@@ -22,231 +24,53 @@ pub struct Counted {
     pub methods: Vec<String>,
 }
 
-/// Bits of single quantities are kept up to this many bytes in all.
-const MOST_KEPT: usize = 80 << 20;
-
-/// A statistic over all selections.
-#[derive(Clone, Debug)]
-pub struct OverAll {
-    pub spread: Option<Listed>,
-    pub failing: u64,
-    /// Row and column of the value that is worst against the limit, and that value.
-    pub worst: Option<((u32, u32), f64)>,
-}
-
-/// Which selections fail, and why.
-#[derive(Debug)]
-pub struct Verdicts {
-    pub any: Fails,
-    twice: Fails,
-    /// Limits or quantities that fail, where a verdict allows some.
-    counts: Vec<u8>,
-    /// Bits of each quantity, if there is room for them.
-    kept: Vec<Option<Fails>>,
-    failing: Vec<u64>,
-}
-
-/// Order statistics of every limit, quantity by quantity, and what is validated.
+/// Order statistics of every limit, quantity by quantity, and which selections fail.
 pub fn core(case: &Case, halves: &Halves) -> (Vec<Vec<OverAll>>, Verdicts) {
     let (rows, columns) = (halves.rows.count, halves.columns.count);
-    let counting = case.rule != Rule::EveryLimit;
-    let small = case.quantities.len() * rows * columns / 8 <= MOST_KEPT;
-    let verdicts = Mutex::new(Verdicts {
-        any: Fails::new(rows, columns),
-        twice: Fails::new(rows, columns),
-        counts: if counting { vec![0; rows * columns] } else { Vec::new() },
-        kept: vec![None; case.quantities.len()],
-        failing: vec![0; case.quantities.len()],
-    });
-    let missing = Mutex::new(Fails::new(if counting { rows } else { 0 }, columns));
-    let all: Vec<Vec<OverAll>> = case
+    let verdicts = Mutex::new(Verdicts::new(case.rule, case.quantities.len(), rows, columns));
+    // Marks and memory of a quantity that is done serve the next one.
+    let spare = Mutex::new(Vec::new());
+    let all = case
         .quantities
         .par_iter()
         .enumerate()
         .with_max_len(1)
-        .map(|(at, quantity)| {
-            let mut of_quantity = Fails::new(rows, columns);
+        .map(|(number, quantity)| {
+            let used = spare.lock().expect("no panic holds the lock").pop();
+            let (mut fails, mut memory) = used.unwrap_or_else(|| (Fails::new(rows, columns), Memory::default()));
+            fails.clear();
             let mut undefined = None;
             let mut found = Vec::new();
             for measure in &quantity.measures {
                 if matches!(case.rule, Rule::AtLeastLimits(_)) {
-                    let mut fails = Fails::new(rows, columns);
-                    found.push(measured(measure, halves, &mut fails, &mut undefined));
-                    fails.tally(&mut verdicts.lock().expect("no panic holds the lock").counts);
-                    of_quantity.join_all(&fails);
+                    let mut of_limit = Fails::new(rows, columns);
+                    found.push(over_all(measure, halves, &mut of_limit, &mut undefined, &mut memory));
+                    verdicts.lock().expect("no panic holds the lock").limit(&of_limit);
+                    fails.join_all(&of_limit);
                 } else {
-                    found.push(measured(measure, halves, &mut of_quantity, &mut undefined));
+                    found.push(over_all(measure, halves, &mut fails, &mut undefined, &mut memory));
                 }
             }
             if !quantity.measures.is_empty() {
                 too_few(quantity, halves, &mut undefined);
             }
             if let Some(undefined) = &undefined {
-                of_quantity.join_all(undefined);
-                if counting {
-                    missing.lock().expect("no panic holds the lock").join_all(undefined);
-                }
+                fails.join_all(undefined);
             }
-            let mut verdicts = verdicts.lock().expect("no panic holds the lock");
-            let Verdicts { any, twice, counts, kept, failing } = &mut *verdicts;
-            failing[at] = of_quantity.count();
-            any.join(&of_quantity, twice);
-            if matches!(case.rule, Rule::AtLeastQuantities(_)) {
-                of_quantity.tally(counts);
-            }
-            kept[at] = small.then_some(of_quantity);
+            verdicts.lock().expect("no panic holds the lock").quantity(number, &fails, undefined.as_ref());
+            spare.lock().expect("no panic holds the lock").push((fails, memory));
             found
         })
         .collect();
-    let mut verdicts = verdicts.into_inner().expect("no panic holds the lock");
-    let of = |units: usize, needed: usize| units.saturating_sub(needed);
-    let allowed = match case.rule {
-        Rule::EveryLimit => None,
-        Rule::AtLeastQuantities(needed) => {
-            Some(of(case.quantities.iter().filter(|quantity| !quantity.measures.is_empty()).count(), needed))
-        }
-        Rule::AtLeastLimits(needed) => Some(of(case.measures().count(), needed)),
-    };
-    if let Some(allowed) = allowed {
-        let mut any = missing.into_inner().expect("no panic holds the lock");
-        for row in 0..rows {
-            for column in 0..columns {
-                if usize::from(verdicts.counts[row * columns + column]) > allowed {
-                    any.one(row as u32, column as u32);
-                }
-            }
-        }
-        verdicts.any = any;
-    }
-    (all, verdicts)
-}
-
-/// One statistic: its order statistics, with the selections marked that break its limit and those where it is not defined.
-fn measured(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut Option<Fails>) -> OverAll {
-    let parts = measure.parts(halves);
-    if matches!(parts, Parts::Pooled) {
-        let (listed, ends, failing) = pooled(measure, halves, fails, undefined);
-        return over_all(measure, listed, ends, failing);
-    }
-    let mut without = |row: u32, column: u32| {
-        undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count)).one(row, column);
-    };
-    let mut failing = 0;
-    let (listed, ends) = match parts {
-        Parts::Sums { mut blocks, form, undefined: nowhere } => {
-            for (rows, columns) in nowhere {
-                rows.iter().for_each(|&row| columns.iter().for_each(|&column| without(row, column)));
-            }
-            let (low, high) = form.bounds(measure.low, measure.high);
-            let mut limit = Limit { low, high, fails, count: 0 };
-            let found = order(&mut blocks, form, Some(&mut limit));
-            failing = limit.count;
-            let ends = found.as_ref().map(|order| (order.at_min, order.at_max));
-            (found.map(Listed::from), ends)
-        }
-        Parts::Extremes { rows, columns, negative } => {
-            let sign = if negative { -1.0 } else { 1.0 };
-            let within = |value: &Option<f64>| value.is_none_or(|value| measure.holds(sign * value));
-            // The larger of two is beyond a bound on that side if either is; on the other side if both are.
-            for (row, r) in rows.iter().enumerate() {
-                for (column, c) in columns.iter().enumerate() {
-                    match (*r).into_iter().chain(*c).reduce(f64::max) {
-                        None => without(row as u32, column as u32),
-                        Some(value) if !within(&Some(value)) => {
-                            fails.one(row as u32, column as u32);
-                            failing += 1;
-                        }
-                        Some(_) => {}
-                    }
-                }
-            }
-            (weighted(&larger(&rows, &columns, negative)), extreme_ends(&rows, &columns, negative))
-        }
-        Parts::Pooled => (None, None),
-    };
-    over_all(measure, listed, ends, failing)
-}
-
-fn over_all(measure: &Measure, listed: Option<Listed>, ends: Ends, failing: u64) -> OverAll {
-    let worst = listed.zip(ends).map(|(listed, (at_min, at_max))| {
-        let low = if measure.at_least { true } else { -listed.min > listed.max };
-        if low { (at_min, listed.min) } else { (at_max, listed.max) }
-    });
-    OverAll { spread: listed, failing, worst }
-}
-
-type Ends = Option<((u32, u32), (u32, u32))>;
-
-/// Where the larger of two is least and where it is greatest.
-fn extreme_ends(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -> Ends {
-    let by = |value: &Option<f64>| value.unwrap_or(f64::NEG_INFINITY);
-    let least = |values: &[Option<f64>]| (0..values.len()).min_by(|a, b| by(&values[*a]).total_cmp(&by(&values[*b])));
-    let most = |values: &[Option<f64>]| (0..values.len()).rev().max_by(|a, b| by(&values[*a]).total_cmp(&by(&values[*b])));
-    let at_least = (least(rows)? as u32, least(columns)? as u32);
-    let at_most = (most(rows)? as u32, most(columns)? as u32);
-    Some(if negative { (at_most, at_least) } else { (at_least, at_most) })
-}
-
-/// From the values of every selection.
-fn pooled(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut Option<Fails>) -> (Option<Listed>, Ends, u64) {
-    let mut list = Vec::new();
-    let mut failing = 0;
-    let mut without = |row: u32, column: u32| {
-        undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count)).one(row, column);
-    };
-    for (row, of_row) in halves.rows.choices().enumerate() {
-        for (column, of_column) in halves.columns.choices().enumerate() {
-            match measure.over(of_row.iter().chain(of_column).map(|&at| at as usize)) {
-                None => without(row as u32, column as u32),
-                Some(value) => {
-                    if !measure.holds(value) {
-                        fails.one(row as u32, column as u32);
-                        failing += 1;
-                    }
-                    list.push((value, (row as u32, column as u32)));
-                }
-            }
-        }
-    }
-    list.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let ends = list.first().zip(list.last()).map(|(first, last)| (first.1, last.1));
-    let single: Vec<(f64, f64)> = list.into_iter().map(|(value, _)| (value, 1.0)).collect();
-    (weighted(&single), ends, failing)
-}
-
-/// Marks selections with fewer signals or pairs than the protocol asks for.
-fn too_few(quantity: &Quantity, halves: &Halves, undefined: &mut Option<Fails>) {
-    let of = |half: &Half| -> Vec<(usize, u128)> {
-        half.choices()
-            .map(|choice| {
-                choice.iter().fold((0, 0), |(pairs, signals), &at| {
-                    (pairs + quantity.values[at as usize].len(), signals | quantity.signals[at as usize])
-                })
-            })
-            .collect()
-    };
-    let (rows, columns) = (of(&halves.rows), of(&halves.columns));
-    let least = |all: &[(usize, u128)]| all.iter().map(|(pairs, _)| *pairs).min().unwrap_or(0);
-    let common = |all: &[(usize, u128)]| all.iter().fold(u128::MAX, |common, (_, signals)| common & signals);
-    let enough = least(&rows) + least(&columns) >= quantity.minimum_pairs
-        && (common(&rows) | common(&columns)).count_ones() as usize >= quantity.minimum_signals;
-    if enough {
-        return;
-    }
-    let fails = undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count));
-    for (row, (pairs, signals)) in rows.iter().enumerate() {
-        for (column, (more, others)) in columns.iter().enumerate() {
-            if pairs + more < quantity.minimum_pairs || ((signals | others).count_ones() as usize) < quantity.minimum_signals {
-                fails.one(row as u32, column as u32);
-            }
-        }
-    }
+    (all, verdicts.into_inner().expect("no panic holds the lock"))
 }
 
 /// All selections of a case.
 pub fn all(case: &Case) -> Counted {
     let halves = Halves::of(case);
-    let (statistics, verdicts) = core(case, &halves);
+    let (statistics, mut verdicts) = core(case, &halves);
+    let alone = verdicts.alone();
+    verdicts.apply(case.quantities.iter().filter(|quantity| !quantity.measures.is_empty()).count(), case.measures().count());
     let combinations = halves.rows.count as u64 * halves.columns.count as u64;
     let failing = verdicts.any.count();
     let share_of = |count: u64| count as f64 / combinations as f64;
@@ -286,7 +110,7 @@ pub fn all(case: &Case) -> Counted {
             symbol: quantity.symbol.clone(),
             unit: quantity.unit.clone(),
             failing: share_of(verdicts.failing[at]),
-            alone: verdicts.kept[at].as_ref().map(|fails| share_of(fails.besides(&verdicts.twice))),
+            alone: Some(share_of(alone[at])),
             statistics: spreads,
         });
     }

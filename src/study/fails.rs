@@ -1,7 +1,5 @@
 //! Which selections break a limit: one bit for each pair of halves.
 
-use super::groups::Column;
-
 /// A bit for every row and column.
 #[derive(Clone, Debug)]
 pub struct Fails {
@@ -22,13 +20,24 @@ impl Fails {
         Self { rows, columns, words, bits: vec![0; rows * words], from: Vec::new() }
     }
 
+    pub fn clear(&mut self) {
+        self.bits.fill(0);
+    }
+
     #[inline]
     pub fn one(&mut self, row: u32, column: u32) {
         self.bits[row as usize * self.words + column as usize / 64] |= 1 << (column % 64);
     }
 
+    /// As [`Self::one`] where it fails.
+    #[inline(always)]
+    pub fn set(&mut self, row: u32, column: u32, fails: bool) {
+        self.bits[row as usize * self.words + column as usize / 64] |= u64::from(fails) << (column % 64);
+    }
+
     /// The order that the next calls of `after` and `before` speak of.
-    pub fn order(&mut self, columns: &[Column]) {
+    #[inline(always)]
+    pub fn order(&mut self, columns: &[u32]) {
         let cuts = columns.len().div_ceil(STEP);
         self.from.clear();
         self.from.resize((cuts + 1) * self.words, 0);
@@ -37,17 +46,18 @@ impl Fails {
             let here = &mut here[cut * self.words..];
             here.copy_from_slice(&after[..self.words]);
             for column in &columns[cut * STEP..((cut + 1) * STEP).min(columns.len())] {
-                here[column.at as usize / 64] |= 1 << (column.at % 64);
+                here[*column as usize / 64] |= 1 << (*column % 64);
             }
         }
     }
 
     /// A row with all columns from a place in the order on.
-    pub fn after(&mut self, row: u32, columns: &[Column], place: usize) {
+    #[inline(always)]
+    pub fn after(&mut self, row: u32, columns: &[u32], place: usize) {
         let cut = place.div_ceil(STEP);
         let end = (cut * STEP).min(columns.len());
         for column in &columns[place..end] {
-            self.one(row, column.at);
+            self.one(row, *column);
         }
         if end < columns.len() {
             let start = row as usize * self.words;
@@ -59,10 +69,11 @@ impl Fails {
     }
 
     /// A row with all columns before a place in the order.
-    pub fn before(&mut self, row: u32, columns: &[Column], place: usize) {
+    #[inline(always)]
+    pub fn before(&mut self, row: u32, columns: &[u32], place: usize) {
         let cut = place / STEP;
         for column in &columns[cut * STEP..place] {
-            self.one(row, column.at);
+            self.one(row, *column);
         }
         if cut > 0 {
             let start = row as usize * self.words;
@@ -78,15 +89,8 @@ impl Fails {
     }
 
     pub fn count(&self) -> u64 {
-        self.bits.iter().map(|word| u64::from(word.count_ones())).sum()
-    }
-
-    /// Takes over the marks of another; those both had are marked in `twice`.
-    pub fn join(&mut self, other: &Self, twice: &mut Self) {
-        for ((word, other), twice) in self.bits.iter_mut().zip(&other.bits).zip(&mut twice.bits) {
-            *twice |= *word & other;
-            *word |= other;
-        }
+        // Where the processor counts bits by itself, it does.
+        pulp::Arch::new().dispatch(|| self.bits.iter().map(|word| u64::from(word.count_ones())).sum())
     }
 
     /// Takes over the marks of another.
@@ -96,9 +100,13 @@ impl Fails {
         }
     }
 
-    /// How many of these are not among others.
-    pub fn besides(&self, others: &Self) -> u64 {
-        self.bits.iter().zip(&others.bits).map(|(word, others)| u64::from((word & !others).count_ones())).sum()
+    /// Words of bits, row by row: bits beyond the last column are never set.
+    pub fn words(&self) -> &[u64] {
+        &self.bits
+    }
+
+    pub fn words_mut(&mut self) -> &mut [u64] {
+        &mut self.bits
     }
 
     /// Selections not marked, for every row and for every column.

@@ -1,8 +1,9 @@
-//! Values that are sums of few parts, row by row with their columns in the order of the values.
+//! Values that are sums of few parts, row by row with their columns in about the order of the values.
 //!
 //! The values are `p + q - c y` for every row `(p, c)` with every column `(q, y)` of a block. A variance is of this form, with
 //! rows and columns the sums over two halves of a selection, and so is a mean (c = 0).
 
+use super::buckets::{Buckets, ordered};
 use super::fails::Fails;
 
 /// Part of a value that one half of a selection gives.
@@ -35,24 +36,26 @@ pub fn value(row: &Row, q: f64, y: f64) -> f64 {
     (row.p + q) - row.c * y
 }
 
-/// Rows in one group: more rows, fewer orders to keep; fewer rows, less uncertain orders.
-const GROUP: usize = 160;
-
-/// Rows of about the same `c`, and the columns in the order of their values for them.
+/// Rows of about the same `c`, and the columns in about the order of their values for them.
 #[derive(Debug)]
 pub struct Sorted<'a> {
     pub rows: &'a [Row],
+    /// Of the rows' `c`.
     middle: f64,
-    pub keys: &'a [f64],
-    pub columns: &'a [Column],
+    /// Values for `c = middle`, without the rows' part `p`.
+    pub keys: &'a Buckets,
+    pub q: &'a [f64],
+    pub y: &'a [f64],
+    pub at: &'a [u32],
     /// Largest |y|.
     reach: f64,
     /// Room for rounding.
     room: f64,
 }
 
-/// Visits the rows of a block in groups, the columns sorted for each.
-pub fn groups(block: &mut Block, mut visit: impl FnMut(&Sorted<'_>)) {
+/// Visits the rows of a block in groups, the columns put in order for each.
+#[inline(always)]
+pub fn groups(block: &Block, mut visit: impl FnMut(&Sorted<'_>)) {
     let Block { rows, columns } = block;
     if rows.is_empty() || columns.is_empty() {
         return;
@@ -65,49 +68,29 @@ pub fn groups(block: &mut Block, mut visit: impl FnMut(&Sorted<'_>)) {
             + size(&mut columns.iter().map(|column| column.q))
             + size(&mut rows.iter().map(|row| row.c)) * reach)
         + 1e-300;
-    rows.sort_unstable_by(|a, b| a.c.total_cmp(&b.c).then(a.at.cmp(&b.at)));
-    let flat = rows[0].c == rows[rows.len() - 1].c;
-    let group = if flat { rows.len() } else { GROUP };
-    let mut keys = vec![0.0; columns.len()];
-    let mut order: Vec<(f64, Column)> = columns.iter().map(|column| (0.0, *column)).collect();
-    for (number, rows) in rows.chunks(group).enumerate() {
-        let middle = f64::midpoint(rows[0].c, rows[rows.len() - 1].c);
-        for (key, column) in &mut order {
+    let slopes: Vec<f64> = rows.iter().map(|row| row.c).collect();
+    let rows: Vec<Row> = ordered(&slopes).into_iter().map(|at| rows[at as usize]).collect();
+    let flat = slopes.iter().all(|c| *c == slopes[0]);
+    // Fewer rows to a group: a surer order; more rows: fewer orders to make. Both cost the same near the root of their number.
+    let group = if flat { rows.len() } else { (rows.len() as f64).sqrt().ceil() as usize };
+    let mut buckets = Buckets::default();
+    let n = columns.len();
+    let (mut keys, mut q, mut y, mut at) = (vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0; n]);
+    for rows in rows.chunks(group) {
+        let least = rows.iter().fold(f64::INFINITY, |least, row| least.min(row.c));
+        let greatest = rows.iter().fold(f64::NEG_INFINITY, |greatest, row| greatest.max(row.c));
+        let middle = f64::midpoint(least, greatest);
+        for (key, column) in keys.iter_mut().zip(columns) {
             *key = column.q - middle * column.y;
         }
-        if number == 0 {
-            sort(&mut order);
-        } else {
-            nearly_sorted(&mut order);
+        for (column, place) in columns.iter().zip(buckets.fill(&keys)) {
+            let place = *place as usize;
+            q[place] = column.q;
+            y[place] = column.y;
+            at[place] = column.at;
         }
-        for (at, (key, column)) in order.iter().enumerate() {
-            keys[at] = *key;
-            columns[at] = *column;
-        }
-        visit(&Sorted { rows, middle, keys: &keys, columns, reach, room });
+        visit(&Sorted { rows, middle, keys: &buckets, q: &q, y: &y, at: &at, reach, room });
     }
-}
-
-/// Insertion sort: over all groups two columns change places at most once. Where one group asks for too much, a sort from scratch.
-fn nearly_sorted(order: &mut [(f64, Column)]) {
-    let mut left = 16 * order.len();
-    for at in 1..order.len() {
-        let moved = order[at];
-        let mut to = at;
-        while to > 0 && order[to - 1].0 > moved.0 {
-            order[to] = order[to - 1];
-            to -= 1;
-        }
-        order[to] = moved;
-        left = left.saturating_sub(at - to);
-        if left == 0 {
-            return sort(order);
-        }
-    }
-}
-
-fn sort(order: &mut [(f64, Column)]) {
-    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.at.cmp(&b.1.at)));
 }
 
 impl Sorted<'_> {
@@ -116,55 +99,45 @@ impl Sorted<'_> {
     pub fn slack(&self, row: &Row) -> f64 {
         (row.c - self.middle).abs() * self.reach + self.room
     }
-}
 
-/// How many keys are below each bound.
-#[inline(always)]
-pub fn below<const N: usize>(keys: &[f64], bounds: &[f64; N]) -> [usize; N] {
-    let mut base = [0_usize; N];
-    let mut size = keys.len();
-    while size > 1 {
-        let half = size / 2;
-        for (base, bound) in base.iter_mut().zip(bounds) {
-            *base += if keys[*base + half - 1] < *bound { half } else { 0 };
-        }
-        size -= half;
+    /// Values of a row from one place of the order to another.
+    #[inline(always)]
+    pub fn values(&self, row: &Row, from: usize, to: usize) -> impl Iterator<Item = (f64, u32)> {
+        let row = *row;
+        self.q[from..to].iter().zip(&self.y[from..to]).zip(&self.at[from..to]).map(move |((q, y), at)| (value(&row, *q, *y), *at))
     }
-    for (base, bound) in base.iter_mut().zip(bounds) {
-        *base += usize::from(keys[*base] < *bound);
-    }
-    base
-}
 
-impl Sorted<'_> {
     /// Marks every value below or above what is allowed; how many they are.
+    #[inline(always)]
     pub fn mark(&self, low: f64, high: f64, fails: &mut Fails) -> u64 {
-        let (first, last) = (self.keys[0], self.keys[self.keys.len() - 1]);
         let mut count = 0;
         let mut told = false;
         for row in self.rows {
             let slack = self.slack(row);
-            let (over, under) = (row.p + last + slack > high, row.p + first - slack < low);
+            let over = row.p + self.keys.greatest() + slack > high;
+            let under = row.p + self.keys.least() - slack < low;
             if (over || under) && !told {
-                fails.order(self.columns);
+                fails.order(self.at);
                 told = true;
             }
             if over {
-                let [from, to] = below(self.keys, &[high - row.p - slack, high - row.p + slack]);
-                for column in self.columns[from..to].iter().filter(|column| value(row, column.q, column.y) > high) {
-                    fails.one(row.at, column.at);
-                    count += 1;
+                let (from, to) = self.keys.between(high - row.p - slack, high - row.p + slack);
+                for (value, at) in self.values(row, from, to) {
+                    let fail = value > high;
+                    fails.set(row.at, at, fail);
+                    count += u64::from(fail);
                 }
-                fails.after(row.at, self.columns, to);
-                count += (self.columns.len() - to) as u64;
+                fails.after(row.at, self.at, to);
+                count += (self.at.len() - to) as u64;
             }
             if under {
-                let [from, to] = below(self.keys, &[low - row.p - slack, low - row.p + slack]);
-                for column in self.columns[from..to].iter().filter(|column| value(row, column.q, column.y) < low) {
-                    fails.one(row.at, column.at);
-                    count += 1;
+                let (from, to) = self.keys.between(low - row.p - slack, low - row.p + slack);
+                for (value, at) in self.values(row, from, to) {
+                    let fail = value < low;
+                    fails.set(row.at, at, fail);
+                    count += u64::from(fail);
                 }
-                fails.before(row.at, self.columns, from);
+                fails.before(row.at, self.at, from);
                 count += from as u64;
             }
         }

@@ -14,6 +14,8 @@ pub struct Half {
     /// `width` sections for each choice.
     pub sections: Vec<u32>,
     pub count: usize,
+    /// Choices of each stratum, of which these are all combinations.
+    factors: Vec<Vec<Vec<u32>>>,
 }
 
 /// Rows with columns are all selections.
@@ -33,7 +35,7 @@ impl Halves {
     pub fn of(case: &Case) -> Self {
         let (_, _, in_rows) = split(case);
         let half = |wanted: bool| {
-            let mut half = Half { width: 0, sections: Vec::new(), count: 1 };
+            let mut half = Half { width: 0, sections: Vec::new(), count: 1, factors: Vec::new() };
             for (stratum, _) in case.strata.iter().zip(&in_rows).filter(|(_, in_rows)| **in_rows == wanted) {
                 half = half.with(&subsets(&stratum.members, stratum.take), stratum.take);
             }
@@ -84,12 +86,22 @@ impl Half {
                 sections.extend_from_slice(choice);
             }
         }
-        Self { width: self.width + take, sections, count: self.count * choices.len() }
+        let factors = self.factors.iter().cloned().chain([choices.to_vec()]).collect();
+        Self { width: self.width + take, sections, count: self.count * choices.len(), factors }
     }
 
     /// Sections of one choice.
     pub fn choice(&self, at: usize) -> &[u32] {
         &self.sections[at * self.width..(at + 1) * self.width]
+    }
+
+    /// Sums over every choice, from those of sections: first within strata, then over all combinations.
+    fn sums(&self, of_section: &[Sums]) -> Vec<Sums> {
+        self.factors.iter().fold(vec![Sums::default()], |all, choices| {
+            let more: Vec<Sums> =
+                choices.iter().map(|choice| choice.iter().fold(Sums::default(), |sums, at| sums.plus(&of_section[*at as usize]))).collect();
+            all.iter().flat_map(|sums| more.iter().map(|more| sums.plus(more))).collect()
+        })
     }
 
     pub fn choices(&self) -> impl Iterator<Item = &[u32]> {
@@ -103,6 +115,12 @@ struct Sums {
     n: usize,
     x: f64,
     xx: f64,
+}
+
+impl Sums {
+    fn plus(self, other: &Self) -> Self {
+        Self { n: self.n + other.n, x: self.x + other.x, xx: self.xx + other.xx }
+    }
 }
 
 /// A statistic over selections, in parts that its halves give.
@@ -181,14 +199,7 @@ impl Measure {
                 Sums { n: values.len(), x: centred.clone().sum(), xx: centred.map(|value| value * value).sum() }
             })
             .collect();
-        let of = |half: &Half| -> Vec<Sums> {
-            let plus = |sums: Sums, &at: &u32| {
-                let one = &of_section[at as usize];
-                Sums { n: sums.n + one.n, x: sums.x + one.x, xx: sums.xx + one.xx }
-            };
-            half.choices().map(|choice| choice.iter().fold(Sums::default(), plus)).collect()
-        };
-        let (rows, columns) = (of(&halves.rows), of(&halves.columns));
+        let (rows, columns) = (halves.rows.sums(&of_section), halves.columns.sums(&of_section));
         let form = if self.kind == Kind::Mean { Form::Value } else { Form::Square };
         let (mut blocks, mut undefined) = (Vec::new(), Vec::new());
         // Choices with the same number of values share their divisor.

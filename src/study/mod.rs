@@ -4,13 +4,16 @@
 //! |---|---|
 //! | `case` | strata, values and limits of a campaign |
 //! | `halves` | selections as pairs of two halves; a statistic as a sum of their parts |
-//! | `groups`, `spread` | exact order statistics of such sums, without keeping them |
+//! | `groups`, `buckets` | rows of selections with their columns in about the order of the values |
+//! | `spread`, `pilot`, `window` | exact order statistics of such sums, without keeping them |
 //! | `listed` | order statistics where values can be listed or sums only added |
-//! | `fails` | a bit for every selection that breaks a limit |
+//! | `overall` | one statistic over all selections |
+//! | `fails`, `verdicts` | a bit for every selection that breaks a limit; by which quantities selections fail |
 //! | `judged` | one selection from its sections |
 //! | `enumerate`, `sampling` | all selections, or some of them with an interval |
 //! | `removal`, `reduce` | smallest sets that change the verdict; fewer sections with the same scatter |
 
+mod buckets;
 pub mod case;
 pub mod enumerate;
 pub mod fails;
@@ -18,10 +21,14 @@ pub mod groups;
 pub mod halves;
 pub mod judged;
 pub mod listed;
+pub mod overall;
+mod pilot;
 mod reduce;
 mod removal;
 pub mod sampling;
 pub mod spread;
+pub mod verdicts;
+mod window;
 
 use crate::result::study::{SelectionStudy, Stratum};
 use case::Case;

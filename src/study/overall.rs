@@ -1,0 +1,138 @@
+//! One statistic over all selections: its order statistics, and the selections that break its limit.
+
+use super::case::{Measure, Quantity};
+use super::fails::Fails;
+use super::halves::{Half, Halves, Parts};
+use super::listed::{Listed, larger, weighted};
+use super::spread::{Limit, Memory, order};
+
+/// A statistic over all selections.
+#[derive(Clone, Debug)]
+pub struct OverAll {
+    pub spread: Option<Listed>,
+    pub failing: u64,
+    /// Row and column of the value that is worst against the limit, and that value.
+    pub worst: Option<((u32, u32), f64)>,
+}
+
+/// One statistic: its order statistics, with the selections marked that break its limit and those where it is not defined.
+pub fn over_all(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut Option<Fails>, memory: &mut Memory) -> OverAll {
+    let parts = measure.parts(halves);
+    if matches!(parts, Parts::Pooled) {
+        let (listed, ends, failing) = pooled(measure, halves, fails, undefined);
+        return with_worst(measure, listed, ends, failing);
+    }
+    let mut without = |row: u32, column: u32| {
+        undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count)).one(row, column);
+    };
+    let mut failing = 0;
+    let (listed, ends) = match parts {
+        Parts::Sums { blocks, form, undefined: nowhere } => {
+            for (rows, columns) in nowhere {
+                rows.iter().for_each(|&row| columns.iter().for_each(|&column| without(row, column)));
+            }
+            let (low, high) = form.bounds(measure.low, measure.high);
+            let mut limit = Limit { low, high, fails, count: 0 };
+            let found = order(&blocks, form, Some(&mut limit), memory);
+            failing = limit.count;
+            let ends = found.as_ref().map(|order| (order.at_min, order.at_max));
+            (found.map(Listed::from), ends)
+        }
+        Parts::Extremes { rows, columns, negative } => {
+            let sign = if negative { -1.0 } else { 1.0 };
+            let within = |value: &Option<f64>| value.is_none_or(|value| measure.holds(sign * value));
+            // The larger of two is beyond a bound on that side if either is; on the other side if both are.
+            for (row, r) in rows.iter().enumerate() {
+                for (column, c) in columns.iter().enumerate() {
+                    match (*r).into_iter().chain(*c).reduce(f64::max) {
+                        None => without(row as u32, column as u32),
+                        Some(value) if !within(&Some(value)) => {
+                            fails.one(row as u32, column as u32);
+                            failing += 1;
+                        }
+                        Some(_) => {}
+                    }
+                }
+            }
+            (weighted(&larger(&rows, &columns, negative)), extreme_ends(&rows, &columns, negative))
+        }
+        Parts::Pooled => (None, None),
+    };
+    with_worst(measure, listed, ends, failing)
+}
+
+fn with_worst(measure: &Measure, listed: Option<Listed>, ends: Ends, failing: u64) -> OverAll {
+    let worst = listed.zip(ends).map(|(listed, (at_min, at_max))| {
+        let low = if measure.at_least { true } else { -listed.min > listed.max };
+        if low { (at_min, listed.min) } else { (at_max, listed.max) }
+    });
+    OverAll { spread: listed, failing, worst }
+}
+
+type Ends = Option<((u32, u32), (u32, u32))>;
+
+/// Where the larger of two is least and where it is greatest.
+fn extreme_ends(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -> Ends {
+    let by = |value: &Option<f64>| value.unwrap_or(f64::NEG_INFINITY);
+    let least = |values: &[Option<f64>]| (0..values.len()).min_by(|a, b| by(&values[*a]).total_cmp(&by(&values[*b])));
+    let most = |values: &[Option<f64>]| (0..values.len()).rev().max_by(|a, b| by(&values[*a]).total_cmp(&by(&values[*b])));
+    let at_least = (least(rows)? as u32, least(columns)? as u32);
+    let at_most = (most(rows)? as u32, most(columns)? as u32);
+    Some(if negative { (at_most, at_least) } else { (at_least, at_most) })
+}
+
+/// From the values of every selection.
+fn pooled(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut Option<Fails>) -> (Option<Listed>, Ends, u64) {
+    let mut list = Vec::new();
+    let mut failing = 0;
+    let mut without = |row: u32, column: u32| {
+        undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count)).one(row, column);
+    };
+    for (row, of_row) in halves.rows.choices().enumerate() {
+        for (column, of_column) in halves.columns.choices().enumerate() {
+            match measure.over(of_row.iter().chain(of_column).map(|&at| at as usize)) {
+                None => without(row as u32, column as u32),
+                Some(value) => {
+                    if !measure.holds(value) {
+                        fails.one(row as u32, column as u32);
+                        failing += 1;
+                    }
+                    list.push((value, (row as u32, column as u32)));
+                }
+            }
+        }
+    }
+    list.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let ends = list.first().zip(list.last()).map(|(first, last)| (first.1, last.1));
+    let single: Vec<(f64, f64)> = list.into_iter().map(|(value, _)| (value, 1.0)).collect();
+    (weighted(&single), ends, failing)
+}
+
+/// Marks selections with fewer signals or pairs than the protocol asks for.
+pub fn too_few(quantity: &Quantity, halves: &Halves, undefined: &mut Option<Fails>) {
+    let of = |half: &Half| -> Vec<(usize, u128)> {
+        half.choices()
+            .map(|choice| {
+                choice.iter().fold((0, 0), |(pairs, signals), &at| {
+                    (pairs + quantity.values[at as usize].len(), signals | quantity.signals[at as usize])
+                })
+            })
+            .collect()
+    };
+    let (rows, columns) = (of(&halves.rows), of(&halves.columns));
+    let least = |all: &[(usize, u128)]| all.iter().map(|(pairs, _)| *pairs).min().unwrap_or(0);
+    let common = |all: &[(usize, u128)]| all.iter().fold(u128::MAX, |common, (_, signals)| common & signals);
+    let enough = least(&rows) + least(&columns) >= quantity.minimum_pairs
+        && (common(&rows) | common(&columns)).count_ones() as usize >= quantity.minimum_signals;
+    if enough {
+        return;
+    }
+    let fails = undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count));
+    for (row, (pairs, signals)) in rows.iter().enumerate() {
+        for (column, (more, others)) in columns.iter().enumerate() {
+            if pairs + more < quantity.minimum_pairs || ((signals | others).count_ones() as usize) < quantity.minimum_signals {
+                fails.one(row as u32, column as u32);
+            }
+        }
+    }
+}
