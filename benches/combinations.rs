@@ -15,7 +15,7 @@ use fishplate::run::pool::{Pool, PooledLimit, PooledQuantity, Rule, Section, Zon
 use fishplate::study::case::Case;
 use fishplate::study::enumerate::core;
 use fishplate::study::halves::Halves;
-use fishplate::study::sampling::Random;
+use fishplate::study::random::Random;
 
 const QUANTITIES: usize = 12;
 const SIGNALS: usize = 2;

@@ -9,7 +9,8 @@ use fishplate::result::study::Spread;
 use fishplate::run::pool::{Pool, PooledLimit, PooledQuantity, Rule, Section, Zone};
 use fishplate::study::case::Case;
 use fishplate::study::halves::subsets;
-use fishplate::study::sampling::{Random, draw, wilson};
+use fishplate::study::random::{Random, draw};
+use fishplate::study::sampling::wilson;
 use fishplate::study::{Settings, enumerate, reduced, sampling, selections};
 use proptest::prelude::*;
 
@@ -79,7 +80,17 @@ fn sorted(mut values: Vec<f64>) -> Option<Spread> {
     let (q1, q3) = (at(0.25), at(0.75));
     let reach = 1.5 * (q3 - q1);
     let outliers = values.iter().filter(|value| **value < q1 - reach || **value > q3 + reach).count() as u64;
-    Some(Spread { min: values[0], q1, median: at(0.5), q3, max: values[last], outliers, count: values.len() as f64, exact: true })
+    Some(Spread {
+        min: values[0],
+        q1,
+        median: at(0.5),
+        q3,
+        max: values[last],
+        outliers,
+        count: values.len() as f64,
+        exact: true,
+        intervals: None,
+    })
 }
 
 #[track_caller]

@@ -65,6 +65,9 @@ fn offsets_of_nothing_change_nothing() {
     // Held filters, cut without shift, give the very numbers of a plain run.
     assert_eq!(offsets[1]["quantities"], sections["quantities"]);
     assert_eq!(offsets[1]["verdict_changes"], Value::Array(Vec::new()));
+    let flips = &offsets[1]["selections_changed"];
+    assert_eq!((flips["share_no_longer_validated"].as_f64(), flips["share_newly_validated"].as_f64()), (Some(0.0), Some(0.0)));
+    assert_eq!(flips["exact"], Value::Bool(true));
     assert_ne!(offsets[2]["quantities"], sections["quantities"]);
 }
 
@@ -88,6 +91,42 @@ fn parameters_say_which_choice_decides() {
     assert!((of(&values(1)[0], "mean") / of(&values(1)[2], "mean") - 3.0).abs() < 1e-12);
 }
 
+/// What the protocol does not call a parameter is found by the words that lead to it.
+#[test]
+fn every_rule_can_be_varied() {
+    let out = tempfile::tempdir().expect("a folder");
+    let vary = [
+        "--vary",
+        "quantity Y_qst limit std=2.5..7.5 step 2.5 kN",
+        "--vary",
+        "define extreme_value is=larger of |p0.15|, |p99.85|; larger of |p5|, |p95|",
+        "--vary",
+        "zone 4 minimum length=70 m, 5000 m",
+        "--vary",
+        "sections_per_zone=2,3",
+        "--quiet",
+    ];
+    let (code, _, said) = study("parameters", out.path(), &vary);
+    assert_eq!(code, 0, "{said}");
+    let found = json(out.path());
+    let values = |at: usize| found["parameters"][at]["values"].as_array().expect("values").clone();
+    let of = |at: &Value, id: &str, name: &str| {
+        let all = at["statistics"].as_array().expect("statistics");
+        all.iter().find(|one| one["id"] == id && one["statistic"] == name).and_then(|one| one["normalised"].as_f64()).expect("a value")
+    };
+    assert_eq!(found["parameters"][0]["as_it_is"], "5 kN");
+    assert_eq!(values(0)[1]["as_it_is"], Value::Bool(true));
+    // Three times the limit of the standard deviation, and with it that of the mean.
+    for name in ["std", "mean"] {
+        assert!((of(&values(0)[0], "Y_qst", name) / of(&values(0)[2], "Y_qst", name) - 3.0).abs() < 1e-12);
+    }
+    // The percentile pair, which the whole definition gives.
+    assert!(of(&values(1)[1], "Y_max", "std") != of(&values(1)[0], "Y_max", "std"));
+    assert_eq!(of(&values(1)[1], "Q_max", "std"), of(&values(1)[0], "Q_max", "std"));
+    // No section of the zone is as long as that: nothing can be said.
+    assert_eq!(values(2)[1]["verdict"], "not assessable");
+}
+
 #[test]
 fn wrong_input_is_told_and_nothing_is_written() {
     let out = tempfile::tempdir().expect("a folder");
@@ -102,6 +141,10 @@ fn wrong_input_is_told_and_nothing_is_written() {
         ("parameters", &["--vary", "lowpass_order=99"], "outside the range"),
         ("parameters", &["--vary", "lowpass_order"], "has no `=`"),
         ("parameters", &["--vary", "lowpass_order=1..2"], "step"),
+        ("parameters", &["--vary", "quantity Y_qs limit std=4 kN"], "did you mean `Y_qst`?"),
+        ("parameters", &["--vary", "quantity Y_qst limit=4 kN"], "add the first words of one of them: `limit std 5 kN`"),
+        ("parameters", &["--vary", "quantity Y_qst limit std=4 m"], "write the limit in kN"),
+        ("parameters", &["--vary", "zone 4 minimum width=4 m"], "zone 4 has no rule `minimum width`"),
     ] {
         let (code, _, said) = study(kind, &folder, more);
         assert_eq!(code, 2, "{more:?}: {said}");

@@ -1,12 +1,13 @@
-//! Lists of values on the command line: `2, 4, 6` or `10..30 step 5 Hz`.
+//! Lists of values on the command line: `2, 4, 6`, `10..30 step 5 Hz`, or `a, b; c, d` where values hold commas.
 
 /// Values of a list or of a range, as written: a range gives its numbers with its unit.
 ///
 /// # Errors
 /// What is wrong with a range.
 pub fn values(text: &str) -> Result<Vec<String>, String> {
-    let Some((from, rest)) = text.split_once("..") else {
-        let values: Vec<String> = text.split(',').map(|value| value.trim().to_owned()).filter(|value| !value.is_empty()).collect();
+    let Some((from, rest)) = text.split_once("..").filter(|_| !text.contains(';')) else {
+        let comma = if text.contains(';') { ';' } else { ',' };
+        let values: Vec<String> = text.split(comma).map(|value| value.trim().to_owned()).filter(|value| !value.is_empty()).collect();
         return if values.is_empty() { Err("no value is given".into()) } else { Ok(values) };
     };
     let (to, step) = rest.split_once("step").ok_or("a range is written `FROM..TO step STEP`")?;
@@ -60,6 +61,7 @@ mod tests {
         let of = |text: &str| values(text).map(|values| values.join("|"));
         assert_eq!(of("2, 4,6"), Ok("2|4|6".into()));
         assert_eq!(of("n-1, n"), Ok("n-1|n".into()));
+        assert_eq!(of("larger of |p1|, |p99|; |p99|;"), Ok("larger of |p1|, |p99|||p99|".into()));
         assert_eq!(of("10..30 step 10 Hz"), Ok("10 Hz|20 Hz|30 Hz".into()));
         assert_eq!(of("0.1..0.4 step 0.1"), Ok("0.1|0.2|0.3|0.4".into()));
         assert_eq!(of("-2..2 step 2"), Ok("-2|0|2".into()));

@@ -108,6 +108,8 @@ pub struct Spread {
     pub count: f64,
     /// Exact over all selections, not estimated from some.
     pub exact: bool,
+    /// 95 % intervals of the three quartiles where they are estimated from selections drawn at random.
+    pub intervals: Option<[(f64, f64); 3]>,
 }
 
 impl Spread {
@@ -188,8 +190,25 @@ pub struct AtOffset {
     pub study: Result<SelectionStudy, String>,
     /// What is otherwise than without offset.
     pub changes: Vec<String>,
+    /// Selections whose verdict is otherwise than without offset, or why there is none to compare.
+    pub flips: Result<Flips, String>,
     /// Sections that cannot be used at this offset, with the reason.
     pub lost: Vec<(String, String)>,
+}
+
+/// Selections whose verdict is another than before.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Flips {
+    /// Selections compared: all that both have, or those drawn at random.
+    pub compared: f64,
+    /// Share of them validated before and no longer.
+    pub lost: f64,
+    /// Share of them validated now and not before.
+    pub gained: f64,
+    pub exact: bool,
+    /// 95 % Wilson intervals where they were drawn.
+    pub lost_interval: Option<(f64, f64)>,
+    pub gained_interval: Option<(f64, f64)>,
 }
 
 /// A normalised statistic of one selection.

@@ -125,7 +125,7 @@ fn shifted(
     note_margins(work, unit, &needed, &opened, common);
     let placed = |says: String| format!("{}: {says}", opened.file.path);
     let held = opened.hold(work.graph, &needed, wanted, known, work.plan.sections.percentiles).map_err(|says| Fault::new(placed(says)))?;
-    common.offset = shifts.farthest.and_then(|farthest| synchronisation::estimate(unit, farthest, simulated, &held));
+    common.offset = shifts.farthest.and_then(|farthest| synchronisation::estimate(work.graph, unit, farthest, simulated, &held));
     let own = if shifts.correct { common.offset.as_ref().map_or(0.0, |offset| offset.shift) } else { 0.0 };
     let all = shifts.offsets.iter().map(|offset| held.at(own + offset).map_err(placed)).collect();
     Ok((all, opened.extent))

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::pairs::Simulated;
 use super::record::{Found, Held, Work};
 use super::sections::Unit;
-use crate::graph::NodeId;
+use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::synchronise::{self, Estimate, Search};
 
 /// Where to evaluate the measurement.
@@ -56,17 +56,45 @@ pub fn signals(work: &Work<'_>, active: &[bool]) -> BTreeSet<NodeId> {
 }
 
 /// `None` where the records do not tell: no signal of both, or none that varies.
-pub fn estimate(unit: &Unit, farthest: f64, simulated: Simulated<'_>, measured: &Held<'_>) -> Option<Offset> {
+pub fn estimate(graph: &Graph, unit: &Unit, farthest: f64, simulated: Simulated<'_>, measured: &Held<'_>) -> Option<Offset> {
     let (start, end) = unit.extent?;
     let mut pairs = Vec::new();
-    for (node, found) in simulated {
+    let nodes: Vec<NodeId> = simulated.iter().map(|(node, _)| *node).collect();
+    for ((node, found), group) in simulated.iter().zip(groups(graph, &nodes)) {
         let (Found::Samples(simulated), Some(measured)) = (found, measured.samples(*node)) else { continue };
         pairs.push(synchronise::Pair {
             simulated: (&simulated.along.axis, &simulated.values),
             measured: (&measured.along.axis, &measured.values),
+            group,
         });
     }
     let search = Search { start, end, farthest, step: farthest / STEPS };
     let Estimate { shift, low, high, correlation } = synchronise::estimate(&pairs, &search)?;
     Some(Offset { shift, low, high, correlation })
+}
+
+/// A number for each signal, the same for signals that share a channel, directly or through others.
+fn groups(graph: &Graph, nodes: &[NodeId]) -> Vec<usize> {
+    let mut group: Vec<usize> = (0..nodes.len()).collect();
+    let mut seen: Vec<(NodeId, usize)> = Vec::new();
+    for (at, node) in nodes.iter().enumerate() {
+        for channel in channels(graph, *node) {
+            let Some((_, other)) = seen.iter().find(|(known, _)| *known == channel) else {
+                seen.push((channel, at));
+                continue;
+            };
+            let (mine, others) = (group[at], group[*other]);
+            group.iter_mut().filter(|group| **group == mine).for_each(|group| *group = others);
+        }
+    }
+    group
+}
+
+/// The nodes that read what a signal is made of.
+fn channels(graph: &Graph, node: NodeId) -> BTreeSet<NodeId> {
+    let node_is = &graph.nodes[node];
+    if matches!(node_is.operation, Operation::Read { .. }) {
+        return BTreeSet::from([node]);
+    }
+    node_is.inputs.iter().flat_map(|input| channels(graph, *input)).collect()
 }

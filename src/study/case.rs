@@ -132,6 +132,23 @@ impl Case {
         })
     }
 
+    /// Only the sections that another case has, too.
+    ///
+    /// # Errors
+    /// A zone is left with fewer than a selection takes: which.
+    pub fn with_sections_of(&self, other: &Self) -> Result<Self, Refusal> {
+        let mut case = self.clone();
+        let theirs = other.usable();
+        for stratum in &mut case.strata {
+            stratum.members.retain(|section| theirs.contains(section));
+            if stratum.members.len() < stratum.take {
+                let (zone, has, needs) = (&stratum.zone, stratum.members.len(), stratum.take);
+                return Err(format!("zone {zone} has {has} sections usable in both, and a selection takes {needs}"));
+            }
+        }
+        Ok(case)
+    }
+
     /// Number of selections, rounded where it is beyond 2^53.
     pub fn combinations(&self) -> f64 {
         self.strata.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).product()

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use super::case::Case;
 use super::fails::Fails;
 use super::halves::Halves;
-use super::listed::Listed;
 use super::overall::{OverAll, over_all, too_few};
 use super::spread::Memory;
 use super::verdicts::Verdicts;
@@ -65,12 +64,28 @@ pub fn core(case: &Case, halves: &Halves) -> (Vec<Vec<OverAll>>, Verdicts) {
     (all, verdicts.into_inner().expect("no panic holds the lock"))
 }
 
+/// Marks of the selections that are not validated.
+pub fn fails(case: &Case, halves: &Halves) -> Fails {
+    let (_, mut verdicts) = core(case, halves);
+    apply(case, &mut verdicts);
+    verdicts.any
+}
+
+fn apply(case: &Case, verdicts: &mut Verdicts) {
+    verdicts.apply(case.quantities.iter().filter(|quantity| !quantity.measures.is_empty()).count(), case.measures().count());
+}
+
 /// All selections of a case.
 pub fn all(case: &Case) -> Counted {
+    marked(case).0
+}
+
+/// All selections of a case, and the marks of those not validated.
+pub fn marked(case: &Case) -> (Counted, Fails) {
     let halves = Halves::of(case);
     let (statistics, mut verdicts) = core(case, &halves);
     let alone = verdicts.alone();
-    verdicts.apply(case.quantities.iter().filter(|quantity| !quantity.measures.is_empty()).count(), case.measures().count());
+    apply(case, &mut verdicts);
     let combinations = halves.rows.count as u64 * halves.columns.count as u64;
     let failing = verdicts.any.count();
     let share_of = |count: u64| count as f64 / combinations as f64;
@@ -86,7 +101,7 @@ pub fn all(case: &Case) -> Counted {
                 scope: measure.scope.clone(),
                 limit: measure.limit,
                 at_least: measure.at_least,
-                spread: over_all.spread.map(spread),
+                spread: over_all.spread.map(Spread::from),
                 failing: share_of(over_all.failing),
                 overall: measure.over(usable.iter().copied()),
             });
@@ -115,7 +130,7 @@ pub fn all(case: &Case) -> Counted {
         });
     }
     let validated = combinations - failing;
-    Counted {
+    let counted = Counted {
         share: Share { validated, looked_at: combinations, share: share_of(validated), exact: true, interval: None, seed: None },
         quantities,
         sections: importance(case, &halves, &verdicts.any),
@@ -124,20 +139,8 @@ pub fn all(case: &Case) -> Counted {
             "Every selection was looked at: nothing is sampled, and shares, quartiles, extremes and outliers are exact.".into(),
             "A selection's sums are added from those of its sections; records are not evaluated again.".into(),
         ],
-    }
-}
-
-fn spread(listed: Listed) -> Spread {
-    Spread {
-        min: listed.min,
-        q1: listed.quartiles[0],
-        median: listed.quartiles[1],
-        q3: listed.quartiles[2],
-        max: listed.max,
-        outliers: listed.outliers as u64,
-        count: listed.count,
-        exact: true,
-    }
+    };
+    (counted, verdicts.any)
 }
 
 /// The share with and without every section, from the selections that do not fail.

@@ -3,6 +3,7 @@
 use super::groups::Block;
 use super::halves::Form;
 use super::spread::{Order, ranks};
+use crate::result::study::Spread;
 
 /// Values with how often each occurs, the least first; `None` if there are none.
 pub fn weighted(list: &[(f64, f64)]) -> Option<Listed> {
@@ -42,6 +43,23 @@ pub struct Listed {
 impl From<Order> for Listed {
     fn from(order: Order) -> Self {
         Self { count: order.count as f64, min: order.min, max: order.max, quartiles: order.quartiles, outliers: order.outliers as f64 }
+    }
+}
+
+impl From<Listed> for Spread {
+    fn from(listed: Listed) -> Self {
+        let [q1, median, q3] = listed.quartiles;
+        Self {
+            min: listed.min,
+            q1,
+            median,
+            q3,
+            max: listed.max,
+            outliers: listed.outliers as u64,
+            count: listed.count,
+            exact: true,
+            intervals: None,
+        }
     }
 }
 

@@ -10,19 +10,24 @@
 //! | `overall` | one statistic over all selections |
 //! | `fails`, `verdicts` | a bit for every selection that breaks a limit; by which quantities selections fail |
 //! | `judged` | one selection from its sections |
-//! | `enumerate`, `sampling` | all selections, or some of them with an interval |
+//! | `enumerate` | all selections |
+//! | `sampling`, `random`, `quartiles` | some of them, drawn at random, with intervals |
+//! | `flips` | selections whose verdict is another under other values |
 //! | `removal`, `reduce` | smallest sets that change the verdict; fewer sections with the same scatter |
 
 mod buckets;
 pub mod case;
 pub mod enumerate;
 pub mod fails;
+pub mod flips;
 pub mod groups;
 pub mod halves;
 pub mod judged;
 pub mod listed;
 pub mod overall;
 mod pilot;
+pub mod quartiles;
+pub mod random;
 mod reduce;
 mod removal;
 pub mod sampling;
@@ -32,6 +37,7 @@ mod window;
 
 use crate::result::study::{SelectionStudy, Stratum};
 use case::Case;
+use fails::Fails;
 pub use reduce::reduced;
 
 /// How a study is done where there is a choice.
@@ -55,15 +61,31 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// Selections of a case that are all looked at.
+    fn most_of(&self, case: &Case) -> f64 {
+        let pooled = case.measures().any(|(_, measure)| matches!(measure.kind, case::Kind::Pooled(_)));
+        if pooled { self.most.min(MOST_POOLED) } else { self.most }
+    }
+}
+
 /// Every selection of a case, or as many as it takes.
 pub fn selections(case: &Case, settings: &Settings) -> SelectionStudy {
-    let pooled = case.measures().any(|(_, measure)| matches!(measure.kind, case::Kind::Pooled(_)));
+    marked(case, settings).0
+}
+
+/// The same, with the marks of the selections that are not validated, if all were looked at.
+pub fn marked(case: &Case, settings: &Settings) -> (SelectionStudy, Option<Fails>) {
     let combinations = case.combinations();
-    let most = if pooled { settings.most.min(MOST_POOLED) } else { settings.most };
-    let counted = if combinations <= most { enumerate::all(case) } else { sampling::some(case, settings) };
+    let (counted, fails) = if combinations <= settings.most_of(case) {
+        let (counted, fails) = enumerate::marked(case);
+        (counted, Some(fails))
+    } else {
+        (sampling::some(case, settings), None)
+    };
     let usable = case.usable();
     let (verdict, _) = case.judge(&usable);
-    SelectionStudy {
+    let found = SelectionStudy {
         strata: case.strata.iter().map(|stratum| named(case, stratum)).collect(),
         combinations,
         share: counted.share,
@@ -74,7 +96,8 @@ pub fn selections(case: &Case, settings: &Settings) -> SelectionStudy {
         removal: removal::smallest(case, verdict),
         reduction: None,
         methods: counted.methods,
-    }
+    };
+    (found, fails)
 }
 
 fn named(case: &Case, stratum: &case::Stratum) -> Stratum {

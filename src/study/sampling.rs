@@ -9,15 +9,16 @@ use super::enumerate::Counted;
 use super::halves::{Halves, Parts};
 use super::judged::{Sums, Tally};
 use super::listed::{Listed, larger, sums, weighted};
-use crate::metrics::percentile::{Method, percentiles};
+use super::quartiles::estimated;
+use super::random::{Random, draw};
 use crate::result::Verdict;
 use crate::result::study::{Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection};
 
 /// Selections of a batch, and batches drawn before the width is looked at again.
-const BATCH: usize = 4096;
-const ROUND: usize = 8;
+pub(super) const BATCH: usize = 4096;
+pub(super) const ROUND: usize = 8;
 /// No more are drawn, however narrow the interval is wanted.
-const MOST_DRAWN: usize = 1 << 22;
+pub(super) const MOST_DRAWN: usize = 1 << 22;
 /// Selections whose values are kept for the estimated quartiles.
 const KEPT: usize = 1 << 16;
 /// Choices of a half that are listed to have a statistic exactly.
@@ -25,55 +26,14 @@ const MOST_LISTED: f64 = 2e6;
 /// 97.5 % value of the normal distribution.
 const NORMAL: f64 = 1.959_963_985;
 
-/// A stream of random numbers: SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
-#[derive(Clone, Debug)]
-pub struct Random(u64);
-
-impl Random {
-    /// Streams of different numbers are independent of each other.
-    pub fn new(seed: u64, stream: u64) -> Self {
-        let mut random = Self(seed ^ stream.wrapping_mul(0xd134_2543_de82_ef95));
-        random.number();
-        random
-    }
-
-    /// Any number of 64 bits, each as likely.
-    pub fn number(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// A number below `n`, each as likely (Lemire's multiplication; its bias is below n / 2^64).
-    pub fn below(&mut self, n: usize) -> usize {
-        ((u128::from(self.number()) * n as u128) >> 64) as usize
-    }
-}
-
-/// One selection, every one as likely: sections of each stratum without repetition.
-pub fn draw(case: &Case, random: &mut Random) -> Vec<usize> {
-    let mut chosen = Vec::new();
-    for stratum in &case.strata {
-        let mut members = stratum.members.clone();
-        for at in 0..stratum.take {
-            let other = at + random.below(members.len() - at);
-            members.swap(at, other);
-        }
-        chosen.extend_from_slice(&members[..stratum.take]);
-    }
-    chosen.sort_unstable();
-    chosen
-}
-
 /// Wilson's 95 % interval of a share.
 pub fn wilson(good: u64, all: u64) -> (f64, f64) {
     let (n, p) = (all as f64, good as f64 / all as f64);
     let square = NORMAL * NORMAL;
     let center = (p + square / (2.0 * n)) / (1.0 + square / n);
     let half = NORMAL / (1.0 + square / n) * (p * (1.0 - p) / n + square / (4.0 * n * n)).sqrt();
-    ((center - half).max(0.0), (center + half).min(1.0))
+    // At the ends the two terms cancel, but for rounding.
+    (if good == 0 { 0.0 } else { (center - half).max(0.0) }, if good == all { 1.0 } else { (center + half).min(1.0) })
 }
 
 /// What some selections came to.
@@ -198,16 +158,7 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
         let mut statistics = Vec::new();
         for measure in &quantity.measures {
             let spread = match exact[limit] {
-                Some(listed) => Some(Spread {
-                    min: listed.min,
-                    q1: listed.quartiles[0],
-                    median: listed.quartiles[1],
-                    q3: listed.quartiles[2],
-                    max: listed.max,
-                    outliers: listed.outliers as u64,
-                    count: listed.count,
-                    exact: true,
-                }),
+                Some(listed) => Some(Spread::from(listed)),
                 None => estimated(&drawn.values[limit]),
             };
             statistics.push(StatisticSpread {
@@ -279,7 +230,7 @@ fn methods(case: &Case, all: u64, exact: &[Option<Listed>], settings: &Settings)
     }
     if listed < exact.len() {
         methods.push(format!(
-            "Quartiles of the others are estimated from the first {} drawn selections; their least and greatest values are those that were drawn.",
+            "Quartiles of the others are estimated from the first {} drawn selections, with 95 % intervals between order statistics that hold for any distribution; their least and greatest values are those that were drawn.",
             KEPT.min(all as usize)
         ));
     }
@@ -306,12 +257,4 @@ fn exact(case: &Case) -> Vec<Option<Listed>> {
             },
         })
         .collect()
-}
-
-fn estimated(values: &[f64]) -> Option<Spread> {
-    let found = percentiles(values, &[0.0, 25.0, 50.0, 75.0, 100.0], Method::Linear).ok()?;
-    let [min, q1, median, q3, max] = found[..] else { return None };
-    let reach = 1.5 * (q3 - q1);
-    let outliers = values.iter().filter(|value| **value < q1 - reach || **value > q3 + reach).count() as u64;
-    Some(Spread { min, q1, median, q3, max, outliers, count: values.len() as f64, exact: false })
 }

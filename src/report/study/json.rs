@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::result::study::{
-    AtOffset, AtValue, Found, ParameterStudy, QuantitySpread, Selected, SelectionStudy, Spread, StatisticSpread, Study, SyncStudy,
+    AtOffset, AtValue, Flips, Found, ParameterStudy, QuantitySpread, Selected, SelectionStudy, Spread, StatisticSpread, Study, SyncStudy,
 };
 
 /// The whole study, ending in a line break.
@@ -86,6 +86,8 @@ fn spread(spread: &Spread) -> Value {
     json!({
         "min": spread.min, "q1": spread.q1, "median": spread.median, "q3": spread.q3, "max": spread.max,
         "outliers": spread.outliers, "count": whole(spread.count), "exact": spread.exact,
+        "q1_interval_95": spread.intervals.map(|all| all[0]), "median_interval_95": spread.intervals.map(|all| all[1]),
+        "q3_interval_95": spread.intervals.map(|all| all[2]),
     })
 }
 
@@ -95,6 +97,13 @@ fn statistic(statistic: &StatisticSpread) -> Value {
         "at_least": statistic.at_least, "all_sections": statistic.overall, "share_failing": statistic.failing,
         "normalised": statistic.spread.as_ref().map(spread),
         "reason": if statistic.spread.is_none() { json!("not defined for any selection") } else { Value::Null },
+    })
+}
+
+fn flips(flips: &Flips) -> Value {
+    json!({
+        "compared": whole(flips.compared), "share_no_longer_validated": flips.lost, "share_newly_validated": flips.gained,
+        "exact": flips.exact, "no_longer_interval_95": flips.lost_interval, "newly_interval_95": flips.gained_interval,
     })
 }
 
@@ -115,6 +124,7 @@ fn sync(root: &mut Map<String, Value>, found: &SyncStudy) {
             }
         }
         entry.insert("verdict_changes".into(), json!(at.changes));
+        entry.insert("selections_changed".into(), at.flips.as_ref().map_or_else(|reason| json!({"reason": reason}), flips));
         entry.insert("verdict_all_sections".into(), json!(at.verdict));
         entry.insert("reasons".into(), json!(at.reasons));
         entry.insert("one_selection".into(), Value::Array(at.selected.iter().map(selected).collect()));

@@ -89,9 +89,13 @@ fn percent(share: f64) -> String {
 
 /// The share with what is known of it.
 fn share(share: &Share) -> String {
-    match share.interval {
-        None => percent(share.share),
-        Some((low, high)) => format!("{} ({} to {})", percent(share.share), percent(low), percent(high)),
+    share_with(share.share, share.interval)
+}
+
+fn share_with(share: f64, interval: Option<(f64, f64)>) -> String {
+    match interval {
+        None => percent(share),
+        Some((low, high)) => format!("{} ({} to {})", percent(share), percent(low), percent(high)),
     }
 }
 

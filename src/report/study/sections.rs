@@ -108,7 +108,14 @@ pub fn spread(quantities: &[QuantitySpread], figure: &str, at: &str) -> Vec<Item
             row.push(statistic.overall.map_or_else(|| number::NONE.into(), shown));
             match &statistic.spread {
                 Some(spread) => {
-                    row.extend([spread.min, spread.q1, spread.median, spread.q3, spread.max].map(shown));
+                    let within = |at: usize| {
+                        spread
+                            .intervals
+                            .map_or_else(String::new, |all| format!(" ± {}", number::beside(0.5 * (all[at].1 - all[at].0), 1.0, 3)))
+                    };
+                    row.push(shown(spread.min));
+                    row.extend([spread.q1, spread.median, spread.q3].iter().enumerate().map(|(at, value)| shown(*value) + &within(at)));
+                    row.push(shown(spread.max));
                     row.push(number::count(spread.outliers));
                     row.push(if spread.exact { "exact" } else { "estimated" }.into());
                 }

@@ -4,7 +4,7 @@ use super::document::{Chapter, Head, Item, Table};
 use super::{Opening, percent, sections, share};
 use crate::report::number;
 use crate::report::view::{Fact, Finding};
-use crate::result::study::{AtOffset, SyncStudy};
+use crate::result::study::{AtOffset, Flips, SyncStudy};
 
 fn shown(found: &SyncStudy, offset: f64) -> String {
     format!("{} {}", number::significant(offset, 4), number::unit(&found.axis_unit))
@@ -60,8 +60,13 @@ fn shares(found: &SyncStudy) -> Vec<Item> {
             Ok(study) => (share(&study.share), super::combinations(study.combinations)),
             Err(reason) => (reason.clone(), number::NONE.to_owned()),
         };
+        let flips = at.flips.as_ref().ok();
+        let flipped = |of: &dyn Fn(&Flips) -> (f64, Option<(f64, f64)>)| {
+            flips.map_or_else(|| number::NONE.to_owned(), |flips| super::share_with(of(flips).0, of(flips).1))
+        };
+        let (lost, gained) = (flipped(&|flips| (flips.lost, flips.lost_interval)), flipped(&|flips| (flips.gained, flips.gained_interval)));
         let changes = if at.changes.is_empty() { number::NONE.to_owned() } else { at.changes.join("; ") };
-        vec![shown(found, at.offset), validated, selections, at.verdict.in_words().to_owned(), changes]
+        vec![shown(found, at.offset), validated, lost, gained, selections, at.verdict.in_words().to_owned(), changes]
     };
     let mut items = vec![
         Item::figure(
@@ -71,10 +76,12 @@ fn shares(found: &SyncStudy) -> Vec<Item> {
         ),
         Item::Table {
             table: Table {
-                caption: "Influence of the synchronisation on the share of selections validated and on the verdict".into(),
+                caption: "Influence of the synchronisation: share of selections validated, share validated without offset and no longer, share validated only with it, and the verdict".into(),
                 head: vec![
                     Head::number("Offset"),
                     Head::number("Validated"),
+                    Head::number("No longer"),
+                    Head::number("Newly"),
                     Head::number("Selections"),
                     Head::short("All sections"),
                     Head::text("What changes"),
@@ -141,7 +148,7 @@ fn estimates(found: &SyncStudy) -> Vec<Item> {
     };
     vec![
         Item::text(format!(
-            "By cross-correlation of all filtered signals of both records of a section; the interval is at 95 %, from the section with an eighth left out in turn. {what}"
+            "By cross-correlation of all filtered signals of both records of a section; the interval is at 95 %, from the section with an eighth left out in turn and from the signals with each group left out in turn that shares a channel. {what}"
         )),
         Item::Table {
             table: Table {

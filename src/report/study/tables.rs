@@ -22,8 +22,27 @@ fn number(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| value.to_string())
 }
 
-const SPREAD: [&str; 13] =
-    ["quantity", "statistic", "scope", "limit", "all sections", "min", "q1", "median", "q3", "max", "outliers", "exact", "share failing"];
+const SPREAD: [&str; 19] = [
+    "quantity",
+    "statistic",
+    "scope",
+    "limit",
+    "all sections",
+    "min",
+    "q1",
+    "median",
+    "q3",
+    "max",
+    "outliers",
+    "exact",
+    "q1 low 95 %",
+    "q1 high 95 %",
+    "median low 95 %",
+    "median high 95 %",
+    "q3 low 95 %",
+    "q3 high 95 %",
+    "share failing",
+];
 
 fn spread(quantities: &[QuantitySpread]) -> Vec<Row> {
     let statistics = quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
@@ -35,8 +54,10 @@ fn spread(quantities: &[QuantitySpread]) -> Vec<Row> {
                 Some(spread) => {
                     row.extend([spread.min, spread.q1, spread.median, spread.q3, spread.max].map(|value| value.to_string()));
                     row.extend([spread.outliers.to_string(), spread.exact.to_string()]);
+                    let ends = (0..3).map(|at| spread.intervals.map(|all| all[at]));
+                    row.extend(ends.flat_map(|ends| [number(ends.map(|ends| ends.0)), number(ends.map(|ends| ends.1))]));
                 }
-                None => row.extend((0..7).map(|_| String::new())),
+                None => row.extend((0..13).map(|_| String::new())),
             }
             row.push(statistic.failing.to_string());
             row
@@ -77,7 +98,9 @@ fn sync(found: &SyncStudy) -> Result<Tables, csv::Error> {
             Ok(study) => (study.share.share.to_string(), String::new()),
             Err(reason) => (String::new(), reason.clone()),
         };
-        offsets.push(vec![offset.clone(), share, at.verdict.in_words().to_owned(), at.changes.join("; "), reason]);
+        let flips = at.flips.as_ref().ok();
+        let (lost, gained) = (number(flips.map(|flips| flips.lost)), number(flips.map(|flips| flips.gained)));
+        offsets.push(vec![offset.clone(), share, lost, gained, at.verdict.in_words().to_owned(), at.changes.join("; "), reason]);
         if let Ok(study) = &at.study {
             all.extend(spread(&study.quantities).into_iter().map(|row| [vec![offset.clone()], row].concat()));
         }
@@ -96,7 +119,19 @@ fn sync(found: &SyncStudy) -> Result<Tables, csv::Error> {
         .collect();
     let head = [&["offset"][..], &SPREAD[..]].concat();
     Ok(vec![
-        csv_file("offsets", &["offset", "share validated", "verdict on all sections", "changes", "reason"], offsets)?,
+        csv_file(
+            "offsets",
+            &[
+                "offset",
+                "share validated",
+                "share no longer validated",
+                "share newly validated",
+                "verdict on all sections",
+                "changes",
+                "reason",
+            ],
+            offsets,
+        )?,
         csv_file("spread", &head, all)?,
         csv_file("one_selection", &["offset", "quantity", "statistic", "scope", "normalised", "holds"], one)?,
         csv_file("estimates", &["section", "zone", "offset", "low 95 %", "high 95 %", "correlation"], estimates)?,

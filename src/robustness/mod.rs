@@ -1,0 +1,63 @@
+//! The studies: what another choice of sections, another synchronisation or another parameter would have said.
+//!
+//! Joins the stages as `certify` does: records are evaluated by `run`, selections are counted by `study`.
+
+mod parameters;
+mod rule;
+mod synchronisation;
+
+use crate::certify::{Compiled, campaign_info, protocol_info};
+use crate::check::plan::Plan;
+use crate::data::Campaign;
+use crate::problem::{Problem, Problems};
+use crate::result::study::{Found, SelectionStudy, Study};
+use crate::run::{Evaluated, Progress, Shifts, evaluate};
+use crate::study::case::Case;
+use crate::study::{self, reduced, selections};
+
+pub use parameters::{Vary, all_choices, parameters};
+pub use synchronisation::{Synchronisation, synchronisation};
+
+/// What is asked of every study.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Settings {
+    pub selections: study::Settings,
+    /// Sections of each zone that a selection takes, if not the protocol's number.
+    pub take: Option<usize>,
+    /// Sections of each zone that are kept before anything is selected.
+    pub reduce: Option<usize>,
+}
+
+/// Every selection of sections.
+///
+/// # Errors
+/// As [`crate::run::run`]; `too-few-sections`: a zone has fewer usable sections than a selection takes.
+pub fn sections(compiled: &Compiled, campaign: &Campaign, settings: &Settings, progress: Progress<'_>) -> Result<Study, Problems> {
+    let evaluated = evaluate(&compiled.plan, &compiled.graph, campaign, &Shifts::NONE, progress)?.swap_remove(0);
+    let found = selected(&evaluated, &compiled.plan, settings).map_err(too_few)?;
+    Ok(joined(compiled, campaign, &evaluated, Found::Sections(found)))
+}
+
+fn too_few(says: String) -> Problems {
+    Problems(vec![Problem::error("too-few-sections", says).help("give more sections, or fewer for each selection with `--take`")])
+}
+
+fn selected(evaluated: &Evaluated, plan: &Plan, settings: &Settings) -> Result<SelectionStudy, String> {
+    let case = Case::of(&evaluated.pool(plan), settings.take)?;
+    match settings.reduce {
+        None => Ok(selections(&case, &settings.selections)),
+        Some(most) => {
+            let (smaller, reduction) = reduced(&case, most);
+            Ok(SelectionStudy { reduction: Some(reduction), ..selections(&smaller, &settings.selections) })
+        }
+    }
+}
+
+fn joined(compiled: &Compiled, campaign: &Campaign, evaluated: &Evaluated, found: Found) -> Study {
+    Study {
+        protocol: protocol_info(compiled),
+        campaign: campaign_info(&compiled.plan, campaign, evaluated.files.clone(), evaluated.vehicle(&compiled.plan)),
+        notes: evaluated.notes().to_vec(),
+        found,
+    }
+}

@@ -1,0 +1,184 @@
+//! The verdict along parameters and rules of the protocol, each varied by itself.
+
+use super::rule::Rule;
+use super::{Settings, joined, selected};
+use crate::certify::{Compiled, compile};
+use crate::check::family::Family;
+use crate::check::plan::{Parameter, Plan, SetBy};
+use crate::check::{Override, Overrides};
+use crate::data::Campaign;
+use crate::problem::{Problem, Problems};
+use crate::result::study::{AtValue, Found, ParameterStudy, Selected, Study, Varied};
+use crate::run::{Evaluated, Progress, Shifts, evaluate};
+use crate::source::Source;
+use crate::syntax::document::Text;
+
+/// A parameter or a rule, and the values it is to take, as written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Vary {
+    /// The name of a parameter, or the words that lead to a rule: `quantity Y_qst limit std`.
+    pub name: String,
+    pub values: Vec<String>,
+}
+
+/// Every parameter that is a choice of words, over all its words.
+pub fn all_choices(plan: &Plan) -> Vec<Vary> {
+    let choices = plan.parameters.iter().filter(|parameter| !parameter.choices.is_empty());
+    choices.map(|parameter| Vary { name: parameter.name.clone(), values: parameter.choices.clone() }).collect()
+}
+
+/// The verdict along parameters and rules of the protocol, each varied by itself, the others as they are.
+///
+/// `progress` is told the value that is being evaluated.
+///
+/// # Errors
+/// A value that the protocol does not admit; as [`crate::run::run`].
+pub fn parameters(
+    compiled: &Compiled,
+    campaign: &Campaign,
+    overrides: &Overrides,
+    settings: &Settings,
+    vary: &[Vary],
+    progress: Progress<'_>,
+) -> Result<Study, Problems> {
+    let plan = &compiled.plan;
+    // All values are compiled before any is evaluated: a wrong one is told at once.
+    let mut compiled_values = Vec::new();
+    let mut problems = Problems::default();
+    for varied in vary {
+        if let Some(found) = Variable::find(compiled, &varied.name, &mut problems) {
+            let each = varied.values.iter().map(|value| found.with(&compiled.family, overrides, value, &mut problems));
+            let values: Vec<Option<Compiled>> = each.collect();
+            compiled_values.push((varied, found, values));
+        }
+    }
+    if problems.any_error() {
+        return Err(problems);
+    }
+    let quiet = |_: &str| {};
+    let evaluated = evaluate(plan, &compiled.graph, campaign, &Shifts::NONE, &quiet)?.swap_remove(0);
+    progress("as it is");
+    let base = at_value(&evaluated, plan, settings, "as it is", true);
+    let mut parameters = Vec::new();
+    for (varied, variable, values) in compiled_values {
+        let as_it_is = variable.as_it_is();
+        let mut found = Vec::new();
+        for (value, other) in varied.values.iter().zip(values.into_iter().flatten()) {
+            let shown = variable.shown(value, &other.plan);
+            progress(&format!("{} {shown}", varied.name));
+            if shown == as_it_is {
+                found.push(AtValue { value: shown, ..base.clone() });
+                continue;
+            }
+            let evaluated = evaluate(&other.plan, &other.graph, campaign, &Shifts::NONE, &quiet)?.swap_remove(0);
+            found.push(at_value(&evaluated, &other.plan, settings, &shown, false));
+        }
+        parameters.push(Varied {
+            name: varied.name.clone(),
+            title: variable.title(),
+            base: as_it_is,
+            decides: found.iter().any(|at| at.verdict != base.verdict),
+            values: found,
+        });
+    }
+    Ok(joined(compiled, campaign, &evaluated, Found::Parameters(ParameterStudy { base, parameters })))
+}
+
+/// What is varied.
+enum Variable<'a> {
+    Parameter(&'a Parameter),
+    Rule(Rule),
+}
+
+impl<'a> Variable<'a> {
+    /// A name without spaces is a parameter's; words lead to a rule.
+    fn find(compiled: &'a Compiled, name: &str, problems: &mut Problems) -> Option<Self> {
+        if name.contains(char::is_whitespace) {
+            return Rule::find(&compiled.family.merged, name).map(Self::Rule).map_err(|problem| problems.push(*problem)).ok();
+        }
+        let parameters = &compiled.plan.parameters;
+        if let Some(parameter) = parameters.iter().find(|parameter| parameter.name == name) {
+            return Some(Self::Parameter(parameter));
+        }
+        let known = parameters.iter().map(|parameter| parameter.name.as_str());
+        let says = format!("protocol `{}` has no parameter `{name}`", compiled.plan.name);
+        problems.push(Problem::error("unknown-parameter", says).suggest(name, known));
+        None
+    }
+
+    /// The protocol with another value.
+    fn with(&self, family: &Family, overrides: &Overrides, value: &str, problems: &mut Problems) -> Option<Compiled> {
+        match self {
+            Self::Parameter(parameter) => with(family.clone(), overrides, &parameter.name, value, problems),
+            Self::Rule(rule) => compile(rule.with(family, value), overrides, problems),
+        }
+    }
+
+    fn as_it_is(&self) -> String {
+        match self {
+            Self::Parameter(parameter) => parameter.value.clone(),
+            Self::Rule(rule) => rule.as_it_is.clone(),
+        }
+    }
+
+    fn title(&self) -> String {
+        match self {
+            Self::Parameter(parameter) => parameter.title.clone(),
+            Self::Rule(rule) => rule.title.clone(),
+        }
+    }
+
+    /// A value as the protocol prints it.
+    fn shown(&self, value: &str, plan: &Plan) -> String {
+        match self {
+            Self::Parameter(parameter) => {
+                let set = plan.parameters.iter().find(|other| other.name == parameter.name);
+                set.map_or_else(|| value.to_owned(), |set| set.value.clone())
+            }
+            Self::Rule(_) => value.split_whitespace().collect::<Vec<_>>().join(" "),
+        }
+    }
+}
+
+fn with(family: Family, overrides: &Overrides, name: &str, value: &str, problems: &mut Problems) -> Option<Compiled> {
+    let mut overrides = overrides.clone();
+    let source = Source::new("--vary", format!("{name}={value}"));
+    let span = source.span(name.len() + 1..source.text.len());
+    let text = Text { text: value.to_owned(), span, exact: true };
+    overrides.insert(name.to_owned(), Override { text, set_by: SetBy::CommandLine });
+    compile(family, &overrides, problems)
+}
+
+fn at_value(evaluated: &Evaluated, plan: &Plan, settings: &Settings, value: &str, is_base: bool) -> AtValue {
+    let judged = evaluated.judge(plan);
+    let statistics: Vec<Selected> = judged
+        .quantities
+        .iter()
+        .flat_map(|quantity| {
+            quantity.statistics.iter().map(|statistic| Selected {
+                id: quantity.id.clone(),
+                symbol: quantity.symbol.clone(),
+                name: statistic.name.clone(),
+                scope: statistic.scope.clone(),
+                normalised: statistic.normalised,
+                holds: statistic.holds == Some(true),
+            })
+        })
+        .collect();
+    let largest = statistics
+        .iter()
+        .filter_map(|statistic| statistic.normalised.map(|share| (format!("{} of {}", statistic.name, statistic.symbol), share)))
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    let study = selected(evaluated, plan, settings);
+    AtValue {
+        value: value.to_owned(),
+        is_base,
+        verdict: judged.verdict,
+        reasons: judged.reasons,
+        statistics,
+        largest,
+        combinations: study.as_ref().map_or(0.0, |study| study.combinations),
+        share: study.as_ref().ok().map(|study| study.share),
+        reason: study.err(),
+    }
+}

@@ -1,0 +1,94 @@
+//! A rule of a protocol found by the words that lead to it, and the protocol with another text in its place.
+
+use crate::check::family::Family;
+use crate::problem::Problem;
+use crate::source::Source;
+use crate::syntax::document::{Block, Document, Field, Text};
+use crate::syntax::keys;
+
+/// One field of one block.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rule {
+    /// As asked for: `quantity Y_qst limit std`.
+    words: String,
+    block: usize,
+    field: usize,
+    /// Words of the field's value that belong to the address and stay: `std`.
+    stays: String,
+    /// The rest of the value without variation.
+    pub as_it_is: String,
+    pub title: String,
+}
+
+impl Rule {
+    /// Finds the field that a kind of block, its name, a key and first words of the value lead to.
+    ///
+    /// # Errors
+    /// No such block, no such field, or several of them: which there are.
+    pub fn find(document: &Document, address: &str) -> Result<Self, Box<Problem>> {
+        let words: Vec<&str> = address.split_whitespace().collect();
+        let wrong = |says: String| Problem::error("unknown-rule", says);
+        let kind = words[0];
+        let Some(known) = keys::kind(kind) else {
+            let kinds = document.blocks.iter().map(|block| block.kind.text.as_str());
+            let problem = wrong(format!("`--vary {address}`: a protocol has no block `{kind}`")).suggest(kind, kinds);
+            return Err(Box::new(problem.help("write a parameter's name, or a block, its name and a key: `quantity <name> limit std`")));
+        };
+        let (name, rest) = if known.named { (words.get(1).copied().unwrap_or(""), words.get(2..)) } else { ("", words.get(1..)) };
+        let rest = rest.unwrap_or(&[]);
+        let block_words = if known.named { format!("{kind} {name}") } else { kind.to_owned() };
+        let same = |block: &&Block| block.kind.text == kind && (!known.named || block.name_text() == name);
+        let Some((at, block)) = document.blocks.iter().enumerate().find(|(_, block)| same(block)) else {
+            let names: Vec<&str> = document.blocks.iter().filter(|block| block.kind.text == kind).map(Block::name_text).collect();
+            return Err(Box::new(wrong(format!("`--vary {address}`: the protocol has no {kind} `{name}`")).suggest(name, names)));
+        };
+        let fields: Vec<(usize, String)> =
+            block.fields.iter().enumerate().filter_map(|(at, field)| stays(field, rest).map(|stays| (at, stays))).collect();
+        match fields.as_slice() {
+            [(field, stays)] => {
+                let value = joined(block.fields[*field].value.text.split_whitespace());
+                let title = block.title.as_ref().map_or_else(|| block_words.clone(), |title| title.text.clone());
+                Ok(Self {
+                    words: joined(words.iter().copied()),
+                    block: at,
+                    field: *field,
+                    as_it_is: value[stays.len()..].trim_start().to_owned(),
+                    stays: stays.clone(),
+                    title: format!("{title}: {}", rest.join(" ")),
+                })
+            }
+            [] => {
+                let has: Vec<&str> = block.fields.iter().map(|field| field.key.text.as_str()).collect();
+                let key = rest.first().copied().unwrap_or("");
+                Err(Box::new(wrong(format!("`--vary {address}`: {block_words} has no rule `{}`", rest.join(" "))).suggest(key, has)))
+            }
+            several => {
+                let each = several.iter().map(|(at, _)| format!("`{} {}`", block.fields[*at].key.text, block.fields[*at].value.text));
+                let help = format!("add the first words of one of them: {}", each.collect::<Vec<_>>().join(", "));
+                Err(Box::new(wrong(format!("`--vary {address}` leads to several rules")).help(help)))
+            }
+        }
+    }
+
+    /// The protocol with a value in place of the rule's own; problems with it point into the words of the command line.
+    pub fn with(&self, family: &Family, value: &str) -> Family {
+        let mut family = family.clone();
+        let source = Source::new("--vary", format!("{} {value}", self.words));
+        let text = if self.stays.is_empty() { value.to_owned() } else { format!("{} {value}", self.stays) };
+        let span = source.span(source.text.len() - text.len()..source.text.len());
+        family.merged.blocks[self.block].fields[self.field].value = Text { text, span, exact: true };
+        family
+    }
+}
+
+/// What of a field's value the words after its key name, if they lead to it.
+fn stays(field: &Field, words: &[&str]) -> Option<String> {
+    let key: Vec<&str> = field.key.text.split_whitespace().collect();
+    let first = words.strip_prefix(key.as_slice())?;
+    let value: Vec<&str> = field.value.text.split_whitespace().collect();
+    value.starts_with(first).then(|| first.join(" "))
+}
+
+fn joined<'a>(words: impl Iterator<Item = &'a str>) -> String {
+    words.collect::<Vec<_>>().join(" ")
+}

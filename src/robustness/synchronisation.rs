@@ -1,0 +1,151 @@
+//! The measurement shifted against the simulation.
+
+use super::{Settings, joined, too_few};
+use crate::certify::Compiled;
+use crate::check::plan::Plan;
+use crate::data::Campaign;
+use crate::problem::Problems;
+use crate::result::Verdict;
+use crate::result::study::{AtOffset, Estimated, Found, Study, SyncStudy};
+use crate::run::{Evaluated, Progress, Shifts, evaluate};
+use crate::study::case::Case;
+use crate::study::fails::Fails;
+use crate::study::flips::{Marked, flips};
+use crate::study::random::{Random, draw};
+use crate::study::{marked, reduced};
+
+/// How a study of the synchronisation is done.
+#[derive(Clone, Debug)]
+pub struct Synchronisation {
+    /// In the unit of the axis; 0 is added if it is missing.
+    pub offsets: Vec<f64>,
+    /// Farthest offset looked for in the signals, in the unit of the axis.
+    pub farthest: f64,
+    /// Whether what is found there is taken out first.
+    pub correct: bool,
+}
+
+/// The measurement shifted against the simulation.
+///
+/// # Errors
+/// As [`sections`], for the records without offset.
+pub fn synchronisation(
+    compiled: &Compiled,
+    campaign: &Campaign,
+    settings: &Settings,
+    asked: &Synchronisation,
+    progress: Progress<'_>,
+) -> Result<Study, Problems> {
+    let Compiled { plan, graph, .. } = compiled;
+    let unit = &plan.axis.unit;
+    let mut offsets = asked.offsets.clone();
+    offsets.push(0.0);
+    offsets.sort_by(f64::total_cmp);
+    offsets.dedup();
+    let si: Vec<f64> = offsets.iter().map(|offset| unit.to_si(*offset)).collect();
+    let shifts = Shifts { offsets: &si, farthest: Some(unit.to_si(asked.farthest)), correct: asked.correct };
+    let all = evaluate(plan, graph, campaign, &shifts, progress)?;
+    let zero = offsets.iter().position(|offset| *offset == 0.0).unwrap_or(0);
+    let mut base = Case::of(&all[zero].pool(plan), settings.take).map_err(too_few)?;
+    if let Some(most) = settings.reduce {
+        // The same sections at every offset: what is kept is decided without one.
+        base = reduced(&base, most).0;
+    }
+    let selection = draw(&base, &mut Random::new(settings.selections.seed, 0));
+    let fails = marked(&base, &settings.selections).1;
+    let without = Without { case: &base, fails, selection: &selection };
+    let mut found: Vec<AtOffset> =
+        all.iter().zip(&offsets).map(|(evaluated, offset)| at_offset(evaluated, plan, settings, *offset, &without)).collect();
+    for at in (0..found.len()).filter(|at| *at != zero) {
+        found[at].changes = changes(&found[zero], &found[at]);
+        found[at].lost = lost(&all[zero], &all[at], plan);
+    }
+    let estimates = all[zero].offsets().map(|(section, zone, offset)| Estimated {
+        section: section.to_owned(),
+        zone: zone.map(str::to_owned),
+        shift: offset.map(|offset| unit.from_si(offset.shift)),
+        low: offset.map(|offset| unit.from_si(offset.low)),
+        high: offset.map(|offset| unit.from_si(offset.high)),
+        correlation: offset.map(|offset| offset.correlation),
+    });
+    let study = SyncStudy {
+        axis_unit: unit.text.clone(),
+        estimates: estimates.collect(),
+        corrected: asked.correct,
+        selection: selection.iter().map(|&at| base.sections[at].clone()).collect(),
+        offsets: found,
+    };
+    Ok(joined(compiled, campaign, &all[zero], Found::Sync(study)))
+}
+
+/// What other offsets are compared with.
+struct Without<'a> {
+    case: &'a Case,
+    /// Selections that are not validated.
+    fails: Option<Fails>,
+    /// The one selection of the first figure.
+    selection: &'a [usize],
+}
+
+fn at_offset(evaluated: &Evaluated, plan: &Plan, settings: &Settings, offset: f64, without: &Without<'_>) -> AtOffset {
+    let judged = evaluated.judge(plan);
+    let pool = evaluated.pool(plan);
+    let usable = without.selection.iter().all(|&at| pool.sections[at].used);
+    let case = Case::of(&pool, settings.take).and_then(|case| match settings.reduce {
+        None => Ok(case),
+        Some(_) => case.with_sections_of(without.case),
+    });
+    let selected = case.as_ref().ok().filter(|_| usable).map_or_else(Vec::new, |case| case.judge(without.selection).1);
+    let counted = case.as_ref().map_err(Clone::clone).map(|case| (case, marked(case, &settings.selections)));
+    let flips = counted.as_ref().map_err(Clone::clone).and_then(|(case, (_, fails))| {
+        let before = Marked { case: without.case, fails: without.fails.as_ref() };
+        flips(before, Marked { case, fails: fails.as_ref() }, &settings.selections)
+    });
+    AtOffset {
+        offset,
+        verdict: judged.verdict,
+        reasons: judged.reasons,
+        selected,
+        flips,
+        study: counted.map(|(_, (study, _))| study),
+        changes: Vec::new(),
+        lost: Vec::new(),
+    }
+}
+
+/// What is otherwise than without offset: the verdict on all sections, limits of all sections, limits of the one selection, and
+/// how many selections have another verdict.
+fn changes(base: &AtOffset, at: &AtOffset) -> Vec<String> {
+    let mut changes = Vec::new();
+    if base.verdict != at.verdict {
+        changes.push(format!("all sections: {} instead of {}", at.verdict.in_words(), base.verdict.in_words()));
+    }
+    for reason in at.reasons.iter().filter(|reason| at.verdict != Verdict::NotAssessable && !same_limit(&base.reasons, reason)) {
+        changes.push(format!("all sections: {reason}"));
+    }
+    for reason in base.reasons.iter().filter(|reason| at.verdict != Verdict::NotAssessable && !same_limit(&at.reasons, reason)) {
+        changes.push(format!("all sections: no longer {reason}"));
+    }
+    for (before, now) in base.selected.iter().zip(&at.selected).filter(|(before, now)| before.holds != now.holds) {
+        let word = if now.holds { "holds" } else { "fails" };
+        changes.push(format!(
+            "the one selection: {} of {} {word} instead of {}",
+            before.name,
+            before.id,
+            if now.holds { "failing" } else { "holding" }
+        ));
+    }
+    changes
+}
+
+/// Reasons end in the share of the limit, which is another at every offset.
+fn same_limit(reasons: &[String], reason: &str) -> bool {
+    let limit = |text: &str| text.rsplit_once(" (").map_or_else(|| text.to_owned(), |(limit, _)| limit.to_owned());
+    reasons.iter().any(|known| limit(known) == limit(reason))
+}
+
+fn lost(base: &Evaluated, at: &Evaluated, plan: &Plan) -> Vec<(String, String)> {
+    let (before, now) = (base.pool(plan).sections, at.pool(plan).sections);
+    let gone = before.into_iter().zip(now).filter(|(before, now)| before.used && !now.used);
+    gone.map(|(_, now)| (now.name, now.reason.unwrap_or_default())).collect()
+}
