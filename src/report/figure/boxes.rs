@@ -4,13 +4,16 @@ use super::axis::{Scale, Tick};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{self, BEYOND, BLUE, DASHED, INK, MUTED, Mark, SHADE, SMALL, TEXT, VERMILION, WIDTH, cut, plain, text_width};
+use super::style::{self, BEYOND, BLUE, DASHED, INK, MUTED, Mark, SHADE, SMALL, TEXT, VERMILION, WIDTH, text_width};
+use super::symbol::symbol;
 use crate::report::number;
 use crate::result::study::{QuantitySpread, Spread, StatisticSpread};
 
 /// Heights of a panel's plotting area and of what stands below it, in points.
 const PANEL: f64 = 98.0;
 const LABELS: f64 = 22.0;
+/// From the middle of a count to a line that it stands clear of.
+const CLEAR: f64 = 3.8;
 /// Widest half of a box.
 const HALF: f64 = 9.0;
 /// No scale reaches farther from zero than this; what lies beyond is cut at the frame, and said so.
@@ -109,7 +112,7 @@ fn draw(canvas: &mut Canvas, panel: &Panel<'_>, top: f64) {
         });
         canvas.draw(|layer| {
             let down = if at % 2 == 1 && text_width(label, size) > width { 17.0 } else { 8.0 };
-            layer.text(&cut(&plain(label), size, 1.9 * width), (x, frame.bottom() + down), &Font::middle(size));
+            symbol(layer, label, (x, frame.bottom() + down), size, 1.9 * width);
         });
     }
     frame.spine(canvas);
@@ -136,10 +139,13 @@ fn one(layer: &mut super::canvas::Layer<'_>, frame: &Frame, x: f64, half: f64, s
                 layer.mark(Mark::Diamond, (x, place(outlier)), 1.7, VERMILION);
             }
         }
-        let at = place(spread.max.max(high)) - 5.0;
+        // Above the farthest value, and above the line of a limit rather than across it.
+        let above = (place(spread.max.max(high)) - 5.0).max(frame.top() - 3.0);
+        let lines = [1.0, -1.0].map(|limit| frame.y.at(limit));
+        let across = lines.into_iter().find(|line| (above - line).abs() < CLEAR);
         layer.text(
             &number::count(spread.outliers).replace('\u{202f}', " "),
-            (x, at.max(frame.top() - 3.0)),
+            (x, across.map_or(above, |line| line - CLEAR)),
             &Font::middle(4.6).color(MUTED),
         );
     }

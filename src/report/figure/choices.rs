@@ -52,7 +52,9 @@ pub fn choices(study: &ParameterStudy) -> String {
     for parameter in &study.parameters {
         let title = cut(&parameter.title, TEXT, WIDTH - SHARES - 8.0);
         canvas.draw(|layer| {
-            layer.rect((0.0, y + 3.0), (6.0 + text_width(&title, TEXT), y + 13.0), WHITE);
+            // No grid behind the title; the ground beyond the limit stays whole.
+            let end = (6.0 + text_width(&title, TEXT)).min(x.at(1.0) - 1.0);
+            layer.rect((0.0, y + 3.0), (end.max(0.0), y + 13.0), WHITE);
             layer.text(&title, (2.0, y + 8.0), &Font::left(TEXT).bold(parameter.decides));
         });
         y += GAP;

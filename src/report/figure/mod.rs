@@ -18,6 +18,7 @@ mod overview;
 mod pairs;
 mod states;
 pub mod style;
+mod symbol;
 mod trace;
 mod zones;
 

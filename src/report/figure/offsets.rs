@@ -1,10 +1,11 @@
 //! A study along an offset: normalised statistics of one selection (as Götz and Polach, Figure 7) and the share validated.
 
 use super::axis::{Scale, Tick};
-use super::canvas::{Canvas, Font, Group};
+use super::canvas::{Canvas, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{BEYOND, BLUE, DASHED, INK, Mark, SMALL, TEXT, WIDTH, color, cut, plain, text_width};
+use super::style::{BEYOND, BLUE, DASHED, INK, Mark, SMALL, TEXT, WIDTH, color, text_width};
+use super::symbol::symbol;
 use crate::report::number;
 use crate::result::study::{AtOffset, SyncStudy};
 
@@ -70,7 +71,7 @@ fn panel(canvas: &mut Canvas, study: &SyncStudy, (title, signed): (&str, bool), 
         }
         let down = if place % 2 == 1 && text_width(label, size) > width { 17.0 } else { 8.0 };
         canvas.draw(|layer| {
-            layer.text(&cut(&plain(label), size, 1.9 * width), (frame.x.at(place as f64 + 0.5), frame.bottom() + down), &Font::middle(size))
+            symbol(layer, label, (frame.x.at(place as f64 + 0.5), frame.bottom() + down), size, 1.9 * width);
         });
     }
     canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {

@@ -96,11 +96,6 @@ pub fn text_width(text: &str, size: f64) -> f64 {
     em * size
 }
 
-/// A label without combining accents: a PDF cannot say what letters stand for where several drawings set them.
-pub fn plain(text: &str) -> String {
-    text.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).collect()
-}
-
 /// A text as it is drawn, cut to a width with an ellipsis.
 pub fn cut(text: &str, size: f64, width: f64) -> String {
     let text = visible(text);

@@ -1,0 +1,59 @@
+//! Symbols of quantities as labels: dots over letters that no single character has are drawn.
+//!
+//! A font sets them as two drawings for one letter, of which a PDF cannot say what they stand for together.
+
+use super::canvas::{Font, Held, Layer, Point};
+use super::style::{Mark, cut, text_width};
+
+/// Two dots over the letter before them.
+const DIAERESIS: char = '\u{308}';
+
+/// A label about a point, cut to a width, each diaeresis drawn over its letter; other accents are left out.
+pub fn symbol(layer: &mut Layer<'_>, label: &str, (x, y): Point, size: f64, width: f64) {
+    let bare: String = label.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).collect();
+    let shown = cut(&bare, size, width);
+    let Some(letter) = dotted(label).filter(|letter| *letter < shown.chars().count()) else {
+        layer.text(&shown, (x, y), &Font::middle(size));
+        return;
+    };
+    // The letter stands about a place of its own, so that the dots are over it whatever the font's widths are.
+    let before: String = shown.chars().take(letter).collect();
+    let own: String = shown.chars().skip(letter).take(1).collect();
+    let after: String = shown.chars().skip(letter + 1).collect();
+    let half = 0.5 * NARROWER * text_width(&own, size);
+    let center = x - 0.5 * NARROWER * text_width(&shown, size) + NARROWER * text_width(&before, size) + half;
+    for (text, at, held) in [(&before, center - half, Held::End), (&own, center, Held::Middle), (&after, center + half, Held::Start)] {
+        if !text.is_empty() {
+            layer.text(text, (at, y), &Font { held, ..Font::middle(size) });
+        }
+    }
+    for side in [-1.0, 1.0] {
+        layer.mark(Mark::Circle, (center + side * 0.13 * size, y - 0.42 * size), 0.06 * size, Font::middle(size).color);
+    }
+}
+
+/// What letters take of the width that is kept free for them.
+const NARROWER: f64 = 0.88;
+
+/// Place of the first letter with two dots, among the characters without accents.
+fn dotted(label: &str) -> Option<usize> {
+    let letters = label.chars().take_while(|c| *c != DIAERESIS).filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count();
+    (label.contains(DIAERESIS) && letters > 0).then(|| letters - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::figure::canvas::Canvas;
+
+    #[test]
+    fn the_letter_with_dots_is_found_and_gets_two() {
+        assert_eq!((dotted("z\u{308}*_rms"), dotted("az\u{308}"), dotted("ÿ"), dotted("\u{308}")), (Some(0), Some(1), None, None));
+        let dots = |label: &str| {
+            let mut canvas = Canvas::new(60.0, 20.0);
+            canvas.draw(|layer| symbol(layer, label, (30.0, 10.0), 8.0, 50.0));
+            canvas.finish().matches("<circle").count()
+        };
+        assert_eq!((dots("z\u{308}*_rms"), dots("ÿ*_rms")), (2, 0));
+    }
+}
