@@ -40,13 +40,14 @@ pub enum Study {
     },
     /// Parameters of the protocol, each varied by itself: which free choice decides the verdict.
     #[command(
-        after_help = "Example:\n  fishplate study parameters examples/coach --vary \"lowpass_frequency=15..25 step 5 Hz\" --out target/coach-choices"
+        after_help = "Examples:\n  fishplate study parameters examples/coach --vary \"lowpass_frequency=15..25 step 5 Hz\" --out target/coach-choices\n  fishplate study parameters examples/coach --vary \"quantity Y_qst limit std=4 kN, 5 kN, 6 kN\" --out target/coach-limits"
     )]
     Parameters {
         #[command(flatten)]
         common: Common,
-        /// A parameter and its values: a list, or `FROM..TO step STEP`; may be repeated [default: every parameter that is a
-        /// choice of words, over all its words]
+        /// A parameter, or a rule by the words that lead to it (`quantity Y_qst limit std`, `zone 4 minimum length`), and its
+        /// values: a list, with `;` between them where they hold commas, or `FROM..TO step STEP`; may be repeated [default:
+        /// every parameter that is a choice of words, over all its words]
         #[arg(long, value_name = "NAME=VALUES")]
         vary: Vec<String>,
     },

@@ -63,11 +63,11 @@ pub fn estimate(pairs: &[Pair<'_>], search: &Search) -> Option<Estimate> {
         return None;
     }
     let shifts: Vec<f64> = lags.iter().map(|lag| *lag as f64 * search.step).collect();
-    let coarse = Searched::new(pairs, &grid, shifts);
+    let coarse = Searched::new(pairs, &grid, shifts, true);
     let about = coarse.best(|_, _| false)?.shift;
     let (first, last) = (coarse.shifts[0], coarse.shifts[coarse.shifts.len() - 1]);
     let fine = (-FINER..=FINER).map(|k| about + k as f64 * search.step / FINER as f64).filter(|shift| (first..=last).contains(shift));
-    let fine = Searched::new(pairs, &grid, fine.collect());
+    let fine = Searched::new(pairs, &grid, fine.collect(), false);
     let Best { shift, correlation } = fine.best(|_, _| false)?;
     let error = error(&fine, &coarse)?;
     Some(Estimate { shift, low: shift - error, high: shift + error, correlation })
@@ -152,25 +152,36 @@ impl Sums {
     }
 }
 
-/// Sums of each part of the stretch at each shift. `None` where a signal does not vary.
-fn sums(pair: &Pair<'_>, grid: &[f64], shifts: &[f64]) -> Option<Vec<[Sums; BLOCKS]>> {
+/// Sums of each part of the stretch at each shift, the least first. `None` where a signal does not vary.
+///
+/// Shifts that are steps of the grid need one interpolation for all, others one each.
+fn sums(pair: &Pair<'_>, grid: &[f64], shifts: &[f64], on_grid: bool) -> Option<Vec<[Sums; BLOCKS]>> {
     let (axis, values) = pair.measured;
     let (first, last) = (*axis.first()?, *axis.last()?);
-    let simulated = interpolate(pair.simulated.0, pair.simulated.1, grid).ok()?;
-    let (simulated, measured_mean) = (centred(simulated)?, values.iter().sum::<f64>() / values.len() as f64);
+    let simulated = centred(interpolate(pair.simulated.0, pair.simulated.1, grid).ok()?)?;
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
     let mut varies = false;
-    let at_shift = |shift: &f64| {
-        // The grid reaches as far as the record does; rounding may put its ends just beyond.
-        let under: Vec<f64> = grid.iter().map(|x| (x - shift).clamp(first, last)).collect();
-        let mut measured = interpolate(axis, values, &under).ok()?;
-        measured.iter_mut().for_each(|value| *value -= measured_mean);
-        varies |= measured.iter().any(|value| (value - measured[0]).abs() > 1e-12 * (1.0 + measured_mean.abs()));
-        Some(std::array::from_fn(|block| {
+    // The grid reaches as far as the record does; rounding may put its ends just beyond.
+    let mut under = |points: &mut dyn Iterator<Item = f64>| {
+        let points: Vec<f64> = points.map(|x| x.clamp(first, last)).collect();
+        let mut measured = interpolate(axis, values, &points).ok()?;
+        measured.iter_mut().for_each(|value| *value -= mean);
+        varies |= measured.iter().any(|value| (value - measured[0]).abs() > 1e-12 * (1.0 + mean.abs()));
+        Some(measured)
+    };
+    let of_parts = |measured: &[f64]| {
+        std::array::from_fn(|block| {
             let range = block * grid.len() / BLOCKS..(block + 1) * grid.len() / BLOCKS;
             Sums::of(&simulated[range.clone()], &measured[range])
-        }))
+        })
     };
-    let found = shifts.iter().map(at_shift).collect::<Option<Vec<_>>>()?;
+    let found: Vec<[Sums; BLOCKS]> = if on_grid {
+        let (farthest, step) = (*shifts.last()?, grid[1] - grid[0]);
+        let wide = under(&mut (0..grid.len() + shifts.len() - 1).map(|k| grid[0] - farthest + k as f64 * step))?;
+        (0..shifts.len()).map(|at| of_parts(&wide[shifts.len() - 1 - at..][..grid.len()])).collect()
+    } else {
+        shifts.iter().map(|shift| Some(of_parts(&under(&mut grid.iter().map(|x| x - shift))?))).collect::<Option<_>>()?
+    };
     varies.then_some(found)
 }
 
@@ -195,8 +206,8 @@ struct Searched {
 }
 
 impl Searched {
-    fn new(pairs: &[Pair<'_>], grid: &[f64], shifts: Vec<f64>) -> Self {
-        let (signals, groups) = pairs.iter().filter_map(|pair| sums(pair, grid, &shifts).map(|sums| (sums, pair.group))).unzip();
+    fn new(pairs: &[Pair<'_>], grid: &[f64], shifts: Vec<f64>, on_grid: bool) -> Self {
+        let (signals, groups) = pairs.iter().filter_map(|pair| sums(pair, grid, &shifts, on_grid).map(|sums| (sums, pair.group))).unzip();
         Self { signals, groups, shifts }
     }
 

@@ -4,7 +4,7 @@ use super::document::{Chapter, Head, Item, Table};
 use super::{Opening, percent, sections, share};
 use crate::report::number;
 use crate::report::view::{Fact, Finding};
-use crate::result::study::{AtOffset, Flips, SyncStudy};
+use crate::result::study::{AtOffset, SyncStudy};
 
 fn shown(found: &SyncStudy, offset: f64) -> String {
     format!("{} {}", number::significant(offset, 4), number::unit(&found.axis_unit))
@@ -60,11 +60,11 @@ fn shares(found: &SyncStudy) -> Vec<Item> {
             Ok(study) => (share(&study.share), super::combinations(study.combinations)),
             Err(reason) => (reason.clone(), number::NONE.to_owned()),
         };
-        let flips = at.flips.as_ref().ok();
-        let flipped = |of: &dyn Fn(&Flips) -> (f64, Option<(f64, f64)>)| {
-            flips.map_or_else(|| number::NONE.to_owned(), |flips| super::share_with(of(flips).0, of(flips).1))
+        let of = |share: f64, interval| super::share_with(share, interval);
+        let (lost, gained) = match &at.flips {
+            Ok(flips) => (of(flips.lost, flips.lost_interval), of(flips.gained, flips.gained_interval)),
+            Err(_) => (number::NONE.to_owned(), number::NONE.to_owned()),
         };
-        let (lost, gained) = (flipped(&|flips| (flips.lost, flips.lost_interval)), flipped(&|flips| (flips.gained, flips.gained_interval)));
         let changes = if at.changes.is_empty() { number::NONE.to_owned() } else { at.changes.join("; ") };
         vec![shown(found, at.offset), validated, lost, gained, selections, at.verdict.in_words().to_owned(), changes]
     };
