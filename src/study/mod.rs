@@ -50,7 +50,7 @@ pub struct Settings {
     pub seed: u64,
 }
 
-/// Selections that can be enumerated with a bit for each in some 25 MB.
+/// Selections that are enumerated: a set of bits, one for each, takes 25 MB, and there are about eight of them.
 pub const MOST: f64 = 2e8;
 /// Selections enumerated where a statistic has to be taken from all values together.
 const MOST_POOLED: f64 = 2e6;

@@ -5,6 +5,9 @@ use rayon::prelude::*;
 use super::fails::Fails;
 use crate::run::pool::Rule;
 
+/// Words joined at a time, so that they are fetched from memory once for all that is done with them.
+const CHUNK: usize = 512;
+
 /// Marks of all selections, gathered quantity by quantity.
 ///
 /// The first quantity that a selection fails in is kept as a number in bits, one set of marks for each binary digit: with twelve
@@ -55,16 +58,16 @@ impl Verdicts {
         if matches!(self.rule, Rule::AtLeastQuantities(_)) {
             fails.tally(&mut self.counts);
         }
-        let mut digits: Vec<&mut [u64]> = self.first.iter_mut().map(Fails::words_mut).collect();
-        // Once for each set of digits, so that every loop is a plain one.
-        let (any, twice) = (self.any.words(), self.twice.words_mut());
-        for (at, digit) in digits.iter_mut().enumerate() {
-            if number >> at & 1 == 1 {
-                digit.iter_mut().zip(fails.words()).zip(any).for_each(|((digit, fails), any)| *digit |= fails & !any);
+        let digits = self.first.iter_mut().enumerate().filter(|(at, _)| number >> at & 1 == 1);
+        let mut digits: Vec<_> = digits.map(|(_, digit)| digit.words_mut().chunks_mut(CHUNK)).collect();
+        let (any, twice) = (self.any.words_mut().chunks_mut(CHUNK), self.twice.words_mut().chunks_mut(CHUNK));
+        for ((fails, any), twice) in fails.words().chunks(CHUNK).zip(any).zip(twice) {
+            for digit in digits.iter_mut().filter_map(Iterator::next) {
+                digit.iter_mut().zip(fails).zip(&*any).for_each(|((digit, fails), any)| *digit |= fails & !any);
             }
+            twice.iter_mut().zip(fails).zip(&*any).for_each(|((twice, fails), any)| *twice |= fails & any);
+            any.iter_mut().zip(fails).for_each(|(any, fails)| *any |= fails);
         }
-        twice.iter_mut().zip(fails.words()).zip(any).for_each(|((twice, fails), any)| *twice |= fails & any);
-        self.any.join_all(fails);
         self.failing[number] = fails.count();
     }
 
