@@ -111,7 +111,7 @@ pub fn spread(quantities: &[QuantitySpread], figure: &str, at: &str) -> Vec<Item
                     let within = |at: usize| {
                         spread
                             .intervals
-                            .map_or_else(String::new, |all| format!(" ± {}", number::beside(0.5 * (all[at].1 - all[at].0), 1.0, 3)))
+                            .map_or_else(String::new, |all| format!(" ± {}", number::significant(0.5 * (all[at].1 - all[at].0), 1)))
                     };
                     row.push(shown(spread.min));
                     row.extend([spread.q1, spread.median, spread.q3].iter().enumerate().map(|(at, value)| shown(*value) + &within(at)));
