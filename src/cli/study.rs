@@ -40,12 +40,12 @@ pub enum Study {
     },
     /// Parameters of the protocol, each varied by itself: which free choice decides the verdict.
     #[command(
-        after_help = "Examples:\n  fishplate study parameters examples/coach --vary \"lowpass_frequency=15..25 step 5 Hz\" --out target/coach-choices\n  fishplate study parameters examples/coach --vary \"quantity Y_qst limit std=4 kN, 5 kN, 6 kN\" --out target/coach-limits"
+        after_help = "Examples:\n  fishplate study parameters examples/coach --vary \"lowpass_frequency=15..25 step 5 Hz\" --out target/coach-choices\n  fishplate study parameters examples/coach --vary \"zone 4 minimum length=50 m, 70 m, 100 m\" --out target/coach-lengths"
     )]
     Parameters {
         #[command(flatten)]
         common: Common,
-        /// A parameter, or a rule by the words that lead to it (`quantity Y_qst limit std`, `zone 4 minimum length`), and its
+        /// A parameter, or a rule by the words that lead to it (`quantity NAME limit std`, `zone 4 minimum length`), and its
         /// values: a list, with `;` between them where they hold commas, or `FROM..TO step STEP`; may be repeated [default:
         /// every parameter that is a choice of words, over all its words]
         #[arg(long, value_name = "NAME=VALUES")]

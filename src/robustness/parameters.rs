@@ -16,7 +16,7 @@ use crate::syntax::document::Text;
 /// A parameter or a rule, and the values it is to take, as written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vary {
-    /// The name of a parameter, or the words that lead to a rule: `quantity Y_qst limit std`.
+    /// The name of a parameter, or the words that lead to a rule: `quantity NAME limit std`.
     pub name: String,
     pub values: Vec<String>,
 }

@@ -9,7 +9,7 @@ use crate::syntax::keys;
 /// One field of one block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rule {
-    /// As asked for: `quantity Y_qst limit std`.
+    /// As asked for: `quantity NAME limit std`.
     words: String,
     block: usize,
     field: usize,
