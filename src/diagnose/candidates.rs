@@ -2,11 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::cache::Cache;
+use super::bench::{Bench, Runs};
 use super::observe::Observations;
 use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Parameter, Signals};
 use crate::problem::Problem;
-use crate::simulate::{Simulator, Task};
 
 /// A path of changes with the size of an effect: from none through the sizes that were simulated.
 #[derive(Clone, Debug)]
@@ -66,13 +65,6 @@ pub struct Node {
     pub change: Vec<f64>,
 }
 
-/// Runs that were made, and those that failed.
-#[derive(Clone, Debug, Default)]
-pub struct Runs {
-    pub made: usize,
-    pub failed: Vec<String>,
-}
-
 /// Called with what is being tried.
 pub type Trying<'a> = &'a (dyn Fn(&str) + Sync);
 
@@ -93,42 +85,6 @@ pub struct Workshop<'a> {
 impl std::fmt::Debug for Workshop<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Workshop").field("sections", &self.seen.sections.len()).finish_non_exhaustive()
-    }
-}
-
-/// A simulator whose runs become features, and are kept.
-pub struct Bench<'a> {
-    pub seen: &'a Observations,
-    pub simulator: &'a dyn Simulator,
-    pub cache: Option<Cache>,
-}
-
-impl std::fmt::Debug for Bench<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Bench").field("simulator", &self.simulator.name()).finish_non_exhaustive()
-    }
-}
-
-impl Bench<'_> {
-    /// Features of the simulator with settings, all sections.
-    ///
-    /// # Errors
-    /// The first section that fails.
-    pub fn features(&self, settings: &[(String, f64)]) -> Result<Vec<f64>, Problem> {
-        if let Some(known) = self.cache.as_ref().and_then(|cache| cache.get(settings, self.seen.len())) {
-            return Ok(known);
-        }
-        let each = |at: usize| {
-            let signals =
-                self.simulator.run(&Task { section: &self.seen.sections[at].section, settings, shift: 0.0, inside_only: true })?;
-            Ok(self.seen.of(at, &signals, true))
-        };
-        let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.seen.sections.len()).into_par_iter().map(each).collect();
-        let features = parts?.concat();
-        if let Some(cache) = &self.cache {
-            cache.put(settings, &features);
-        }
-        Ok(features)
     }
 }
 
@@ -204,10 +160,18 @@ impl Workshop<'_> {
         }
     }
 
-    /// Simulates one more size of a candidate.
+    /// Adds one more size of a candidate: simulated, or applied to the signals.
     pub fn add_size(&self, candidate: &mut Candidate, size: f64, runs: &mut Runs) {
-        if let (Some(bench), Some(effect)) = (self.bench, self.catalogue.effect(&candidate.effect)) {
-            self.simulate(bench, effect, candidate, &[size], runs);
+        let Some(effect) = self.catalogue.effect(&candidate.effect) else { return };
+        match (&effect.action, self.bench) {
+            (Action::Simulator, Some(bench)) => self.simulate(bench, effect, candidate, &[size], runs),
+            (Action::Signals(operator, _), _) => {
+                if let Some(change) = self.operate(*operator, size, &candidate.channels) {
+                    candidate.nodes.push(Node { size, change });
+                    candidate.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+                }
+            }
+            _ => {}
         }
     }
 
@@ -241,11 +205,17 @@ impl Workshop<'_> {
             if list.is_empty() {
                 return None;
             }
-            let reach = if operator == Operator::Offset { self.reach(&list) } else { f64::INFINITY };
+            let mut sizes = trials.clone();
+            if operator == Operator::Offset {
+                // In the unit of the channel, which the catalogue does not know: up to what the channel reaches.
+                let reach = self.reach(&list);
+                sizes.retain(|size| size.abs() < reach);
+                sizes.extend([-reach, reach]);
+            }
             let mut nodes = vec![Node { size: parameter.neutral.unwrap_or(0.0), change: Vec::new() }];
-            for size in trials.iter().filter(|size| size.abs() <= reach) {
-                if let Some(change) = self.operate(operator, *size, &list) {
-                    nodes.push(Node { size: *size, change });
+            for size in sizes {
+                if let Some(change) = self.operate(operator, size, &list) {
+                    nodes.push(Node { size, change });
                 }
             }
             let mut made = Candidate { channels: list, discrete, ..Candidate::new(effect, parameter, nodes) };
@@ -306,9 +276,10 @@ impl Workshop<'_> {
         pairs
     }
 
-    /// The largest magnitude that channels reach in the simulation: no offset is larger.
+    /// The largest magnitude that channels reach, simulated or measured: no offset is larger.
     fn reach(&self, channels: &[String]) -> f64 {
-        let all = self.seen.sections.iter().flat_map(|observed| channels.iter().filter_map(|name| observed.simulated.channel(name)));
+        let sides = self.seen.sections.iter().flat_map(|observed| [&observed.simulated, &observed.measured]);
+        let all = sides.flat_map(|signals| channels.iter().filter_map(|name| signals.channel(name)));
         all.flat_map(|channel| channel.values.iter()).fold(0.0, |most, value| value.abs().max(most))
     }
 

@@ -225,21 +225,11 @@ fn members(seen: &Observations, discrepancy: &Discrepancy) -> Vec<Vec<(usize, f6
 
 fn times(seen: &Observations, settings: &Settings, times: Times, section: usize) -> f64 {
     let section = &seen.sections[section].section;
-    let side = match &settings.mirror {
-        Some((column, value)) if section.fact(column) == Some(value) => -1.0,
-        _ => 1.0,
-    };
     let over = |number: f64| section.number("radius").filter(|radius| *radius > 0.0).map_or(0.0, |radius| (number / radius).min(2.0));
     match times {
         Times::One => 1.0,
-        Times::Side => {
-            if section.number("radius").is_some() {
-                side
-            } else {
-                0.0
-            }
-        }
-        Times::Over(number) => side * over(number),
+        Times::Side => settings.side(section),
+        Times::Over(number) => settings.side(section) * over(number),
         Times::Unsigned(number) => over(number),
     }
 }

@@ -2,15 +2,18 @@
 
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap)]
 
+pub mod bench;
 mod cache;
 mod campaign;
 pub mod candidates;
+mod causes;
 pub mod covariance;
 pub mod declared;
 mod faults;
 pub mod features;
 pub mod fit;
 pub mod guards;
+mod invariants;
 pub mod lack;
 mod locate;
 mod masks;

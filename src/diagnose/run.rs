@@ -1,7 +1,8 @@
 //! The diagnosis from end to end: features, candidates, search, guards, verdict.
 
+use super::bench::{Bench, Runs};
 use super::cache::Cache;
-use super::candidates::{Bench, Candidate, Runs, Trying, Workshop};
+use super::candidates::{Candidate, Trying, Workshop};
 use super::covariance::{Sensitivity, covariance, strata};
 use super::declared::Declared;
 use super::features::Kind;
@@ -78,6 +79,10 @@ const FLOOR: f64 = 30.0;
 /// A candidate is simulated at all its sizes from this share of the best evidence on, and from this evidence on.
 pub const NEAR: f64 = 0.5;
 pub const WORTH: f64 = 10.0;
+
+/// How often the sizes that were found are added and fitted again, and what share of a size is no difference.
+const ROUNDS: usize = 3;
+const ALIKE: f64 = 0.01;
 
 /// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
 #[must_use]
@@ -183,10 +188,17 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         wanted.into_iter().for_each(|at| workshop.refine(&mut candidates[at], &mut runs));
         (inputs.trying)("weighing");
     }
-    polish(&workshop, &mut candidates, &chosen, &mut runs);
+    // Nothing may rest on interpolation: the members are fitted again with the sizes that were found, and one that was above the bar
+    // by interpolation alone goes.
+    for _ in 0..ROUNDS {
+        if !polish(&workshop, &mut candidates, &chosen, &mut runs) {
+            break;
+        }
+        let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), known);
+        refit(&fitter, &z, &mut chosen, 6);
+        known = fitter.whitened;
+    }
     let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), known);
-    // Nodes may have come between: the members are fitted again, and one that was above the bar by interpolation alone goes.
-    refit(&fitter, &z, &mut chosen, 6);
     let fault = |member: &Fitted| {
         if member.evidence < threshold.unwrap_or(FLOOR) {
             return Some("simulated at the size that was found, it has too little evidence");
@@ -300,15 +312,18 @@ fn guard(
     carried(covariance, &fitter.masks[fit.mask], &change, &rest).map_or(judged, Judged::Refused)
 }
 
-/// Simulates the sizes that were found, so that nothing rests on interpolation.
-fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], chosen: &Chosen, runs: &mut Runs) {
+/// Adds the sizes that were found, where no size as near was tried; whether there was any to add.
+fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], chosen: &Chosen, runs: &mut Runs) -> bool {
+    let mut added = false;
     for member in &chosen.members {
         let candidate = &mut candidates[member.candidate];
-        let known = candidate.nodes.iter().any(|node| node.size.to_bits() == member.size.to_bits());
-        if candidate.channels.is_empty() && member.size.is_finite() && !known {
+        let known = candidate.nodes.iter().any(|node| (node.size - member.size).abs() <= ALIKE * member.size.abs());
+        if !candidate.discrete && member.size.is_finite() && !known {
             workshop.add_size(candidate, member.size, runs);
+            added = true;
         }
     }
+    added
 }
 
 /// Candidates that are worth their other sizes: those within reach of the best for the whole difference, for what a first set of

@@ -91,6 +91,14 @@ pub fn search(
         }
         chosen.members.push(best);
         refit(fitter, z, &mut chosen, 4);
+        if let Some(other) = undone(&chosen) {
+            let last = chosen.members.pop().expect("just pushed");
+            barred.push(last.candidate);
+            let reason = format!("it mostly undoes what {} does", fitter.candidates[chosen.members[other].candidate].effect);
+            refused.push(Refused { fitted: last, reason });
+            refit(fitter, z, &mut chosen, 4);
+            continue;
+        }
         // A member that the others have made needless goes.
         if let Some(weak) = chosen.members.iter().position(|member| member.evidence < bars.next.min(bars.first)) {
             barred.push(chosen.members[weak].candidate);
@@ -119,6 +127,16 @@ fn unconfine(fitter: &Fitter<'_>, rest: &[f64], fit: &mut Fitted, bars: &Bars) {
     if fit.evidence < whole.evidence + bars.confined.max(CONFINED * whole.evidence) {
         *fit = whole;
     }
+}
+
+/// Cosine of whitened changes below which two members are a compensation: each is there for the sake of the other.
+const UNDONE: f64 = -0.6;
+
+/// The member that the last one mostly undoes.
+fn undone(chosen: &Chosen) -> Option<usize> {
+    let (last, others) = chosen.members.split_last()?;
+    let length = |member: &Fitted| dot(&member.whitened, &member.whitened).sqrt();
+    others.iter().position(|other| dot(&other.whitened, &last.whitened) < UNDONE * length(other) * length(last))
 }
 
 /// Whether a like cause is a member already: another size of the same effect on the same channels.

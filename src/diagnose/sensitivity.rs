@@ -1,6 +1,6 @@
 //! How much the simulated features change with what the test engineer admits not to know.
 
-use super::candidates::{Bench, Runs};
+use super::bench::{Bench, Runs};
 use super::covariance::Sensitivity;
 use super::settings::Settings;
 

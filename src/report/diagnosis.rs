@@ -5,7 +5,7 @@ use crate::report::number;
 use crate::report::study::{Chapter, Document, Head, Item, Table};
 use crate::report::view::{self, Fact, Finding};
 use crate::result::Certification;
-use crate::result::diagnosis::{Cause, Diagnosis, NamedEffect, QuantityShrink, Shrink, Value};
+use crate::result::diagnosis::{Cause, Diagnosis, Invariant, NamedEffect, QuantityShrink, Shrink, Value};
 
 /// Cells listed; all of them stand in diagnosis.json.
 const CELLS: usize = 30;
@@ -127,7 +127,39 @@ fn places(found: &Diagnosis) -> Chapter {
     );
     let caption = "Share of the gap by quantity and position, zone and band: the darker, the larger; a dot marks what is significant";
     let map = Item::figure("map", caption, "A map of cells, darker where more of the gap lies");
-    chapter("where", "Where the gap lies", vec![Item::text(text), map, Item::Table { table }])
+    let mut items = vec![Item::text(text), map, Item::Table { table }];
+    if !found.invariants.is_empty() {
+        items.push(Item::Table { table: invariants(&found.invariants) });
+    }
+    chapter("where", "Where the gap lies", items)
+}
+
+fn invariants(all: &[Invariant]) -> Table {
+    let rows = all.iter().map(|one| {
+        let number = |value: f64| format!("{} {}", number::significant(value, 3), one.unit);
+        let off = |value: f64| if one.allowed > 0.0 { number::fixed(value.abs() / one.allowed, 1) } else { number::NONE.to_owned() };
+        vec![
+            one.name.clone(),
+            one.parity.to_owned(),
+            number(one.before),
+            number(one.after),
+            number(one.allowed),
+            off(one.before),
+            off(one.after),
+        ]
+    });
+    let caption = "Sums of quasi-static forces that only some causes can move, measured - simulated, mean over the sections; \
+                   allowed is one standard deviation, the last two columns count in it";
+    let head = vec![
+        Head::text("Sum"),
+        Head::text("To which side"),
+        Head::number("As simulated"),
+        Head::number("With the effects"),
+        Head::number("Allowed"),
+        Head::number("Off before"),
+        Head::number("Off after"),
+    ];
+    Table { caption: caption.into(), head, rows: rows.collect() }
 }
 
 fn value(value: &Value) -> String {

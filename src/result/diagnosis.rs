@@ -15,6 +15,7 @@ pub struct Diagnosis {
     /// Faults of the recording; the channels are left out of everything else.
     pub faults: Vec<Fault>,
     pub r#where: Vec<Where>,
+    pub invariants: Vec<Invariant>,
     pub causes: Vec<Cause>,
     pub vetoed: Vec<Vetoed>,
     pub shrink: Option<Shrink>,
@@ -83,6 +84,20 @@ pub struct Where {
     /// Below the limit of the false discovery rate.
     pub significant: bool,
     pub says: String,
+}
+
+/// A sum of quasi-static values that only some causes can move, mean over the sections, measured - simulated.
+#[derive(Clone, Debug, Serialize)]
+pub struct Invariant {
+    pub name: String,
+    /// Off to the same side in all sections, or turning with the curve.
+    pub parity: &'static str,
+    pub unit: String,
+    pub before: f64,
+    /// With the causes added.
+    pub after: f64,
+    /// One standard deviation of what is allowed for.
+    pub allowed: f64,
 }
 
 /// Effects that together may be the cause.

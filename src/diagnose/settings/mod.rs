@@ -2,6 +2,7 @@
 
 mod read;
 
+use crate::simulate::Section;
 use crate::source::Span;
 use crate::units::Unit;
 
@@ -26,6 +27,8 @@ pub struct Settings {
     /// The column that sections are stratified by.
     pub stratum: Option<String>,
     pub positions: Vec<Position>,
+    /// Sums of channels with weights, by name.
+    pub invariants: Vec<(String, Vec<(String, f64)>)>,
 }
 
 /// Features of a group of channels.
@@ -137,6 +140,16 @@ pub struct Position {
 }
 
 impl Settings {
+    /// 1 in a curve, -1 in a mirrored one, 0 on straight track.
+    #[must_use]
+    pub fn side(&self, section: &Section) -> f64 {
+        match (section.number("radius"), &self.mirror) {
+            (None, _) => 0.0,
+            (Some(_), Some((column, value))) if section.fact(column) == Some(value) => -1.0,
+            (Some(_), _) => 1.0,
+        }
+    }
+
     /// Everything that a campaign may declare, with the unit that it is read in.
     #[must_use]
     pub fn tolerated(&self) -> Vec<(&str, Unit)> {

@@ -10,7 +10,7 @@ use crate::yaml::{Node, Value};
 /// Lag in m beyond which records belong to other places.
 const FURTHEST: f64 = 50.0;
 
-const TOP: [&str; 11] = [
+const TOP: [&str; 12] = [
     "bands",
     "alike",
     "furthest lag",
@@ -22,6 +22,7 @@ const TOP: [&str; 11] = [
     "mirrored",
     "strata",
     "positions",
+    "invariants",
 ];
 const GROUP: [&str; 13] =
     ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says", "unit"];
@@ -126,6 +127,23 @@ impl Reader<'_> {
         found
     }
 
+    /// Channels with numbers.
+    fn weights(&mut self, node: &Node) -> Vec<(String, f64)> {
+        let mut found = Vec::new();
+        for (key, node) in node.entries() {
+            match node.number() {
+                Some(weight) => found.push((key.text.clone(), weight)),
+                None => self.wrong(format!("`{}` needs a number, its weight", key.text), node),
+            }
+            if !self.catalogue.groups.iter().any(|group| group.channels.contains(&key.text)) {
+                let problem = Problem::error("unknown-channel", format!("`{}` is no channel of a group", key.text)).at(&key.span);
+                let known = self.catalogue.groups.iter().flat_map(|group| &group.channels);
+                self.problems.push(problem.suggest(&key.text, known.map(String::as_str)));
+            }
+        }
+        found
+    }
+
     fn settings(&mut self, node: &Node) -> Settings {
         self.keys(node, &TOP);
         let alike = node.get("alike").map_or(Vec::new(), |alike| self.numbers(alike));
@@ -191,6 +209,10 @@ impl Reader<'_> {
                 settings.discrepancies.push(discrepancy);
             }
         }
+        for (key, node) in node.get("invariants").map_or(&[][..], Node::entries) {
+            let weights = self.weights(node);
+            settings.invariants.push((key.text.clone(), weights));
+        }
         for (key, node) in node.get("positions").map_or(&[][..], Node::entries) {
             let (straight, mirrored) = match node.get("mirrored") {
                 Some(mirrored) => (self.words(node.get("channels")), self.words(Some(mirrored))),
@@ -219,7 +241,7 @@ impl Reader<'_> {
         let channels = if channels.entries().is_empty() {
             self.channels(channels).into_iter().map(|channel| (channel, 1.0)).collect()
         } else {
-            channels.entries().iter().map(|(key, node)| (key.text.clone(), node.number().unwrap_or(1.0))).collect()
+            self.weights(channels)
         };
         let moves = match word("together").as_str() {
             "" | "all" => Moves::All,

@@ -1,0 +1,112 @@
+//! A set of effects as a cause: names, sizes with their intervals, and where it is.
+
+use indexmap::IndexMap;
+use serde_json::json;
+
+use super::fit::Fitted;
+use super::run::{Found, Inputs};
+use super::stability::Stability;
+use crate::effects::Action;
+use crate::result::diagnosis::{Cause, NamedEffect, Value};
+
+/// A set of effects as a cause.
+#[must_use]
+pub fn cause(inputs: &Inputs<'_>, found: &Found, members: &[Fitted], rank: usize) -> Cause {
+    let effects: Vec<NamedEffect> = members.iter().map(|member| named(inputs, found, member)).collect();
+    let says = effects.iter().map(in_words).collect::<Vec<_>>().join("; and ");
+    Cause { rank, effects, probability: 0.0, in_ambiguity_set: true, evidence: members.iter().map(|member| member.evidence).sum(), says }
+}
+
+fn in_words(effect: &NamedEffect) -> String {
+    let values = effect.parameters.iter().map(|(name, value)| {
+        let interval = match (value.low, value.high) {
+            (Some(low), Some(high)) => format!(" ({} to {})", short(low), short(high)),
+            _ => String::new(),
+        };
+        let number = value.value.as_f64().map_or_else(|| value.value.to_string(), short);
+        let unit = if value.unit == "-" { String::new() } else { format!(" {}", value.unit) };
+        format!("{name} {number}{unit}{interval}")
+    });
+    let confined = effect.confined_to.as_ref().map_or(String::new(), |confined| {
+        let parts: Vec<String> = confined.iter().map(|(column, values)| format!("{column} {values}")).collect();
+        format!(", only in {}", parts.join(", "))
+    });
+    format!("{}: {}{confined}", effect.title, values.collect::<Vec<_>>().join(", "))
+}
+
+/// Four significant digits.
+fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 9) as usize;
+    format!("{value:.digits$}")
+}
+
+fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
+    let of = &found.candidates[member.candidate];
+    let effect = inputs.catalogue.effect(&of.effect);
+    let mut parameters = IndexMap::new();
+    let unit = |name: &str| {
+        let known = effect.and_then(|effect| effect.parameters.iter().find(|parameter| parameter.name == name));
+        known.map_or("-".to_string(), |parameter| parameter.unit.text.clone())
+    };
+    let stability = stability_of(found, member);
+    // Uncertainty of the fit, of what lies between the nodes, and of which sections there are.
+    let error = if member.slope > 0.0 { 1.645 * (1.0 / member.slope).hypot(0.02 * member.size.abs().min(1e12)) } else { 0.0 };
+    let (low, high) = stability.map_or((member.size, member.size), |stability| (stability.low, stability.high));
+    let (below, above) = (error.hypot((member.size - low).max(0.0)), error.hypot((high - member.size).max(0.0)));
+    let interval =
+        (!of.discrete && member.size.is_finite()).then(|| ((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)));
+    let mut push = |name: String, value: serde_json::Value, interval: Option<(f64, f64)>| {
+        let unit = unit(&of.size);
+        parameters.insert(name, Value { value, unit, low: interval.map(|(low, _)| low), high: interval.map(|(_, high)| high) });
+    };
+    if of.effect_is_swap() {
+        push(of.size.clone(), json!([of.channels]), None);
+    } else if of.size.contains(crate::effects::CHANNEL) {
+        for channel in &of.channels {
+            push(of.size.replace(crate::effects::CHANNEL, channel), json!(member.size), interval);
+        }
+    } else {
+        push(of.size.clone(), json!(member.size), interval);
+        let every = effect.is_some_and(|effect| matches!(&effect.action, Action::Signals(_, all) if all.len() > of.channels.len()));
+        if every {
+            parameters
+                .insert(format!("{}_channels", of.size), Value { value: json!(of.channels), unit: "-".into(), low: None, high: None });
+        }
+    }
+    for (name, value) in &of.fixed {
+        parameters.insert(name.clone(), Value { value: json!(value), unit: unit(name), low: None, high: None });
+    }
+    NamedEffect {
+        name: of.effect.clone(),
+        title: effect.map_or_else(|| of.effect.clone(), |effect| effect.title.clone()),
+        parameters,
+        confined_to: found.masks[member.mask].confined.as_ref().map(|(column, values)| confined(column, values)),
+        stability: stability.map(|stability| stability.first),
+        added_by: match effect.map(|effect| &effect.action) {
+            Some(Action::Signals(operator, _)) => format!("an operation on the signals: {}", operator.name()),
+            Some(Action::Formulas(_)) => "expressions on the signals".into(),
+            _ => inputs.simulator.map_or(String::new(), |simulator| format!("increments of the {}", simulator.name())),
+        },
+    }
+}
+
+/// Of a member of the answer; a rival has none.
+fn stability_of(found: &Found, member: &Fitted) -> Option<Stability> {
+    let own = |known: &Fitted| known.candidate == member.candidate && known.mask == member.mask;
+    found.chosen.members.iter().position(own).and_then(|at| found.stability.get(at).copied())
+}
+
+/// `zones` and `sections` are lists, a direction is one word.
+fn confined(column: &str, values: &[String]) -> IndexMap<String, serde_json::Value> {
+    let numbers: Option<Vec<i64>> = values.iter().map(|value| value.parse().ok()).collect();
+    let list = numbers.map_or_else(|| json!(values), |numbers| json!(numbers));
+    IndexMap::from([match column {
+        "zone" => ("zones".to_string(), list),
+        "section" => ("sections".to_string(), list),
+        other if values.len() == 1 => (other.to_string(), json!(values[0])),
+        other => (other.to_string(), list),
+    }])
+}
