@@ -29,7 +29,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let verdict = match () {
         () if !named && !lacking && found.seen.faults.is_empty() => "no significant gap",
         () if !named => "unexplained",
-        () if lacking && (unexplained_share > 0.5 && several || most(&found.lack_after) > 3.0 * LACK) => "unexplained",
+        () if lacking && unexplained_share > 0.5 && (several || most(&found.lack_after) > 3.0 * LACK) => "unexplained",
         () if ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
         () => "explained",
     };
