@@ -28,7 +28,7 @@ pub struct Synchronisation {
 /// The measurement shifted against the simulation.
 ///
 /// # Errors
-/// As [`sections`], for the records without offset.
+/// As [`super::sections`], for the records without offset.
 pub fn synchronisation(
     compiled: &Compiled,
     campaign: &Campaign,
