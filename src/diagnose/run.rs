@@ -214,7 +214,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let lack_before = lack_of_fit(&whole, &seen, &difference);
     let lack_after = drop_what_harms(&fitter, (&whole, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
     let rivals = rivals(&fitter, &z, &chosen);
-    let stability = stability(&fitter, &z, &chosen, &strata, inputs.seed);
+    let stability = stability(&fitter, &z, (&chosen, &refused), &strata, inputs.seed);
     drop(fitter);
     drop(bench);
     Some(Found {

@@ -5,7 +5,7 @@
 use rayon::prelude::*;
 
 use super::fit::{BySection, Fitter, less};
-use super::search::Chosen;
+use super::search::{Chosen, Refused};
 use crate::effects::Gauss;
 
 /// Resamples (Efron and Tibshirani 1993, ch. 13: some hundred for a standard error, more for tails).
@@ -23,9 +23,15 @@ pub struct Stability {
     pub high: f64,
 }
 
-/// Every member of a set, the others as they are. `z` is the whitened difference.
+/// Every member of a set, the others as they are; what was refused is no rival. `z` is the whitened difference.
 #[must_use]
-pub fn stability(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, strata: &[Vec<usize>], seed: u64) -> Vec<Stability> {
+pub fn stability(
+    fitter: &Fitter<'_>,
+    z: &[f64],
+    (chosen, refused): (&Chosen, &[Refused]),
+    strata: &[Vec<usize>],
+    seed: u64,
+) -> Vec<Stability> {
     let sections = fitter.masks[0].sections.len();
     let draws: Vec<Vec<f64>> = (0..DRAWS).map(|draw| resample(strata, sections, seed.wrapping_add(draw as u64))).collect();
     let one = |at: usize| {
@@ -34,6 +40,7 @@ pub fn stability(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, strata: &[Vec<
         let rest = others.fold(z.to_vec(), |rest, (_, other)| less(&rest, &other.whitened));
         let effect = |candidate: usize| &fitter.candidates[candidate].effect;
         let fits = fitter.all(&rest).into_iter();
+        let fits = fits.filter(|fit| refused.iter().all(|refused| refused.fitted.candidate != fit.candidate));
         let near = fits.filter(|fit| fit.evidence >= NEAR * member.evidence && effect(fit.candidate) != effect(member.candidate));
         let rivals: Vec<(BySection, f64)> =
             near.filter_map(|fit| Some((fitter.by_section(&rest, fit.candidate, fit.mask)?, fit.fall - fit.evidence))).collect();
@@ -113,7 +120,7 @@ mod tests {
         let member = fitter.fit(&z, 0, 0).expect("a path");
         assert!((member.size - mean).abs() < 1e-9, "{}", member.size);
         let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member] };
-        let found = stability(&fitter, &z, &chosen, &[(0..SECTIONS).collect()], 1)[0];
+        let found = stability(&fitter, &z, (&chosen, &[]), &[(0..SECTIONS).collect()], 1)[0];
         assert_eq!(found.first, 1.0);
         for (bound, away) in [(found.low, -1.645 * error), (found.high, 1.645 * error)] {
             assert!((bound - mean - away).abs() < 0.25 * away.abs(), "{bound} for {}", mean + away);
