@@ -7,7 +7,7 @@ use fishplate::data::write::Outputs;
 use fishplate::effects::{Applied, Catalogue, Channel, Gauss, Signals, choose, read as read_catalogue};
 use fishplate::model::{CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window, simulate};
 use fishplate::problem::{Problem, Problems};
-use fishplate::simulate::{Plan, Section, record_text};
+use fishplate::simulate::{Fact, Plan, Section, record_text};
 use fishplate::source::Source;
 use fishplate::units::Unit;
 
@@ -108,7 +108,8 @@ fn drawn(catalogue: &Catalogue, case: &Case, random: &mut Gauss) -> Result<Vec<A
 
 /// The section as the catalogue's confinements see it.
 fn section(stretch: &Stretch) -> Section {
-    let facts = vec![("zone".to_string(), stretch.zone.to_string()), ("direction".to_string(), stretch.direction().to_string())];
+    let fact = |name: &str, text: String| Fact { name: name.to_string(), text, unit: None };
+    let facts = vec![fact("zone", stretch.zone.to_string()), fact("direction", stretch.direction().to_string())];
     let cell = Cell::new(stretch.name.clone(), Source::new("sections.csv", "").whole());
     Section { cell, start: stretch.start, end: stretch.end, speed: Some(stretch.speed / 3.6), facts }
 }

@@ -105,7 +105,7 @@ fn idle(
         let most = touched.fraction_removed.max(earned.fraction_removed).max(by_value);
         // The protocol judges few numbers: what the features say strongly, it must contradict to be heard.
         let member_of = &found.chosen.members[member];
-        let strong = member_of.evidence >= STRONG * found.threshold && !member_of.doubtful;
+        let strong = member_of.evidence >= STRONG * found.bars.first && !member_of.doubtful;
         let least = if strong { -EARNED } else { EARNED };
         if most < least && worst.is_none_or(|(_, least)| most < least) {
             worst = Some((member, most));

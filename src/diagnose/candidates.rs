@@ -6,6 +6,7 @@ use super::bench::{Bench, Runs};
 use super::observe::Observations;
 use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Parameter, Signals};
 use crate::problem::Problem;
+use crate::units::Unit;
 
 /// A path of changes with the size of an effect: from none through the sizes that were simulated.
 #[derive(Clone, Debug)]
@@ -15,6 +16,7 @@ pub struct Candidate {
     pub channels: Vec<String>,
     /// The parameter that is its size, and the range that is plausible.
     pub size: String,
+    pub unit: Unit,
     pub range: (f64, f64),
     /// Other parameters, fixed.
     pub fixed: Vec<(String, f64)>,
@@ -22,6 +24,8 @@ pub struct Candidate {
     pub nodes: Vec<Node>,
     /// There or not: nothing between nodes.
     pub discrete: bool,
+    /// An operation on the recorded signals: what the model is wrong in does not enter its change.
+    pub exact: bool,
     pub confinable: bool,
     /// The declared tolerance that it is the blown form of.
     pub tolerance: Option<String>,
@@ -39,10 +43,12 @@ impl Candidate {
             effect: effect.name.clone(),
             channels: Vec::new(),
             size: parameter.name.clone(),
+            unit: parameter.unit.clone(),
             range: (parameter.low, parameter.high),
             fixed: Vec::new(),
             nodes,
             discrete: false,
+            exact: matches!(effect.action, Action::Signals(..)),
             confinable: effect.confinable,
             tolerance: effect.tolerance.clone(),
             alternatives: 1,
@@ -221,6 +227,9 @@ impl Workshop<'_> {
             let mut made = Candidate { channels: list, discrete, ..Candidate::new(effect, parameter, nodes) };
             if let (Operator::Offset, Some(first), Some(last)) = (operator, made.nodes.first(), made.nodes.last()) {
                 made.range = (first.size, last.size);
+                if let Some(channel) = self.seen.layout.channels.iter().find(|channel| channel.name == made.channels[0]) {
+                    made.unit = channel.unit.clone();
+                }
             }
             Some(made)
         };

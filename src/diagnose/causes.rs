@@ -59,7 +59,7 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
     let interval =
         (!of.discrete && member.size.is_finite()).then(|| ((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)));
     let mut push = |name: String, value: serde_json::Value, interval: Option<(f64, f64)>| {
-        let unit = unit(&of.size);
+        let unit = of.unit.text.clone();
         parameters.insert(name, Value { value, unit, low: interval.map(|(low, _)| low), high: interval.map(|(_, high)| high) });
     };
     if of.effect_is_swap() {

@@ -19,6 +19,8 @@ const NOTHING: f64 = 1e12;
 pub struct Sensitivity {
     pub tolerance: String,
     pub column: Vec<f64>,
+    /// How much of it is expected to be there.
+    pub expected: f64,
     pub per_section: bool,
     pub shared: bool,
 }

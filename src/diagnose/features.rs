@@ -5,6 +5,8 @@
 
 use realfft::RealFftPlanner;
 
+use crate::units::Unit;
+
 /// Band edges and channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
@@ -23,6 +25,8 @@ pub struct ChannelFeatures {
     pub name: String,
     /// Number of the group of channels that it belongs to.
     pub group: usize,
+    /// What its levels are in.
+    pub unit: Unit,
     /// Whether its median is a feature.
     pub level: bool,
     /// How many of the bands are features, from the lowest.

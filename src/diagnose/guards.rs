@@ -5,7 +5,7 @@ use super::features::Kind;
 use super::fit::{Fitted, Fitter, Mask};
 use super::observe::Observations;
 use super::search::Judged;
-use super::whiten::Covariance;
+use super::whiten::{Covariance, Whitener, dot};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Features of some sections: a part of the data that is looked at on its own.
@@ -17,17 +17,18 @@ pub struct View {
 }
 
 impl Covariance {
-    /// The covariance of some features of some sections.
+    /// The covariance of some features of some sections; a section that is named twice is there twice, as if another like it were.
     #[must_use]
     pub fn part(&self, sections: &[usize], features: &[usize]) -> Self {
         let pick = |column: &[f64], section: usize| {
             features.iter().map(move |feature| column[section * self.size + feature]).collect::<Vec<f64>>()
         };
         let whole = |column: &Vec<f64>| sections.iter().flat_map(|section| pick(column, *section)).collect::<Vec<f64>>();
-        let inside = self.inside.iter().filter_map(|(section, column)| {
-            let at = sections.iter().position(|of| of == section)?;
+        let inside = self.inside.iter().flat_map(|(section, column)| {
             let part: Vec<f64> = features.iter().map(|feature| column[*feature]).collect();
-            part.iter().any(|x| *x != 0.0).then_some((at, part))
+            let there = part.iter().any(|x| *x != 0.0);
+            let places = sections.iter().enumerate().filter(move |(_, of)| there && *of == section);
+            places.map(move |(at, _)| (at, part.clone()))
         });
         Self {
             diagonal: whole(&self.diagonal),
@@ -105,14 +106,18 @@ pub fn carried(covariance: &Covariance, mask: &Mask, change: &[f64], rest: &[f64
         .then(|| format!("without section {} only {:.0} % of the evidence is left", at + 1, 100.0 * least / all))
 }
 
-/// The size that a view asks for, in shares of the size that all together ask for, and its standard error. Along the path of the
-/// candidate, since the change need not be linear in the size.
-fn size_seen(covariance: &Covariance, view: &View, candidate: &Candidate, mask: &Mask, fit: &Fitted, rest: &[f64]) -> Option<(f64, f64)> {
-    let neutral = candidate.nodes.iter().find(|node| node.change.is_empty()).map_or(0.0, |node| node.size);
-    if candidate.discrete || !neutral.is_finite() || fit.size == neutral {
-        let change = fit.change(std::slice::from_ref(candidate), std::slice::from_ref(mask));
-        return share_seen(covariance, view, &change, rest);
-    }
+/// What a view says of a candidate.
+#[derive(Debug)]
+pub struct InView {
+    pub fitted: Fitted,
+    pub whitener: Whitener,
+    /// What the view sees of the difference, whitened.
+    pub z: Vec<f64>,
+}
+
+/// A candidate under a mask fitted to what a view sees of a difference; nothing where it changes nothing.
+#[must_use]
+pub fn in_view(covariance: &Covariance, view: &View, (candidate, mask): (&Candidate, &Mask), rest: &[f64]) -> Option<InView> {
     let whitener = covariance.part(&view.sections, &view.features).whitener();
     let mut seen = candidate.clone();
     for node in seen.nodes.iter_mut().filter(|node| !node.change.is_empty()) {
@@ -122,9 +127,25 @@ fn size_seen(covariance: &Covariance, view: &View, candidate: &Candidate, mask: 
     let z = whitener.apply(&part(rest, covariance.size, view));
     let all = Mask { confined: None, sections: vec![true; view.sections.len()], asked_by: None };
     let fitted = Fitter::new(&whitener, std::slice::from_ref(&seen), vec![all]).fit(&z, 0, 0).filter(|_| moved)?;
+    Some(InView { fitted, whitener, z })
+}
+
+/// The size that a view asks for, in shares of the size that all together ask for, and its standard error. Along the path of the
+/// candidate, since the change need not be linear in the size: the error is that of the slope where the view's size is, or, if that is
+/// larger, what the fall of chi-squared from the size of all to the view's own says (a likelihood ratio).
+fn size_seen(covariance: &Covariance, view: &View, candidate: &Candidate, mask: &Mask, fit: &Fitted, rest: &[f64]) -> Option<(f64, f64)> {
+    let neutral = candidate.nodes.iter().find(|node| node.change.is_empty()).map_or(0.0, |node| node.size);
+    let change = fit.change(std::slice::from_ref(candidate), std::slice::from_ref(mask));
+    if candidate.discrete || !neutral.is_finite() || fit.size == neutral {
+        return share_seen(covariance, view, &change, rest);
+    }
+    let InView { fitted, whitener, z } = in_view(covariance, view, (candidate, mask), rest)?;
     let full = fit.size - neutral;
-    let slope = (fitted.slope * full).abs();
-    (slope > 0.0).then(|| ((fitted.size - neutral) / full, 1.0 / slope))
+    let (share, slope) = ((fitted.size - neutral) / full, (fitted.slope * full).abs());
+    let whole = whitener.apply(&part(&change, covariance.size, view));
+    let ratio = fitted.fall - (2.0 * dot(&z, &whole) - dot(&whole, &whole));
+    let by_ratio = if ratio > 0.0 { (share - 1.0).abs() / ratio.sqrt() } else { 0.0 };
+    (slope > 0.0).then(|| (share, by_ratio.max(1.0 / slope)))
 }
 
 /// How views of a family contradict each other: the two that differ most, if they differ by more than chance (Cochran's Q). The fit is

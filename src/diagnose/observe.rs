@@ -92,7 +92,14 @@ impl Observations {
             for name in channels(group).filter(|name| faults.iter().all(|fault| fault.channel != *name)) {
                 noise.push(group.noise.as_deref().and_then(declared).unwrap_or(0.0));
                 let bands = group.bands.min(settings.edges.len().saturating_sub(1));
-                layout.channels.push(ChannelFeatures { name, group: at, level: group.level, bands, alike: group.alike });
+                layout.channels.push(ChannelFeatures {
+                    name,
+                    group: at,
+                    unit: group.unit.clone(),
+                    level: group.level,
+                    bands,
+                    alike: group.alike,
+                });
             }
         }
         if layout.channels.is_empty() {

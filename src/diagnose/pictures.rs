@@ -69,10 +69,8 @@ fn picture(settings: &Settings, found: &Found, improved: &[Signals], units: &Uni
             improved: improved.get(at).map(|signals| curve(signals, name, section)).unwrap_or_default(),
         }
     });
-    let stratum = settings.stratum.as_deref().and_then(|column| Some(format!("{column} {}", section.fact(column)?)));
-    let facts = ["radius", "direction", "speed"]
-        .iter()
-        .filter_map(|column| Some(format!("{column} {}", section.fact(column).filter(|text| !text.is_empty())?)));
+    let stratum = settings.stratum.as_deref().and_then(|column| section.says(column));
+    let facts = ["radius", "direction", "speed"].iter().filter_map(|column| section.says(column));
     Picture {
         section: section.name().to_string(),
         says: stratum.into_iter().chain(facts).collect::<Vec<_>>().join(", "),

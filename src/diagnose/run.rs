@@ -64,7 +64,7 @@ pub struct Found {
     /// Channels and kinds where what is left, and what was there, is more than is allowed for.
     pub lack_before: Vec<(String, Kind, f64, f64)>,
     pub lack_after: Vec<(String, Kind, f64, f64)>,
-    pub threshold: f64,
+    pub bars: Bars,
     pub runs: Runs,
     pub strata: Vec<Vec<usize>>,
     pub declared: Declared,
@@ -76,6 +76,11 @@ pub const TOLERANCE_SD: f64 = 3.0;
 const DRAWS: usize = 60;
 /// Evidence below which no cause is named: real discrepancies are not those of the covariance.
 const FLOOR: f64 = 30.0;
+/// The same for an operation on the signals, which no such discrepancy enters: half as much, where 10 is called very strong (Kass and
+/// Raftery 1995).
+const FLOOR_EXACT: f64 = 15.0;
+/// An effect that is the blown form of a declared tolerance needs so many times the evidence.
+const BLOWN: f64 = 1.5;
 /// A candidate is simulated at all its sizes from this share of the best evidence on, and from this evidence on.
 pub const NEAR: f64 = 0.5;
 pub const WORTH: f64 = 10.0;
@@ -147,6 +152,10 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         Some(bench) => sensitivities(bench, settings, &base, &value, &declared, &mut runs),
         None => Vec::new(),
     };
+    // What was learnt from a reference has that in it already.
+    for sensitivity in sensitivities.iter().filter(|sensitivity| sensitivity.expected != 0.0 && inputs.references.is_empty()) {
+        difference.iter_mut().zip(&sensitivity.column).for_each(|(difference, column)| *difference -= sensitivity.expected * column);
+    }
     let workshop = Workshop {
         seen: &seen,
         catalogue: inputs.catalogue,
@@ -168,12 +177,13 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let far = |candidate: &Candidate, size: f64| deviations(candidate, size, &value, &|name| one_sd(settings, &admitted, name));
     let mut refused = Vec::new();
     let mut chosen;
-    let mut threshold = None;
+    let mut chance = None;
     let mut known = Known::new();
+    let mut reconsidered: Vec<usize> = Vec::new();
     // Until no candidate that matters has sizes left to be simulated.
     loop {
         let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), std::mem::take(&mut known));
-        let bars = bars(*threshold.get_or_insert_with(|| limit(&fitter, z.len(), inputs.seed).max(FLOOR)));
+        let bars = bars(*chance.get_or_insert_with(|| limit(&fitter, z.len(), inputs.seed)));
         refused.clear();
         let guard = |fit: &Fitted, chosen: &Chosen| guard(&whole, &families, &fitter, &difference, chosen, fit);
         let found = search(&fitter, &z, &bars, &far, &guard, &mut refused);
@@ -181,8 +191,17 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         let more = if wanted.is_empty() { section_masks(&fitter, &z, &found, &seen) } else { Vec::new() };
         known = fitter.whitened;
         if wanted.is_empty() && more.is_empty() {
-            chosen = found;
-            break;
+            // Nor may a veto: what was refused is looked at again with the size that was found.
+            let again: Vec<Fitted> = refused
+                .iter()
+                .map(|refused| refused.fitted.clone())
+                .filter(|fit| fit.evidence >= NEAR * found.evidence() && !reconsidered.contains(&fit.candidate))
+                .collect();
+            reconsidered.extend(again.iter().map(|fit| fit.candidate));
+            if !polish(&workshop, &mut candidates, &again, &mut runs) {
+                chosen = found;
+                break;
+            }
         }
         masks.extend(more);
         wanted.into_iter().for_each(|at| workshop.refine(&mut candidates[at], &mut runs));
@@ -191,7 +210,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     // Nothing may rest on interpolation: the members are fitted again with the sizes that were found, and one that was above the bar
     // by interpolation alone goes.
     for _ in 0..ROUNDS {
-        if !polish(&workshop, &mut candidates, &chosen, &mut runs) {
+        if !polish(&workshop, &mut candidates, &chosen.members, &mut runs) {
             break;
         }
         let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), known);
@@ -199,14 +218,20 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         known = fitter.whitened;
     }
     let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), known);
-    let fault = |member: &Fitted| {
-        if member.evidence < threshold.unwrap_or(FLOOR) {
+    let bars = bars(chance.unwrap_or(FLOOR));
+    let fault = |member: &Fitted, count: usize| {
+        // Beside others, a member has met a higher bar on its way in.
+        if member.evidence < if count == 1 { bars.alone(&fitter.candidates[member.candidate]) } else { bars.first } {
             return Some("simulated at the size that was found, it has too little evidence");
         }
         (!plausible(&fitter.candidates[member.candidate], member.size))
             .then_some("beside the others it asks for a size that is not plausible")
     };
-    while let Some((at, reason)) = chosen.members.iter().enumerate().find_map(|(at, member)| Some((at, fault(member)?))) {
+    let first_fault = |members: &[Fitted]| {
+        let count = members.len();
+        members.iter().enumerate().find_map(|(at, member)| Some((at, fault(member, count)?)))
+    };
+    while let Some((at, reason)) = first_fault(&chosen.members) {
         let fitted = chosen.members.remove(at);
         refused.push(Refused { fitted, reason: reason.into() });
         refit(&fitter, &z, &mut chosen, 6);
@@ -231,7 +256,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         stability,
         lack_before,
         lack_after,
-        threshold: threshold.unwrap_or(FLOOR),
+        bars,
         runs,
         strata,
         seen,
@@ -239,8 +264,19 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     })
 }
 
-fn bars(threshold: f64) -> Bars {
-    Bars { first: threshold, next: 1.25 * threshold, confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.12, most: 3 }
+/// Bars from what chance reaches.
+fn bars(chance: f64) -> Bars {
+    let first = chance.max(FLOOR);
+    Bars {
+        first,
+        exact: chance.max(FLOOR_EXACT),
+        tolerance: BLOWN * first,
+        next: 1.25 * first,
+        confined: 15.0,
+        tolerance_sd: TOLERANCE_SD,
+        share: 0.12,
+        most: 3,
+    }
 }
 
 impl Found {
@@ -313,9 +349,9 @@ fn guard(
 }
 
 /// Adds the sizes that were found, where no size as near was tried; whether there was any to add.
-fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], chosen: &Chosen, runs: &mut Runs) -> bool {
+fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], fits: &[Fitted], runs: &mut Runs) -> bool {
     let mut added = false;
-    for member in &chosen.members {
+    for member in fits {
         let candidate = &mut candidates[member.candidate];
         let known = candidate.nodes.iter().any(|node| (node.size - member.size).abs() <= ALIKE * member.size.abs());
         if !candidate.discrete && member.size.is_finite() && !known {

@@ -9,6 +9,10 @@ use super::whiten::dot;
 pub struct Bars {
     /// Least evidence of the first member.
     pub first: f64,
+    /// The same for an operation on the signals: exact, whatever the model is wrong in.
+    pub exact: f64,
+    /// The same for an effect that is the blown form of a declared tolerance: what is declared is an estimate itself.
+    pub tolerance: f64,
     /// Of every further one.
     pub next: f64,
     /// Extra evidence that a confinement must bring over the whole campaign.
@@ -18,6 +22,18 @@ pub struct Bars {
     /// Share of the fall of the first member that a further one must bring.
     pub share: f64,
     pub most: usize,
+}
+
+impl Bars {
+    /// Least evidence of a candidate that is the only member.
+    #[must_use]
+    pub fn alone(&self, candidate: &Candidate) -> f64 {
+        match (candidate.exact, &candidate.tolerance) {
+            (true, _) => self.exact,
+            (false, Some(_)) => self.tolerance,
+            (false, None) => self.first,
+        }
+    }
 }
 
 /// A set of effects with the difference that is left.
@@ -66,14 +82,15 @@ pub fn search(
     let mut chosen = Chosen { members: Vec::new(), rest: z.to_vec() };
     let mut barred: Vec<usize> = Vec::new();
     while chosen.members.len() < bars.most {
-        let bar = if chosen.members.is_empty() { bars.first } else { bars.next };
+        let alone = chosen.members.is_empty();
+        let bar = |fit: &Fitted| if alone { bars.alone(&fitter.candidates[fit.candidate]) } else { bars.next };
         let mut fits = fitter.all(&chosen.rest);
         fits.iter_mut().for_each(|fit| unconfine(fitter, &chosen.rest, fit, bars));
-        fits.retain(|fit| fit.evidence >= bar && !barred.contains(&fit.candidate) && !taken(fitter, &chosen, fit));
+        fits.retain(|fit| fit.evidence >= bar(fit) && !barred.contains(&fit.candidate) && !taken(fitter, &chosen, fit));
         fits.retain(|fit| far(&fitter.candidates[fit.candidate], fit.size) >= bars.tolerance_sd);
         fits.retain(|fit| plausible(&fitter.candidates[fit.candidate], fit.size));
         // Sections that the data chose themselves must say it twice as loud.
-        fits.retain(|fit| fitter.masks[fit.mask].asked_by.is_none() || fit.evidence >= 2.0 * bar);
+        fits.retain(|fit| fitter.masks[fit.mask].asked_by.is_none() || fit.evidence >= 2.0 * bar(fit));
         if let Some(first) = chosen.members.first() {
             let least = bars.share * first.fall;
             fits.retain(|fit| fit.fall >= least);
@@ -100,7 +117,11 @@ pub fn search(
             continue;
         }
         // A member that the others have made needless goes.
-        if let Some(weak) = chosen.members.iter().position(|member| member.evidence < bars.next.min(bars.first)) {
+        let least = |member: &Fitted| match chosen.members.len() {
+            1 => bars.alone(&fitter.candidates[member.candidate]),
+            _ => bars.first.min(bars.next),
+        };
+        if let Some(weak) = chosen.members.iter().position(|member| member.evidence < least(member)) {
             barred.push(chosen.members[weak].candidate);
             chosen.members.remove(weak);
             refit(fitter, z, &mut chosen, 4);

@@ -37,6 +37,7 @@ pub fn sensitivities(
                 Ok(made) => columns.push(Sensitivity {
                     tolerance: tolerance.name.clone(),
                     column: made.iter().zip(base).map(|(made, base)| (made - base) / deviations).collect(),
+                    expected: tolerance.expected,
                     per_section: tolerance.per_section,
                     shared: tolerance.shared,
                 }),

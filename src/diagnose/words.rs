@@ -2,6 +2,7 @@
 
 use super::causes::cause;
 use super::features::Kind;
+use super::fit::Fitted;
 use super::lack::{LACK, excess};
 use super::run::{Found, Inputs, TOLERANCE_SD, chi, deviations, length, one_sd, value_of};
 use super::search::plausible;
@@ -11,6 +12,8 @@ use crate::simulate::Units;
 
 /// Whitened length of a change that can be identified.
 const SEEN: f64 = 5.0;
+/// Rivals with so much less evidence cannot be told from the answer.
+const NEAREST: f64 = 8.0;
 /// Evidence is divided by this before it becomes a probability: real discrepancies are not those of the covariance.
 const TEMPERATURE: f64 = 4.0;
 
@@ -42,7 +45,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         causes.iter_mut().enumerate().for_each(|(at, cause)| cause.rank = at + 1);
     }
     probabilities(&mut causes, verdict);
-    let discriminating_measurement = discriminating(inputs, &causes, verdict);
+    let discriminating_measurement = discriminating(inputs, found, &causes, verdict);
     let invariants = super::invariants::invariants(inputs.settings, found, units);
     let mut says = says(inputs, found, verdict, &causes, shrink.as_ref(), unexplained_share);
     if verdict == "unexplained" {
@@ -83,7 +86,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         shrink,
         unexplained_share,
         discriminating_measurement,
-        detectable: detectable(inputs, found),
+        detectable: detectable(found),
         how: How {
             catalogue: inputs.catalogue.name.clone(),
             simulator: inputs.simulator.map_or("none".into(), |simulator| simulator.name().to_string()),
@@ -92,7 +95,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
             sections: found.seen.sections.len(),
             features: found.seen.len(),
             seed: inputs.seed,
-            threshold: found.threshold,
+            threshold: found.bars.first,
             chi_squared_before: before,
             chi_squared_after: after,
         },
@@ -116,8 +119,10 @@ fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
     let own = |at: usize| &found.candidates[found.chosen.members[at].candidate];
     for (at, fit, fall) in &found.rivals {
         let of = &found.candidates[fit.candidate];
-        if of.effect == own(*at).effect || found.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect)
-        {
+        // The same on another channel is another cause, where the data cannot tell which channel it is.
+        let elsewhere = of.effect == own(*at).effect && of.channels != own(*at).channels && !of.channels.is_empty() && *fall <= NEAREST;
+        let named = found.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect);
+        if named && !elsewhere {
             continue;
         }
         if causes.len() >= 5 || causes.iter().any(|cause| cause.effects.iter().any(|effect| effect.name == of.effect)) {
@@ -127,8 +132,8 @@ fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
         if found.refused.iter().any(|refused| refused.fitted.candidate == fit.candidate) || !plausible(of, fit.size) {
             continue;
         }
-        let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(8.0)
-            && fit.evidence > found.threshold
+        let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(NEAREST)
+            && fit.evidence > if of.exact { found.bars.exact } else { found.bars.first }
             && deviations(of, fit.size, &|key| value_of(inputs.campaign, key), &|name| one_sd(inputs.settings, &found.declared, name))
                 >= TOLERANCE_SD;
         let mut members = found.chosen.members.clone();
@@ -153,7 +158,7 @@ fn probabilities(causes: &mut [Cause], verdict: &str) {
     }
 }
 
-fn discriminating(inputs: &Inputs<'_>, causes: &[Cause], verdict: &str) -> Option<String> {
+fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: &str) -> Option<String> {
     if verdict != "ambiguous" {
         return None;
     }
@@ -167,7 +172,29 @@ fn discriminating(inputs: &Inputs<'_>, causes: &[Cause], verdict: &str) -> Optio
             measurements.push(settled);
         }
     }
+    measurements.extend(more_sections(inputs, found, causes));
     (!measurements.is_empty()).then(|| measurements.join("; or "))
+}
+
+/// More sections of the kind that tells the answer from its nearest rival best.
+fn more_sections(inputs: &Inputs<'_>, found: &Found, causes: &[Cause]) -> Option<String> {
+    let near =
+        |name: &str| causes.iter().skip(1).any(|cause| cause.in_ambiguity_set && cause.effects.iter().any(|effect| effect.name == name));
+    let (at, rival, _) = found.rivals.iter().find(|(at, fit, _)| {
+        let effect = |fit: &Fitted| found.candidates[fit.candidate].effect.as_str();
+        near(effect(fit)) && effect(fit) != effect(&found.chosen.members[*at])
+    })?;
+    let apart = super::apart::apart(found, &found.chosen.members[*at], rival)?;
+    let sections: Vec<&str> = apart.sections.iter().map(|at| found.seen.sections[*at].section.name()).collect();
+    let stratum = inputs.settings.stratum.as_deref();
+    let kind = apart.sections.first().zip(stratum).and_then(|(at, column)| found.seen.sections[*at].section.says(column));
+    Some(format!(
+        "as many sections again like {} ({}): the two nearest causes, {:.1} standard deviations apart now, would be {:.1}",
+        sections.join(", "),
+        kind.unwrap_or_else(|| "the kind that helps most".into()),
+        apart.now,
+        apart.then
+    ))
 }
 
 fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
@@ -186,12 +213,9 @@ fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
     found.refused.iter().map(one).collect()
 }
 
-fn detectable(inputs: &Inputs<'_>, found: &Found) -> Vec<Detectable> {
+fn detectable(found: &Found) -> Vec<Detectable> {
     let mut list: Vec<Detectable> = Vec::new();
     for candidate in found.candidates.iter().filter(|candidate| !candidate.discrete && candidate.fixed.is_empty()) {
-        if list.iter().any(|known| known.effect == candidate.effect && known.parameter == candidate.size) {
-            continue;
-        }
         let Some(neutral) = candidate.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size) else { continue };
         // Linear from neutral to the first size on either side that is long enough.
         let mut smallest: Option<f64> = None;
@@ -205,15 +229,17 @@ fn detectable(inputs: &Inputs<'_>, found: &Found) -> Vec<Detectable> {
         if let Some((away, long)) = nodes.iter().find(|(_, long)| *long >= SEEN) {
             smallest = Some(away * SEEN / long);
         }
-        let unit = inputs.catalogue.effect(&candidate.effect).and_then(|effect| {
-            effect.parameters.iter().find(|parameter| parameter.name == candidate.size).map(|parameter| parameter.unit.text.clone())
-        });
-        list.push(Detectable {
-            effect: candidate.effect.clone(),
-            parameter: candidate.size.clone(),
-            unit: unit.unwrap_or_else(|| "-".into()),
-            smallest,
-        });
+        let unit = &candidate.unit.text;
+        let alike = |known: &&mut Detectable| known.effect == candidate.effect && known.parameter == candidate.size && known.unit == *unit;
+        match list.iter_mut().find(alike) {
+            Some(_) if candidate.channels.is_empty() => {}
+            Some(known) => {
+                known.smallest = known.smallest.zip(smallest).map(|(a, b)| if a.abs() >= b.abs() { a } else { b });
+            }
+            None => {
+                list.push(Detectable { effect: candidate.effect.clone(), parameter: candidate.size.clone(), unit: unit.clone(), smallest })
+            }
+        }
     }
     list
 }

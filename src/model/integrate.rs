@@ -10,7 +10,7 @@ use super::track::Track;
 /// Step in s, and distance of the samples.
 pub const SAMPLE: f64 = 1e-3;
 /// Largest product of step and fastest rate; the method is stable up to 2.78.
-const STABLE: f64 = 2.0;
+const STABLE: f64 = 2.45;
 /// Largest rate of any state, in SI units, of a vehicle at rest: rounding. In the seconds before the track it moves nothing by a
 /// nanometre.
 const AT_REST: f64 = 1e-10;

@@ -15,7 +15,7 @@ pub use builtin::{Builtin, model_parameters, single};
 pub use campaign::{Units, in_units, read_signals, record_text, recorded};
 pub use compare::{Deviation, baseline_warning, deviations};
 pub use external::{Cache, External, Program, read_program};
-pub use section::{Section, sections};
+pub use section::{Fact, Section, sections};
 pub use write::write_campaign;
 
 use crate::effects::Signals;

@@ -4,7 +4,7 @@ use crate::data::table::{Cell, Table};
 use crate::data::{Campaign, Heading};
 use crate::problem::{Problem, Problems};
 use crate::source::Source;
-use crate::units::Dimension;
+use crate::units::{Dimension, Unit};
 
 /// A section to be simulated.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,8 +15,18 @@ pub struct Section {
     pub end: f64,
     /// In m/s, if the table has speeds.
     pub speed: Option<f64>,
-    /// All columns of its row: name without unit, text.
-    pub facts: Vec<(String, String)>,
+    /// All columns of its row.
+    pub facts: Vec<Fact>,
+}
+
+/// What a column of the section table says of a section.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fact {
+    /// The column, without its unit.
+    pub name: String,
+    pub text: String,
+    /// The unit of the column, where the heading has one that is known.
+    pub unit: Option<Unit>,
 }
 
 impl Section {
@@ -38,13 +48,23 @@ impl Section {
         if column == "section" {
             return Some(self.name());
         }
-        self.facts.iter().find(|(name, _)| name == column).map(|(_, text)| text.as_str())
+        self.facts.iter().find(|fact| fact.name == column).map(|fact| fact.text.as_str())
     }
 
-    /// The number in a column.
+    /// The number in a column, in SI; as it stands where the column has no unit.
     #[must_use]
     pub fn number(&self, column: &str) -> Option<f64> {
-        self.fact(column)?.trim().parse().ok()
+        let fact = self.facts.iter().find(|fact| fact.name == column)?;
+        let number = fact.text.trim().parse().ok().filter(|number: &f64| number.is_finite())?;
+        Some(fact.unit.as_ref().map_or(number, |unit| unit.to_si(number)))
+    }
+
+    /// A column in words, `radius 280 m`; nothing where its cell is empty.
+    #[must_use]
+    pub fn says(&self, column: &str) -> Option<String> {
+        let fact = self.facts.iter().find(|fact| fact.name == column).filter(|fact| !fact.text.is_empty())?;
+        let unit = fact.unit.as_ref().map(Unit::suffix).unwrap_or_default();
+        Some(format!("{column} {}{unit}", fact.text))
     }
 }
 
@@ -65,7 +85,8 @@ pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Vec<Section> {
     for (row, cell) in campaign.names.iter().enumerate() {
         let number = |column: &[Option<f64>]| column.get(row).copied().flatten();
         let fact = |(at, heading): (usize, &Heading)| {
-            (heading.name.clone(), table.cell(row, at).map(|cell| cell.value.clone()).unwrap_or_default())
+            let text = table.cell(row, at).map(|cell| cell.value.clone()).unwrap_or_default();
+            Fact { name: heading.name.clone(), text, unit: heading.unit(None).ok() }
         };
         let facts = table.columns.iter().enumerate().map(fact).collect();
         match (number(&start), number(&end)) {

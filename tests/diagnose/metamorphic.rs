@@ -114,13 +114,26 @@ fn the_order_of_the_sections_does_not_matter() {
 }
 
 #[test]
-fn the_units_of_the_records_do_not_matter() {
+fn the_units_of_records_and_sections_do_not_matter() {
     let campaign = changed("slippery-units", |inside, text| {
         let newtons = |name: &str, value: &str| match name.strip_suffix("[kN]") {
             Some(stem) => (format!("{stem}[N]"), format!("{:.1}", value.parse::<f64>().unwrap() * 1e3)),
             None => (name.to_string(), value.to_string()),
         };
-        inside.starts_with("measurement/").then(|| cells(text, &newtons))
+        // Of the section table, too: what it says is used where the discrepancies allowed for grow with the curvature.
+        let kilometres = |name: &str, value: &str| {
+            let number = || value.parse::<f64>().unwrap();
+            match name.split_once(" [m]") {
+                Some((stem @ ("radius" | "start"), _)) if !value.is_empty() => (format!("{stem} [km]"), format!("{:.6}", number() / 1e3)),
+                Some((stem @ ("radius" | "start"), _)) => (format!("{stem} [km]"), String::new()),
+                _ if name == "speed [km/h]" => ("speed [m/s]".to_string(), format!("{:.9}", number() / 3.6)),
+                _ => (name.to_string(), value.to_string()),
+            }
+        };
+        match inside {
+            "./sections.csv" => Some(cells(text, &kilometres)),
+            _ => inside.starts_with("measurement/").then(|| cells(text, &newtons)),
+        }
     });
     same(&answer(&campaign, CATALOGUE), 1e-6);
 }

@@ -73,6 +73,9 @@ pub struct Tolerance {
     pub sets: Vec<(String, f64)>,
     /// Every parameter that is named, and where.
     pub named: Vec<(String, Span)>,
+    /// Of a size that is never negative: the share of what is declared that is expected to be there; 0 for a size that may lie on either
+    /// side.
+    pub expected: f64,
     /// Whether each section has its own.
     pub per_section: bool,
     /// Whether all sections share one.
@@ -143,7 +146,7 @@ impl Settings {
     /// 1 in a curve, -1 in a mirrored one, 0 on straight track.
     #[must_use]
     pub fn side(&self, section: &Section) -> f64 {
-        match (section.number("radius"), &self.mirror) {
+        match (section.number("radius").filter(|radius| *radius > 0.0), &self.mirror) {
             (None, _) => 0.0,
             (Some(_), Some((column, value))) if section.fact(column) == Some(value) => -1.0,
             (Some(_), _) => 1.0,

@@ -26,7 +26,7 @@ const TOP: [&str; 12] = [
 ];
 const GROUP: [&str; 13] =
     ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says", "unit"];
-const TOLERANCE: [&str; 7] = ["default", "unit", "scales", "adds", "sets", "each section", "shared"];
+const TOLERANCE: [&str; 8] = ["default", "unit", "expected", "scales", "adds", "sets", "each section", "shared"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
 impl Settings {
@@ -196,6 +196,7 @@ impl Reader<'_> {
                 name: key.text.clone(),
                 unit: self.unit(node),
                 default: self.number(node, "default", 0.0),
+                expected: self.number(node, "expected", 0.0),
                 scales: self.words(node.get("scales")),
                 adds: map("adds"),
                 sets: map("sets"),
