@@ -127,6 +127,27 @@ fn every_rule_can_be_varied() {
     assert_eq!(values(2)[1]["verdict"], "not assessable");
 }
 
+/// All limits of a statistic times a factor: each value is divided by it, shares of such a limit too, and conditions stay.
+#[test]
+fn all_limits_of_a_statistic_are_scaled_at_once() {
+    let out = tempfile::tempdir().expect("a folder");
+    let (code, _, said) = study("parameters", out.path(), &["--vary", "every limit std=0.5..2 step 0.5", "--quiet"]);
+    assert_eq!(code, 0, "{said}");
+    let found = json(out.path());
+    let values = found["parameters"][0]["values"].as_array().expect("values");
+    let of = |at: &Value| -> Vec<f64> {
+        at["statistics"].as_array().expect("statistics").iter().filter_map(|one| one["normalised"].as_f64()).collect()
+    };
+    let (as_it_is, factors) = (of(&values[1]), [0.5, 1.0, 1.5, 2.0]);
+    assert_eq!((values[1]["as_it_is"].as_bool(), as_it_is.len()), (Some(true), 24));
+    for (at, factor) in values.iter().zip(factors) {
+        assert_eq!(at["value"], factor.to_string());
+        for (scaled, base) in of(at).iter().zip(&as_it_is) {
+            assert!((scaled * factor - base).abs() < 1e-12, "{factor}: {scaled} and {base}");
+        }
+    }
+}
+
 #[test]
 fn wrong_input_is_told_and_nothing_is_written() {
     let out = tempfile::tempdir().expect("a folder");
@@ -144,6 +165,9 @@ fn wrong_input_is_told_and_nothing_is_written() {
         ("parameters", &["--vary", "quantity Y_qs limit std=4 kN"], "did you mean `Y_qst`?"),
         ("parameters", &["--vary", "quantity Y_qst limit=4 kN"], "add the first words of one of them: `limit std 5 kN`"),
         ("parameters", &["--vary", "quantity Y_qst limit std=4 m"], "write the limit in kN"),
+        ("parameters", &["--vary", "every limit sdt=1"], "did you mean `std`?"),
+        ("parameters", &["--vary", "every limit std=1 kN"], "is not a number above zero"),
+        ("parameters", &["--vary", "every quantity=1"], "write `every limit std`"),
         ("parameters", &["--vary", "zone 4 minimum width=4 m"], "zone 4 has no rule `minimum width`"),
     ] {
         let (code, _, said) = study(kind, &folder, more);

@@ -45,8 +45,8 @@ pub enum Study {
     Parameters {
         #[command(flatten)]
         common: Common,
-        /// A parameter, or a rule by the words that lead to it (`quantity NAME limit std`, `zone 4 minimum length`), and its
-        /// values: a list, with `;` between them where they hold commas, or `FROM..TO step STEP`; may be repeated [default:
+        /// A parameter, or a rule by the words that lead to it (`quantity NAME limit std`, `zone 4 minimum length`), or all limits
+        /// of a statistic times a factor (`every limit std`), and the values: a list, with `;` between them where they hold commas, or `FROM..TO step STEP`; may be repeated [default:
         /// every parameter that is a choice of words, over all its words]
         #[arg(long, value_name = "NAME=VALUES")]
         vary: Vec<String>,

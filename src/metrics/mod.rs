@@ -12,6 +12,7 @@
 //! | [`percentile`] | values | order statistics, interpolated |
 //! | [`statistics`], [`interval`] | values | mean, scatter, extremes, regression; confidence intervals |
 //! | [`pair`] | simulated and measured signal | how well they agree |
+//! | [`random_effects`] | estimates with variances | by how much they scatter beyond these |
 //! | [`synchronise`] | signals of two records | by how much one lies ahead of the other |
 //! | [`hysteresis`] | two loops of output over input | how well they agree, branch by branch |
 
@@ -21,6 +22,7 @@ mod incomplete_beta;
 pub mod interval;
 pub mod pair;
 pub mod percentile;
+pub mod random_effects;
 pub mod resample;
 pub mod statistics;
 mod sum;

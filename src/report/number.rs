@@ -73,6 +73,11 @@ pub fn beside(value: f64, limit: f64, decimals: usize) -> String {
     fixed(value, places.unwrap_or(decimals))
 }
 
+/// A count, as a power of ten where it is beyond reading.
+pub fn large(number: f64) -> String {
+    if number < 1e12 { count(number as u64) } else { significant(number, 3) }
+}
+
 /// A count with a narrow no-break space between groups of three digits, from five digits on.
 pub fn count(value: u64) -> String {
     let digits = value.to_string();

@@ -33,7 +33,8 @@ pub struct SelectionStudy {
     pub sections: Vec<Importance>,
     /// The selection that is worst in each limit that some selection breaks.
     pub worst: Vec<WorstSelection>,
-    pub removal: Removal,
+    /// Where it was looked for.
+    pub removal: Option<Removal>,
     pub reduction: Option<Reduction>,
     /// How it was computed, a sentence each.
     pub methods: Vec<String>,
@@ -108,6 +109,8 @@ pub struct Spread {
     pub count: f64,
     /// Exact over all selections, not estimated from some.
     pub exact: bool,
+    /// Where all selections are counted but not told apart to the last digit: how far the quartiles are from the true ones at most.
+    pub within: Option<f64>,
     /// 95 % intervals of the three quartiles where they are estimated from selections drawn at random.
     pub intervals: Option<[(f64, f64); 3]>,
 }
@@ -152,6 +155,8 @@ pub struct Removal {
     pub tried: usize,
     /// Nothing more can be removed without falling short of what the protocol needs.
     pub complete: bool,
+    /// Where none of the sets tried changes it: a larger one that does, not surely the smallest of its kind.
+    pub larger: Option<Vec<String>>,
 }
 
 /// A smaller set of sections that keeps the scatter of all.

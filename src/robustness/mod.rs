@@ -4,13 +4,14 @@
 
 mod parameters;
 mod rule;
+mod scale;
 mod synchronisation;
 
 use crate::certify::{Compiled, campaign_info, protocol_info};
 use crate::check::plan::Plan;
 use crate::data::Campaign;
 use crate::problem::{Problem, Problems};
-use crate::result::study::{Found, SelectionStudy, Study};
+use crate::result::study::{Found, Reduction, SelectionStudy, Study};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::study::case::Case;
 use crate::study::{self, reduced, selections};
@@ -34,7 +35,8 @@ pub struct Settings {
 /// As [`crate::run::run`]; `too-few-sections`: a zone has fewer usable sections than a selection takes.
 pub fn sections(compiled: &Compiled, campaign: &Campaign, settings: &Settings, progress: Progress<'_>) -> Result<Study, Problems> {
     let evaluated = evaluate(&compiled.plan, &compiled.graph, campaign, &Shifts::NONE, progress)?.swap_remove(0);
-    let found = selected(&evaluated, &compiled.plan, settings).map_err(too_few)?;
+    let (case, reduction) = case_of(&evaluated, &compiled.plan, settings).map_err(too_few)?;
+    let found = SelectionStudy { reduction, ..selections(&case, &settings.selections) };
     Ok(joined(compiled, campaign, &evaluated, Found::Sections(found)))
 }
 
@@ -42,15 +44,16 @@ fn too_few(says: String) -> Problems {
     Problems(vec![Problem::error("too-few-sections", says).help("give more sections, or fewer for each selection with `--take`")])
 }
 
-fn selected(evaluated: &Evaluated, plan: &Plan, settings: &Settings) -> Result<SelectionStudy, String> {
+/// What is selected from, reduced where that is asked for.
+fn case_of(evaluated: &Evaluated, plan: &Plan, settings: &Settings) -> Result<(Case, Option<Reduction>), String> {
     let case = Case::of(&evaluated.pool(plan), settings.take)?;
-    match settings.reduce {
-        None => Ok(selections(&case, &settings.selections)),
+    Ok(match settings.reduce {
+        None => (case, None),
         Some(most) => {
             let (smaller, reduction) = reduced(&case, most);
-            Ok(SelectionStudy { reduction: Some(reduction), ..selections(&smaller, &settings.selections) })
+            (smaller, Some(reduction))
         }
-    }
+    })
 }
 
 fn joined(compiled: &Compiled, campaign: &Campaign, evaluated: &Evaluated, found: Found) -> Study {

@@ -1,7 +1,8 @@
 //! The verdict along parameters and rules of the protocol, each varied by itself.
 
 use super::rule::Rule;
-use super::{Settings, joined, selected};
+use super::scale::Scale;
+use super::{Settings, case_of, joined};
 use crate::certify::{Compiled, compile};
 use crate::check::family::Family;
 use crate::check::plan::{Parameter, Plan, SetBy};
@@ -11,12 +12,13 @@ use crate::problem::{Problem, Problems};
 use crate::result::study::{AtValue, Found, ParameterStudy, Selected, Study, Varied};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::source::Source;
+use crate::study::marked;
 use crate::syntax::document::Text;
 
 /// A parameter or a rule, and the values it is to take, as written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vary {
-    /// The name of a parameter, or the words that lead to a rule: `quantity NAME limit std`.
+    /// The name of a parameter, or the words that lead to a rule: `quantity NAME limit std`, or to several: `every limit std`.
     pub name: String,
     pub values: Vec<String>,
 }
@@ -88,11 +90,15 @@ pub fn parameters(
 enum Variable<'a> {
     Parameter(&'a Parameter),
     Rule(Rule),
+    Scale(Scale),
 }
 
 impl<'a> Variable<'a> {
-    /// A name without spaces is a parameter's; words lead to a rule.
+    /// A name without spaces is a parameter's; words lead to a rule, `every limit` and a statistic to several.
     fn find(compiled: &'a Compiled, name: &str, problems: &mut Problems) -> Option<Self> {
+        if Scale::asked(name) {
+            return Scale::find(&compiled.family.merged, name).map(Self::Scale).map_err(|problem| problems.push(*problem)).ok();
+        }
         if name.contains(char::is_whitespace) {
             return Rule::find(&compiled.family.merged, name).map(Self::Rule).map_err(|problem| problems.push(*problem)).ok();
         }
@@ -111,6 +117,7 @@ impl<'a> Variable<'a> {
         match self {
             Self::Parameter(parameter) => with(family.clone(), overrides, &parameter.name, value, problems),
             Self::Rule(rule) => compile(rule.with(family, value), overrides, problems),
+            Self::Scale(scale) => compile(scale.with(family, value, problems)?, overrides, problems),
         }
     }
 
@@ -118,6 +125,7 @@ impl<'a> Variable<'a> {
         match self {
             Self::Parameter(parameter) => parameter.value.clone(),
             Self::Rule(rule) => rule.as_it_is.clone(),
+            Self::Scale(_) => "1".to_owned(),
         }
     }
 
@@ -125,6 +133,7 @@ impl<'a> Variable<'a> {
         match self {
             Self::Parameter(parameter) => parameter.title.clone(),
             Self::Rule(rule) => rule.title.clone(),
+            Self::Scale(scale) => scale.title(),
         }
     }
 
@@ -135,6 +144,7 @@ impl<'a> Variable<'a> {
                 let set = plan.parameters.iter().find(|other| other.name == parameter.name);
                 set.map_or_else(|| value.to_owned(), |set| set.value.clone())
             }
+            Self::Scale(_) => value.trim().parse::<f64>().map_or_else(|_| value.to_owned(), |factor| factor.to_string()),
             Self::Rule(_) => value.split_whitespace().collect::<Vec<_>>().join(" "),
         }
     }
@@ -169,7 +179,7 @@ fn at_value(evaluated: &Evaluated, plan: &Plan, settings: &Settings, value: &str
         .iter()
         .filter_map(|statistic| statistic.normalised.map(|share| (format!("{} of {}", statistic.name, statistic.symbol), share)))
         .max_by(|a, b| a.1.total_cmp(&b.1));
-    let study = selected(evaluated, plan, settings);
+    let study = case_of(evaluated, plan, settings).map(|(case, _)| marked(&case, &settings.selections).0);
     AtValue {
         value: value.to_owned(),
         is_base,

@@ -43,11 +43,11 @@ pub fn core(case: &Case, halves: &Halves) -> (Vec<Vec<OverAll>>, Verdicts) {
             for measure in &quantity.measures {
                 if matches!(case.rule, Rule::AtLeastLimits(_)) {
                     let mut of_limit = Fails::new(rows, columns);
-                    found.push(over_all(measure, halves, &mut of_limit, &mut undefined, &mut memory));
+                    found.push(over_all(case, measure, halves, &mut of_limit, &mut undefined, &mut memory));
                     verdicts.lock().expect("no panic holds the lock").limit(&of_limit);
                     fails.join_all(&of_limit);
                 } else {
-                    found.push(over_all(measure, halves, &mut fails, &mut undefined, &mut memory));
+                    found.push(over_all(case, measure, halves, &mut fails, &mut undefined, &mut memory));
                 }
             }
             if !quantity.measures.is_empty() {

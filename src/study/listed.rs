@@ -1,4 +1,4 @@
-//! Order statistics where the values, or their counts, can be listed: the largest of two halves, sums by sorting, single values.
+//! Order statistics where the values, or their counts, can be listed: single values, and sums by sorting.
 
 use super::groups::Block;
 use super::halves::Form;
@@ -58,37 +58,10 @@ impl From<Listed> for Spread {
             outliers: listed.outliers as u64,
             count: listed.count,
             exact: true,
+            within: None,
             intervals: None,
         }
     }
-}
-
-/// How often each value is the larger one of a row and a column; `None` is below everything and, in both, no value.
-pub fn larger(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -> Vec<(f64, f64)> {
-    let sorted = |values: &[Option<f64>]| {
-        let mut known: Vec<f64> = values.iter().copied().flatten().collect();
-        known.sort_unstable_by(f64::total_cmp);
-        let none = values.len() - known.len();
-        (known, none as f64)
-    };
-    let ((rows, no_row), (columns, no_column)) = (sorted(rows), sorted(columns));
-    let mut values: Vec<f64> = rows.iter().chain(&columns).copied().collect();
-    values.sort_unstable_by(f64::total_cmp);
-    values.dedup();
-    let upto = |known: &[f64], value: f64| known.partition_point(|known| *known <= value) as f64;
-    let mut before = no_row * no_column;
-    let mut list = Vec::with_capacity(values.len());
-    for value in values {
-        let now = (no_row + upto(&rows, value)) * (no_column + upto(&columns, value));
-        if now > before {
-            list.push((if negative { -value } else { value }, now - before));
-        }
-        before = now;
-    }
-    if negative {
-        list.reverse();
-    }
-    list
 }
 
 /// Values kept around a wanted rank.
@@ -180,7 +153,7 @@ mod tests {
     use crate::study::groups::{Column, Row};
 
     #[test]
-    fn sums_and_larger_values_agree_with_lists() {
+    fn sums_agree_with_lists() {
         let mut seed = 7_u64;
         let mut next = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
@@ -199,11 +172,6 @@ mod tests {
             columns: columns.iter().map(|q| Column { q: *q, y: 0.0, at: 0 }).collect(),
         };
         assert_eq!(sums(&[block], Form::Value), Some(listed(&|a, b| a + b)));
-        let some = |values: &[f64]| values.iter().map(|value| Some(*value)).collect::<Vec<_>>();
-        assert_eq!(weighted(&larger(&some(&rows), &some(&columns), false)), Some(listed(&f64::max)));
-        let negated = |values: &[f64]| values.iter().map(|value| Some(-*value)).collect::<Vec<_>>();
-        assert_eq!(weighted(&larger(&negated(&rows), &negated(&columns), true)), Some(listed(&f64::min)));
-        assert_eq!(weighted(&larger(&[None, Some(1.0)], &[None], false)).map(|listed| listed.count), Some(1.0));
         assert_eq!((sums(&[], Form::Value), weighted(&[])), (None, None));
     }
 }

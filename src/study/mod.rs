@@ -6,23 +6,30 @@
 //! | `halves` | selections as pairs of two halves; a statistic as a sum of their parts |
 //! | `groups`, `buckets` | rows of selections with their columns in about the order of the values |
 //! | `spread`, `pilot`, `window` | exact order statistics of such sums, without keeping them |
-//! | `listed` | order statistics where values can be listed or sums only added |
+//! | `listed`, `extremes` | order statistics where values can be listed or sums only added; of largest values, by binomials |
+//! | `grid` | bounds of the order statistics of means, however many selections there are |
 //! | `overall` | one statistic over all selections |
 //! | `fails`, `verdicts` | a bit for every selection that breaks a limit; by which quantities selections fail |
 //! | `judged` | one selection from its sections |
 //! | `enumerate` | all selections |
 //! | `sampling`, `random`, `quartiles` | some of them, drawn at random, with intervals |
+//! | `known` | what is known of all of them all the same |
 //! | `flips` | selections whose verdict is another under other values |
-//! | `removal`, `reduce` | smallest sets that change the verdict; fewer sections with the same scatter |
+//! | `removal`, `greedy` | smallest sets that change the verdict; some set, where not all can be tried |
+//! | `reduce` | fewer sections with the same scatter |
 
 mod buckets;
 pub mod case;
 pub mod enumerate;
+pub mod extremes;
 pub mod fails;
 pub mod flips;
+pub mod greedy;
+pub mod grid;
 pub mod groups;
 pub mod halves;
 pub mod judged;
+mod known;
 pub mod listed;
 pub mod overall;
 mod pilot;
@@ -69,12 +76,13 @@ impl Settings {
     }
 }
 
-/// Every selection of a case, or as many as it takes.
+/// Every selection of a case, or as many as it takes, and the smallest sets of sections that decide the verdict.
 pub fn selections(case: &Case, settings: &Settings) -> SelectionStudy {
-    marked(case, settings).0
+    let found = marked(case, settings).0;
+    SelectionStudy { removal: Some(removal::smallest(case, found.verdict)), ..found }
 }
 
-/// The same, with the marks of the selections that are not validated, if all were looked at.
+/// Every selection without such sets, and the marks of the selections that are not validated, if all were looked at.
 pub fn marked(case: &Case, settings: &Settings) -> (SelectionStudy, Option<Fails>) {
     let combinations = case.combinations();
     let (counted, fails) = if combinations <= settings.most_of(case) {
@@ -93,7 +101,7 @@ pub fn marked(case: &Case, settings: &Settings) -> (SelectionStudy, Option<Fails
         quantities: counted.quantities,
         sections: counted.sections,
         worst: counted.worst,
-        removal: removal::smallest(case, verdict),
+        removal: None,
         reduction: None,
         methods: counted.methods,
     };

@@ -1,9 +1,10 @@
 //! One statistic over all selections: its order statistics, and the selections that break its limit.
 
-use super::case::{Measure, Quantity};
+use super::case::{Case, Measure, Quantity};
+use super::extremes;
 use super::fails::Fails;
 use super::halves::{Half, Halves, Parts};
-use super::listed::{Listed, larger, weighted};
+use super::listed::{Listed, weighted};
 use super::spread::{Limit, Memory, order};
 
 /// A statistic over all selections.
@@ -16,7 +17,14 @@ pub struct OverAll {
 }
 
 /// One statistic: its order statistics, with the selections marked that break its limit and those where it is not defined.
-pub fn over_all(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut Option<Fails>, memory: &mut Memory) -> OverAll {
+pub fn over_all(
+    case: &Case,
+    measure: &Measure,
+    halves: &Halves,
+    fails: &mut Fails,
+    undefined: &mut Option<Fails>,
+    memory: &mut Memory,
+) -> OverAll {
     let parts = measure.parts(halves);
     if matches!(parts, Parts::Pooled) {
         let (listed, ends, failing) = pooled(measure, halves, fails, undefined);
@@ -54,7 +62,7 @@ pub fn over_all(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined
                     }
                 }
             }
-            (weighted(&larger(&rows, &columns, negative)), extreme_ends(&rows, &columns, negative))
+            (extremes::over_all(case, measure), extreme_ends(&rows, &columns, negative))
         }
         Parts::Pooled => (None, None),
     };

@@ -15,7 +15,7 @@ pub fn estimated(values: &[f64]) -> Option<Spread> {
     sorted.sort_unstable_by(f64::total_cmp);
     let intervals = [0.25, 0.5, 0.75].map(|share| interval(&sorted, share));
     let intervals = intervals.iter().all(Option::is_some).then(|| intervals.map(Option::unwrap_or_default));
-    Some(Spread { min, q1, median, q3, max, outliers, count: values.len() as f64, exact: false, intervals })
+    Some(Spread { min, q1, median, q3, max, outliers, count: values.len() as f64, exact: false, within: None, intervals })
 }
 
 /// 95 % interval of a quantile from a sorted sample, whatever the distribution: between two order statistics.

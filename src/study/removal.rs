@@ -1,6 +1,7 @@
 //! The smallest sets of sections without which all others together give another verdict.
 
 use super::case::{Case, Kind};
+use super::greedy;
 use super::judged::{Sums, Tally};
 use crate::result::Verdict;
 use crate::result::study::Removal;
@@ -22,7 +23,7 @@ pub fn smallest(case: &Case, verdict: Verdict) -> Removal {
         case.strata.iter().enumerate().flat_map(|(stratum, of)| of.members.iter().map(move |&at| (stratum, at))).collect();
     let spare: Vec<usize> = case.strata.iter().map(|stratum| stratum.members.len() - stratum.take).collect();
     let most: usize = spare.iter().sum();
-    let mut removal = Removal { verdict, sets: Vec::new(), count: 0, tried: 0, complete: most == 0 };
+    let mut removal = Removal { verdict, sets: Vec::new(), count: 0, tried: 0, complete: most == 0, larger: None };
     for size in 1..=most {
         let mut search = Search {
             case,
@@ -47,6 +48,11 @@ pub fn smallest(case: &Case, verdict: Verdict) -> Removal {
             removal.sets = search.found.iter().take(KEPT).map(named).collect();
             break;
         }
+    }
+    // Values that have to be taken anew for each section given up would take too long.
+    if removal.sets.is_empty() && !removal.complete && !slow {
+        let named = |set: Vec<usize>| set.into_iter().map(|at| case.sections[at].clone()).collect();
+        removal.larger = greedy::set(case, verdict).map(named);
     }
     removal
 }

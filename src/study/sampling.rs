@@ -4,11 +4,11 @@
 use rayon::prelude::*;
 
 use super::Settings;
-use super::case::{Case, Kind};
+use super::case::{Case, Measure};
 use super::enumerate::Counted;
-use super::halves::{Halves, Parts};
+use super::grid::Additive;
 use super::judged::{Sums, Tally};
-use super::listed::{Listed, larger, sums, weighted};
+use super::known::{self, known};
 use super::quartiles::estimated;
 use super::random::{Random, draw};
 use crate::result::Verdict;
@@ -21,8 +21,6 @@ pub(super) const ROUND: usize = 8;
 pub(super) const MOST_DRAWN: usize = 1 << 22;
 /// Selections whose values are kept for the estimated quartiles.
 const KEPT: usize = 1 << 16;
-/// Choices of a half that are listed to have a statistic exactly.
-const MOST_LISTED: f64 = 2e6;
 /// 97.5 % value of the normal distribution.
 const NORMAL: f64 = 1.959_963_985;
 
@@ -149,7 +147,7 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
     };
     let all = (batches * BATCH) as u64;
     let share_of = |count: u64| count as f64 / all as f64;
-    let exact = exact(case);
+    let known = known(case);
     let usable = case.usable();
     let mut limit = 0;
     let mut worst = Vec::new();
@@ -157,10 +155,7 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
     for (at, quantity) in case.quantities.iter().enumerate() {
         let mut statistics = Vec::new();
         for measure in &quantity.measures {
-            let spread = match exact[limit] {
-                Some(listed) => Some(Spread::from(listed)),
-                None => estimated(&drawn.values[limit]),
-            };
+            let spread = known[limit].or_else(|| estimated(&drawn.values[limit]));
             statistics.push(StatisticSpread {
                 name: measure.name.clone(),
                 title: measure.title.clone(),
@@ -171,7 +166,8 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
                 failing: share_of(drawn.limits[limit]),
                 overall: measure.over(usable.iter().copied()),
             });
-            if let (Some((_, selection)), true) = (&drawn.worst[limit], drawn.limits[limit] > 0) {
+            let drawn_worst = drawn.worst[limit].as_ref().filter(|_| drawn.limits[limit] > 0).map(|(_, selection)| selection.clone());
+            if let Some(selection) = worst_known(case, measure).or(drawn_worst) {
                 worst.push(WorstSelection {
                     quantity: quantity.id.clone(),
                     symbol: quantity.symbol.clone(),
@@ -212,49 +208,37 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
         quantities,
         sections: case.strata.iter().flat_map(|stratum| stratum.members.iter().map(|&at| of(&stratum.zone, at))).collect(),
         worst,
-        methods: methods(case, all, &exact, settings),
+        methods: methods(all, interval, &known, settings),
     }
 }
 
-fn methods(case: &Case, all: u64, exact: &[Option<Listed>], settings: &Settings) -> Vec<String> {
+/// Of a mean the selection that is worst of all, if it breaks the limit: no drawing finds a worse one.
+fn worst_known(case: &Case, measure: &Measure) -> Option<Vec<usize>> {
+    let (least, greatest) = Additive::of(case, measure)?.ends();
+    let value = |selection: &[usize]| measure.over(selection.iter().copied());
+    let (low, high) = (value(&least)?, value(&greatest)?);
+    let worst = if measure.at_least || -low > high { (low, least) } else { (high, greatest) };
+    (!measure.holds(worst.0)).then_some(worst.1)
+}
+
+fn methods(all: u64, interval: (f64, f64), known: &[Option<Spread>], settings: &Settings) -> Vec<String> {
+    let (width, wanted) = (interval.1 - interval.0, settings.width);
+    let ended = if width <= wanted {
+        format!("until the 95 % interval of the share (Wilson) was no wider than {wanted}: it is {width:.5} wide")
+    } else {
+        format!("which is the most; the 95 % interval of the share (Wilson) is {width:.5} wide, more than the {wanted} wanted")
+    };
     let mut methods = vec![format!(
-        "There are too many selections to look at all: {all} were drawn at random (seed {}), every one as likely, until the 95 % interval of the share (Wilson) was no wider than {}, or 4 million were drawn.",
-        settings.seed, settings.width
+        "There are too many selections to look at all: {all} were drawn at random (seed {}), every one as likely, {ended}.",
+        settings.seed
     )];
-    let listed = exact.iter().filter(|listed| listed.is_some()).count();
-    if listed > 0 {
-        methods.push(format!(
-            "{listed} of {} statistics are exact all the same: a mean is a sum of two halves of a selection, and order statistics of such sums follow from sorted halves without forming them.",
-            case.measures().count()
-        ));
-    }
-    if listed < exact.len() {
+    methods.extend(known::methods(known));
+    if known.iter().any(Option::is_none) {
         methods.push(format!(
             "Quartiles of the others are estimated from the first {} drawn selections, with 95 % intervals between order statistics that hold for any distribution; their least and greatest values are those that were drawn.",
             KEPT.min(all as usize)
         ));
     }
+    methods.push("Shares of the selections in which a limit or a quantity fails are those of the selections drawn.".into());
     methods
-}
-
-/// Statistics whose order statistics can be had without looking at every selection.
-fn exact(case: &Case) -> Vec<Option<Listed>> {
-    let (rows, columns) = Halves::sizes(case);
-    if rows > MOST_LISTED || columns > MOST_LISTED {
-        return case.measures().map(|_| None).collect();
-    }
-    let halves = Halves::of(case);
-    let measures: Vec<_> = case.measures().map(|(_, measure)| measure).collect();
-    measures
-        .par_iter()
-        .with_max_len(1)
-        .map(|measure| match measure.kind {
-            Kind::Deviation { .. } | Kind::Pooled(_) => None,
-            _ => match measure.parts(&halves) {
-                Parts::Sums { blocks, form, .. } => sums(&blocks, form),
-                Parts::Extremes { rows, columns, negative } => weighted(&larger(&rows, &columns, negative)),
-                Parts::Pooled => None,
-            },
-        })
-        .collect()
 }

@@ -105,7 +105,7 @@ fn draw(canvas: &mut Canvas, panel: &Panel<'_>, top: f64) {
             number::fixed(spread.median, 3),
             number::fixed(spread.q3, 3),
             number::fixed(spread.max, 3),
-            number::count(spread.outliers)
+            number::large(spread.outliers as f64)
         );
         canvas.group(&Group { class: "mark", title: Some(&title), ..Group::default() }, |layer| {
             one(layer, &frame, x, HALF.min(0.32 * width), spread);
@@ -144,7 +144,7 @@ fn one(layer: &mut super::canvas::Layer<'_>, frame: &Frame, x: f64, half: f64, s
         let lines = [1.0, -1.0].map(|limit| frame.y.at(limit));
         let across = lines.into_iter().find(|line| (above - line).abs() < CLEAR);
         layer.text(
-            &number::count(spread.outliers).replace('\u{202f}', " "),
+            &number::large(spread.outliers as f64).replace('\u{202f}', " "),
             (x, across.map_or(above, |line| line - CLEAR)),
             &Font::middle(4.6).color(MUTED),
         );

@@ -85,7 +85,7 @@ fn quantity(quantity: &QuantitySpread) -> Value {
 fn spread(spread: &Spread) -> Value {
     json!({
         "min": spread.min, "q1": spread.q1, "median": spread.median, "q3": spread.q3, "max": spread.max,
-        "outliers": spread.outliers, "count": whole(spread.count), "exact": spread.exact,
+        "outliers": spread.outliers, "count": whole(spread.count), "exact": spread.exact, "quartiles_within": spread.within,
         "q1_interval_95": spread.intervals.map(|all| all[0]), "median_interval_95": spread.intervals.map(|all| all[1]),
         "q3_interval_95": spread.intervals.map(|all| all[2]),
     })

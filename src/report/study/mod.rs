@@ -12,6 +12,7 @@ pub use document::{Chapter, Document, Head, Item, Table};
 use crate::report::figure;
 use crate::report::number;
 use crate::report::view::{self, Fact, Finding};
+use crate::result::Verdict;
 use crate::result::study::{Found, Share, Study};
 
 /// The study as both reports print it.
@@ -35,6 +36,16 @@ pub fn document(study: &Study) -> Document {
         campaign: view::campaign(&study.campaign),
         protocol: view::protocol_view(&study.protocol),
         chapters,
+    }
+}
+
+/// That a verdict stays, and which; a good sign only where it is the good one. `None`: it does not stay.
+fn stays(verdict: Option<Verdict>, otherwise: &str) -> Finding {
+    match verdict {
+        Some(Verdict::Validated) => Finding::new(Some(true), "The verdict stays: validated", "", ""),
+        // Neither good nor bad: that it does not depend on a choice says nothing for the model.
+        Some(verdict) => Finding { class: "open", sign: "–", word: format!("The verdict stays: {}", verdict.in_words()) },
+        None => Finding::new(None, "", "", otherwise),
     }
 }
 
@@ -97,9 +108,4 @@ fn share_with(share: f64, interval: Option<(f64, f64)>) -> String {
         None => percent(share),
         Some((low, high)) => format!("{} ({} to {})", percent(share), percent(low), percent(high)),
     }
-}
-
-/// A count of selections, as a power of ten where it is beyond reading.
-fn combinations(count: f64) -> String {
-    if count < 1e12 { number::count(count as u64) } else { number::significant(count, 3) }
 }

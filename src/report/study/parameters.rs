@@ -3,7 +3,7 @@
 use super::document::{Chapter, Head, Item, Table};
 use super::{Opening, share};
 use crate::report::number;
-use crate::report::view::{Fact, Finding};
+use crate::report::view::Fact;
 use crate::result::study::{AtValue, ParameterStudy, Varied};
 
 pub fn opening(found: &ParameterStudy) -> Opening {
@@ -16,10 +16,8 @@ pub fn opening(found: &ParameterStudy) -> Opening {
         format!("As it is, the verdict is {}. It changes with: {}.", found.base.verdict.in_words(), deciding.join("; "))
     };
     Opening {
-        headline: Finding::new(
-            if deciding.is_empty() { Some(true) } else { None },
-            "No free choice decides the verdict",
-            "",
+        headline: super::stays(
+            Some(found.base.verdict).filter(|_| deciding.is_empty()),
             &format!("{} of {} free choices decide the verdict", deciding.len(), found.parameters.len()),
         ),
         sentence,

@@ -1,11 +1,11 @@
 //! The study of selections, worded.
 
 use super::document::{Chapter, Head, Item, Table};
-use super::{Opening, combinations, percent, share};
+use super::{Opening, percent, share};
 use crate::report::number;
 use crate::report::view::{Fact, Finding};
 use crate::result::Verdict;
-use crate::result::study::{Importance, QuantitySpread, Reduction, Removal, SelectionStudy};
+use crate::result::study::{Importance, QuantitySpread, Reduction, Removal, SelectionStudy, Spread};
 
 /// Sections and selections listed in a table; all of them stand in the tables beside the report.
 const MOST_ROWS: usize = 60;
@@ -32,11 +32,11 @@ pub fn opening(found: &SelectionStudy) -> Opening {
         _ => None,
     };
     let looked = if found.share.exact {
-        format!("All {} selections were looked at.", combinations(found.combinations))
+        format!("All {} selections were looked at.", number::large(found.combinations))
     } else {
         format!(
             "Of {} selections {} were drawn at random; the interval is at 95 %.",
-            combinations(found.combinations),
+            number::large(found.combinations),
             number::count(found.share.looked_at)
         )
     };
@@ -47,7 +47,7 @@ pub fn opening(found: &SelectionStudy) -> Opening {
             found.verdict.in_words()
         ),
         facts: vec![
-            fact("Selections", combinations(found.combinations)),
+            fact("Selections", number::large(found.combinations)),
             fact("Validated", if found.share.exact { number::count(found.share.validated) } else { share(&found.share) }),
             fact("All sections", found.verdict.in_words().to_owned()),
             fact(
@@ -65,7 +65,11 @@ pub fn chapters(found: &SelectionStudy) -> Vec<Chapter> {
         Chapter { id: "selections".into(), title: "Selections".into(), items },
         Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items: spread(&found.quantities, "boxes", "") },
         Chapter { id: "failing".into(), title: "What fails".into(), items: failing(found) },
-        Chapter { id: "sections".into(), title: "Which sections matter".into(), items: importance(&found.sections, &found.removal) },
+        Chapter {
+            id: "sections".into(),
+            title: "Which sections matter".into(),
+            items: importance(&found.sections, found.removal.as_ref()),
+        },
     ];
     chapters.extend(found.reduction.as_ref().map(reduction));
     chapters
@@ -101,32 +105,28 @@ fn strata(found: &SelectionStudy) -> Item {
 
 /// The box plots and their numbers.
 pub fn spread(quantities: &[QuantitySpread], figure: &str, at: &str) -> Vec<Item> {
-    let shown = |value: f64| number::beside(value, 1.0, 3);
-    let rows = quantities.iter().flat_map(|quantity| {
-        quantity.statistics.iter().map(move |statistic| {
-            let mut row = vec![quantity.symbol.clone(), statistic.name.clone(), statistic.scope.clone()];
+    let statistics = || quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
+    // A column that says the same in every row is left out, so that the numbers have room.
+    let scopes = statistics().any(|(_, statistic)| statistic.scope != "all");
+    let spreads: Vec<Spread> = statistics().filter_map(|(_, statistic)| statistic.spread).collect();
+    let rows: Vec<Vec<String>> = statistics()
+        .map(|(quantity, statistic)| {
+            let mut row = vec![quantity.symbol.clone(), statistic.name.clone()];
+            row.extend(scopes.then(|| statistic.scope.clone()));
             row.push(statistic.overall.map_or_else(|| number::NONE.into(), shown));
             match &statistic.spread {
-                Some(spread) => {
-                    let within = |at: usize| {
-                        spread
-                            .intervals
-                            .map_or_else(String::new, |all| format!(" ± {}", number::significant(0.5 * (all[at].1 - all[at].0), 1)))
-                    };
-                    row.push(shown(spread.min));
-                    row.extend([spread.q1, spread.median, spread.q3].iter().enumerate().map(|(at, value)| shown(*value) + &within(at)));
-                    row.push(shown(spread.max));
-                    row.push(number::count(spread.outliers));
-                    row.push(if spread.exact { "exact" } else { "estimated" }.into());
-                }
-                None => row.extend((0..7).map(|_| number::NONE.to_owned())),
+                Some(spread) => row.extend(numbers(spread)),
+                None => row.extend((0..6).map(|_| number::NONE.to_owned())),
             }
             row.push(percent(statistic.failing));
             row
         })
-    });
-    let rows: Vec<Vec<String>> = rows.collect();
-    let beyond = quantities.iter().flat_map(|quantity| &quantity.statistics).filter(|statistic| statistic.failing > 0.0).count();
+        .collect();
+    let beyond = statistics().filter(|(_, statistic)| statistic.failing > 0.0).count();
+    let mut head = vec![Head::text("Quantity"), Head::short("Statistic")];
+    head.extend(scopes.then(|| Head::short("Pairs")));
+    head.extend(["All", "Least", "25 %", "Median", "75 %", "Greatest", "Outliers"].map(Head::number));
+    head.push(Head::number("Fails"));
     vec![
         Item::figure(
             figure,
@@ -138,25 +138,47 @@ pub fn spread(quantities: &[QuantitySpread], figure: &str, at: &str) -> Vec<Item
         ),
         Item::Table {
             table: Table {
-                caption: format!("Statistics divided by their limits over the selections{at}; \"all\" is for all usable sections together"),
-                head: vec![
-                    Head::text("Quantity"),
-                    Head::short("Statistic"),
-                    Head::short("Pairs"),
-                    Head::number("All"),
-                    Head::number("Least"),
-                    Head::number("25 %"),
-                    Head::number("Median"),
-                    Head::number("75 %"),
-                    Head::number("Greatest"),
-                    Head::number("Outliers"),
-                    Head::short("Kind"),
-                    Head::number("Fails"),
-                ],
+                caption: format!(
+                    "Statistics divided by their limits over the selections{at}; \"all\" is for all usable sections together{}",
+                    known(&spreads)
+                ),
+                head,
                 rows,
             },
         },
     ]
+}
+
+fn shown(value: f64) -> String {
+    number::beside(value, 1.0, 3)
+}
+
+/// From the least to the greatest value, and outliers; half the width of an interval where a quartile is estimated.
+fn numbers(spread: &Spread) -> Vec<String> {
+    let within = |at: usize| {
+        let half = spread.intervals.map(|all| 0.5 * (all[at].1 - all[at].0));
+        half.map_or_else(String::new, |half| format!(" ± {}", number::significant(half, 1)))
+    };
+    let mut row = vec![shown(spread.min)];
+    row.extend([spread.q1, spread.median, spread.q3].iter().enumerate().map(|(at, value)| shown(*value) + &within(at)));
+    row.push(shown(spread.max));
+    row.push(number::large(spread.outliers as f64));
+    row
+}
+
+/// How surely the numbers of a table are known.
+fn known(spreads: &[Spread]) -> String {
+    let estimated = spreads.iter().any(|spread| !spread.exact && spread.within.is_none());
+    let within = spreads.iter().filter_map(|spread| spread.within).fold(0.0, f64::max);
+    match (estimated, within > 0.0) {
+        (false, false) => "; all numbers are exact".to_owned(),
+        (true, false) => "; quartiles with ± are estimated, with all else in their rows, the others are exact".to_owned(),
+        (true, true) => format!(
+            "; quartiles with ± are estimated, with all else in their rows, the others are within {} for certain",
+            number::significant(within, 1)
+        ),
+        (false, true) => format!("; quartiles are within {} for certain", number::significant(within, 1)),
+    }
 }
 
 fn failing(found: &SelectionStudy) -> Vec<Item> {
@@ -209,34 +231,33 @@ fn failing(found: &SelectionStudy) -> Vec<Item> {
     items
 }
 
-fn importance(sections: &[Importance], removal: &Removal) -> Vec<Item> {
+fn importance(sections: &[Importance], removal: Option<&Removal>) -> Vec<Item> {
     let mut sorted: Vec<&Importance> = sections.iter().collect();
     let effect = |one: &Importance| one.with.zip(one.without).map_or(0.0, |(with, without)| with - without);
     sorted.sort_by(|a, b| effect(b).abs().total_cmp(&effect(a).abs()));
     let shown = |share: Option<f64>| share.map_or_else(|| number::NONE.to_owned(), percent);
-    vec![
-        Item::text(worded(removal)),
-        Item::Table {
-            table: Table {
-                caption: "Share of selections validated with and without each section, the largest difference first".into(),
-                head: vec![
-                    Head::text("Section"),
-                    Head::short("Zone"),
-                    Head::number("With it"),
-                    Head::number("Without it"),
-                    Head::number("Difference, points"),
-                ],
-                rows: sorted
-                    .iter()
-                    .take(MOST_ROWS)
-                    .map(|one| {
-                        let difference = one.with.zip(one.without).map(|(with, without)| 100.0 * (with - without));
-                        vec![one.section.clone(), one.zone.clone(), shown(one.with), shown(one.without), number::optional(difference, 2)]
-                    })
-                    .collect(),
-            },
+    let removal = removal.map(|removal| Item::text(worded(removal)));
+    let table = [Item::Table {
+        table: Table {
+            caption: "Share of selections validated with and without each section, the largest difference first".into(),
+            head: vec![
+                Head::text("Section"),
+                Head::short("Zone"),
+                Head::number("With it"),
+                Head::number("Without it"),
+                Head::number("Difference, points"),
+            ],
+            rows: sorted
+                .iter()
+                .take(MOST_ROWS)
+                .map(|one| {
+                    let difference = one.with.zip(one.without).map(|(with, without)| 100.0 * (with - without));
+                    vec![one.section.clone(), one.zone.clone(), shown(one.with), shown(one.without), number::optional(difference, 2)]
+                })
+                .collect(),
         },
-    ]
+    }];
+    removal.into_iter().chain(table).collect()
 }
 
 /// What is known of the sets whose removal changes the verdict.
@@ -248,10 +269,20 @@ fn worded(removal: &Removal) -> String {
                 "No set of sections changes the verdict of all sections together ({verdict}) by its removal: all sets were tried that leave what a selection takes."
             )
         }
-        [] => format!(
-            "No set of up to {} sections changes the verdict of all sections together ({verdict}) by its removal; larger ones were not tried.",
-            removal.tried
-        ),
+        [] => {
+            let larger = match &removal.larger {
+                None => "larger ones were not all tried".to_owned(),
+                Some(set) => format!(
+                    "without {} sections it changes, which were given up one at a time, always the one that helps most, so that a smaller set is not excluded: {}",
+                    set.len(),
+                    set.join(", ")
+                ),
+            };
+            format!(
+                "No set of up to {} sections changes the verdict of all sections together ({verdict}) by its removal; {larger}.",
+                removal.tried
+            )
+        }
         [first, rest @ ..] => {
             let size = first.len();
             let plural = if size == 1 { "section" } else { "sections" };

@@ -3,7 +3,7 @@
 use super::document::{Chapter, Head, Item, Table};
 use super::{Opening, percent, sections, share};
 use crate::report::number;
-use crate::report::view::{Fact, Finding};
+use crate::report::view::Fact;
 use crate::result::study::{AtOffset, SyncStudy};
 
 fn shown(found: &SyncStudy, offset: f64) -> String {
@@ -23,12 +23,15 @@ pub fn opening(found: &SyncStudy) -> Opening {
         ("Estimates taken out", if found.corrected { "yes" } else { "no" }.to_owned()),
     ];
     Opening {
-        headline: Finding::new(if same { Some(true) } else { None }, "The verdict stays", "The verdict changes", "The verdict changes"),
+        headline: super::stays(base.map(|base| base.verdict).filter(|_| same), "The verdict changes"),
         sentence: format!(
             "The measurement was shifted against the simulation from {} to {}. The verdict on all sections together {}; the share of selections validated lies between {} and {}.",
             shown(found, first),
             shown(found, last),
-            if same { "is the same at every offset" } else { "is not the same at every offset" },
+            match base.filter(|_| same) {
+                Some(base) => format!("is the same at every offset ({})", base.verdict.in_words()),
+                None => "is not the same at every offset".to_owned(),
+            },
             percent(low),
             percent(high)
         ),
@@ -57,7 +60,7 @@ pub fn chapters(found: &SyncStudy) -> Vec<Chapter> {
 fn shares(found: &SyncStudy) -> Vec<Item> {
     let row = |at: &AtOffset| {
         let (validated, selections) = match &at.study {
-            Ok(study) => (share(&study.share), super::combinations(study.combinations)),
+            Ok(study) => (share(&study.share), number::large(study.combinations)),
             Err(reason) => (reason.clone(), number::NONE.to_owned()),
         };
         let of = |share: f64, interval| super::share_with(share, interval);
@@ -148,7 +151,7 @@ fn estimates(found: &SyncStudy) -> Vec<Item> {
     };
     vec![
         Item::text(format!(
-            "By cross-correlation of all filtered signals of both records of a section; the interval is at 95 %, from the section with an eighth left out in turn and from the signals with each group left out in turn that shares a channel. {what}"
+            "By cross-correlation of all filtered signals of both records of a section; the interval is at 95 %, from the section with an eighth left out in turn and from how far groups of signals that share no channel lie apart. {what}"
         )),
         Item::Table {
             table: Table {

@@ -22,7 +22,7 @@ fn number(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| value.to_string())
 }
 
-const SPREAD: [&str; 19] = [
+const SPREAD: [&str; 20] = [
     "quantity",
     "statistic",
     "scope",
@@ -35,6 +35,7 @@ const SPREAD: [&str; 19] = [
     "max",
     "outliers",
     "exact",
+    "quartiles within",
     "q1 low 95 %",
     "q1 high 95 %",
     "median low 95 %",
@@ -53,11 +54,11 @@ fn spread(quantities: &[QuantitySpread]) -> Vec<Row> {
             match &statistic.spread {
                 Some(spread) => {
                     row.extend([spread.min, spread.q1, spread.median, spread.q3, spread.max].map(|value| value.to_string()));
-                    row.extend([spread.outliers.to_string(), spread.exact.to_string()]);
+                    row.extend([spread.outliers.to_string(), spread.exact.to_string(), number(spread.within)]);
                     let ends = (0..3).map(|at| spread.intervals.map(|all| all[at]));
                     row.extend(ends.flat_map(|ends| [number(ends.map(|ends| ends.0)), number(ends.map(|ends| ends.1))]));
                 }
-                None => row.extend((0..13).map(|_| String::new())),
+                None => row.extend((0..14).map(|_| String::new())),
             }
             row.push(statistic.failing.to_string());
             row
@@ -75,7 +76,7 @@ fn sections(found: &SelectionStudy) -> Result<Tables, csv::Error> {
         .iter()
         .map(|one| vec![one.quantity.clone(), one.title.clone(), one.scope.clone(), one.normalised.to_string(), one.sections.join(" ")])
         .collect();
-    let removal = found.removal.sets.iter().map(|set| vec![set.len().to_string(), set.join(" ")]).collect();
+    let removal = found.removal.iter().flat_map(|removal| &removal.sets).map(|set| vec![set.len().to_string(), set.join(" ")]).collect();
     let mut all = vec![
         csv_file("spread", &SPREAD, spread(&found.quantities))?,
         csv_file("importance", &["section", "zone", "share validated with it", "share validated without it"], importance)?,

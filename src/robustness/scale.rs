@@ -1,0 +1,65 @@
+//! All limits of one statistic of a protocol, times a common factor.
+
+use crate::check::family::Family;
+use crate::problem::{Problem, Problems};
+use crate::syntax::document::{Document, Text};
+
+/// What `every limit std` leads to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Scale {
+    /// As asked for.
+    words: String,
+    statistic: String,
+    /// Block and field of each limit.
+    limits: Vec<(usize, usize)>,
+}
+
+impl Scale {
+    /// Whether the words lead to several limits at once.
+    pub fn asked(address: &str) -> bool {
+        address.split_whitespace().next() == Some("every")
+    }
+
+    /// Finds the limits that `every limit` and a statistic lead to.
+    ///
+    /// # Errors
+    /// Other words; a statistic without a limit: which have one.
+    pub fn find(document: &Document, address: &str) -> Result<Self, Box<Problem>> {
+        let wrong = |says: String| Problem::error("unknown-rule", format!("`--vary {address}`: {says}"));
+        let [_, "limit", statistic] = address.split_whitespace().collect::<Vec<_>>()[..] else {
+            let says = "`every` is followed by `limit` and a statistic".to_owned();
+            return Err(Box::new(wrong(says).help("write `every limit std`, and factors as its values")));
+        };
+        let fields = document.blocks.iter().enumerate().flat_map(|(at, block)| {
+            let limits = block.fields.iter().enumerate().filter(|(_, field)| field.key.text == "limit");
+            limits.map(move |(field, found)| ((at, field), found.value.text.split_whitespace().next().unwrap_or("")))
+        });
+        let (limits, others): (Vec<_>, Vec<_>) = fields.partition(|(_, of)| *of == statistic);
+        if limits.is_empty() {
+            let says = format!("the protocol has no limit of `{statistic}`");
+            return Err(Box::new(wrong(says).suggest(statistic, others.iter().map(|(_, of)| *of))));
+        }
+        let limits = limits.into_iter().map(|(place, _)| place).collect();
+        Ok(Self { words: format!("every limit {statistic}"), statistic: statistic.to_owned(), limits })
+    }
+
+    /// The protocol with every such limit times a factor. Limits that are shares of one of them change with it.
+    pub fn with(&self, family: &Family, value: &str, problems: &mut Problems) -> Option<Family> {
+        let Some(factor) = value.trim().parse::<f64>().ok().filter(|factor| factor.is_finite() && *factor > 0.0) else {
+            let says = format!("`--vary {}={value}`: `{value}` is not a number above zero", self.words);
+            problems.push(Problem::error("vary", says).help("the values are factors without a unit: `every limit std=0.8..1.2 step 0.1`"));
+            return None;
+        };
+        let mut family = family.clone();
+        for &(block, field) in &self.limits {
+            let limit = &mut family.merged.blocks[block].fields[field].value;
+            // In the words of the language, so that the report prints the limit that was used.
+            *limit = Text { text: format!("{}, times {factor} when true", limit.text), span: limit.span.clone(), exact: false };
+        }
+        Some(family)
+    }
+
+    pub fn title(&self) -> String {
+        format!("Every limit of {}, times a factor", self.statistic)
+    }
+}

@@ -1,0 +1,54 @@
+//! Largest and smallest values over all selections, counted by binomials: no selection is formed, however many there are.
+
+use super::case::{Case, Kind, Measure, choose};
+use super::listed::{Listed, weighted};
+
+/// Order statistics of a largest, a smallest or a largest magnitude. `None` for other statistics, and where no selection has a
+/// value.
+///
+/// The largest value of a selection is no more than a bound if that of each of its sections is: zone by zone, as many choices as
+/// there are of the sections that keep to the bound.
+pub fn over_all(case: &Case, measure: &Measure) -> Option<Listed> {
+    let (sign, magnitude) = match measure.kind {
+        Kind::Largest => (1.0, false),
+        Kind::Smallest => (-1.0, false),
+        Kind::LargestMagnitude => (1.0, true),
+        _ => return None,
+    };
+    let of_section = |at: usize| {
+        let values = measure.values[at].iter().map(|value| sign * measure.scale * if magnitude { value.abs() } else { *value });
+        values.reduce(f64::max).unwrap_or(f64::NEG_INFINITY)
+    };
+    let strata: Vec<(usize, Vec<f64>)> = case
+        .strata
+        .iter()
+        .map(|stratum| {
+            let mut values: Vec<f64> = stratum.members.iter().map(|&at| of_section(at)).collect();
+            values.sort_unstable_by(f64::total_cmp);
+            (stratum.take, values)
+        })
+        .collect();
+    let upto = |bound: f64| -> f64 {
+        let choices = |(take, values): &(usize, Vec<f64>)| {
+            let members = values.partition_point(|value| *value <= bound);
+            if members < *take { 0.0 } else { choose(members, *take) }
+        };
+        strata.iter().map(choices).product()
+    };
+    let mut values: Vec<f64> = strata.iter().flat_map(|(_, values)| values).copied().filter(|value| value.is_finite()).collect();
+    values.sort_unstable_by(f64::total_cmp);
+    values.dedup();
+    let mut before = upto(f64::NEG_INFINITY);
+    let mut list = Vec::with_capacity(values.len());
+    for value in values {
+        let now = upto(value);
+        if now > before {
+            list.push((sign * value, now - before));
+        }
+        before = now;
+    }
+    if sign < 0.0 {
+        list.reverse();
+    }
+    weighted(&list)
+}

@@ -1,0 +1,51 @@
+//! What is known of all selections where they are too many to look at: no sampling where another way leads there.
+
+use rayon::prelude::*;
+
+use super::case::{Case, Kind, Measure};
+use super::extremes;
+use super::grid::Additive;
+use super::halves::{Halves, Parts};
+use super::listed::sums;
+use crate::result::study::Spread;
+
+/// Choices of a half that are listed to have a statistic exactly.
+const MOST_LISTED: f64 = 2e6;
+
+/// Of every limit what is known of its order statistics over all selections, without drawing any.
+pub fn known(case: &Case) -> Vec<Option<Spread>> {
+    let (rows, columns) = Halves::sizes(case);
+    let halves = (rows <= MOST_LISTED && columns <= MOST_LISTED).then(|| Halves::of(case));
+    let combinations = case.combinations();
+    let measures: Vec<&Measure> = case.measures().map(|(_, measure)| measure).collect();
+    let of = |measure: &&Measure| match (measure.kind, &halves) {
+        (Kind::Deviation { .. } | Kind::Pooled(_), _) => None,
+        (Kind::Largest | Kind::Smallest | Kind::LargestMagnitude, _) => extremes::over_all(case, measure).map(Spread::from),
+        (Kind::Mean | Kind::RootMeanSquare, Some(halves)) => match measure.parts(halves) {
+            Parts::Sums { blocks, form, .. } => sums(&blocks, form).map(Spread::from),
+            Parts::Extremes { .. } | Parts::Pooled => None,
+        },
+        (Kind::Mean | Kind::RootMeanSquare, None) => Additive::of(case, measure)?.spread(combinations),
+    };
+    measures.par_iter().with_max_len(1).map(of).collect()
+}
+
+/// How it is known, a sentence for each way.
+pub fn methods(known: &[Option<Spread>]) -> Vec<String> {
+    let (all, exact) = (known.len(), known.iter().flatten().filter(|spread| spread.exact).count());
+    let surely: Vec<f64> = known.iter().flatten().filter_map(|spread| spread.within).collect();
+    let mut methods = Vec::new();
+    if exact > 0 {
+        methods.push(format!(
+            "{exact} of {all} statistics are exact all the same: the choices with a largest value up to a bound are counted by binomials, and order statistics of means follow from sorted halves of selections."
+        ));
+    }
+    if !surely.is_empty() {
+        let widest = surely.iter().copied().fold(0.0, f64::max);
+        methods.push(format!(
+            "{} of {all} statistics, which are means, are known of all selections without drawing: least and greatest values exactly, quartiles to ± {widest:.1e} for certain, since the parts of sections are counted on a grid.",
+            surely.len()
+        ));
+    }
+    methods
+}
