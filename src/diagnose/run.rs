@@ -79,8 +79,6 @@ const FLOOR: f64 = 30.0;
 /// The same for an operation on the signals, which no such discrepancy enters: half as much, where 10 is called very strong (Kass and
 /// Raftery 1995).
 const FLOOR_EXACT: f64 = 15.0;
-/// An effect that is the blown form of a declared tolerance needs so many times the evidence.
-const BLOWN: f64 = 1.5;
 /// A candidate is simulated at all its sizes from this share of the best evidence on, and from this evidence on.
 pub const NEAR: f64 = 0.5;
 pub const WORTH: f64 = 10.0;
@@ -267,16 +265,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
 /// Bars from what chance reaches.
 fn bars(chance: f64) -> Bars {
     let first = chance.max(FLOOR);
-    Bars {
-        first,
-        exact: chance.max(FLOOR_EXACT),
-        tolerance: BLOWN * first,
-        next: 1.25 * first,
-        confined: 15.0,
-        tolerance_sd: TOLERANCE_SD,
-        share: 0.12,
-        most: 3,
-    }
+    Bars { first, exact: chance.max(FLOOR_EXACT), next: 1.25 * first, confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.12, most: 3 }
 }
 
 impl Found {

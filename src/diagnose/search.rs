@@ -11,9 +11,7 @@ pub struct Bars {
     pub first: f64,
     /// The same for an operation on the signals: exact, whatever the model is wrong in.
     pub exact: f64,
-    /// The same for an effect that is the blown form of a declared tolerance: what is declared is an estimate itself.
-    pub tolerance: f64,
-    /// Of every further one.
+    /// Of every further one, and of a first one that is the blown form of a declared tolerance.
     pub next: f64,
     /// Extra evidence that a confinement must bring over the whole campaign.
     pub confined: f64,
@@ -30,7 +28,8 @@ impl Bars {
     pub fn alone(&self, candidate: &Candidate) -> f64 {
         match (candidate.exact, &candidate.tolerance) {
             (true, _) => self.exact,
-            (false, Some(_)) => self.tolerance,
+            // What is declared is an estimate itself.
+            (false, Some(_)) => self.next,
             (false, None) => self.first,
         }
     }
