@@ -144,7 +144,8 @@ fn size_seen(covariance: &Covariance, view: &View, candidate: &Candidate, mask: 
     let (share, slope) = ((fitted.size - neutral) / full, (fitted.slope * full).abs());
     let whole = whitener.apply(&part(&change, covariance.size, view));
     let ratio = fitted.fall - (2.0 * dot(&z, &whole) - dot(&whole, &whole));
-    let by_ratio = if ratio > 0.0 { (share - 1.0).abs() / ratio.sqrt() } else { 0.0 };
+    // What an operation on the signals changes follows its size closely; only of a simulated path the slope may mislead.
+    let by_ratio = if ratio > 0.0 && !candidate.exact { (share - 1.0).abs() / ratio.sqrt() } else { 0.0 };
     (slope > 0.0).then(|| (share, by_ratio.max(1.0 / slope)))
 }
 

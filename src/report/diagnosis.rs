@@ -121,10 +121,13 @@ fn places(found: &Diagnosis) -> Chapter {
                    Quasi-static differences count towards the simulated side; those of bands are relative";
     let table = Table { caption: caption.into(), head, rows: rows.collect() };
     let significant = found.r#where.iter().filter(|place| place.significant).count();
-    let text = format!(
+    let mut text = format!(
         "{significant} of {} cells differ by more than noise, tolerances and what a model of this kind may be wrong in.",
         found.r#where.len()
     );
+    if significant == 0 && !found.causes.is_empty() {
+        text.push_str(" No cell does so by itself: what follows rests on all of them together.");
+    }
     let caption = "Share of the gap by quantity and position, zone and band: the darker, the larger; a dot marks what is significant";
     let map = Item::figure("map", caption, "A map of cells, darker where more of the gap lies");
     let mut items = vec![Item::text(text), map, Item::Table { table }];
