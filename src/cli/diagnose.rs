@@ -161,7 +161,7 @@ pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &m
     let Prepared { compiled, campaign, .. } = prepare(asked.folder, asked.protocol, &[], problems)?;
     let catalogue = load_catalogue(asked.catalogue, problems)?;
     let settings = Settings::read(&catalogue, problems)?;
-    let sections = sections(&campaign, problems);
+    let sections = sections(&campaign, problems)?;
     let mut lacking = Problems::default();
     let external = asked.simulator.is_some_and(SimulatorChoice::external);
     let chosen = match asked.simulator {

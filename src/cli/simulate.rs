@@ -97,7 +97,7 @@ impl Simulate {
         let mut problems = Problems::default();
         let campaign = Campaign::open(folder, &mut problems);
         let prepared = campaign.as_ref().and_then(|campaign| {
-            let sections = sections(campaign, &mut problems);
+            let sections = sections(campaign, &mut problems)?;
             let chosen = self.simulator.open(campaign, &mut problems)?;
             for problem in unusable(catalogue, effects, &sections, &chosen) {
                 problems.push(problem);

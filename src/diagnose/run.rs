@@ -127,7 +127,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let mut difference = less(&measured, &simulated);
     let mut reference = Reference::default();
     for campaign in inputs.references {
-        let sections = crate::simulate::sections(campaign, problems);
+        let sections = crate::simulate::sections(campaign, problems)?;
         reference.learn(&Observations::read(campaign, sections, inputs.catalogue, settings, &declared, &unit, problems)?, settings);
     }
     reference.take_off(&seen, settings, &mut difference);

@@ -68,33 +68,41 @@ impl Section {
     }
 }
 
-/// The sections of a campaign, in the order of its table.
-pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Vec<Section> {
+/// The sections of a campaign, in the order of its table; none where a cell of it cannot be read.
+pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Option<Vec<Section>> {
     let Some(table) = &campaign.sections else {
         let whole =
             |cell: &Cell| Section { cell: cell.clone(), start: f64::NEG_INFINITY, end: f64::INFINITY, speed: None, facts: Vec::new() };
-        return campaign.names.iter().map(whole).collect();
+        return Some(campaign.names.iter().map(whole).collect());
     };
-    let start = column(table, "start", None, problems);
-    let end = column(table, "end", None, problems);
+    let mut faults = Problems::default();
+    let start = column(table, "start", None, &mut faults);
+    let end = column(table, "end", None, &mut faults);
     let speed = match table.column("speed") {
-        Some(_) => column(table, "speed", Some(Dimension::LENGTH / Dimension::TIME), problems),
+        Some(_) => column(table, "speed", Some(Dimension::LENGTH / Dimension::TIME), &mut faults),
         None => Vec::new(),
     };
+    // A number in a unit that is not known would be taken for one in SI.
+    let unit_of = |heading: &Heading| heading.unit.as_ref().map(|_| heading.unit(None)).transpose();
+    let units: Vec<Option<Unit>> =
+        table.columns.iter().map(|heading| unit_of(heading).map_err(|fault| faults.push(fault)).ok().flatten()).collect();
+    let readable = !faults.any_error();
     let mut found = Vec::new();
-    for (row, cell) in campaign.names.iter().enumerate() {
+    for (row, cell) in campaign.names.iter().enumerate().filter(|_| readable) {
         let number = |column: &[Option<f64>]| column.get(row).copied().flatten();
         let fact = |(at, heading): (usize, &Heading)| {
             let text = table.cell(row, at).map(|cell| cell.value.clone()).unwrap_or_default();
-            Fact { name: heading.name.clone(), text, unit: heading.unit(None).ok() }
+            Fact { name: heading.name.clone(), text, unit: units[at].clone() }
         };
         let facts = table.columns.iter().enumerate().map(fact).collect();
         match (number(&start), number(&end)) {
             (Some(start), Some(end)) => found.push(Section { cell: cell.clone(), start, end, speed: number(&speed), facts }),
-            _ => problems.push(Problem::error("section", format!("section `{}` has no start or no end", cell.value)).at(&cell.span)),
+            _ => faults.push(Problem::error("section", format!("section `{}` has no start or no end", cell.value)).at(&cell.span)),
         }
     }
-    found
+    let whole = !faults.any_error();
+    faults.0.into_iter().for_each(|fault| problems.push(fault));
+    whole.then_some(found)
 }
 
 fn column(table: &Table, name: &str, dimension: Option<Dimension>, problems: &mut Problems) -> Vec<Option<f64>> {

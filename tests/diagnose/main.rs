@@ -115,6 +115,35 @@ fn a_tolerance_that_cannot_be_used_is_told() {
     assert!(says.contains("declared in kN") && says.contains("cant [mm]"), "{says}");
 }
 
+/// A table of sections that cannot be read is told once, at its place, and nothing is simulated or written.
+#[test]
+fn a_table_of_sections_that_cannot_be_read_is_told_once() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good");
+    let to = folder().join("table");
+    copy(&example, &to);
+    let table = fs::read_to_string(example.join("sections.csv")).unwrap();
+    let widened: String =
+        table.lines().enumerate().map(|(row, line)| format!("{line},{}\n", if row == 0 { "wind [foo]" } else { "3" })).collect();
+    let second = |from: &str, into: &str| {
+        let rows = table.lines().enumerate();
+        rows.fold(String::new(), |all, (row, line)| all + &if row == 2 { line.replacen(from, into, 1) } else { line.to_string() } + "\n")
+    };
+    let cases = [
+        (widened, "`foo` is no known unit", "sections.csv:1:"),
+        (second("105.00", "abc"), "`start`: `abc` is not a number", "sections.csv:3:7"),
+        (second("105.00", ""), "section `S02` has no start or no end", "sections.csv:3:1"),
+    ];
+    for (text, says, place) in cases {
+        fs::write(to.join("sections.csv"), text).unwrap();
+        let out = to.with_extension("diagnosis");
+        let ran = fishplate(&["diagnose", to.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        let told = String::from_utf8(ran.stderr).unwrap();
+        assert_eq!(ran.status.code(), Some(2), "{told}");
+        assert!(told.contains(says) && told.contains(place) && told.matches("error[").count() == 1, "{told}");
+        assert!(!out.exists());
+    }
+}
+
 /// In one test, one after the other: each uses the runs of the one before.
 #[test]
 fn what_is_hidden_is_found_and_nothing_is_invented() {
