@@ -14,11 +14,21 @@ pub struct Runs {
     pub failed: Vec<String>,
 }
 
+/// Parameters that every run of a bench has set, in some sections or in all.
+#[derive(Clone, Debug)]
+pub struct Set {
+    pub values: Vec<(String, f64)>,
+    /// All sections where nothing.
+    pub sections: Option<Vec<bool>>,
+}
+
 /// A simulator whose runs become features, and are kept.
 pub struct Bench<'a> {
     pub seen: &'a Observations,
     pub simulator: &'a dyn Simulator,
     pub cache: Option<Cache>,
+    /// Later ones over earlier ones.
+    pub set: Vec<Set>,
 }
 
 impl std::fmt::Debug for Bench<'_> {
@@ -28,23 +38,49 @@ impl std::fmt::Debug for Bench<'_> {
 }
 
 impl Bench<'_> {
-    /// Features of the simulator with settings, all sections.
+    /// What a parameter is set to in a section, if it is.
+    #[must_use]
+    pub fn value(&self, section: usize, key: &str) -> Option<f64> {
+        let there = self.set.iter().rev().filter(|set| set.sections.as_ref().is_none_or(|sections| sections[section]));
+        there.flat_map(|set| &set.values).find(|(known, _)| known == key).map(|(_, value)| *value)
+    }
+
+    /// Features of the simulator with settings over what is set, all sections.
     ///
     /// # Errors
     /// The first section that fails.
     pub fn features(&self, settings: &[(String, f64)]) -> Result<Vec<f64>, Problem> {
-        if let Some(known) = self.cache.as_ref().and_then(|cache| cache.get(settings, self.seen.len())) {
+        self.moved(&|_| settings.to_vec())
+    }
+
+    /// The same with settings section by section.
+    ///
+    /// # Errors
+    /// The first section that fails.
+    pub fn moved(&self, settings: &(dyn Fn(usize) -> Vec<(String, f64)> + Sync)) -> Result<Vec<f64>, Problem> {
+        let keys = self.set.iter().flat_map(|set| &set.values).map(|(key, _)| key);
+        let each: Vec<Vec<(String, f64)>> = (0..self.seen.sections.len())
+            .map(|at| {
+                let mut all = settings(at);
+                for key in keys.clone() {
+                    if let (Some(value), false) = (self.value(at, key), all.iter().any(|(known, _)| known == key)) {
+                        all.push((key.clone(), value));
+                    }
+                }
+                all
+            })
+            .collect();
+        if let Some(known) = self.cache.as_ref().and_then(|cache| cache.get(&each, self.seen.len())) {
             return Ok(known);
         }
-        let each = |at: usize| {
-            let signals =
-                self.simulator.run(&Task { section: &self.seen.sections[at].section, settings, shift: 0.0, inside_only: true })?;
-            Ok(self.seen.of(at, &signals, true))
+        let run = |at: usize| {
+            let task = Task { section: &self.seen.sections[at].section, settings: &each[at], shift: 0.0, inside_only: true };
+            Ok(self.seen.of(at, &self.simulator.run(&task)?, true))
         };
-        let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.seen.sections.len()).into_par_iter().map(each).collect();
+        let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.seen.sections.len()).into_par_iter().map(run).collect();
         let features = parts?.concat();
         if let Some(cache) = &self.cache {
-            cache.put(settings, &features);
+            cache.put(&each, &features);
         }
         Ok(features)
     }

@@ -19,9 +19,10 @@ impl Cache {
         Self { folder: folder.to_path_buf(), of }
     }
 
-    fn path(&self, settings: &[(String, f64)]) -> PathBuf {
+    /// `settings` section by section.
+    fn path(&self, settings: &[Vec<(String, f64)>]) -> PathBuf {
         let mut key = self.of.clone();
-        for (name, value) in settings {
+        for (name, value) in settings.iter().flat_map(|of| of.iter().map(|(name, value)| (name.as_str(), *value)).chain([("", 0.0)])) {
             key += &format!("\n{name}={:016x}", value.to_bits());
         }
         self.folder.join(format!("{}.features", &sha256(key.as_bytes())[..32]))
@@ -29,7 +30,7 @@ impl Cache {
 
     /// The features of a run with settings, if it was made; `wanted` numbers.
     #[must_use]
-    pub fn get(&self, settings: &[(String, f64)], wanted: usize) -> Option<Vec<f64>> {
+    pub fn get(&self, settings: &[Vec<(String, f64)>], wanted: usize) -> Option<Vec<f64>> {
         let bytes = std::fs::read(self.path(settings)).ok()?;
         let (chunks, rest) = bytes.as_chunks::<8>();
         let values: Vec<f64> = chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
@@ -37,7 +38,7 @@ impl Cache {
     }
 
     /// Keeps the features of a run. A cache that cannot be written is no fault: the run is made again.
-    pub fn put(&self, settings: &[(String, f64)], features: &[f64]) {
+    pub fn put(&self, settings: &[Vec<(String, f64)>], features: &[f64]) {
         let bytes: Vec<u8> = features.iter().flat_map(|value| value.to_le_bytes()).collect();
         let _ = crate::data::write::write_whole(&self.path(settings), &bytes);
     }

@@ -56,7 +56,7 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, sections: Vec<Section>
         (inputs.trying)("the protocol with the effects");
         let made = evaluate(&found, &unseen(inputs, &found, None)?)?;
         if let Some((idle, reason)) = idle(inputs, &found, &before, &made, &evaluate)? {
-            found.refuse(idle, reason);
+            found.refuse(idle, reason, inputs.seed);
             continue;
         }
         shrink = Some(compare(&before, &made, inputs.seed, shares(&found)));

@@ -62,6 +62,16 @@ pub fn excess(lack: &[(String, Kind, f64, f64)]) -> f64 {
     lack.iter().map(|(.., excess)| excess.max(0.0)).sum()
 }
 
+/// What is left of the excess, and whether that is too much to call the gap explained: more than half of it, in more than one kind of
+/// one channel or far beyond. One among some forty may be a little beyond without anything being missing.
+#[must_use]
+pub fn unexplained(before: &[(String, Kind, f64, f64)], after: &[(String, Kind, f64, f64)]) -> (f64, bool) {
+    let (gap, rest) = (excess(before), excess(after));
+    let share = if gap > 0.0 { (rest / gap).clamp(0.0, 1.0) } else { 0.0 };
+    let beyond: Vec<f64> = after.iter().map(|(_, _, sigma, _)| *sigma).filter(|sigma| *sigma > LACK).collect();
+    (share, share > 0.5 && (beyond.len() > 1 || beyond.iter().any(|sigma| *sigma > 3.0 * LACK)))
+}
+
 /// A member that makes channels go further beyond what is allowed for is no cause. Gives what is left.
 pub fn drop_what_harms(
     fitter: &Fitter<'_>,

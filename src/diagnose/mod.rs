@@ -26,6 +26,7 @@ pub mod score;
 pub mod search;
 pub mod sensitivity;
 pub mod settings;
+mod settle;
 pub mod shrink;
 pub mod stability;
 pub mod whiten;

@@ -8,13 +8,14 @@ use super::declared::Declared;
 use super::features::Kind;
 use super::fit::{Fitted, Fitter, Known, Mask, less};
 use super::guards::{View, carried, contradiction, families};
-use super::lack::{drop_what_harms, lack_after, lack_of_fit, left};
+use super::lack::{drop_what_harms, lack_after, lack_of_fit, left, unexplained};
 use super::masks::{masks, section_masks};
 use super::observe::Observations;
 use super::reference::Reference;
 use super::search::{Bars, Chosen, Judged, Refused, chi_squared, plausible, refit, rivals, search};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
+use super::settle::{ROUNDS, Settled, Weighed, polish};
 use super::stability::{Stability, stability};
 use super::whiten::{Covariance, Whitener, dot};
 use crate::data::Campaign;
@@ -49,6 +50,9 @@ pub struct Found {
     pub candidates: Vec<Candidate>,
     pub masks: Vec<Mask>,
     pub covariance: Covariance,
+    /// With the tolerances as they act where the answer is, and its whitener: what the members are weighed by.
+    pub settled: Covariance,
+    pub weighing: Whitener,
     /// Noise and tolerances alone.
     pub tolerated: Covariance,
     pub whitener: Whitener,
@@ -82,10 +86,6 @@ const FLOOR_EXACT: f64 = 15.0;
 /// A candidate is simulated at all its sizes from this share of the best evidence on, and from this evidence on.
 pub const NEAR: f64 = 0.5;
 pub const WORTH: f64 = 10.0;
-
-/// How often the sizes that were found are added and fitted again, and what share of a size is no difference.
-const ROUNDS: usize = 3;
-const ALIKE: f64 = 0.01;
 
 /// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
 #[must_use]
@@ -133,23 +133,21 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     reference.take_off(&seen, settings, &mut difference);
     let settings = &reference.narrowed(settings);
     let mut runs = Runs::default();
-    let bench = inputs.simulator.map(|simulator| Bench { seen: &seen, simulator, cache: inputs.cache.clone() });
+    let bench = inputs.simulator.map(|simulator| Bench { seen: &seen, simulator, cache: inputs.cache.clone(), set: Vec::new() });
     (inputs.trying)("simulation without effects");
-    let base = match &bench {
-        Some(bench) => match bench.features(&[]) {
-            Ok(base) => base,
-            Err(problem) => {
-                problems.push(problem);
-                return None;
-            }
-        },
-        None => simulated.clone(),
+    let base = match bench.as_ref().map(|bench| bench.features(&[])).transpose() {
+        Ok(base) => base.unwrap_or_else(|| simulated.clone()),
+        Err(problem) => {
+            problems.push(problem);
+            return None;
+        }
     };
     (inputs.trying)("what the tolerances change");
-    let sensitivities: Vec<Sensitivity> = match &bench {
-        Some(bench) => sensitivities(bench, settings, &base, &value, &declared, &mut runs),
+    let columns = match &bench {
+        Some(bench) => sensitivities(bench, settings, &base, &value, &declared, &|_| true, &mut runs),
         None => Vec::new(),
     };
+    let sensitivities: Vec<Sensitivity> = columns.iter().flatten().cloned().collect();
     // What was learnt from a reference has that in it already.
     for sensitivity in sensitivities.iter().filter(|sensitivity| sensitivity.expected != 0.0 && inputs.references.is_empty()) {
         difference.iter_mut().zip(&sensitivity.column).for_each(|(difference, column)| *difference -= sensitivity.expected * column);
@@ -218,8 +216,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), known);
     let bars = bars(chance.unwrap_or(FLOOR));
     let fault = |member: &Fitted, count: usize| {
-        // Beside others, a member has met a higher bar on its way in.
-        if member.evidence < if count == 1 { bars.alone(&fitter.candidates[member.candidate]) } else { bars.first } {
+        if member.evidence < bars.least(&fitter.candidates[member.candidate], count) {
             return Some("simulated at the size that was found, it has too little evidence");
         }
         (!plausible(&fitter.candidates[member.candidate], member.size))
@@ -234,7 +231,19 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         refused.push(Refused { fitted, reason: reason.into() });
         refit(&fitter, &z, &mut chosen, 6);
     }
+    drop(fitter);
     let lack_before = lack_of_fit(&whole, &seen, &difference);
+    let lack_now = lack_after(&whole, &seen, (&candidates, &masks), &difference, &chosen);
+    let mut settled = Weighed { covariance: whole.clone(), whitener: whitener.clone(), z, chosen };
+    // A set that leaves most of the gap is no place to take anything at.
+    if !unexplained(&lack_before, &lack_now).1 {
+        let again =
+            Settled { workshop: &workshop, settings, columns: &columns, value: &value, declared: &declared, difference: &difference };
+        settled = again.settle((&mut candidates, &masks), settled, &bars, &mut refused, &mut runs);
+    }
+    let Weighed { covariance: settled, whitener: weighing, z, mut chosen } = settled;
+    let fitter = Fitter::new(&weighing, &candidates, masks.clone());
+    refit(&fitter, &z, &mut chosen, 6);
     let lack_after = drop_what_harms(&fitter, (&whole, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
     let rivals = rivals(&fitter, &z, &chosen);
     let stability = stability(&fitter, &z, (&chosen, &refused), &strata, inputs.seed);
@@ -246,6 +255,8 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         covariance: whole,
         tolerated,
         whitener,
+        settled,
+        weighing,
         difference,
         simulated,
         chosen,
@@ -270,15 +281,25 @@ fn bars(chance: f64) -> Bars {
 
 impl Found {
     /// Without a member, the others fitted again.
-    pub fn refuse(&mut self, at: usize, reason: String) {
+    pub fn refuse(&mut self, at: usize, reason: String, seed: u64) {
         self.refused.push(Refused { fitted: self.chosen.members.remove(at), reason });
-        self.chosen.members = super::shrink::trained(self, &[]);
-        self.chosen.rest =
-            self.chosen.members.iter().fold(self.whitener.apply(&self.difference), |rest, member| less(&rest, &member.whitened));
-        self.lack_after = lack_after(&self.covariance, &self.seen, (&self.candidates, &self.masks), &self.difference, &self.chosen);
-        self.stability.remove(at);
+        self.fit_again();
+        if unexplained(&self.lack_before, &self.lack_after).1 {
+            self.settled = self.covariance.clone();
+            self.weighing = self.whitener.clone();
+            self.fit_again();
+        }
+        let fitter = Fitter::new(&self.weighing, &self.candidates, self.masks.clone());
+        self.stability = stability(&fitter, &self.weighing.apply(&self.difference), (&self.chosen, &self.refused), &self.strata, seed);
         self.rivals.retain(|(member, ..)| *member != at);
         self.rivals.iter_mut().filter(|(member, ..)| *member > at).for_each(|(member, ..)| *member -= 1);
+    }
+
+    fn fit_again(&mut self) {
+        self.chosen.members = super::shrink::trained(self, &[]);
+        self.chosen.rest =
+            self.chosen.members.iter().fold(self.weighing.apply(&self.difference), |rest, member| less(&rest, &member.whitened));
+        self.lack_after = lack_after(&self.covariance, &self.seen, (&self.candidates, &self.masks), &self.difference, &self.chosen);
     }
 }
 
@@ -337,20 +358,6 @@ fn guard(
     carried(covariance, &fitter.masks[fit.mask], &change, &rest).map_or(judged, Judged::Refused)
 }
 
-/// Adds the sizes that were found, where no size as near was tried; whether there was any to add.
-fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], fits: &[Fitted], runs: &mut Runs) -> bool {
-    let mut added = false;
-    for member in fits {
-        let candidate = &mut candidates[member.candidate];
-        let known = candidate.nodes.iter().any(|node| (node.size - member.size).abs() <= ALIKE * member.size.abs());
-        if !candidate.discrete && member.size.is_finite() && !known {
-            workshop.add_size(candidate, member.size, runs);
-            added = true;
-        }
-    }
-    added
-}
-
 /// Candidates that are worth their other sizes: those within reach of the best for the whole difference, for what a first set of
 /// causes leaves, or for what it leaves without one of them; and the members of that set.
 fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<usize> {
@@ -382,7 +389,7 @@ pub fn length(whitener: &Whitener, change: &[f64]) -> f64 {
 /// Chi-squared per feature before and after.
 #[must_use]
 pub fn chi(found: &Found) -> (f64, f64) {
-    let before = found.whitener.apply(&found.difference);
+    let before = found.weighing.apply(&found.difference);
     let n = before.len().max(1) as f64;
     (chi_squared(&before) / n, chi_squared(&found.chosen.rest) / n)
 }

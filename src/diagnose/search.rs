@@ -33,6 +33,12 @@ impl Bars {
             (false, None) => self.first,
         }
     }
+
+    /// Least evidence of one of so many members that were found; beside others, it has met a higher bar on its way in.
+    #[must_use]
+    pub fn least(&self, candidate: &Candidate, count: usize) -> f64 {
+        if count == 1 { self.alone(candidate) } else { self.first }
+    }
 }
 
 /// A set of effects with the difference that is left.

@@ -7,43 +7,70 @@ use super::settings::Settings;
 /// Finite differences are taken over so many standard deviations: beyond the noise of branches, within what is linear.
 const STEP: f64 = 1.5;
 
-/// A column per tolerated parameter: the change of all features with one standard deviation of it.
+/// A column per tolerated parameter: the change of all features with one standard deviation of it, `base` being those of the bench as it
+/// is set. `value` is what a parameter has where nothing is set; `wanted` picks columns by their number.
 #[must_use]
 pub fn sensitivities(
     bench: &Bench<'_>,
     settings: &Settings,
     base: &[f64],
-    value: &dyn Fn(&str) -> Option<f64>,
+    value: &(dyn Fn(&str) -> Option<f64> + Sync),
     declared: &dyn Fn(&str) -> Option<f64>,
+    wanted: &dyn Fn(usize) -> bool,
     runs: &mut Runs,
-) -> Vec<Sensitivity> {
+) -> Vec<Option<Sensitivity>> {
     let mut columns = Vec::new();
+    let now = |section: usize, key: &str| bench.value(section, key).or_else(|| value(key));
     for tolerance in &settings.tolerances {
         let sd = declared(&tolerance.name).unwrap_or(tolerance.default);
-        // What is set, and how many standard deviations that is.
-        let mut tried: Vec<(Vec<(String, f64)>, f64)> = Vec::new();
-        for key in &tolerance.scales {
-            tried.extend(value(key).map(|from| (vec![(key.clone(), from + STEP * from * sd)], STEP)));
-        }
-        for (key, factor) in &tolerance.adds {
-            tried.extend(value(key).map(|from| (vec![(key.clone(), from + STEP * factor * sd)], STEP)));
-        }
+        // What is moved, and how many standard deviations that is.
+        let mut tried: Vec<(Vec<(String, Move)>, f64)> = Vec::new();
+        tried.extend(tolerance.scales.iter().map(|key| (vec![(key.clone(), Move::Times(1.0 + STEP * sd))], STEP)));
+        tried.extend(tolerance.adds.iter().map(|(key, factor)| (vec![(key.clone(), Move::Plus(STEP * factor * sd))], STEP)));
         if !tolerance.sets.is_empty() && sd > 0.0 {
-            tried.push((tolerance.sets.clone(), 1.0 / sd));
+            tried.push((tolerance.sets.iter().map(|(key, to)| (key.clone(), Move::To(*to))).collect(), 1.0 / sd));
         }
-        for (set, deviations) in tried.into_iter().filter(|(set, _)| set.iter().any(|(key, to)| value(key) != Some(*to))) {
+        for (moves, deviations) in tried {
+            let moved = |section: usize| -> Vec<(String, f64)> {
+                moves.iter().filter_map(|(key, by)| Some((key.clone(), by.from(now(section, key))?))).collect()
+            };
+            let some = |section: usize| moved(section).iter().any(|(key, to)| now(section, key) != Some(*to));
+            if !(0..bench.seen.sections.len()).any(some) || !wanted(columns.len()) {
+                columns.push(None);
+                continue;
+            }
             runs.made += bench.seen.sections.len();
-            match bench.features(&set) {
-                Ok(made) => columns.push(Sensitivity {
+            columns.push(match bench.moved(&moved) {
+                Ok(made) => Some(Sensitivity {
                     tolerance: tolerance.name.clone(),
                     column: made.iter().zip(base).map(|(made, base)| (made - base) / deviations).collect(),
                     expected: tolerance.expected,
                     per_section: tolerance.per_section,
                     shared: tolerance.shared,
                 }),
-                Err(problem) => runs.failed.push(format!("{}: {}", tolerance.name, problem.says)),
-            }
+                Err(problem) => {
+                    runs.failed.push(format!("{}: {}", tolerance.name, problem.says));
+                    None
+                }
+            });
         }
     }
     columns
+}
+
+/// How a parameter is moved.
+enum Move {
+    Times(f64),
+    Plus(f64),
+    To(f64),
+}
+
+impl Move {
+    fn from(&self, now: Option<f64>) -> Option<f64> {
+        match self {
+            Self::Times(factor) => now.map(|now| now * factor),
+            Self::Plus(by) => now.map(|now| now + by),
+            Self::To(to) => Some(*to),
+        }
+    }
 }

@@ -54,7 +54,7 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     let features: Vec<usize> = (0..found.seen.features.len()).collect();
     let view = View { says: String::new(), sections: kept.clone(), features: features.clone() };
     let size = found.seen.features.len();
-    let whitener = found.covariance.part(&kept, &features).whitener();
+    let whitener = found.settled.part(&kept, &features).whitener();
     let part = |column: &[f64]| super::guards::part(column, size, &view);
     let mut candidates: Vec<super::candidates::Candidate> =
         found.chosen.members.iter().map(|member| found.candidates[member.candidate].clone()).collect();

@@ -3,7 +3,7 @@
 use super::causes::cause;
 use super::features::Kind;
 use super::fit::Fitted;
-use super::lack::{LACK, excess};
+use super::lack::{LACK, unexplained};
 use super::run::{Found, Inputs, TOLERANCE_SD, chi, deviations, length, one_sd, value_of};
 use super::search::plausible;
 use crate::effects::Effect;
@@ -21,18 +21,14 @@ const TEMPERATURE: f64 = 4.0;
 #[must_use]
 pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Option<Shrink>) -> Diagnosis {
     let (before, after) = chi(found);
-    let (gap, rest) = (excess(&found.lack_before), excess(&found.lack_after));
-    let most = |lack: &[(String, Kind, f64, f64)]| lack.iter().map(|(_, _, sigma, _)| *sigma).fold(f64::NEG_INFINITY, f64::max);
-    let lacking = most(&found.lack_after) > LACK;
-    // One kind of one channel among some forty may be a little beyond, where a cause is named, without anything being missing.
-    let several = found.lack_after.iter().filter(|(_, _, sigma, _)| *sigma > LACK).count() > 1;
-    let unexplained_share = if gap > 0.0 { (rest / gap).clamp(0.0, 1.0) } else { 0.0 };
+    let (unexplained_share, too_much) = unexplained(&found.lack_before, &found.lack_after);
+    let lacking = found.lack_after.iter().any(|(_, _, sigma, _)| *sigma > LACK);
     let ambiguous = ambiguity(inputs, found);
     let named = !found.chosen.members.is_empty();
     let verdict = match () {
         () if !named && !lacking && found.seen.faults.is_empty() => "no significant gap",
         () if !named => "unexplained",
-        () if lacking && unexplained_share > 0.5 && (several || most(&found.lack_after) > 3.0 * LACK) => "unexplained",
+        () if too_much => "unexplained",
         () if ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
         () => "explained",
     };

@@ -1,0 +1,167 @@
+//! The tolerances again, as they act where the answer is: a body that sways hardly damped moves with a stiffness of which it took no
+//! notice before, and short waves matter less where others are added.
+
+use super::bench::{Bench, Runs, Set};
+use super::candidates::{Candidate, Workshop, applied};
+use super::covariance::{Sensitivity, covariance};
+use super::fit::{Fitted, Fitter, Known, Mask};
+use super::search::{Bars, Chosen, Refused, refit};
+use super::sensitivity::sensitivities;
+use super::settings::Settings;
+use super::whiten::{Covariance, Whitener, dot};
+use crate::effects::{Action, Effect};
+use crate::simulate::Plan;
+
+/// A tolerance that moves the features by less than so many standard deviations of everything else, about what branches of contact move them by,
+/// stays as it was.
+const MATTERS: f64 = 1.5;
+
+/// How often the sizes that were found are added and fitted again, and what share of a size is no difference.
+pub const ROUNDS: usize = 3;
+const ALIKE: f64 = 0.01;
+
+/// A set of effects, and how it is weighed.
+pub struct Weighed {
+    pub covariance: Covariance,
+    pub whitener: Whitener,
+    /// The whitened difference.
+    pub z: Vec<f64>,
+    pub chosen: Chosen,
+}
+
+impl Weighed {
+    fn by(self, covariance: Covariance, difference: &[f64]) -> Self {
+        let whitener = covariance.whitener();
+        Self { z: whitener.apply(difference), covariance, whitener, chosen: self.chosen }
+    }
+}
+
+/// What the covariance without effects was made of.
+pub struct Settled<'a> {
+    pub workshop: &'a Workshop<'a>,
+    pub settings: &'a Settings,
+    /// Of the tolerances, without effects.
+    pub columns: &'a [Option<Sensitivity>],
+    /// What a parameter has where nothing is set.
+    pub value: &'a (dyn Fn(&str) -> Option<f64> + Sync),
+    pub declared: &'a dyn Fn(&str) -> Option<f64>,
+    /// Measured - simulated.
+    pub difference: &'a [f64],
+}
+
+impl Settled<'_> {
+    /// Weighs with the tolerances as they act beside the first member, then beside the first two, and so on: what one seemed to
+    /// explain may be a tolerance that it or another has made matter.
+    pub fn settle(
+        &self,
+        (candidates, masks): (&mut [Candidate], &[Mask]),
+        mut now: Weighed,
+        bars: &Bars,
+        refused: &mut Vec<Refused>,
+        runs: &mut Runs,
+    ) -> Weighed {
+        let without = now.covariance.clone();
+        let mut count = 1;
+        while count <= now.chosen.members.len() {
+            if let Some(there) = self.covariance((candidates, masks), &now.chosen.members[..count], runs) {
+                now = now.by(there, self.difference);
+            }
+            self.refined((candidates, masks), &mut now, runs);
+            while now.chosen.members.get(count).is_some_and(|next| next.evidence < bars.next) {
+                let reason = "with the tolerances as they act beside what was found before it, it has too little evidence".into();
+                refused.push(Refused { fitted: now.chosen.members.remove(count), reason });
+                self.refined((candidates, masks), &mut now, runs);
+            }
+            let members = &now.chosen.members;
+            let weak = |at: &usize| members[*at].evidence < bars.least(&candidates[members[*at].candidate], members.len());
+            let Some(weak) = (0..count).find(weak) else {
+                count += 1;
+                continue;
+            };
+            let reason = "with the tolerances as they act beside it, it has too little evidence".into();
+            refused.push(Refused { fitted: now.chosen.members.remove(weak), reason });
+            now = now.by(without.clone(), self.difference);
+            self.refined((candidates, masks), &mut now, runs);
+            count = 1;
+        }
+        now
+    }
+
+    /// Fits the members again, with the sizes that are found simulated.
+    fn refined(&self, (candidates, masks): (&mut [Candidate], &[Mask]), now: &mut Weighed, runs: &mut Runs) {
+        let mut known = Known::new();
+        for _ in 0..ROUNDS {
+            let fitter = Fitter::knowing(&now.whitener, candidates, masks.to_vec(), known);
+            refit(&fitter, &now.z, &mut now.chosen, 6);
+            known = fitter.whitened;
+            if !polish(self.workshop, candidates, &now.chosen.members, runs) {
+                break;
+            }
+        }
+    }
+
+    /// The covariance with the members in the simulation; nothing where no member is, or where one fails.
+    fn covariance(&self, (candidates, masks): (&[Candidate], &[Mask]), members: &[Fitted], runs: &mut Runs) -> Option<Covariance> {
+        let bench = self.workshop.bench?;
+        let added: Vec<Set> = members.iter().filter_map(|member| self.set(bench, &candidates[member.candidate], masks, member)).collect();
+        if added.is_empty() {
+            return None;
+        }
+        (self.workshop.trying)("what the tolerances change beside the effects");
+        let set = bench.set.iter().cloned().chain(added).collect();
+        let there = Bench { set, cache: bench.cache.clone(), ..*bench };
+        let base = there.features(&[]).ok()?;
+        let matters = self.matter();
+        let again = sensitivities(&there, self.settings, &base, self.value, self.declared, &|at| matters[at], runs);
+        let mut columns: Vec<Sensitivity> =
+            again.into_iter().zip(self.columns).filter_map(|(again, first)| again.or(first.clone())).collect();
+        // What a member gives the size of is not free any more, but for the scatter of single sections.
+        for member in members.iter().filter(|member| member.mask == 0) {
+            let given = candidates[member.candidate].tolerance.as_ref();
+            columns.iter_mut().filter(|column| Some(&column.tolerance) == given).for_each(|column| column.shared = false);
+        }
+        Some(self.of(&columns))
+    }
+
+    fn of(&self, columns: &[Sensitivity]) -> Covariance {
+        covariance(self.workshop.seen, self.settings, &self.workshop.simulated, columns, self.declared, true)
+    }
+
+    /// Which columns matter.
+    fn matter(&self) -> Vec<bool> {
+        let others = self.of(&[]).whitener();
+        let long = |column: &Sensitivity| {
+            let z = others.apply(&column.column);
+            dot(&z, &z) >= MATTERS * MATTERS
+        };
+        self.columns.iter().map(|column| column.as_ref().is_some_and(long)).collect()
+    }
+
+    /// What a member sets in the simulator.
+    fn set(&self, bench: &Bench<'_>, candidate: &Candidate, masks: &[Mask], member: &Fitted) -> Option<Set> {
+        let effect: &Effect = self.workshop.catalogue.effect(&candidate.effect)?;
+        if !matches!(effect.action, Action::Simulator) || !member.size.is_finite() {
+            return None;
+        }
+        let mut values = candidate.fixed.clone();
+        values.push((candidate.size.clone(), member.size));
+        let effects = [applied(effect, values)];
+        let section = &self.workshop.seen.sections[0].section;
+        let plan = Plan::new(self.workshop.catalogue, &effects, section, bench.simulator.catalogue_name()).ok()?;
+        Some(Set { values: plan.settings, sections: (member.mask != 0).then(|| masks[member.mask].sections.clone()) })
+    }
+}
+
+/// Adds the sizes that were found, where no size as near was tried; whether there was any to add.
+pub fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], fits: &[Fitted], runs: &mut Runs) -> bool {
+    let mut added = false;
+    for member in fits {
+        let candidate = &mut candidates[member.candidate];
+        let known = candidate.nodes.iter().any(|node| (node.size - member.size).abs() <= ALIKE * member.size.abs());
+        if !candidate.discrete && member.size.is_finite() && !known {
+            workshop.add_size(candidate, member.size, runs);
+            added = true;
+        }
+    }
+    added
+}
