@@ -237,8 +237,15 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let mut settled = Weighed { covariance: whole.clone(), whitener: whitener.clone(), z, chosen };
     // A set that leaves most of the gap is no place to take anything at.
     if !unexplained(&lack_before, &lack_now).1 {
-        let again =
-            Settled { workshop: &workshop, settings, columns: &columns, value: &value, declared: &declared, difference: &difference };
+        let again = Settled {
+            workshop: &workshop,
+            settings,
+            columns: &columns,
+            value: &value,
+            declared: &declared,
+            difference: &difference,
+            far: &far,
+        };
         settled = again.settle((&mut candidates, &masks), settled, &bars, &mut refused, &mut runs);
     }
     let Weighed { covariance: settled, whitener: weighing, z, mut chosen } = settled;

@@ -47,6 +47,8 @@ pub struct Settled<'a> {
     pub declared: &'a dyn Fn(&str) -> Option<f64>,
     /// Measured - simulated.
     pub difference: &'a [f64],
+    /// How many declared standard deviations a size is from neutral.
+    pub far: &'a dyn Fn(&Candidate, f64) -> f64,
 }
 
 impl Settled<'_> {
@@ -73,12 +75,16 @@ impl Settled<'_> {
                 self.refined((candidates, masks), &mut now, runs);
             }
             let members = &now.chosen.members;
-            let weak = |at: &usize| members[*at].evidence < bars.least(&candidates[members[*at].candidate], members.len());
+            let weak = |at: &usize| {
+                let (member, of) = (&members[*at], &candidates[members[*at].candidate]);
+                member.evidence < bars.least(of, members.len()) || (self.far)(of, member.size) < bars.tolerance_sd
+            };
             let Some(weak) = (0..count).find(weak) else {
                 count += 1;
                 continue;
             };
-            let reason = "with the tolerances as they act beside it, it has too little evidence".into();
+            let reason =
+                "with the tolerances as they act beside it, it has too little evidence, or its size is within what is declared".into();
             refused.push(Refused { fitted: now.chosen.members.remove(weak), reason });
             now = now.by(without.clone(), self.difference);
             self.refined((candidates, masks), &mut now, runs);
