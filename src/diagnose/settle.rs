@@ -12,8 +12,8 @@ use super::whiten::{Covariance, Whitener, dot};
 use crate::effects::{Action, Effect};
 use crate::simulate::Plan;
 
-/// A tolerance that moves the features by less than so many standard deviations of everything else, about what branches of contact move them by,
-/// stays as it was.
+/// A tolerance that moves the features by less than so many standard deviations of everything else stays as it was: branches of contact
+/// alone move them by about one.
 const MATTERS: f64 = 1.5;
 
 /// How often the sizes that were found are added and fitted again, and what share of a size is no difference.
