@@ -108,6 +108,9 @@ pub fn median(values: &[f64]) -> Option<f64> {
     Some(if values.len().is_multiple_of(2) { 0.5 * (low + high) } else { low })
 }
 
+/// A record is upside down if it is so much more like the reference that way: records that are hardly alike are it either way by chance.
+const INVERTED: f64 = 1.35;
+
 impl Spectrum {
     /// With Hann's taper, padded to a power of two at least twice as long, so that correlations do not wrap around.
     #[must_use]
@@ -151,7 +154,8 @@ impl Spectrum {
         self.lines[self.range(low, high)].iter().map(|(re, im)| re * re + im * im).sum::<f64>() * self.scale
     }
 
-    /// Regression of `self` on `reference` over a band: where the correlation is largest, that gain and the lag in samples.
+    /// Regression of `self` on `reference` over a band: its gain, and the lag in samples at which the two are most alike, be it
+    /// upside down.
     #[must_use]
     pub fn alike(&self, reference: &Self, (low, high): (f64, f64), furthest: usize) -> (f64, f64) {
         if self.padded != reference.padded {
@@ -174,8 +178,10 @@ impl Spectrum {
         let at = |lag: i64| correlation[lag.rem_euclid(self.padded as i64) as usize] * 0.5;
         let gain = |lag: i64| at(lag) / own.max(1e-300);
         let furthest = (furthest as i64).min(self.padded as i64 / 2 - 2);
-        let best = (-furthest..=furthest).max_by(|a, b| at(*a).total_cmp(&at(*b))).unwrap_or(0);
-        let (left, middle, right) = (at(best - 1), at(best), at(best + 1));
+        let most = |sign: f64| (-furthest..=furthest).max_by(|a, b| (sign * at(*a)).total_cmp(&(sign * at(*b)))).unwrap_or(0);
+        let (upright, inverted) = (most(1.0), most(-1.0));
+        let (best, sign) = if -at(inverted) > INVERTED * at(upright) { (inverted, -1.0) } else { (upright, 1.0) };
+        let (left, middle, right) = (sign * at(best - 1), sign * at(best), sign * at(best + 1));
         let bend = left - 2.0 * middle + right;
         let part = if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 };
         (gain(0), best as f64 + part)
@@ -231,9 +237,10 @@ mod tests {
         let (a, b) = (Spectrum::new(&sine(3.0, 2.0, 0)), Spectrum::new(&sine(3.0, 3.0, 7)));
         let (_, lag) = b.alike(&a, (1.0, 8.0), 30);
         assert!((lag - 7.0).abs() < 0.05, "{lag}");
-        let (gain, lag) = Spectrum::new(&sine(3.0, -3.0, 0)).alike(&a, (1.0, 8.0), 3);
+        // Upside down; half a period is 33 samples.
+        let (gain, lag) = Spectrum::new(&sine(3.0, -3.0, 0)).alike(&a, (1.0, 8.0), 20);
         assert!((gain + 1.5).abs() < 1e-3, "{gain}");
-        assert!(lag.abs() <= 3.0);
+        assert!(lag.abs() < 0.05, "{lag}");
     }
 
     #[test]
