@@ -105,8 +105,8 @@ fn idle(
         let most = touched.fraction_removed.max(earned.fraction_removed).max(by_value);
         // The protocol judges few numbers: what the features say strongly, it must contradict to be heard.
         let member_of = &found.chosen.members[member];
-        let strong = member_of.evidence >= STRONG * found.bars.first && !member_of.doubtful;
-        let least = if strong { -EARNED } else { EARNED };
+        let strength = member_of.evidence / (STRONG * found.bars.first);
+        let least = if strength >= 1.0 && !member_of.doubtful { -EARNED * strength } else { EARNED };
         if most < least && worst.is_none_or(|(_, least)| most < least) {
             worst = Some((member, most));
         }
@@ -118,7 +118,8 @@ fn idle(
 
 /// Share of the gap that an effect must remove, at least in the quantities that it changes.
 const EARNED: f64 = 0.05;
-/// Evidence, in thresholds, from which it need only not do harm.
+/// Evidence, in thresholds, from which it need only not do harm: no more than as much again of the gap as it must remove else, and the
+/// more the louder the features speak, since a gap that another one hides grows when one of the two is mended.
 const STRONG: f64 = 4.0 / 3.0;
 
 /// What effects that are known to be true would have done: their whitened size, and the share of the gap that they remove.

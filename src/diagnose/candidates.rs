@@ -56,6 +56,23 @@ impl Candidate {
         }
     }
 
+    /// Where nothing changes.
+    #[must_use]
+    pub fn neutral(&self) -> Option<f64> {
+        self.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size)
+    }
+
+    /// Whether a size lies on the same side of neutral as another.
+    fn same_side(&self, size: f64, other: f64) -> bool {
+        self.neutral().is_none_or(|neutral| (size < neutral) == (other < neutral))
+    }
+
+    /// Whether sizes towards another are left to be simulated.
+    #[must_use]
+    pub fn pending_towards(&self, size: f64) -> bool {
+        self.pending.iter().any(|pending| self.same_side(*pending, size))
+    }
+
     /// Whether it exchanges two channels.
     #[must_use]
     pub fn effect_is_swap(&self) -> bool {
@@ -157,9 +174,11 @@ impl Workshop<'_> {
         candidate.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
     }
 
-    /// Simulates the sizes of a candidate that were left for later.
-    pub fn refine(&self, candidate: &mut Candidate, runs: &mut Runs) {
-        let pending = std::mem::take(&mut candidate.pending);
+    /// Simulates the sizes of a candidate towards one that were left for later.
+    pub fn refine(&self, candidate: &mut Candidate, towards: f64, runs: &mut Runs) {
+        let (pending, left) = candidate.pending.iter().partition(|pending| candidate.same_side(**pending, towards));
+        candidate.pending = left;
+        let pending: Vec<f64> = pending;
         if let (Some(bench), Some(effect)) = (self.bench, self.catalogue.effect(&candidate.effect)) {
             (self.trying)(&effect.title);
             self.simulate(bench, effect, candidate, &pending, runs);

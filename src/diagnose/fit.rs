@@ -143,15 +143,29 @@ impl<'a> Fitter<'a> {
 
     /// As [`Self::new`], with what an earlier one whitened: candidates may have more nodes by now, and there may be more masks.
     #[must_use]
-    pub fn knowing(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>, mut known: Known) -> Self {
+    pub fn knowing(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>, known: Known) -> Self {
+        let every = (0..candidates.len()).flat_map(|at| (0..masks.len()).map(move |mask| (at, mask)));
+        let keys: Vec<(usize, usize)> = every.filter(|(at, mask)| allowed(candidates, &masks, *at, *mask)).collect();
+        Self::whitening(whitener, candidates, masks, known, keys)
+    }
+
+    /// For fits of some members alone, each under its own mask.
+    #[must_use]
+    pub fn of(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>, members: &[Fitted]) -> Self {
+        let keys = members.iter().map(|member| (member.candidate, member.mask)).collect();
+        Self::whitening(whitener, candidates, masks, Known::new(), keys)
+    }
+
+    fn whitening(
+        whitener: &'a Whitener,
+        candidates: &'a [Candidate],
+        masks: Vec<Mask>,
+        mut known: Known,
+        mut keys: Vec<(usize, usize)>,
+    ) -> Self {
         use rayon::prelude::*;
         known.retain(|(candidate, _), path| path.nodes.len() == candidates[*candidate].nodes.len());
-        let keys: Vec<(usize, usize)> = candidates
-            .iter()
-            .enumerate()
-            .flat_map(|(at, _)| (0..masks.len()).map(move |mask| (at, mask)))
-            .filter(|(at, mask)| allowed(candidates, &masks, *at, *mask) && !known.contains_key(&(*at, *mask)))
-            .collect();
+        keys.retain(|key| !known.contains_key(key));
         let mut fitter = Self { whitener, candidates, masks, whitened: known };
         let whitened: Vec<_> = keys.par_iter().map(|(at, mask)| ((*at, *mask), Path::new(fitter.nodes(*at, *mask)))).collect();
         fitter.whitened.extend(whitened);

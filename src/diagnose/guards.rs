@@ -83,16 +83,20 @@ pub fn families(seen: &Observations, strata: &[Vec<usize>]) -> Vec<Vec<View>> {
     });
     let (even, odd): (Vec<usize>, Vec<usize>) = all.iter().partition(|at| *at % 2 == 0);
     let halves = vec![view("every second section", &even, every.clone()), view("the other sections", &odd, every.clone())];
-    vec![kinds, strata.collect(), groups.collect(), halves]
+    let mut families = vec![kinds, strata.collect(), groups.collect(), halves];
+    // A catalogue may have levels alone, a campaign one section.
+    families.iter_mut().for_each(|family| family.retain(|view| !view.sections.is_empty() && !view.features.is_empty()));
+    families
 }
 
 /// Share of the evidence that must be left whichever section is taken away, unless so much is left that it would do by itself.
 const KEPT: f64 = 0.5;
 const ENOUGH: f64 = 60.0;
 
-/// The section without which most of the evidence for a change is gone, if one carries it; one of few sections always does.
+/// The section without which most of the evidence for a change is gone, and the share of it that is left, if one section carries it;
+/// one of few sections always does.
 #[must_use]
-pub fn carried(covariance: &Covariance, mask: &Mask, change: &[f64], rest: &[f64]) -> Option<String> {
+pub fn carried(covariance: &Covariance, mask: &Mask, change: &[f64], rest: &[f64]) -> Option<(usize, f64)> {
     let inside: Vec<usize> = (0..mask.sections.len()).filter(|at| mask.sections[*at]).collect();
     let moved = |at: &usize| change[at * covariance.size..(at + 1) * covariance.size].iter().any(|x| *x != 0.0);
     if inside.iter().filter(|at| moved(at)).count() < 3 {
@@ -102,8 +106,7 @@ pub fn carried(covariance: &Covariance, mask: &Mask, change: &[f64], rest: &[f64
     let products = covariance.products().of(change, rest, true);
     let all = evidence(&products[0]);
     let (at, least) = inside.into_iter().map(|at| (at, evidence(&products[at + 1]))).min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (least < KEPT * all && least < ENOUGH)
-        .then(|| format!("without section {} only {:.0} % of the evidence is left", at + 1, 100.0 * least / all))
+    (least < KEPT * all && least < ENOUGH).then_some((at, least / all))
 }
 
 /// What a view says of a candidate.
@@ -134,7 +137,7 @@ pub fn in_view(covariance: &Covariance, view: &View, (candidate, mask): (&Candid
 /// candidate, since the change need not be linear in the size: the error is that of the slope where the view's size is, or, if that is
 /// larger, what the fall of chi-squared from the size of all to the view's own says (a likelihood ratio).
 fn size_seen(covariance: &Covariance, view: &View, candidate: &Candidate, mask: &Mask, fit: &Fitted, rest: &[f64]) -> Option<(f64, f64)> {
-    let neutral = candidate.nodes.iter().find(|node| node.change.is_empty()).map_or(0.0, |node| node.size);
+    let neutral = candidate.neutral().unwrap_or(0.0);
     let change = fit.change(std::slice::from_ref(candidate), std::slice::from_ref(mask));
     if candidate.discrete || !neutral.is_finite() || fit.size == neutral {
         return share_seen(covariance, view, &change, rest);
@@ -160,6 +163,9 @@ pub fn contradiction(
 ) -> Judged {
     use rayon::prelude::*;
     let only = Fitted { candidate: 0, mask: 0, ..fit.clone() };
+    // What the model has wrong in an effect spills over from where it shows to where it hardly does; an operation has nothing wrong.
+    let whole = if candidate.exact { 0.0 } else { dot(&fit.whitened, &fit.whitened).sqrt() };
+    let error_with_model = |error: f64| error.hypot((SPILL * whole * error).clamp(MODEL, SPILT));
     let each = |view: &View| size_seen(covariance, view, candidate, mask, &only, rest);
     let sizes: Vec<Option<(f64, f64)>> = family.par_iter().map(each).collect();
     let seen: Vec<(&View, f64, f64)> =
@@ -167,7 +173,7 @@ pub fn contradiction(
     let good: Vec<&(&View, f64, f64)> = seen.iter().filter(|(_, _, error)| *error < 0.35).collect();
     let weight: f64 = good.iter().map(|(_, _, error)| error.powi(-2)).sum();
     let mean = good.iter().map(|(_, share, error)| share * error.powi(-2)).sum::<f64>() / weight;
-    let q: f64 = good.iter().map(|(_, share, error)| (share - mean).powi(2) / (error.powi(2) + MODEL.powi(2))).sum();
+    let q: f64 = good.iter().map(|(_, share, error)| ((share - mean) / error_with_model(*error)).powi(2)).sum();
     let by_size = |a: &&&(&View, f64, f64), b: &&&(&View, f64, f64)| a.1.total_cmp(&b.1);
     let (Ok(law), Some(low), Some(high)) =
         (ChiSquared::new(good.len().saturating_sub(1) as f64), good.iter().min_by(by_size), good.iter().max_by(by_size))
@@ -178,7 +184,7 @@ pub fn contradiction(
         return Judged::Sound;
     }
     // A view that could as well ask for what the others do contradicts nothing.
-    let below = (mean - low.1) / low.2.hypot(MODEL);
+    let below = (mean - low.1) / error_with_model(low.2);
     if low.1 >= SOME || below < SURE {
         return Judged::Doubtful;
     }
@@ -188,5 +194,8 @@ pub fn contradiction(
 /// A view that asks for less than this share of an effect contradicts it, if it is by so many standard errors below what all ask for.
 const SOME: f64 = 0.45;
 const SURE: f64 = 3.0;
-/// The model is wrong by this part of any size.
+/// The model is wrong by this part of any size; and, in what a view sees, by this part of the whole effect, but by no more than that
+/// part of what the view should see.
 const MODEL: f64 = 0.15;
+const SPILL: f64 = 0.1;
+const SPILT: f64 = 0.3;

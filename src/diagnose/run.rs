@@ -12,7 +12,7 @@ use super::lack::{drop_what_harms, lack_after, lack_of_fit, left, unexplained};
 use super::masks::{masks, section_masks};
 use super::observe::Observations;
 use super::reference::Reference;
-use super::search::{Bars, Chosen, Judged, Refused, chi_squared, plausible, refit, rivals, search};
+use super::search::{Bars, Chosen, Judged, Refused, chi_squared, nearest, plausible, refit, rivals, search};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
 use super::settle::{ROUNDS, Settled, Weighed, polish};
@@ -50,7 +50,7 @@ pub struct Found {
     pub candidates: Vec<Candidate>,
     pub masks: Vec<Mask>,
     pub covariance: Covariance,
-    /// With the tolerances as they act where the answer is, and its whitener: what the members are weighed by.
+    /// With the tolerances as they act where the answer is, and its whitener: what the sizes are fitted by.
     pub settled: Covariance,
     pub weighing: Whitener,
     /// Noise and tolerances alone.
@@ -63,6 +63,8 @@ pub struct Found {
     pub refused: Vec<Refused>,
     /// Other candidates in the place of a member: member, fit, how much less evidence.
     pub rivals: Vec<(usize, Fitted, f64)>,
+    /// What has most evidence for what the members leave, and is not named.
+    pub nearest: Vec<Fitted>,
     /// By member: whether it stands when other sections are drawn.
     pub stability: Vec<Stability>,
     /// Channels and kinds where what is left, and what was there, is more than is allowed for.
@@ -74,8 +76,8 @@ pub struct Found {
     pub declared: Declared,
 }
 
-/// A size that is a declared tolerance is named from so many standard deviations on.
-pub const TOLERANCE_SD: f64 = 3.0;
+/// A size that is a declared tolerance is named from so many standard deviations on: what is declared is an estimate itself.
+pub const TOLERANCE_SD: f64 = 3.5;
 /// Draws for the threshold.
 const DRAWS: usize = 60;
 /// Evidence below which no cause is named: real discrepancies are not those of the covariance.
@@ -170,7 +172,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let z = whitener.apply(&difference);
     let strata = strata(&seen, settings);
     let families = families(&seen, &strata);
-    let far = |candidate: &Candidate, size: f64| deviations(candidate, size, &value, &|name| one_sd(settings, &admitted, name));
+    let far = |candidate: &Candidate, size: f64| deviations(candidate, size, settings, &admitted);
     let mut refused = Vec::new();
     let mut chosen;
     let mut chance = None;
@@ -181,7 +183,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), std::mem::take(&mut known));
         let bars = bars(*chance.get_or_insert_with(|| limit(&fitter, z.len(), inputs.seed)));
         refused.clear();
-        let guard = |fit: &Fitted, chosen: &Chosen| guard(&whole, &families, &fitter, &difference, chosen, fit);
+        let guard = |fit: &Fitted, chosen: &Chosen| guard((&whole, &seen), &families, &fitter, &difference, chosen, fit);
         let found = search(&fitter, &z, &bars, &far, &guard, &mut refused);
         let wanted = promising(&fitter, &z, &found);
         let more = if wanted.is_empty() { section_masks(&fitter, &z, &found, &seen) } else { Vec::new() };
@@ -200,7 +202,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
             }
         }
         masks.extend(more);
-        wanted.into_iter().for_each(|at| workshop.refine(&mut candidates[at], &mut runs));
+        wanted.into_iter().for_each(|(at, size)| workshop.refine(&mut candidates[at], size, &mut runs));
         (inputs.trying)("weighing");
     }
     // Nothing may rest on interpolation: the members are fitted again with the sizes that were found, and one that was above the bar
@@ -231,7 +233,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         refused.push(Refused { fitted, reason: reason.into() });
         refit(&fitter, &z, &mut chosen, 6);
     }
-    drop(fitter);
+    let known = fitter.whitened;
     let lack_before = lack_of_fit(&whole, &seen, &difference);
     let lack_now = lack_after(&whole, &seen, (&candidates, &masks), &difference, &chosen);
     let mut settled = Weighed { covariance: whole.clone(), whitener: whitener.clone(), z, chosen };
@@ -249,14 +251,12 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         settled = again.settle((&mut candidates, &masks), settled, &bars, &mut refused, &mut runs);
     }
     let Weighed { covariance: settled, whitener: weighing, z, mut chosen } = settled;
-    let fitter = Fitter::new(&weighing, &candidates, masks.clone());
+    let fitter = Fitter::of(&weighing, &candidates, masks.clone(), &chosen.members);
     refit(&fitter, &z, &mut chosen, 6);
     let lack_after = drop_what_harms(&fitter, (&whole, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
-    let rivals = rivals(&fitter, &z, &chosen);
-    let stability = stability(&fitter, &z, (&chosen, &refused), &strata, inputs.seed);
     drop(fitter);
     drop(bench);
-    Some(Found {
+    let mut found = Found {
         candidates,
         masks,
         covariance: whole,
@@ -268,8 +268,9 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         simulated,
         chosen,
         refused,
-        rivals,
-        stability,
+        rivals: Vec::new(),
+        nearest: Vec::new(),
+        stability: Vec::new(),
         lack_before,
         lack_after,
         bars,
@@ -277,7 +278,9 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         strata,
         seen,
         declared: admitted,
-    })
+    };
+    found.weigh(known, inputs.seed);
+    Some(found)
 }
 
 /// Bars from what chance reaches.
@@ -296,10 +299,24 @@ impl Found {
             self.weighing = self.whitener.clone();
             self.fit_again();
         }
-        let fitter = Fitter::new(&self.weighing, &self.candidates, self.masks.clone());
-        self.stability = stability(&fitter, &self.weighing.apply(&self.difference), (&self.chosen, &self.refused), &self.strata, seed);
-        self.rivals.retain(|(member, ..)| *member != at);
-        self.rivals.iter_mut().filter(|(member, ..)| *member > at).for_each(|(member, ..)| *member -= 1);
+        self.weigh(Known::new(), seed);
+    }
+
+    /// Evidence, rivals and stability of the answer. They are those of the covariance without effects: a tolerance that a member is the
+    /// blown form of is free there for its rivals as it is for the member, and so is what else might be in its place.
+    fn weigh(&mut self, known: Known, seed: u64) {
+        let fitter = Fitter::knowing(&self.whitener, &self.candidates, self.masks.clone(), known);
+        let z = self.whitener.apply(&self.difference);
+        let mut first = self.chosen.clone();
+        refit(&fitter, &z, &mut first, 6);
+        self.rivals = rivals(&fitter, &z, &first);
+        self.nearest = nearest(&fitter, &first, &self.refused);
+        let (own, sized) = (self.weighing.apply(&self.difference), &self.chosen);
+        let sizes = Fitter::of(&self.weighing, &self.candidates, self.masks.clone(), &sized.members);
+        self.stability = stability((&fitter, &z, &first), (&sizes, &own, sized), &self.refused, &self.strata, seed);
+        for (member, first) in self.chosen.members.iter_mut().zip(first.members) {
+            (member.fall, member.evidence) = (first.fall, first.evidence);
+        }
     }
 
     fn fit_again(&mut self) {
@@ -310,21 +327,16 @@ impl Found {
     }
 }
 
-/// One standard deviation of a tolerance: as declared, or the catalogue's default.
-#[must_use]
-pub fn one_sd(settings: &Settings, declared: &Declared, name: &str) -> Option<f64> {
-    declared.get(name).or_else(|| settings.tolerances.iter().find(|one| one.name == name).map(|one| one.default))
-}
-
 /// How many declared standard deviations a size is from neutral; infinitely many for an effect that is no tolerance.
 #[must_use]
-pub fn deviations(candidate: &Candidate, size: f64, value: &dyn Fn(&str) -> Option<f64>, declared: &dyn Fn(&str) -> Option<f64>) -> f64 {
-    let Some(sd) = candidate.tolerance.as_deref().and_then(declared) else { return f64::INFINITY };
-    let neutral = candidate.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size).or_else(|| value(&candidate.size));
-    match neutral {
-        Some(neutral) if sd > 0.0 => (size - neutral).abs() / sd,
-        _ => f64::INFINITY,
-    }
+pub fn deviations(candidate: &Candidate, size: f64, settings: &Settings, declared: &Declared) -> f64 {
+    let tolerance = candidate.tolerance.as_ref().and_then(|name| settings.tolerances.iter().find(|one| one.name == *name));
+    let (Some(tolerance), Some(neutral)) = (tolerance, candidate.neutral()) else { return f64::INFINITY };
+    let sd = declared.get(&tolerance.name).unwrap_or(tolerance.default);
+    // What is scaled is declared as a share of what the vehicle file has.
+    let scaled = tolerance.scales.contains(&candidate.size) && neutral != 0.0;
+    let sd = if scaled { sd * neutral.abs() } else { sd };
+    if sd > 0.0 { (size - neutral).abs() / sd } else { f64::INFINITY }
 }
 
 /// More evidence than the best candidate reaches by chance in any draw from the covariance.
@@ -344,7 +356,7 @@ fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
 
 /// Refuses a member that views contradict, or that a single section carries.
 fn guard(
-    covariance: &Covariance,
+    (covariance, seen): (&Covariance, &Observations),
     families: &[Vec<View>],
     fitter: &Fitter<'_>,
     difference: &[f64],
@@ -362,14 +374,18 @@ fn guard(
         }
     }
     let change = fit.change(fitter.candidates, &fitter.masks);
-    carried(covariance, &fitter.masks[fit.mask], &change, &rest).map_or(judged, Judged::Refused)
+    carried(covariance, &fitter.masks[fit.mask], &change, &rest).map_or(judged, |(at, share)| {
+        let section = seen.sections[at].section.name();
+        Judged::Refused(format!("without section {section} only {:.0} % of the evidence is left", 100.0 * share))
+    })
 }
 
-/// Candidates that are worth their other sizes: those within reach of the best for the whole difference, for what a first set of
+/// Candidates that are worth their other sizes, and towards which: those within reach of the best for the whole difference, for what a first set of
 /// causes leaves, or for what it leaves without one of them; and the members of that set.
-fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<usize> {
-    let pending = |at: &usize| !fitter.candidates[*at].pending.is_empty();
-    let mut found: Vec<usize> = chosen.members.iter().map(|member| member.candidate).filter(pending).collect();
+fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, f64)> {
+    let pending = |fit: &&Fitted| fitter.candidates[fit.candidate].pending_towards(fit.size);
+    let towards = |fit: &Fitted| (fit.candidate, fit.size);
+    let mut found: Vec<(usize, f64)> = chosen.members.iter().filter(pending).map(towards).collect();
     let without = |member: &Fitted| chosen.rest.iter().zip(&member.whitened).map(|(rest, own)| rest + own).collect();
     let mut rests: Vec<Vec<f64>> = vec![z.to_vec(), chosen.rest.clone()];
     if chosen.members.len() > 1 {
@@ -378,11 +394,11 @@ fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<usize> {
     for rest in rests {
         let fits = fitter.all(&rest);
         let best = fits.iter().map(|fit| fit.evidence).fold(0.0, f64::max);
-        let near = |fit: &&Fitted| fit.evidence >= (NEAR * best).max(WORTH) && pending(&fit.candidate);
-        found.extend(fits.iter().filter(near).map(|fit| fit.candidate));
+        let near = |fit: &&Fitted| fit.evidence >= (NEAR * best).max(WORTH) && pending(fit);
+        found.extend(fits.iter().filter(near).map(towards));
     }
-    found.sort_unstable();
-    found.dedup();
+    // One after the other in the order of the catalogue; a second one on the same side finds nothing left.
+    found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     found
 }
 

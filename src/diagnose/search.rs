@@ -11,7 +11,7 @@ pub struct Bars {
     pub first: f64,
     /// The same for an operation on the signals: exact, whatever the model is wrong in.
     pub exact: f64,
-    /// Of every further one, and of a first one that is the blown form of a declared tolerance.
+    /// Of every further one.
     pub next: f64,
     /// Extra evidence that a confinement must bring over the whole campaign.
     pub confined: f64,
@@ -26,12 +26,7 @@ impl Bars {
     /// Least evidence of a candidate that is the only member.
     #[must_use]
     pub fn alone(&self, candidate: &Candidate) -> f64 {
-        match (candidate.exact, &candidate.tolerance) {
-            (true, _) => self.exact,
-            // What is declared is an estimate itself.
-            (false, Some(_)) => self.next,
-            (false, None) => self.first,
-        }
+        if candidate.exact { self.exact } else { self.first }
     }
 
     /// Least evidence of one of so many members that were found; beside others, it has met a higher bar on its way in.
@@ -72,6 +67,13 @@ impl Chosen {
     #[must_use]
     pub fn evidence(&self) -> f64 {
         self.members.iter().map(|member| member.evidence).sum()
+    }
+
+    /// What the members but one leave of the whitened difference.
+    #[must_use]
+    pub fn left_by_others(&self, z: &[f64], at: usize) -> Vec<f64> {
+        let others = self.members.iter().enumerate().filter(|(other, _)| *other != at);
+        others.fold(z.to_vec(), |rest, (_, other)| less(&rest, &other.whitened))
     }
 }
 
@@ -178,12 +180,7 @@ fn taken(fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> bool {
 pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen, sweeps: usize) {
     for _ in 0..sweeps {
         for at in 0..chosen.members.len() {
-            let mut rest = z.to_vec();
-            for (other, member) in chosen.members.iter().enumerate() {
-                if other != at {
-                    rest = less(&rest, &member.whitened);
-                }
-            }
+            let rest = chosen.left_by_others(z, at);
             let (candidate, mask) = (chosen.members[at].candidate, chosen.members[at].mask);
             if let Some(fitted) = fitter.fit(&rest, candidate, mask) {
                 chosen.members[at] = Fitted { doubtful: chosen.members[at].doubtful, ..fitted };
@@ -201,19 +198,34 @@ pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen, sweeps: usize)
 pub fn rivals(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, Fitted, f64)> {
     let mut found = Vec::new();
     for at in 0..chosen.members.len() {
-        let mut rest = z.to_vec();
-        for (other, member) in chosen.members.iter().enumerate() {
-            if other != at {
-                rest = less(&rest, &member.whitened);
-            }
-        }
-        for fit in fitter.all(&rest) {
+        for fit in fitter.all(&chosen.left_by_others(z, at)) {
             let fall = chosen.members[at].evidence - fit.evidence;
             found.push((at, fit, fall));
         }
     }
     found.sort_by(|a, b| a.2.total_cmp(&b.2));
     found
+}
+
+/// How many candidates that are not named are told, and the evidence from which on.
+const TOLD: usize = 3;
+const TELLING: f64 = 10.0;
+
+/// What has most evidence for what a set leaves, one candidate of each effect; neither a member nor refused.
+#[must_use]
+pub fn nearest(fitter: &Fitter<'_>, chosen: &Chosen, refused: &[Refused]) -> Vec<Fitted> {
+    let mut fits = fitter.all(&chosen.rest);
+    let effect = |fit: &Fitted| fitter.candidates[fit.candidate].effect.as_str();
+    let known: Vec<&str> = chosen.members.iter().chain(refused.iter().map(|refused| &refused.fitted)).map(effect).collect();
+    fits.retain(|fit| fit.evidence >= TELLING && plausible(&fitter.candidates[fit.candidate], fit.size) && !known.contains(&effect(fit)));
+    fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    let mut told: Vec<Fitted> = Vec::new();
+    for fit in fits {
+        if told.len() < TOLD && told.iter().all(|one| effect(one) != effect(&fit)) {
+            told.push(fit);
+        }
+    }
+    told
 }
 
 /// Chi-squared of a whitened difference.

@@ -4,7 +4,7 @@
 use super::bench::{Bench, Runs, Set};
 use super::candidates::{Candidate, Workshop, applied};
 use super::covariance::{Sensitivity, covariance};
-use super::fit::{Fitted, Fitter, Known, Mask};
+use super::fit::{Fitted, Fitter, Mask};
 use super::search::{Bars, Chosen, Refused, refit};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
@@ -95,11 +95,9 @@ impl Settled<'_> {
 
     /// Fits the members again, with the sizes that are found simulated.
     fn refined(&self, (candidates, masks): (&mut [Candidate], &[Mask]), now: &mut Weighed, runs: &mut Runs) {
-        let mut known = Known::new();
         for _ in 0..ROUNDS {
-            let fitter = Fitter::knowing(&now.whitener, candidates, masks.to_vec(), known);
+            let fitter = Fitter::of(&now.whitener, candidates, masks.to_vec(), &now.chosen.members);
             refit(&fitter, &now.z, &mut now.chosen, 6);
-            known = fitter.whitened;
             if !polish(self.workshop, candidates, &now.chosen.members, runs) {
                 break;
             }

@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use super::fit::{BySection, Fitter, less};
+use super::fit::{BySection, Fitter};
 use super::search::{Chosen, Refused};
 use crate::effects::Gauss;
 
@@ -23,12 +23,15 @@ pub struct Stability {
     pub high: f64,
 }
 
-/// Every member of a set, the others as they are; what was refused is no rival. `z` is the whitened difference.
+/// A fitter, the difference whitened by it, and the members as it sees them.
+pub type Weighing<'a> = (&'a Fitter<'a>, &'a [f64], &'a Chosen);
+
+/// Every member of a set, the others as they are: against its rivals by one weighing, its size by another. What was refused is no rival.
 #[must_use]
 pub fn stability(
-    fitter: &Fitter<'_>,
-    z: &[f64],
-    (chosen, refused): (&Chosen, &[Refused]),
+    (fitter, z, chosen): Weighing<'_>,
+    (sizes, sized_z, sized): Weighing<'_>,
+    refused: &[Refused],
     strata: &[Vec<usize>],
     seed: u64,
 ) -> Vec<Stability> {
@@ -36,8 +39,7 @@ pub fn stability(
     let draws: Vec<Vec<f64>> = (0..DRAWS).map(|draw| resample(strata, sections, seed.wrapping_add(draw as u64))).collect();
     let one = |at: usize| {
         let member = &chosen.members[at];
-        let others = chosen.members.iter().enumerate().filter(|(other, _)| *other != at);
-        let rest = others.fold(z.to_vec(), |rest, (_, other)| less(&rest, &other.whitened));
+        let rest = chosen.left_by_others(z, at);
         let effect = |candidate: usize| &fitter.candidates[candidate].effect;
         let fits = fitter.all(&rest).into_iter();
         let fits = fits.filter(|fit| refused.iter().all(|refused| refused.fitted.candidate != fit.candidate));
@@ -45,11 +47,13 @@ pub fn stability(
         let rivals: Vec<(BySection, f64)> =
             near.filter_map(|fit| Some((fitter.by_section(&rest, fit.candidate, fit.mask)?, fit.fall - fit.evidence))).collect();
         let own = fitter.by_section(&rest, member.candidate, member.mask);
+        let own_size = sizes.by_section(&sized.left_by_others(sized_z, at), member.candidate, member.mask);
         let price = member.fall - member.evidence;
         let drawn: Vec<(bool, f64)> = draws
             .par_iter()
             .filter_map(|times| {
-                let (fall, size) = own.as_ref()?.fit(times)?;
+                let (fall, _) = own.as_ref()?.fit(times)?;
+                let (_, size) = own_size.as_ref()?.fit(times)?;
                 let beaten = rivals.iter().any(|(rival, cost)| rival.fit(times).is_some_and(|(other, _)| other - cost > fall - price));
                 Some((!beaten, size))
             })
@@ -83,6 +87,7 @@ mod tests {
     use super::*;
     use crate::diagnose::candidates::{Candidate, Node};
     use crate::diagnose::fit::Mask;
+    use crate::diagnose::fit::less;
     use crate::diagnose::whiten::Covariance;
 
     fn candidate(effect: &str, change: Vec<f64>) -> Candidate {
@@ -122,7 +127,7 @@ mod tests {
         let member = fitter.fit(&z, 0, 0).expect("a path");
         assert!((member.size - mean).abs() < 1e-9, "{}", member.size);
         let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member] };
-        let found = stability(&fitter, &z, (&chosen, &[]), &[(0..SECTIONS).collect()], 1)[0];
+        let found = stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), &[], &[(0..SECTIONS).collect()], 1)[0];
         assert_eq!(found.first, 1.0);
         for (bound, away) in [(found.low, -1.645 * error), (found.high, 1.645 * error)] {
             assert!((bound - mean - away).abs() < 0.25 * away.abs(), "{bound} for {}", mean + away);

@@ -4,10 +4,10 @@ use super::causes::cause;
 use super::features::Kind;
 use super::fit::Fitted;
 use super::lack::{LACK, unexplained};
-use super::run::{Found, Inputs, TOLERANCE_SD, chi, deviations, length, one_sd, value_of};
+use super::run::{Found, Inputs, TOLERANCE_SD, chi, deviations, length};
 use super::search::plausible;
 use crate::effects::Effect;
-use crate::result::diagnosis::{Cause, Detectable, Diagnosis, Fault, How, Shrink, Vetoed};
+use crate::result::diagnosis::{Cause, Detectable, Diagnosis, Fault, How, Nearest, Shrink, Vetoed};
 use crate::simulate::Units;
 
 /// Whitened length of a change that can be identified.
@@ -83,6 +83,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         unexplained_share,
         discriminating_measurement,
         detectable: detectable(found),
+        nearest: nearest(inputs, found),
         how: How {
             catalogue: inputs.catalogue.name.clone(),
             simulator: inputs.simulator.map_or("none".into(), |simulator| simulator.name().to_string()),
@@ -130,8 +131,7 @@ fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
         }
         let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(NEAREST)
             && fit.evidence > if of.exact { found.bars.exact } else { found.bars.first }
-            && deviations(of, fit.size, &|key| value_of(inputs.campaign, key), &|name| one_sd(inputs.settings, &found.declared, name))
-                >= TOLERANCE_SD;
+            && deviations(&found.candidates[fit.candidate], fit.size, inputs.settings, &found.declared) >= TOLERANCE_SD;
         let mut members = found.chosen.members.clone();
         members[*at] = fit.clone();
         let mut cause = cause(inputs, found, &members, causes.len() + 2);
@@ -212,9 +212,7 @@ fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
 fn detectable(found: &Found) -> Vec<Detectable> {
     let mut list: Vec<Detectable> = Vec::new();
     for candidate in found.candidates.iter().filter(|candidate| !candidate.discrete && candidate.fixed.is_empty()) {
-        let Some(neutral) = candidate.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size) else { continue };
-        // Linear from neutral to the first size on either side that is long enough.
-        let mut smallest: Option<f64> = None;
+        let Some(neutral) = candidate.neutral() else { continue };
         let mut nodes: Vec<(f64, f64)> = candidate
             .nodes
             .iter()
@@ -222,22 +220,62 @@ fn detectable(found: &Found) -> Vec<Detectable> {
             .map(|node| (node.size - neutral, length(&found.whitener, &node.change)))
             .collect();
         nodes.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
-        if let Some((away, long)) = nodes.iter().find(|(_, long)| *long >= SEEN) {
-            smallest = Some(away * SEEN / long);
-        }
-        let unit = &candidate.unit.text;
-        let alike = |known: &&mut Detectable| known.effect == candidate.effect && known.parameter == candidate.size && known.unit == *unit;
+        let below = nodes.iter().copied().filter(|(away, _)| *away < 0.0);
+        let above = nodes.iter().copied().filter(|(away, _)| *away > 0.0);
+        let (below, above) = (long_enough(below), long_enough(above));
+        let nearer = |a: f64, b: f64| if a.abs() <= b.abs() { a } else { b };
+        let made = Detectable {
+            effect: candidate.effect.clone(),
+            parameter: candidate.size.clone(),
+            unit: candidate.unit.text.clone(),
+            smallest: below.zip(above).map(|(a, b)| nearer(a, b)).or(below).or(above),
+            below,
+            above,
+        };
+        let alike = |known: &&mut Detectable| known.effect == made.effect && known.parameter == made.parameter && known.unit == made.unit;
         match list.iter_mut().find(alike) {
             Some(_) if candidate.channels.is_empty() => {}
             Some(known) => {
-                known.smallest = known.smallest.zip(smallest).map(|(a, b)| if a.abs() >= b.abs() { a } else { b });
+                let farther = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| if a.abs() >= b.abs() { a } else { b });
+                known.smallest = farther(known.smallest, made.smallest);
+                (known.below, known.above) = (farther(known.below, made.below), farther(known.above, made.above));
             }
-            None => {
-                list.push(Detectable { effect: candidate.effect.clone(), parameter: candidate.size.clone(), unit: unit.clone(), smallest })
-            }
+            None => list.push(made),
         }
     }
     list
+}
+
+/// Where the whitened change on one side of neutral grows to what can be seen: `nodes` are distances and lengths, in order, linear in
+/// between. Nothing if it does not.
+fn long_enough(nodes: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let mut before = (0.0, 0.0);
+    for (away, long) in nodes {
+        if long >= SEEN {
+            return Some(before.0 + (away - before.0) * (SEEN - before.1) / (long - before.1));
+        }
+        before = (away, long);
+    }
+    None
+}
+
+/// What would have been named next, and what it wants for that.
+fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
+    let one = |fit: &Fitted| {
+        let of = &found.candidates[fit.candidate];
+        let bar = if found.chosen.members.is_empty() { found.bars.alone(of) } else { found.bars.next };
+        let needed = if found.masks[fit.mask].asked_by.is_some() { 2.0 * bar } else { bar };
+        let away = deviations(&found.candidates[fit.candidate], fit.size, inputs.settings, &found.declared);
+        let wants = match () {
+            () if fit.evidence < needed => format!("evidence of {needed:.1}"),
+            () if away < TOLERANCE_SD => {
+                format!("a size further from what is declared: {away:.1} of {TOLERANCE_SD:.1} standard deviations")
+            }
+            () => "a larger share of what is named".into(),
+        };
+        Nearest { effect: of.effect.clone(), says: cause(inputs, found, std::slice::from_ref(fit), 0).says, evidence: fit.evidence, wants }
+    };
+    found.nearest.iter().map(one).collect()
 }
 
 fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shrink: Option<&Shrink>, unexplained: f64) -> Vec<String> {

@@ -5,7 +5,7 @@ use crate::report::number;
 use crate::report::study::{Chapter, Document, Head, Item, Table};
 use crate::report::view::{self, Fact, Finding};
 use crate::result::Certification;
-use crate::result::diagnosis::{Cause, Diagnosis, Invariant, NamedEffect, QuantityShrink, Shrink, Value};
+use crate::result::diagnosis::{Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Shrink, Value};
 
 /// Cells listed; all of them stand in diagnosis.json.
 const CELLS: usize = 30;
@@ -296,14 +296,25 @@ fn signals(found: &Diagnosis) -> Option<Chapter> {
 }
 
 fn seen(found: &Diagnosis) -> Chapter {
-    let rows = found.detectable.iter().map(|one| {
-        let size = one.smallest.map_or("beyond its range".into(), |size| number::significant(size, 3));
-        vec![one.effect.clone(), one.parameter.clone(), size, one.unit.clone()]
-    });
-    let head = vec![Head::text("Effect"), Head::text("Parameter"), Head::number("Change from neutral"), Head::short("Unit")];
-    let caption = "The smallest change of each effect that this campaign can show (five standard deviations of what is allowed for)";
-    let table = Table { caption: caption.into(), head, rows: rows.collect() };
-    chapter("seen", "What would have been seen", vec![Item::Table { table }])
+    let size = |size: Option<f64>| size.map_or_else(|| number::NONE.to_owned(), |size| number::significant(size, 3));
+    let row = |one: &Detectable| vec![one.effect.clone(), one.parameter.clone(), size(one.below), size(one.above), one.unit.clone()];
+    let rows = found.detectable.iter().map(row);
+    let head = vec![
+        Head::text("Effect"),
+        Head::text("Parameter"),
+        Head::number("Downwards from neutral"),
+        Head::number("Upwards"),
+        Head::short("Unit"),
+    ];
+    let caption = "The smallest change of each effect that this campaign can show (five standard deviations of what is allowed for; nothing where its range ends before)";
+    let mut items = vec![Item::Table { table: Table { caption: caption.into(), head, rows: rows.collect() } }];
+    if !found.nearest.is_empty() {
+        let rows = found.nearest.iter().map(|one| vec![one.says.clone(), number::fixed(one.evidence, 1), one.wants.clone()]);
+        let head = vec![Head::text("Effect"), Head::number("Evidence"), Head::text("What it wants to be named")];
+        let caption = "Nearest to being named, each by itself, for what is left";
+        items.push(Item::Table { table: Table { caption: caption.into(), head, rows: rows.collect() } });
+    }
+    chapter("seen", "What would have been seen", items)
 }
 
 fn how(found: &Diagnosis) -> Chapter {

@@ -24,6 +24,8 @@ pub struct Diagnosis {
     pub discriminating_measurement: Option<String>,
     /// Per effect, the smallest size that would have been seen.
     pub detectable: Vec<Detectable>,
+    /// What would be named next, for what the named effects leave.
+    pub nearest: Vec<Nearest>,
     pub how: How,
     pub notes: Vec<String>,
     pub simulations_run: usize,
@@ -196,6 +198,19 @@ pub struct Detectable {
     /// Change from neutral at which the whitened change is 5 long; nothing if the range ends before. Of an effect on one of several
     /// channels, where that takes most: on any of them so much would have been seen.
     pub smallest: Option<f64>,
+    /// The same on either side of neutral.
+    pub below: Option<f64>,
+    pub above: Option<f64>,
+}
+
+/// An effect that is nearly named.
+#[derive(Clone, Debug, Serialize)]
+pub struct Nearest {
+    pub effect: String,
+    pub says: String,
+    pub evidence: f64,
+    /// What it wants for being looked at further.
+    pub wants: String,
 }
 
 /// With what the answer was found.

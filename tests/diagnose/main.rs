@@ -24,6 +24,7 @@ mod vehicles;
 mod write;
 
 mod blind;
+mod closed_form;
 mod metamorphic;
 
 use std::fs;
