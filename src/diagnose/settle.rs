@@ -75,16 +75,22 @@ impl Settled<'_> {
                 self.refined((candidates, masks), &mut now, runs);
             }
             let members = &now.chosen.members;
-            let weak = |at: &usize| {
-                let (member, of) = (&members[*at], &candidates[members[*at].candidate]);
-                member.evidence < bars.least(of, members.len()) || (self.far)(of, member.size) < bars.tolerance_sd
+            let weak = |at: usize| {
+                let (member, of) = (&members[at], &candidates[members[at].candidate]);
+                let away = (self.far)(of, member.size);
+                let reason = match () {
+                    () if member.evidence < bars.least(of, members.len()) => "it has too little evidence".to_string(),
+                    () if away < bars.tolerance_sd => {
+                        format!("its size is {away:.1} declared standard deviations off, not {:.1}", bars.tolerance_sd)
+                    }
+                    () => return None,
+                };
+                Some((at, format!("with the tolerances as they act beside it, {reason}")))
             };
-            let Some(weak) = (0..count).find(weak) else {
+            let Some((weak, reason)) = (0..count).find_map(weak) else {
                 count += 1;
                 continue;
             };
-            let reason =
-                "with the tolerances as they act beside it, it has too little evidence, or its size is within what is declared".into();
             refused.push(Refused { fitted: now.chosen.members.remove(weak), reason });
             now = now.by(without.clone(), self.difference);
             self.refined((candidates, masks), &mut now, runs);
@@ -93,12 +99,12 @@ impl Settled<'_> {
         now
     }
 
-    /// Fits the members again, with the sizes that are found simulated.
+    /// Fits the members again, with the sizes that are found simulated; last comes a fit, so that no size is judged that is not the answer's.
     fn refined(&self, (candidates, masks): (&mut [Candidate], &[Mask]), now: &mut Weighed, runs: &mut Runs) {
-        for _ in 0..ROUNDS {
+        for round in 0..=ROUNDS {
             let fitter = Fitter::of(&now.whitener, candidates, masks.to_vec(), &now.chosen.members);
             refit(&fitter, &now.z, &mut now.chosen, 6);
-            if !polish(self.workshop, candidates, &now.chosen.members, runs) {
+            if round == ROUNDS || !polish(self.workshop, candidates, &now.chosen.members, runs) {
                 break;
             }
         }

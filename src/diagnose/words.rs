@@ -212,7 +212,7 @@ fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
 fn detectable(found: &Found) -> Vec<Detectable> {
     let mut list: Vec<Detectable> = Vec::new();
     for candidate in found.candidates.iter().filter(|candidate| !candidate.discrete && candidate.fixed.is_empty()) {
-        let Some(neutral) = candidate.neutral() else { continue };
+        let Some(neutral) = candidate.neutral().filter(|neutral| neutral.is_finite()) else { continue };
         let mut nodes: Vec<(f64, f64)> = candidate
             .nodes
             .iter()
@@ -228,6 +228,7 @@ fn detectable(found: &Found) -> Vec<Detectable> {
             effect: candidate.effect.clone(),
             parameter: candidate.size.clone(),
             unit: candidate.unit.text.clone(),
+            neutral,
             smallest: below.zip(above).map(|(a, b)| nearer(a, b)).or(below).or(above),
             below,
             above,

@@ -296,17 +296,21 @@ fn signals(found: &Diagnosis) -> Option<Chapter> {
 }
 
 fn seen(found: &Diagnosis) -> Chapter {
-    let size = |size: Option<f64>| size.map_or_else(|| number::NONE.to_owned(), |size| number::significant(size, 3));
-    let row = |one: &Detectable| vec![one.effect.clone(), one.parameter.clone(), size(one.below), size(one.above), one.unit.clone()];
+    let significant = |size: f64| number::significant(size, 3);
+    let row = |one: &Detectable| {
+        let size = |change: Option<f64>| change.map_or_else(|| number::NONE.to_owned(), |change| significant(one.neutral + change));
+        vec![one.effect.clone(), one.parameter.clone(), significant(one.neutral), size(one.below), size(one.above), one.unit.clone()]
+    };
     let rows = found.detectable.iter().map(row);
     let head = vec![
         Head::text("Effect"),
         Head::text("Parameter"),
-        Head::number("Downwards from neutral"),
-        Head::number("Upwards"),
+        Head::number("Neutral"),
+        Head::number("Seen from, below"),
+        Head::number("above"),
         Head::short("Unit"),
     ];
-    let caption = "The smallest change of each effect that this campaign can show (five standard deviations of what is allowed for; nothing where its range ends before)";
+    let caption = "The sizes from which on this campaign can show each effect (five standard deviations of what is allowed for; nothing where its range ends before)";
     let mut items = vec![Item::Table { table: Table { caption: caption.into(), head, rows: rows.collect() } }];
     if !found.nearest.is_empty() {
         let rows = found.nearest.iter().map(|one| vec![one.says.clone(), number::fixed(one.evidence, 1), one.wants.clone()]);

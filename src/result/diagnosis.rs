@@ -195,6 +195,8 @@ pub struct Detectable {
     pub effect: String,
     pub parameter: String,
     pub unit: String,
+    /// The size at which nothing changes.
+    pub neutral: f64,
     /// Change from neutral at which the whitened change is 5 long; nothing if the range ends before. Of an effect on one of several
     /// channels, where that takes most: on any of them so much would have been seen.
     pub smallest: Option<f64>,
