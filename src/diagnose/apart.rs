@@ -52,21 +52,7 @@ mod tests {
             Node { size: 0.0, change: Vec::new() },
             Node { size: 10.0, change: vec![20.0, 20.0, 20.0, 20.0, 20.0, -20.0, 20.0, -20.0] },
         ];
-        let rival = Candidate {
-            effect: "rival".into(),
-            channels: Vec::new(),
-            size: "size".into(),
-            unit: crate::units::Unit::one(),
-            range: (0.0, 10.0),
-            fixed: Vec::new(),
-            nodes,
-            discrete: false,
-            exact: false,
-            confinable: false,
-            tolerance: None,
-            alternatives: 1,
-            pending: Vec::new(),
-        };
+        let rival = Candidate::path("rival", nodes);
         let everywhere = Mask { confined: None, sections: vec![true; 4], asked_by: None };
         let found = best(&covariance, &[0, 1, 2, 3], &[vec![0, 1], vec![2, 3]], &change, (&rival, &everywhere)).expect("both change");
         // |a|^2 - (a'b)^2 / |b|^2 by hand, with b the rival at size 1.

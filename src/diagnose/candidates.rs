@@ -56,6 +56,26 @@ impl Candidate {
         }
     }
 
+    /// By a path alone, for tests.
+    #[cfg(test)]
+    pub fn path(effect: &str, nodes: Vec<Node>) -> Self {
+        Self {
+            effect: effect.into(),
+            channels: Vec::new(),
+            size: "size".into(),
+            unit: Unit::one(),
+            range: (0.0, 10.0),
+            fixed: Vec::new(),
+            nodes,
+            discrete: false,
+            exact: false,
+            confinable: true,
+            tolerance: None,
+            alternatives: 1,
+            pending: Vec::new(),
+        }
+    }
+
     /// Where nothing changes.
     #[must_use]
     pub fn neutral(&self) -> Option<f64> {

@@ -199,3 +199,38 @@ const SURE: f64 = 3.0;
 const MODEL: f64 = 0.15;
 const SPILL: f64 = 0.1;
 const SPILT: f64 = 0.3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::candidates::Node;
+
+    /// Two features in each of 40 sections, each a view of its own and of unit variance: one changes by 2 per section and shows all of
+    /// the effect, the other changes by 1.2 and shows nothing of it.
+    ///
+    /// By hand: lengths 12.65 and 7.59, standard errors 0.079 and 0.132, weights 160 and 57.6, so that all ask for 0.735. An
+    /// operation on the signals is wrong by 0.15 at the most: 0.735 / 0.2 = 3.7 standard errors. Of a simulated change a tenth of the
+    /// whole, 0.1 * 14.75 * 0.132 = 0.194: 0.735 / 0.235 = 3.1; with 3 and 1.2 it is 0.862 / 0.300 = 2.9, which is not sure.
+    #[test]
+    fn a_simulated_change_may_spill_over() {
+        const SECTIONS: usize = 40;
+        let judged = |large: f64, exact: bool| {
+            let per_section = |a: f64, b: f64| (0..SECTIONS).flat_map(|_| [a, b]).collect::<Vec<f64>>();
+            let covariance = Covariance { diagonal: vec![1.0; 2 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 2 };
+            let change = per_section(large, 1.2);
+            let nodes = vec![Node { size: 0.0, change: Vec::new() }, Node { size: 1.0, change: change.clone() }];
+            let candidate = Candidate { exact, ..Candidate::path("effect", nodes) };
+            let mask = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
+            let whitener = covariance.whitener();
+            let fitter = Fitter::new(&whitener, std::slice::from_ref(&candidate), vec![mask.clone()]);
+            let fit = fitter.fit(&change, 0, 0).expect("a path");
+            let view =
+                |feature: usize| View { says: format!("view {feature}"), sections: (0..SECTIONS).collect(), features: vec![feature] };
+            contradiction(&covariance, &[view(0), view(1)], (&candidate, &mask, &fit), &per_section(large, 0.0))
+        };
+        assert!(matches!(judged(2.0, true), Judged::Refused(_)));
+        assert!(matches!(judged(2.0, false), Judged::Refused(_)));
+        assert!(matches!(judged(3.0, true), Judged::Refused(_)));
+        assert_eq!(judged(3.0, false), Judged::Doubtful);
+    }
+}

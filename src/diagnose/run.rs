@@ -416,3 +416,37 @@ pub fn chi(found: &Found) -> (f64, f64) {
     let n = before.len().max(1) as f64;
     (chi_squared(&before) / n, chi_squared(&found.chosen.rest) / n)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::candidates::Node;
+    use crate::diagnose::settings::Tolerance;
+
+    /// 0.7 times 1.2 is 0.14 off: 4 standard deviations of 5 % of 0.7 where the tolerance scales the parameter, 2.8 of 0.05 else.
+    #[test]
+    fn what_is_scaled_is_declared_as_a_share_of_what_the_vehicle_has() {
+        let deviations_of = |scales: &[&str], neutral: f64| {
+            let tolerance = Tolerance {
+                name: "declared".into(),
+                unit: crate::units::Unit::one(),
+                default: 0.05,
+                scales: scales.iter().map(|key| (*key).to_string()).collect(),
+                adds: Vec::new(),
+                sets: Vec::new(),
+                named: Vec::new(),
+                expected: 0.0,
+                per_section: false,
+                shared: true,
+            };
+            let settings = Settings { tolerances: vec![tolerance], ..Settings::default() };
+            let nodes = vec![Node { size: neutral, change: Vec::new() }, Node { size: 2.0, change: vec![1.0] }];
+            let candidate = Candidate { tolerance: Some("declared".into()), ..Candidate::path("effect", nodes) };
+            deviations(&candidate, neutral + 0.14, &settings, &Declared::default())
+        };
+        assert!((deviations_of(&["size"], 0.7) - 4.0).abs() < 1e-9);
+        assert!((deviations_of(&["another"], 0.7) - 2.8).abs() < 1e-9);
+        // A share of nothing would be infinitely far: it is taken as it stands.
+        assert!((deviations_of(&["size"], 0.0) - 2.8).abs() < 1e-9);
+    }
+}

@@ -91,21 +91,7 @@ mod tests {
     use crate::diagnose::whiten::Covariance;
 
     fn candidate(effect: &str, change: Vec<f64>) -> Candidate {
-        Candidate {
-            effect: effect.into(),
-            channels: Vec::new(),
-            size: "size".into(),
-            unit: crate::units::Unit::one(),
-            range: (0.0, 10.0),
-            fixed: Vec::new(),
-            nodes: vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change }],
-            discrete: false,
-            exact: false,
-            confinable: true,
-            tolerance: None,
-            alternatives: 1,
-            pending: Vec::new(),
-        }
+        Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change }])
     }
 
     /// One feature in each of 20 sections that an effect changes alike: its size is the mean of the differences, whose bootstrap

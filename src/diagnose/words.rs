@@ -324,3 +324,16 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
     }
     lines
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lengths 2 at 1 and 6 at 3: five at 1 + 2 * 3 / 4.
+    #[test]
+    fn what_can_be_seen_lies_between_the_sizes_that_were_tried() {
+        assert_eq!(long_enough([(1.0, 2.0), (3.0, 6.0)].into_iter()), Some(2.5));
+        assert_eq!(long_enough([(-2.0, 10.0)].into_iter()), Some(-1.0));
+        assert_eq!(long_enough([(1.0, 2.0), (3.0, 4.0)].into_iter()), None);
+    }
+}
