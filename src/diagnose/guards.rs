@@ -92,6 +92,10 @@ pub fn families(seen: &Observations, strata: &[Vec<usize>]) -> Vec<Vec<View>> {
 /// Share of the evidence that must be left whichever section is taken away, unless so much is left that it would do by itself.
 const KEPT: f64 = 0.5;
 const ENOUGH: f64 = 60.0;
+/// Where an effect shows most in one section, the others may have less, if it is this share of what they should have, and very strong
+/// by itself (Kass and Raftery 1995).
+const EXPECTED: f64 = 0.5;
+const VERY_STRONG: f64 = 10.0;
 
 /// The section without which most of the evidence for a change is gone, and the share of it that is left, if one section carries it;
 /// one of few sections always does.
@@ -104,9 +108,13 @@ pub fn carried(covariance: &Covariance, mask: &Mask, change: &[f64], rest: &[f64
     }
     let evidence = |(length, along): &(f64, f64)| if *length > 0.0 { along * along / length } else { 0.0 };
     let products = covariance.products().of(change, rest, true);
-    let all = evidence(&products[0]);
-    let (at, least) = inside.into_iter().map(|at| (at, evidence(&products[at + 1]))).min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (least < KEPT * all && least < ENOUGH).then_some((at, least / all))
+    let (all, left) = (evidence(&products[0]), |at: usize| evidence(&products[at + 1]));
+    let at = inside.into_iter().min_by(|a, b| left(*a).total_cmp(&left(*b)))?;
+    if left(at) >= ENOUGH.min(KEPT * all) {
+        return None;
+    }
+    let expected = all * products[at + 1].0 / products[0].0;
+    (left(at) < VERY_STRONG.max(EXPECTED * expected)).then(|| (at, left(at) / all))
 }
 
 /// What a view says of a candidate.

@@ -31,9 +31,27 @@ impl Covariance {
     }
 }
 
-/// How far what is left goes beyond what is allowed for, channel by channel and kind by kind: standard deviations of chi-squared.
+/// How far a channel goes beyond what is allowed for, in its levels or in all else.
+#[derive(Clone, Debug)]
+pub struct Lack {
+    pub channel: String,
+    pub kind: Kind,
+    /// Standard deviations of chi-squared.
+    pub sigma: f64,
+    /// Chi-squared less what is expected of it.
+    pub excess: f64,
+    /// Sections that stand out alone and do not count in this.
+    pub alone: Vec<usize>,
+    /// Standard deviations with them.
+    pub sigma_with_them: f64,
+}
+
+/// One section in so many may stand out alone: a wheelset that reaches the flange, or hunts, on one side of the comparison only.
+const ONE_IN: usize = 8;
+
+/// What is left beyond what is allowed for, channel by channel, levels and all else apart.
 #[must_use]
-pub fn lack_of_fit(covariance: &Covariance, seen: &Observations, rest: &[f64]) -> Vec<(String, Kind, f64, f64)> {
+pub fn lack_of_fit(covariance: &Covariance, seen: &Observations, rest: &[f64]) -> Vec<Lack> {
     use rayon::prelude::*;
     let all: Vec<usize> = seen.first_runs();
     let mut views = Vec::new();
@@ -48,27 +66,48 @@ pub fn lack_of_fit(covariance: &Covariance, seen: &Observations, rest: &[f64]) -
             }
         }
     }
-    let each = |(name, kind, view): (String, Kind, View)| {
-        let rest = part(rest, covariance.size, &view);
-        let n = rest.len() as f64;
-        let (chi, _) = covariance.part(&view.sections, &view.features).products().of(&rest, &rest, false)[0];
-        (name, kind, (chi - n) / (2.0 * n).sqrt(), chi - n)
+    let each = |(channel, kind, mut view): (String, Kind, View)| {
+        let count = |view: &View| (view.sections.len() * view.features.len()) as f64;
+        let beyond = |chi: f64, n: f64| (chi - n) / (2.0 * n).sqrt();
+        let all = count(&view);
+        let (with_them, chi, alone) = without_those_alone(covariance, &mut view, rest);
+        let n = count(&view);
+        Lack { channel, kind, sigma: beyond(chi, n), excess: chi - n, alone, sigma_with_them: beyond(with_them, all) }
     };
     views.into_par_iter().map(each).collect()
 }
 
+/// Chi-squared of a view with and without the sections that stand out alone, and these: each by more than [`LACK`] standard deviations
+/// of its own chi-squared given the others. They are taken out of the view.
+fn without_those_alone(covariance: &Covariance, view: &mut View, rest: &[f64]) -> (f64, f64, Vec<usize>) {
+    let own = view.features.len() as f64;
+    let most = view.sections.len() / ONE_IN;
+    let (mut first, mut alone) = (None, Vec::new());
+    loop {
+        let rest = part(rest, covariance.size, view);
+        let products = covariance.part(&view.sections, &view.features).products().of(&rest, &rest, alone.len() < most);
+        let (whole, others) = products.split_first().map_or((0.0, &[][..]), |(whole, others)| (whole.0, others));
+        let with_them = *first.get_or_insert(whole);
+        let least = others.iter().enumerate().min_by(|a, b| a.1.0.total_cmp(&b.1.0));
+        match least {
+            Some((at, left)) if whole - left.0 > own + LACK * (2.0 * own).sqrt() => alone.push(view.sections.remove(at)),
+            _ => return (with_them, whole, alone),
+        }
+    }
+}
+
 /// What is beyond what is allowed for, over all channels.
-pub fn excess(lack: &[(String, Kind, f64, f64)]) -> f64 {
-    lack.iter().map(|(.., excess)| excess.max(0.0)).sum()
+pub fn excess(lack: &[Lack]) -> f64 {
+    lack.iter().map(|lack| lack.excess.max(0.0)).sum()
 }
 
 /// What is left of the excess, and whether that is too much to call the gap explained: more than half of it, in more than one kind of
 /// one channel or far beyond. One among some forty may be a little beyond without anything being missing.
 #[must_use]
-pub fn unexplained(before: &[(String, Kind, f64, f64)], after: &[(String, Kind, f64, f64)]) -> (f64, bool) {
+pub fn unexplained(before: &[Lack], after: &[Lack]) -> (f64, bool) {
     let (gap, rest) = (excess(before), excess(after));
     let share = if gap > 0.0 { (rest / gap).clamp(0.0, 1.0) } else { 0.0 };
-    let beyond: Vec<f64> = after.iter().map(|(_, _, sigma, _)| *sigma).filter(|sigma| *sigma > LACK).collect();
+    let beyond: Vec<f64> = after.iter().map(|lack| lack.sigma).filter(|sigma| *sigma > LACK).collect();
     (share, share > 0.5 && (beyond.len() > 1 || beyond.iter().any(|sigma| *sigma > 3.0 * LACK)))
 }
 
@@ -79,8 +118,8 @@ pub fn drop_what_harms(
     (difference, z): (&[f64], &[f64]),
     chosen: &mut Chosen,
     refused: &mut Vec<Refused>,
-    before: &[(String, Kind, f64, f64)],
-) -> Vec<(String, Kind, f64, f64)> {
+    before: &[Lack],
+) -> Vec<Lack> {
     loop {
         let lack = |chosen: &Chosen| lack_after(covariance, seen, (fitter.candidates, &fitter.masks), difference, chosen);
         let now = lack(chosen);
@@ -112,7 +151,7 @@ pub fn lack_after(
     (candidates, masks): (&[Candidate], &[Mask]),
     difference: &[f64],
     chosen: &Chosen,
-) -> Vec<(String, Kind, f64, f64)> {
+) -> Vec<Lack> {
     let changes: Vec<Vec<f64>> = chosen.members.iter().map(|member| member.change(candidates, masks)).collect();
     let rest = changes.iter().fold(difference.to_vec(), |rest, change| less(&rest, change));
     lack_of_fit(&covariance.allowing(changes.iter()), seen, &rest)

@@ -3,6 +3,7 @@
 
 use super::features::Kind;
 use super::guards::{View, part};
+use super::lack::left;
 use super::run::Found;
 use super::settings::{Position, Settings};
 use crate::result::diagnosis::Where;
@@ -151,10 +152,11 @@ const INVERSE: &str = "1 / ";
 /// Which number of the section table what is left grows with, in words; nothing if with none.
 #[must_use]
 pub fn covariate(settings: &Settings, found: &Found) -> Option<String> {
-    let worst = found.lack_after.iter().filter(|(_, kind, ..)| *kind == Kind::Level).max_by(|a, b| a.2.total_cmp(&b.2))?;
-    let channel = found.seen.layout.channels.iter().position(|channel| channel.name == worst.0)?;
+    let worst = found.lack_after.iter().filter(|lack| lack.kind == Kind::Level).max_by(|a, b| a.sigma.total_cmp(&b.sigma))?;
+    let channel = found.seen.layout.channels.iter().position(|channel| channel.name == worst.channel)?;
     let feature = found.seen.find(channel, Kind::Level)?;
-    let values: Vec<f64> = (0..found.seen.sections.len()).map(|at| found.difference[found.seen.place(at, feature)]).collect();
+    let rest = left(&found.candidates, &found.masks, &found.difference, &found.chosen);
+    let values: Vec<f64> = (0..found.seen.sections.len()).map(|at| rest[found.seen.place(at, feature)]).collect();
     let order: Vec<f64> = (0..values.len()).map(|at| at as f64 + 1.0).collect();
     let mut named: Vec<(String, Vec<f64>)> = vec![("the order of the sections".into(), order)];
     for covariate in &settings.covariates {
@@ -170,7 +172,7 @@ pub fn covariate(settings: &Settings, found: &Found) -> Option<String> {
         }
     }
     let best = named.into_iter().map(|(name, x)| (name, correlation(&x, &values))).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    (best.1.abs() > 0.7).then(|| format!("What is left in {} follows {} (correlation {:.2}).", worst.0, best.0, best.1))
+    (best.1.abs() > 0.7).then(|| format!("What is left in {} follows {} (correlation {:.2}).", worst.channel, best.0, best.1))
 }
 
 fn correlation(x: &[f64], y: &[f64]) -> f64 {

@@ -27,6 +27,7 @@ pub mod search;
 pub mod sensitivity;
 pub mod settings;
 mod settle;
+mod shapes;
 pub mod shrink;
 pub mod stability;
 pub mod whiten;

@@ -5,10 +5,9 @@ use super::cache::Cache;
 use super::candidates::{Candidate, Trying, Workshop};
 use super::covariance::{Sensitivity, covariance, strata};
 use super::declared::Declared;
-use super::features::Kind;
 use super::fit::{Fitted, Fitter, Known, Mask, less};
 use super::guards::{View, carried, contradiction, families};
-use super::lack::{drop_what_harms, lack_after, lack_of_fit, left, unexplained};
+use super::lack::{Lack, drop_what_harms, lack_after, lack_of_fit, left, unexplained};
 use super::masks::{masks, section_masks};
 use super::observe::Observations;
 use super::reference::Reference;
@@ -68,8 +67,8 @@ pub struct Found {
     /// By member: whether it stands when other sections are drawn.
     pub stability: Vec<Stability>,
     /// Channels and kinds where what is left, and what was there, is more than is allowed for.
-    pub lack_before: Vec<(String, Kind, f64, f64)>,
-    pub lack_after: Vec<(String, Kind, f64, f64)>,
+    pub lack_before: Vec<Lack>,
+    pub lack_after: Vec<Lack>,
     pub bars: Bars,
     pub runs: Runs,
     pub strata: Vec<Vec<usize>>,
@@ -235,25 +234,28 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     }
     let known = fitter.whitened;
     let lack_before = lack_of_fit(&whole, &seen, &difference);
-    let lack_now = lack_after(&whole, &seen, (&candidates, &masks), &difference, &chosen);
-    let mut settled = Weighed { covariance: whole.clone(), whitener: whitener.clone(), z, chosen };
+    let first = Weighed { covariance: whole.clone(), whitener: whitener.clone(), z, chosen };
+    let again = Settled {
+        workshop: &workshop,
+        settings,
+        columns: &columns,
+        value: &value,
+        declared: &declared,
+        difference: &difference,
+        far: &far,
+    };
+    let before = refused.len();
+    let mut settled = again.settle((&mut candidates, &masks), first.clone(), &bars, &mut refused, &mut runs);
     // A set that leaves most of the gap is no place to take anything at.
-    if !unexplained(&lack_before, &lack_now).1 {
-        let again = Settled {
-            workshop: &workshop,
-            settings,
-            columns: &columns,
-            value: &value,
-            declared: &declared,
-            difference: &difference,
-            far: &far,
-        };
-        settled = again.settle((&mut candidates, &masks), settled, &bars, &mut refused, &mut runs);
+    let lack_there = lack_after(&settled.covariance, &seen, (&candidates, &masks), &difference, &settled.chosen);
+    if unexplained(&lack_before, &lack_there).1 {
+        refused.truncate(before);
+        settled = first;
     }
     let Weighed { covariance: settled, whitener: weighing, z, mut chosen } = settled;
     let fitter = Fitter::of(&weighing, &candidates, masks.clone(), &chosen.members);
     refit(&fitter, &z, &mut chosen, 6);
-    let lack_after = drop_what_harms(&fitter, (&whole, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
+    let lack_after = drop_what_harms(&fitter, (&settled, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
     drop(fitter);
     drop(bench);
     let mut found = Found {
@@ -323,7 +325,7 @@ impl Found {
         self.chosen.members = super::shrink::trained(self, &[]);
         self.chosen.rest =
             self.chosen.members.iter().fold(self.weighing.apply(&self.difference), |rest, member| less(&rest, &member.whitened));
-        self.lack_after = lack_after(&self.covariance, &self.seen, (&self.candidates, &self.masks), &self.difference, &self.chosen);
+        self.lack_after = lack_after(&self.settled, &self.seen, (&self.candidates, &self.masks), &self.difference, &self.chosen);
     }
 }
 

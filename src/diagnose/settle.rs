@@ -21,6 +21,7 @@ pub const ROUNDS: usize = 3;
 const ALIKE: f64 = 0.01;
 
 /// A set of effects, and how it is weighed.
+#[derive(Clone)]
 pub struct Weighed {
     pub covariance: Covariance,
     pub whitener: Whitener,

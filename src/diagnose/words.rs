@@ -22,7 +22,8 @@ const TEMPERATURE: f64 = 4.0;
 pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Option<Shrink>) -> Diagnosis {
     let (before, after) = chi(found);
     let (unexplained_share, too_much) = unexplained(&found.lack_before, &found.lack_after);
-    let lacking = found.lack_after.iter().any(|(_, _, sigma, _)| *sigma > LACK);
+    // What stands out in a section or two alone makes no answer wrong, but is no agreement either.
+    let lacking = found.lack_after.iter().any(|lack| lack.sigma_with_them > LACK);
     let ambiguous = ambiguity(inputs, found);
     let named = !found.chosen.members.is_empty();
     let verdict = match () {
@@ -43,9 +44,12 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     probabilities(&mut causes, verdict);
     let discriminating_measurement = discriminating(inputs, found, &causes, verdict);
     let invariants = super::invariants::invariants(inputs.settings, found, units);
+    let radius = |key: &str| super::run::value_of(inputs.campaign, key);
+    let shapes = super::shapes::shapes(inputs.settings, &found.seen, &radius, inputs.seed);
     let mut says = says(inputs, found, verdict, &causes, shrink.as_ref(), unexplained_share);
     if verdict == "unexplained" {
         says.extend(super::invariants::worst(&invariants));
+        says.extend(shapes.iter().filter(|shape| shape.keeps_to.is_some()).map(|shape| shape.says.clone()));
     }
     let noted = found.runs.failed.iter().map(|failed| format!("a run failed and was left out: {failed}"));
     let left_out = found.seen.left_out.iter().map(|(section, reason)| format!("section {section} was left out: {reason}"));
@@ -62,6 +66,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         notes.push("the campaign declares no tolerances: documented defaults were taken, and the verdict is the weaker for it".into());
         "documented defaults"
     };
+    notes.extend(alone(found));
     if !inputs.references.is_empty() {
         let names: Vec<&str> = inputs.references.iter().map(|campaign| campaign.name.as_str()).collect();
         notes.push(format!("what the simulation is wrong in anyway was learnt from: {}", names.join(", ")));
@@ -77,6 +82,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         faults: found.seen.faults.clone(),
         r#where: super::locate::locate(inputs.settings, found, units),
         invariants,
+        shapes,
         causes,
         vetoed: vetoed(inputs, found),
         shrink,
@@ -110,6 +116,19 @@ fn simulated_time(found: &Found) -> f64 {
 }
 
 /// Sets in which another effect takes the place of a member, and that the data cannot tell from the answer.
+/// Sections that stand out alone beside an answer, with the channels that they do so in.
+fn alone(found: &Found) -> Option<String> {
+    let one = |at: usize| {
+        let mut channels: Vec<&str> =
+            found.lack_after.iter().filter(|lack| lack.alone.contains(&at)).map(|lack| lack.channel.as_str()).collect();
+        channels.dedup();
+        (!channels.is_empty()).then(|| format!("{} in {}", found.seen.sections[at].section.name(), channels.join(", ")))
+    };
+    let all: Vec<String> = (0..found.seen.sections.len()).filter_map(one).collect();
+    let told = !all.is_empty() && !found.chosen.members.is_empty();
+    told.then(|| format!("sections that stand out alone, and do not decide whether the gap is explained: {}", all.join("; ")))
+}
+
 fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
     let best = found.chosen.evidence();
     let mut causes: Vec<Cause> = Vec::new();
@@ -143,8 +162,9 @@ fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
 }
 
 fn probabilities(causes: &mut [Cause], verdict: &str) {
-    let best = causes.iter().map(|cause| cause.evidence).fold(f64::NEG_INFINITY, f64::max);
-    let weights: Vec<f64> = causes.iter().map(|cause| ((cause.evidence - best) / (2.0 * TEMPERATURE)).exp()).collect();
+    // A rival may have more evidence than an answer that was chosen with the tolerances as they act beside it: then it is as probable.
+    let best = causes.first().map_or(0.0, |answer| answer.evidence);
+    let weights: Vec<f64> = causes.iter().map(|cause| ((cause.evidence - best).min(0.0) / (2.0 * TEMPERATURE)).exp()).collect();
     // Something outside the catalogue is possible as well; more so where something is left.
     let outside = if verdict == "unexplained" { 4.0 } else { 0.05 };
     let all = weights.iter().sum::<f64>() + outside;
@@ -292,12 +312,12 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
             lines.push(format!("The data cannot tell apart: {}.", set.join(" | ")));
         }
         _ => {
-            let mut worst: Vec<_> = found.lack_after.iter().filter(|(_, _, sigma, _)| *sigma > LACK).collect();
-            worst.sort_by(|a, b| b.2.total_cmp(&a.2));
+            let mut worst: Vec<_> = found.lack_after.iter().filter(|lack| lack.sigma_with_them > LACK).collect();
+            worst.sort_by(|a, b| b.sigma_with_them.total_cmp(&a.sigma_with_them));
             let named: Vec<String> = worst
                 .iter()
                 .take(4)
-                .map(|(channel, kind, ..)| format!("{channel} ({})", if *kind == Kind::Level { "quasi-static" } else { "dynamic" }))
+                .map(|lack| format!("{} ({})", lack.channel, if lack.kind == Kind::Level { "quasi-static" } else { "dynamic" }))
                 .collect();
             let catalogue = &inputs.catalogue.name;
             lines.push(match named.is_empty() {

@@ -5,7 +5,7 @@ use crate::report::number;
 use crate::report::study::{Chapter, Document, Head, Item, Table};
 use crate::report::view::{self, Fact, Finding};
 use crate::result::Certification;
-use crate::result::diagnosis::{Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Shrink, Value};
+use crate::result::diagnosis::{Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Value};
 
 /// Cells listed; all of them stand in diagnosis.json.
 const CELLS: usize = 30;
@@ -117,8 +117,8 @@ fn places(found: &Diagnosis) -> Chapter {
         Head::number("p"),
         Head::short("Significant"),
     ];
-    let caption = "Cells by their share of the gap, tested against noise, declared tolerances and what a model may be wrong in; significant at a false discovery rate of 5 %. \
-                   Quasi-static differences count towards the simulated side; those of bands are relative";
+    let caption = "Cells by their share of the gap, tested against noise, declared tolerances and what a model may be wrong in; \
+                   significant at a false discovery rate of 5 %. Quasi-static differences count towards the simulated side; those of bands are relative";
     let table = Table { caption: caption.into(), head, rows: rows.collect() };
     let significant = found.r#where.iter().filter(|place| place.significant).count();
     let mut text = format!(
@@ -133,6 +133,10 @@ fn places(found: &Diagnosis) -> Chapter {
     let mut items = vec![Item::text(text), map, Item::Table { table }];
     if !found.invariants.is_empty() {
         items.push(Item::Table { table: invariants(&found.invariants) });
+    }
+    if !found.shapes.is_empty() {
+        items.push(Item::Table { table: shapes(&found.shapes) });
+        items.push(Item::List { entries: found.shapes.iter().map(|shape| shape.says.clone()).collect() });
     }
     chapter("where", "Where the gap lies", items)
 }
@@ -161,6 +165,37 @@ fn invariants(all: &[Invariant]) -> Table {
         Head::number("Allowed"),
         Head::number("Off before"),
         Head::number("Off after"),
+    ];
+    Table { caption: caption.into(), head, rows: rows.collect() }
+}
+
+fn shapes(all: &[Shape]) -> Table {
+    let rows = all.iter().map(|shape| {
+        let ratio = |ratio: Ratio| {
+            format!("{} ({} to {})", number::fixed(ratio.value, 2), number::fixed(ratio.low, 2), number::fixed(ratio.high, 2))
+        };
+        let share =
+            |share: Option<f64>| share.map_or_else(|| number::NONE.to_owned(), |share| format!("{} %", number::fixed(100.0 * share, 0)));
+        vec![
+            shape.quantity.clone(),
+            ratio(shape.rms),
+            ratio(shape.peak),
+            ratio(shape.crest),
+            share(shape.alike_by_frequency),
+            share(shape.alike_by_wavelength),
+            shape.keeps_to.or(shape.reason).unwrap_or(number::NONE).to_owned(),
+        ]
+    });
+    let caption = "Dynamic content as recorded, measured over simulated, with 90 % intervals by resampling the sections; and how much of what \
+                   the spectra differ in is alike in all sections, compared at the same frequency or at the same wavelength";
+    let head = vec![
+        Head::text("Quantity"),
+        Head::number("Rms"),
+        Head::number("Peak"),
+        Head::number("Crest"),
+        Head::number("Alike in Hz"),
+        Head::number("Alike in m"),
+        Head::text("Keeps to"),
     ];
     Table { caption: caption.into(), head, rows: rows.collect() }
 }

@@ -16,6 +16,7 @@ pub struct Diagnosis {
     pub faults: Vec<Fault>,
     pub r#where: Vec<Where>,
     pub invariants: Vec<Invariant>,
+    pub shapes: Vec<Shape>,
     pub causes: Vec<Cause>,
     pub vetoed: Vec<Vetoed>,
     pub shrink: Option<Shrink>,
@@ -100,6 +101,49 @@ pub struct Invariant {
     pub after: f64,
     /// One standard deviation of what is allowed for.
     pub allowed: f64,
+}
+
+/// How the dynamic content of a group of channels differs, over all sections.
+#[derive(Clone, Debug, Serialize)]
+pub struct Shape {
+    pub quantity: String,
+    pub signals: Vec<String>,
+    /// Measured over simulated.
+    pub rms: Ratio,
+    /// Of the percentile that is called the peak, to the larger side of the median.
+    pub peak: Ratio,
+    /// Of peak over rms.
+    pub crest: Ratio,
+    /// What the differences of spectra keep to from section to section, if either: `frequency` or `wavelength`.
+    pub keeps_to: Option<&'static str>,
+    /// Why it is not said; where it is, nothing.
+    pub reason: Option<&'static str>,
+    /// Share of their scatter that is alike in all sections, compared at the same frequency, and at the same wavelength.
+    pub alike_by_frequency: Option<f64>,
+    pub alike_by_wavelength: Option<f64>,
+    pub strongest: Option<Strongest>,
+    pub says: String,
+}
+
+/// A ratio with the interval that 90 % of resamples of the sections lie in.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Ratio {
+    pub value: f64,
+    pub low: f64,
+    pub high: f64,
+}
+
+/// Where spectra differ most for sure.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Strongest {
+    /// Amplitude, measured over simulated.
+    pub ratio: f64,
+    /// In Hz at the mean speed.
+    pub frequency: f64,
+    /// In m.
+    pub wavelength: Option<f64>,
+    /// Waves to one turn of a wheel.
+    pub per_wheel_turn: Option<f64>,
 }
 
 /// Effects that together may be the cause.

@@ -29,6 +29,19 @@ pub struct Settings {
     pub positions: Vec<Position>,
     /// Sums of channels with weights, by name.
     pub invariants: Vec<(String, Vec<(String, f64)>)>,
+    /// How the dynamic content is described beside the features.
+    pub shape: Option<Shape>,
+}
+
+/// How the dynamic content of a group of channels is described.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// In Hz: where spectra are compared line by line.
+    pub range: (f64, f64),
+    /// In %: what is called the peak of a record, to either side of its median.
+    pub percentile: f64,
+    /// The number of the vehicle file that is the radius of a wheel in m.
+    pub wheel_radius: Option<String>,
 }
 
 /// Features of a group of channels.

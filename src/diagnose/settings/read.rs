@@ -1,6 +1,6 @@
 //! Reads the `diagnosis` part of a catalogue.
 
-use super::{Discrepancy, FeatureKind, GroupFeatures, Moves, Over, Position, Settings, Times, Tolerance};
+use super::{Discrepancy, FeatureKind, GroupFeatures, Moves, Over, Position, Settings, Shape, Times, Tolerance};
 use crate::effects::Catalogue;
 use crate::problem::{Problem, Problems};
 use crate::source::Span;
@@ -10,7 +10,7 @@ use crate::yaml::{Node, Value};
 /// Lag in m beyond which records belong to other places.
 const FURTHEST: f64 = 50.0;
 
-const TOP: [&str; 12] = [
+const TOP: [&str; 13] = [
     "bands",
     "alike",
     "furthest lag",
@@ -23,9 +23,11 @@ const TOP: [&str; 12] = [
     "strata",
     "positions",
     "invariants",
+    "shape",
 ];
 const GROUP: [&str; 13] =
     ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says", "unit"];
+const SHAPE: [&str; 3] = ["range", "percentile", "wheel radius"];
 const TOLERANCE: [&str; 8] = ["default", "unit", "expected", "scales", "adds", "sets", "each section", "shared"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
@@ -221,7 +223,23 @@ impl Reader<'_> {
             };
             settings.positions.push(Position { name: key.text.clone(), straight, mirrored });
         }
+        settings.shape = node.get("shape").and_then(|node| self.shape(node));
         settings
+    }
+
+    fn shape(&mut self, node: &Node) -> Option<Shape> {
+        self.keys(node, &SHAPE);
+        let percentile = self.number(node, "percentile", f64::NAN);
+        let [low, high] = node.get("range").map(|range| self.numbers(range))?[..] else {
+            self.wrong("`range` is two frequencies in Hz", node);
+            return None;
+        };
+        if !(low > 0.0 && high > low && (50.0..100.0).contains(&percentile)) {
+            self.wrong("`range` is two rising frequencies in Hz, `percentile` a number from 50 to 100", node);
+            return None;
+        }
+        let wheel_radius = node.get("wheel radius").and_then(Node::scalar_text).map(str::to_string);
+        Some(Shape { range: (low, high), percentile, wheel_radius })
     }
 
     fn discrepancy(&mut self, node: &Node) -> Option<Discrepancy> {
