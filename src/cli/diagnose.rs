@@ -156,6 +156,9 @@ pub fn exit(diagnosis: &Diagnosis) -> Exit {
     }
 }
 
+/// What is wrong with a number of the vehicle file that is there.
+const WRONG: [&str; 2] = ["wrong-kind", "range"];
+
 /// Opens everything and diagnoses.
 pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &mut Problems) -> Option<(Campaign, Outcome)> {
     let Prepared { compiled, campaign, .. } = prepare(asked.folder, asked.protocol, &[], problems)?;
@@ -168,9 +171,13 @@ pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &m
         Some(choice) if external => Some(choice.open(&campaign, problems)?),
         _ => Builtin::new(&campaign, &mut lacking).map(|model| Chosen::Builtin(Box::new(model))),
     };
-    // Without a model that can run, what can be done is done.
+    // Without a model that can run, what can be done is done. What is there and wrong is to be mended.
     for problem in lacking.0 {
-        problems.push(Problem { severity: Severity::Warning, ..problem });
+        let severity = if WRONG.contains(&problem.code) { Severity::Error } else { Severity::Warning };
+        problems.push(Problem { severity, ..problem });
+    }
+    if problems.errors() > 0 {
+        return None;
     }
     let simulator: Option<&dyn Simulator> = chosen.as_ref().map(Chosen::simulator);
     let cache = asked.resume;

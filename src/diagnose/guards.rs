@@ -213,6 +213,23 @@ mod tests {
     use super::*;
     use crate::diagnose::candidates::Node;
 
+    /// Sixteen sections of one feature of unit variance: the effect changes it by 10 in the first and by 1 in each of the others, so that
+    /// 15 of 115 are expected without the first.
+    #[test]
+    fn a_section_may_show_most_where_the_others_show_their_part() {
+        let covariance = Covariance { diagonal: vec![1.0; 16], inside: Vec::new(), shared: Vec::new(), size: 1 };
+        let mask = Mask { confined: None, sections: vec![true; 16], asked_by: None };
+        let of = |first: f64, others: f64| [vec![first], vec![others; 15]].concat();
+        let carried = |others: f64| carried(&covariance, &mask, &of(10.0, 1.0), &of(10.0, others));
+        assert_eq!(carried(1.0), None);
+        // (15 * 0.8)^2 / 15 = 9.6 is not very strong; nothing at all is none of what is expected.
+        let (section, share) = carried(0.8).expect("the first carries it");
+        assert!(section == 0 && (share - 9.6 / (112.0 * 112.0 / 115.0)).abs() < 1e-12, "{share}");
+        assert_eq!(carried(0.0), Some((0, 0.0)));
+        // Sections that are all alike carry it together.
+        assert_eq!(super::carried(&covariance, &mask, &of(1.0, 1.0), &of(3.0, 3.0)), None);
+    }
+
     /// Two features in each of 40 sections, each a view of its own and of unit variance: one changes by 2 per section and shows all of
     /// the effect, the other changes by 1.2 and shows nothing of it.
     ///

@@ -156,3 +156,23 @@ pub fn lack_after(
     let rest = changes.iter().fold(difference.to_vec(), |rest, change| less(&rest, change));
     lack_of_fit(&covariance.allowing(changes.iter()), seen, &rest)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sixteen sections of nine features of unit variance: one that is off by 10 in each of them has a chi-squared of 900.
+    #[test]
+    fn two_of_sixteen_sections_may_stand_out_alone() {
+        let covariance = Covariance { diagonal: vec![1.0; 16 * 9], inside: Vec::new(), shared: Vec::new(), size: 9 };
+        let lack = |off: &[usize]| {
+            let rest: Vec<f64> = (0..16 * 9).map(|at| if off.contains(&(at / 9)) { 10.0 } else { 0.0 }).collect();
+            let mut view = View { says: String::new(), sections: (0..16).collect(), features: (0..9).collect() };
+            without_those_alone(&covariance, &mut view, &rest)
+        };
+        assert_eq!(lack(&[]), (0.0, 0.0, vec![]));
+        assert_eq!(lack(&[3]), (900.0, 0.0, vec![3]));
+        let (with_them, chi, alone) = lack(&[3, 7, 11]);
+        assert_eq!((with_them, chi, alone.len()), (2700.0, 900.0, 2));
+    }
+}

@@ -30,6 +30,7 @@ mod settle;
 mod shapes;
 pub mod shrink;
 pub mod stability;
+mod suspects;
 pub mod whiten;
 mod words;
 

@@ -16,6 +16,7 @@ use super::sensitivity::sensitivities;
 use super::settings::Settings;
 use super::settle::{ROUNDS, Settled, Weighed, polish};
 use super::stability::{Stability, stability};
+use super::suspects::{Suspect, suspect};
 use super::whiten::{Covariance, Whitener, dot};
 use crate::data::Campaign;
 use crate::effects::{Catalogue, Gauss};
@@ -64,6 +65,8 @@ pub struct Found {
     pub rivals: Vec<(usize, Fitted, f64)>,
     /// What has most evidence for what the members leave, and is not named.
     pub nearest: Vec<Fitted>,
+    /// What no effect of the catalogue moves, where it explains more than the answer.
+    pub suspect: Option<Suspect>,
     /// By member: whether it stands when other sections are drawn.
     pub stability: Vec<Stability>,
     /// Channels and kinds where what is left, and what was there, is more than is allowed for.
@@ -257,6 +260,8 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     refit(&fitter, &z, &mut chosen, 6);
     let lack_after = drop_what_harms(&fitter, (&settled, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
     drop(fitter);
+    let base_z = whitener.apply(&difference);
+    let suspect = suspect(&workshop, settings, (&whitener, &base_z), (&candidates, &masks, &chosen), &mut runs);
     drop(bench);
     let mut found = Found {
         candidates,
@@ -272,6 +277,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         refused,
         rivals: Vec::new(),
         nearest: Vec::new(),
+        suspect,
         stability: Vec::new(),
         lack_before,
         lack_after,
@@ -294,6 +300,9 @@ fn bars(chance: f64) -> Bars {
 impl Found {
     /// Without a member, the others fitted again.
     pub fn refuse(&mut self, at: usize, reason: String, seed: u64) {
+        if at == 0 {
+            self.suspect = None;
+        }
         self.refused.push(Refused { fitted: self.chosen.members.remove(at), reason });
         self.fit_again();
         if unexplained(&self.lack_before, &self.lack_after).1 {
@@ -440,6 +449,7 @@ mod tests {
                 expected: 0.0,
                 per_section: false,
                 shared: true,
+                suspects: false,
             };
             let settings = Settings { tolerances: vec![tolerance], ..Settings::default() };
             let nodes = vec![Node { size: neutral, change: Vec::new() }, Node { size: 2.0, change: vec![1.0] }];

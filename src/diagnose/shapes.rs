@@ -251,6 +251,16 @@ fn found(mean: f64, frequency: f64, wavelength: Option<f64>) -> Strongest {
     Strongest { ratio: mean.exp(), frequency, wavelength, per_wheel_turn: None }
 }
 
+/// A difference that is alike in so much of its scatter is worth a word.
+const ALIKE: f64 = 0.5;
+
+/// What the quantity whose spectra differ most alike keeps to, in words.
+pub fn worth_a_word(all: &[Shape]) -> Option<String> {
+    let share = |shape: &Shape| shape.alike_by_frequency.unwrap_or(0.0).max(shape.alike_by_wavelength.unwrap_or(0.0));
+    let known = all.iter().filter(|shape| shape.keeps_to.is_some() && share(shape) >= ALIKE);
+    known.max_by(|a, b| share(a).total_cmp(&share(b))).map(|shape| shape.says.clone())
+}
+
 fn in_words(shape: &Shape) -> String {
     let Some(strongest) = shape.strongest else {
         return format!("The spectra of the {} differ nowhere for sure.", shape.quantity);

@@ -29,7 +29,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let verdict = match () {
         () if !named && !lacking && found.seen.faults.is_empty() => "no significant gap",
         () if !named => "unexplained",
-        () if too_much => "unexplained",
+        () if too_much || found.suspect.is_some() => "unexplained",
         () if ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
         () => "explained",
     };
@@ -49,7 +49,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let mut says = says(inputs, found, verdict, &causes, shrink.as_ref(), unexplained_share);
     if verdict == "unexplained" {
         says.extend(super::invariants::worst(&invariants));
-        says.extend(shapes.iter().filter(|shape| shape.keeps_to.is_some()).map(|shape| shape.says.clone()));
+        says.extend(super::shapes::worth_a_word(&shapes));
     }
     let noted = found.runs.failed.iter().map(|failed| format!("a run failed and was left out: {failed}"));
     let left_out = found.seen.left_out.iter().map(|(section, reason)| format!("section {section} was left out: {reason}"));
@@ -320,7 +320,16 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
                 .map(|lack| format!("{} ({})", lack.channel, if lack.kind == Kind::Level { "quasi-static" } else { "dynamic" }))
                 .collect();
             let catalogue = &inputs.catalogue.name;
+            if let Some(suspect) = &found.suspect {
+                lines.push(format!(
+                    "Outside the catalogue: `{}` times {:.2} explains more than any effect does (evidence {:.0} against {:.0}).",
+                    suspect.key, suspect.factor, suspect.evidence, suspect.answer
+                ));
+            }
             lines.push(match named.is_empty() {
+                true if found.suspect.is_some() => {
+                    "Beside the effects that come nearest, nothing is left that is more than is allowed for.".into()
+                }
                 true => format!("Beside that, nothing is left that an effect of the catalogue `{catalogue}` should explain."),
                 false => format!("No effect of the catalogue `{catalogue}` explains the gap. It is left in {}.", named.join(", ")),
             });

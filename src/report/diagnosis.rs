@@ -108,7 +108,7 @@ fn places(found: &Diagnosis) -> Chapter {
         ]
     });
     let head = vec![
-        Head::text("Quantity"),
+        Head::short("Quantity"),
         Head::text("Position"),
         Head::short("Band"),
         Head::short("Zone"),

@@ -37,7 +37,8 @@ impl<'a> Builtin<'a> {
         let vehicle = vehicle(&campaign.vehicle, problems)?;
         if !campaign.has(RecordKind::Track) {
             let says = "the campaign has no `track`: the folder of what the vehicle ran over, which the model needs";
-            problems.push(Problem::error("key-missing", says).at(&campaign.tree.span.part(0..0)));
+            let problem = Problem::error("key-missing", says).at(&campaign.tree.span.part(0..0));
+            problems.push(misspelt(problem, &campaign.tree, "track"));
             return None;
         }
         let place = |key: &str, default: &str| {
@@ -128,7 +129,19 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
                     VehicleFault::Missing(parameter) | VehicleFault::Inadmissible(parameter, _) => parameter.key,
                 };
                 let problem = inadmissible(&fault, &tree.lookup(key).map(|node| node.span.clone())).or_at(tree);
-                problems.push(if matches!(fault, VehicleFault::Missing(_)) { misspelt(problem, tree, key) } else { problem });
+                problems.push(match (&fault, tree.lookup(key)) {
+                    (VehicleFault::Missing(parameter), Some(node)) => {
+                        let says = format!(
+                            "`{key}` ({}) must be a number in {}; this is {}",
+                            parameter.meaning,
+                            parameter.unit,
+                            node.kind_in_words()
+                        );
+                        Problem::error("wrong-kind", says).at(&node.span)
+                    }
+                    (VehicleFault::Missing(_), None) => misspelt(problem, tree, key),
+                    (VehicleFault::Inadmissible(..), _) => problem,
+                });
             }
             None
         }

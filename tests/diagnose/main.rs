@@ -116,6 +116,33 @@ fn a_tolerance_that_cannot_be_used_is_told() {
     assert!(says.contains("declared in kN") && says.contains("cant [mm]"), "{says}");
 }
 
+/// A number of the vehicle file that is none is to be mended; without a track, or with its key misspelt, what can be done is done.
+#[test]
+fn a_vehicle_that_is_wrong_is_told_and_a_track_that_is_misspelt_pointed_at() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good");
+    let to = folder().join("wrong-vehicle");
+    copy(&example, &to);
+    let run = || {
+        let out = to.with_extension("diagnosis");
+        let ran = fishplate(&["diagnose", to.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        (ran.status.code(), String::from_utf8(ran.stderr).unwrap(), out)
+    };
+    let exchange = |file: &str, from: &str, into: &str| {
+        let text = fs::read_to_string(example.join(file)).unwrap();
+        assert!(text.contains(from), "{text}");
+        fs::write(to.join(file), text.replacen(from, into, 1)).unwrap();
+    };
+    exchange("vehicle.yaml", "\nfriction: ", "\nfriction: abc # ");
+    let (code, says, out) = run();
+    assert!(code == Some(2) && !out.exists(), "{says}");
+    assert!(says.contains("error[wrong-kind]: `friction` (") && says.contains("must be a number in -; this is text"), "{says}");
+    assert!(says.contains("vehicle.yaml:"), "{says}");
+    fs::copy(example.join("vehicle.yaml"), to.join("vehicle.yaml")).unwrap();
+    exchange("campaign.yaml", "\ntrack:", "\ntrak:");
+    let (code, says, _) = run();
+    assert!(code.is_some_and(|code| code <= 1) && says.contains("is `trak` meant to be `track`?"), "{says}");
+}
+
 /// A table of sections that cannot be read is told once, at its place, and nothing is simulated or written.
 #[test]
 fn a_table_of_sections_that_cannot_be_read_is_told_once() {

@@ -93,6 +93,8 @@ pub struct Tolerance {
     pub per_section: bool,
     /// Whether all sections share one.
     pub shared: bool,
+    /// Whether each parameter that it scales is looked at alone, as a cause that no effect stands for.
+    pub suspects: bool,
 }
 
 /// What the simulation may be wrong in without an effect being missing: one standard deviation.

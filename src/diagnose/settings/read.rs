@@ -28,7 +28,7 @@ const TOP: [&str; 13] = [
 const GROUP: [&str; 13] =
     ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says", "unit"];
 const SHAPE: [&str; 3] = ["range", "percentile", "wheel radius"];
-const TOLERANCE: [&str; 8] = ["default", "unit", "expected", "scales", "adds", "sets", "each section", "shared"];
+const TOLERANCE: [&str; 9] = ["default", "unit", "expected", "scales", "adds", "sets", "each section", "shared", "suspects"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
 impl Settings {
@@ -205,6 +205,7 @@ impl Reader<'_> {
                 named: named(node),
                 per_section,
                 shared,
+                suspects: self.flag(node, "suspects"),
             });
         }
         for node in node.get("discrepancies").map_or(&[][..], Node::items) {
