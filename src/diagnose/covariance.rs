@@ -12,7 +12,7 @@ const BLOCK: f64 = 1.0;
 const DRAWS: usize = 60;
 
 /// Variance of what tells nothing.
-const NOTHING: f64 = 1e12;
+pub const NOTHING: f64 = 1e12;
 
 /// How the simulated features change with a tolerated parameter, per standard deviation.
 #[derive(Clone, Debug)]

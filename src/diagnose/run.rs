@@ -50,7 +50,9 @@ pub struct Found {
     pub candidates: Vec<Candidate>,
     pub masks: Vec<Mask>,
     pub covariance: Covariance,
-    /// With the tolerances as they act where the answer is, and its whitener: what the sizes are fitted by.
+    /// With the tolerances as they act where the answer is: what is left is judged by it.
+    pub beside: Covariance,
+    /// The same without what stands out in a section alone, and its whitener: what the sizes are fitted by.
     pub settled: Covariance,
     pub weighing: Whitener,
     /// Noise and tolerances alone.
@@ -247,18 +249,11 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         difference: &difference,
         far: &far,
     };
-    let before = refused.len();
-    let mut settled = again.settle((&mut candidates, &masks), first.clone(), &bars, &mut refused, &mut runs);
-    // A set that leaves most of the gap is no place to take anything at.
-    let lack_there = lack_after(&settled.covariance, &seen, (&candidates, &masks), &difference, &settled.chosen);
-    if unexplained(&lack_before, &lack_there).1 {
-        refused.truncate(before);
-        settled = first;
-    }
+    let (beside, settled) = again.answer((&mut candidates, &masks), first, &lack_before, &bars, &mut refused, &mut runs);
     let Weighed { covariance: settled, whitener: weighing, z, mut chosen } = settled;
     let fitter = Fitter::of(&weighing, &candidates, masks.clone(), &chosen.members);
     refit(&fitter, &z, &mut chosen, 6);
-    let lack_after = drop_what_harms(&fitter, (&settled, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
+    let lack_after = drop_what_harms(&fitter, (&beside, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
     drop(fitter);
     let base_z = whitener.apply(&difference);
     let suspect = suspect(&workshop, settings, (&whitener, &base_z), (&candidates, &masks, &chosen), &mut runs);
@@ -269,6 +264,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         covariance: whole,
         tolerated,
         whitener,
+        beside,
         settled,
         weighing,
         difference,
@@ -306,6 +302,7 @@ impl Found {
         self.refused.push(Refused { fitted: self.chosen.members.remove(at), reason });
         self.fit_again();
         if unexplained(&self.lack_before, &self.lack_after).1 {
+            self.beside = self.covariance.clone();
             self.settled = self.covariance.clone();
             self.weighing = self.whitener.clone();
             self.fit_again();
@@ -334,7 +331,7 @@ impl Found {
         self.chosen.members = super::shrink::trained(self, &[]);
         self.chosen.rest =
             self.chosen.members.iter().fold(self.weighing.apply(&self.difference), |rest, member| less(&rest, &member.whitened));
-        self.lack_after = lack_after(&self.settled, &self.seen, (&self.candidates, &self.masks), &self.difference, &self.chosen);
+        self.lack_after = lack_after(&self.beside, &self.seen, (&self.candidates, &self.masks), &self.difference, &self.chosen);
     }
 }
 

@@ -3,8 +3,10 @@
 
 use super::bench::{Bench, Runs, Set};
 use super::candidates::{Candidate, Workshop, applied};
-use super::covariance::{Sensitivity, covariance};
+use super::covariance::{NOTHING, Sensitivity, covariance};
+use super::features::Kind;
 use super::fit::{Fitted, Fitter, Mask};
+use super::lack::{Lack, lack_after, unexplained};
 use super::search::{Bars, Chosen, Refused, refit};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
@@ -53,9 +55,34 @@ pub struct Settled<'a> {
 }
 
 impl Settled<'_> {
+    /// The members as they are weighed where they put the vehicle: the covariance that what is left is judged by, and the weighing of
+    /// their sizes, in which what stands out in a section alone does not count.
+    pub fn answer(
+        &self,
+        (candidates, masks): (&mut [Candidate], &[Mask]),
+        first: Weighed,
+        lack_before: &[Lack],
+        bars: &Bars,
+        refused: &mut Vec<Refused>,
+        runs: &mut Runs,
+    ) -> (Covariance, Weighed) {
+        let lack = |candidates: &[Candidate], now: &Weighed| {
+            lack_after(&now.covariance, self.workshop.seen, (candidates, masks), self.difference, &now.chosen)
+        };
+        let before = refused.len();
+        let mut now = self.settle((candidates, masks), first.clone(), bars, refused, runs);
+        // A set that leaves most of the gap is no place to take anything at.
+        if unexplained(lack_before, &lack(candidates, &now)).1 {
+            refused.truncate(before);
+            now = first;
+        }
+        let (beside, left) = (now.covariance.clone(), lack(candidates, &now));
+        (beside, self.without_those_alone((candidates, masks), now, &left, runs))
+    }
+
     /// Weighs with the tolerances as they act beside the first member, then beside the first two, and so on: what one seemed to
     /// explain may be a tolerance that it or another has made matter.
-    pub fn settle(
+    fn settle(
         &self,
         (candidates, masks): (&mut [Candidate], &[Mask]),
         mut now: Weighed,
@@ -97,6 +124,32 @@ impl Settled<'_> {
             self.refined((candidates, masks), &mut now, runs);
             count = 1;
         }
+        now
+    }
+
+    /// Fits the members again without what stands out in a section alone: it would pull at the sizes with all that it is off.
+    fn without_those_alone(
+        &self,
+        (candidates, masks): (&mut [Candidate], &[Mask]),
+        mut now: Weighed,
+        lack: &[Lack],
+        runs: &mut Runs,
+    ) -> Weighed {
+        let seen = self.workshop.seen;
+        let mut covariance = now.covariance.clone();
+        for one in lack {
+            let level = one.kind == Kind::Level;
+            for (at, feature) in seen.features.iter().enumerate() {
+                if seen.layout.channels[feature.channel].name == one.channel && (feature.kind == Kind::Level) == level {
+                    one.alone.iter().for_each(|section| covariance.diagonal[seen.place(*section, at)] = NOTHING);
+                }
+            }
+        }
+        if covariance.diagonal == now.covariance.diagonal {
+            return now;
+        }
+        now = now.by(covariance, self.difference);
+        self.refined((candidates, masks), &mut now, runs);
         now
     }
 

@@ -37,7 +37,12 @@ struct Truth {
     off: f64,
     /// Factor of the stiffness.
     stiffness: f64,
+    /// Of the force in the section number [`ALONE`], in N.
+    jump: f64,
 }
+
+const ALONE: usize = 5;
+const NOTHING: Truth = Truth { slack: 0.0, off: 0.0, stiffness: 1.0, jump: 0.0 };
 
 struct Formula;
 
@@ -95,6 +100,7 @@ fn campaign(folder: &Path, truth: Truth) {
     for (at, load) in LOADS.iter().enumerate() {
         writeln!(table, "S{at},1,0,39.9,{load}").unwrap();
         let measured = force(*load, truth.slack, RISE * (1.0 + truth.off * RISE_SD), STIFFNESS * truth.stiffness);
+        let measured = measured + if at == ALONE { truth.jump } else { 0.0 };
         let truths = [("simulation", force(*load, 0.0, RISE, STIFFNESS)), ("measurement", measured)];
         for (kind, level) in truths {
             let mut record = "time [s],distance [m],F [N]\n".to_string();
@@ -128,13 +134,37 @@ fn found(effects: &str, truth: Truth) -> Found {
     find(&inputs, all, &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)))
 }
 
+/// `a' C^-1 r / a' C^-1 a` where C has the variance of a level on its diagonal and one column c besides: a' (v I + c c')^-1 b =
+/// (a'b - a'c c'b / (v + c'c)) / v.
+fn least_squares(change: &[f64], column: &[f64], difference: &[f64]) -> f64 {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let v = LEVEL_SD * LEVEL_SD;
+    let product = |a: &[f64], b: &[f64]| (dot(a, b) - dot(a, column) * dot(column, b) / (v + dot(column, column))) / v;
+    product(change, difference) / product(change, change)
+}
+
+/// One section of eight is off by 30 N: it stands out alone, and the size is that of the seven others.
+#[test]
+fn what_stands_out_in_a_section_alone_does_not_pull_at_the_size() {
+    let truth = 0.8;
+    let found = found(EFFECTS, Truth { slack: truth, jump: 30.0, ..NOTHING });
+    let [member] = &found.chosen.members[..] else { panic!("{:?}", found.refused) };
+    assert_eq!(found.lack_after[0].alone, [ALONE]);
+    let others = || LOADS.iter().enumerate().filter(|(at, _)| *at != ALONE).map(|(_, load)| *load);
+    let change: Vec<f64> = others().map(|load| RISE * load * load - STIFFNESS * load).collect();
+    let difference: Vec<f64> = others().map(|load| force(load, truth, RISE, STIFFNESS) - force(load, 0.0, RISE, STIFFNESS)).collect();
+    let column: Vec<f64> = others().map(|load| found.beside.shared[0][LOADS.iter().position(|known| *known == load).unwrap()]).collect();
+    let wanted = least_squares(&change, &column, &difference);
+    assert!((wanted - truth).abs() < 1e-9 && (member.size - truth).abs() < 1e-6, "{} for {wanted}", member.size);
+}
+
 /// With the slack found, the rise matters by `size + SLACK` and no more by `SLACK`. The size is that of generalised least squares,
 /// `a' C^-1 r / a' C^-1 a` with the change `a` per slack (Aitken 1936): first by the covariance without slack, then by the covariance
 /// where that puts it.
 #[test]
 fn tolerances_are_weighed_as_they_act_beside_what_is_found() {
     let truth = 0.8;
-    let found = found(EFFECTS, Truth { slack: truth, off: 1.5, stiffness: 1.0 });
+    let found = found(EFFECTS, Truth { slack: truth, off: 1.5, ..NOTHING });
     let [member] = &found.chosen.members[..] else { panic!("{:?}", found.chosen.members.len()) };
     let column = |slack: f64| LOADS.map(|load| RISE_SD * (slack + SLACK) * RISE * load * load);
     let near = |seen: &[f64], wanted: &[f64]| {
@@ -147,13 +177,7 @@ fn tolerances_are_weighed_as_they_act_beside_what_is_found() {
         let simulated = force(load, 0.0, RISE, STIFFNESS);
         force(load, truth, RISE * (1.0 + 1.5 * RISE_SD), STIFFNESS) - simulated
     });
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let size = |column: &[f64]| {
-        // a' (v I + c c')^-1 b = (a'b - a'c c'b / (v + c'c)) / v
-        let v = LEVEL_SD * LEVEL_SD;
-        let product = |a: &[f64], b: &[f64]| (dot(a, b) - dot(a, column) * dot(column, b) / (v + dot(column, column))) / v;
-        product(&change, &difference) / product(&change, &change)
-    };
+    let size = |column: &[f64]| least_squares(&change, column, &difference);
     let first = size(&column(0.0));
     near(&found.covariance.shared[0], &column(0.0));
     near(&found.settled.shared[0], &column(first));
@@ -167,9 +191,9 @@ fn tolerances_are_weighed_as_they_act_beside_what_is_found() {
 #[test]
 fn a_parameter_that_no_effect_moves_is_a_suspect() {
     let effects = format!("{EFFECTS}{SUSPECT}");
-    let raised = found(&effects, Truth { slack: 0.0, off: 0.0, stiffness: 1.9 });
+    let raised = found(&effects, Truth { stiffness: 1.9, ..NOTHING });
     let suspect = raised.suspect.expect("a suspect");
     assert!(suspect.key == "stiffness" && (suspect.factor - 1.9).abs() < 1e-6, "{suspect:?}");
     assert!(suspect.evidence > suspect.answer, "{suspect:?}");
-    assert!(found(&effects, Truth { slack: 0.8, off: 0.0, stiffness: 1.0 }).suspect.is_none());
+    assert!(found(&effects, Truth { slack: 0.8, ..NOTHING }).suspect.is_none());
 }
