@@ -1,8 +1,8 @@
 //! Sections that an effect may be confined to.
 
+use super::converge::{NEAR, WORTH};
 use super::fit::{Fitted, Fitter, Mask};
 use super::observe::Observations;
-use super::run::{NEAR, WORTH};
 use super::search::Chosen;
 use super::settings::Settings;
 

@@ -8,6 +8,7 @@ mod cache;
 mod campaign;
 pub mod candidates;
 mod causes;
+mod converge;
 pub mod covariance;
 pub mod declared;
 mod faults;

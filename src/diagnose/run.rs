@@ -3,23 +3,24 @@
 use super::bench::{Bench, Runs};
 use super::cache::Cache;
 use super::candidates::{Candidate, Trying, Workshop};
+use super::converge::{Converged, Converging};
 use super::covariance::{Sensitivity, covariance, strata};
 use super::declared::Declared;
 use super::fit::{Fitted, Fitter, Known, Mask, less};
-use super::guards::{View, carried, contradiction, families};
-use super::lack::{Lack, drop_what_harms, lack_after, lack_of_fit, left, unexplained};
-use super::masks::{masks, section_masks};
+use super::guards::families;
+use super::lack::{Lack, drop_what_harms, lack_after, lack_of_fit, unexplained};
+use super::masks::masks;
 use super::observe::Observations;
 use super::reference::Reference;
-use super::search::{Bars, Chosen, Judged, Refused, chi_squared, nearest, plausible, refit, rivals, search};
+use super::search::{Bars, Chosen, Refused, chi_squared, nearest, refit, rivals};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
-use super::settle::{ROUNDS, Settled, Weighed, polish};
+use super::settle::{Settled, Weighed};
 use super::stability::{Stability, stability};
 use super::suspects::{Suspect, suspect};
 use super::whiten::{Covariance, Whitener, dot};
 use crate::data::Campaign;
-use crate::effects::{Catalogue, Gauss};
+use crate::effects::Catalogue;
 use crate::model::parameter;
 use crate::problem::{Problem, Problems};
 use crate::simulate::{Section, Simulator};
@@ -79,19 +80,6 @@ pub struct Found {
     pub strata: Vec<Vec<usize>>,
     pub declared: Declared,
 }
-
-/// A size that is a declared tolerance is named from so many standard deviations on: what is declared is an estimate itself.
-pub const TOLERANCE_SD: f64 = 3.5;
-/// Draws for the threshold.
-const DRAWS: usize = 60;
-/// Evidence below which no cause is named: real discrepancies are not those of the covariance.
-const FLOOR: f64 = 30.0;
-/// The same for an operation on the signals, which no such discrepancy enters: half as much, where 10 is called very strong (Kass and
-/// Raftery 1995).
-const FLOOR_EXACT: f64 = 15.0;
-/// A candidate is simulated at all its sizes from this share of the best evidence on, and from this evidence on.
-pub const NEAR: f64 = 0.5;
-pub const WORTH: f64 = 10.0;
 
 /// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
 #[must_use]
@@ -173,73 +161,22 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let tolerated = covariance(&seen, settings, &simulated, &sensitivities, &declared, false);
     let whitener = whole.whitener();
     let mut masks = masks(&seen, settings);
-    let z = whitener.apply(&difference);
     let strata = strata(&seen, settings);
     let families = families(&seen, &strata);
     let far = |candidate: &Candidate, size: f64| deviations(candidate, size, settings, &admitted);
-    let mut refused = Vec::new();
-    let mut chosen;
-    let mut chance = None;
-    let mut known = Known::new();
-    let mut reconsidered: Vec<usize> = Vec::new();
-    // Until no candidate that matters has sizes left to be simulated.
-    loop {
-        let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), std::mem::take(&mut known));
-        let bars = bars(*chance.get_or_insert_with(|| limit(&fitter, z.len(), inputs.seed)));
-        refused.clear();
-        let guard = |fit: &Fitted, chosen: &Chosen| guard((&whole, &seen), &families, &fitter, &difference, chosen, fit);
-        let found = search(&fitter, &z, &bars, &far, &guard, &mut refused);
-        let wanted = promising(&fitter, &z, &found);
-        let more = if wanted.is_empty() { section_masks(&fitter, &z, &found, &seen) } else { Vec::new() };
-        known = fitter.whitened;
-        if wanted.is_empty() && more.is_empty() {
-            // Nor may a veto: what was refused is looked at again with the size that was found.
-            let again: Vec<Fitted> = refused
-                .iter()
-                .map(|refused| refused.fitted.clone())
-                .filter(|fit| fit.evidence >= NEAR * found.evidence() && !reconsidered.contains(&fit.candidate))
-                .collect();
-            reconsidered.extend(again.iter().map(|fit| fit.candidate));
-            if !polish(&workshop, &mut candidates, &again, &mut runs) {
-                chosen = found;
-                break;
-            }
-        }
-        masks.extend(more);
-        wanted.into_iter().for_each(|(at, size)| workshop.refine(&mut candidates[at], size, &mut runs));
-        (inputs.trying)("weighing");
-    }
-    // Nothing may rest on interpolation: the members are fitted again with the sizes that were found, and one that was above the bar
-    // by interpolation alone goes.
-    for _ in 0..ROUNDS {
-        if !polish(&workshop, &mut candidates, &chosen.members, &mut runs) {
-            break;
-        }
-        let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), known);
-        refit(&fitter, &z, &mut chosen, 6);
-        known = fitter.whitened;
-    }
-    let fitter = Fitter::knowing(&whitener, &candidates, masks.clone(), known);
-    let bars = bars(chance.unwrap_or(FLOOR));
-    let fault = |member: &Fitted, count: usize| {
-        if member.evidence < bars.least(&fitter.candidates[member.candidate], count) {
-            return Some("simulated at the size that was found, it has too little evidence");
-        }
-        (!plausible(&fitter.candidates[member.candidate], member.size))
-            .then_some("beside the others it asks for a size that is not plausible")
+    let converging = Converging {
+        workshop: &workshop,
+        covariance: &whole,
+        whitener: &whitener,
+        difference: &difference,
+        families: &families,
+        far: &far,
+        seed: inputs.seed,
     };
-    let first_fault = |members: &[Fitted]| {
-        let count = members.len();
-        members.iter().enumerate().find_map(|(at, member)| Some((at, fault(member, count)?)))
-    };
-    while let Some((at, reason)) = first_fault(&chosen.members) {
-        let fitted = chosen.members.remove(at);
-        refused.push(Refused { fitted, reason: reason.into() });
-        refit(&fitter, &z, &mut chosen, 6);
-    }
-    let known = fitter.whitened;
+    let Converged { chosen, mut refused, bars, known } = converging.search(&mut candidates, &mut masks, &mut runs);
     let lack_before = lack_of_fit(&whole, &seen, &difference);
-    let first = Weighed { covariance: whole.clone(), whitener: whitener.clone(), z, chosen };
+    let z = whitener.apply(&difference);
+    let first = Weighed { covariance: whole.clone(), whitener: whitener.clone(), z: z.clone(), chosen };
     let again = Settled {
         workshop: &workshop,
         settings,
@@ -250,13 +187,12 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         far: &far,
     };
     let (beside, settled) = again.answer((&mut candidates, &masks), first, &lack_before, &bars, &mut refused, &mut runs);
-    let Weighed { covariance: settled, whitener: weighing, z, mut chosen } = settled;
+    let Weighed { covariance: settled, whitener: weighing, z: own, mut chosen } = settled;
     let fitter = Fitter::of(&weighing, &candidates, masks.clone(), &chosen.members);
-    refit(&fitter, &z, &mut chosen, 6);
-    let lack_after = drop_what_harms(&fitter, (&beside, &seen), (&difference, &z), &mut chosen, &mut refused, &lack_before);
+    refit(&fitter, &own, &mut chosen, 6);
+    let lack_after = drop_what_harms(&fitter, (&beside, &seen), (&difference, &own), &mut chosen, &mut refused, &lack_before);
     drop(fitter);
-    let base_z = whitener.apply(&difference);
-    let suspect = suspect(&workshop, settings, (&whitener, &base_z), (&candidates, &masks, &chosen), &mut runs);
+    let suspect = suspect(&workshop, settings, (&whitener, &z), (&candidates, &masks, &chosen), &mut runs);
     drop(bench);
     let mut found = Found {
         candidates,
@@ -285,12 +221,6 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     };
     found.weigh(known, inputs.seed);
     Some(found)
-}
-
-/// Bars from what chance reaches.
-fn bars(chance: f64) -> Bars {
-    let first = chance.max(FLOOR);
-    Bars { first, exact: chance.max(FLOOR_EXACT), next: 1.25 * first, confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.12, most: 3 }
 }
 
 impl Found {
@@ -345,69 +275,6 @@ pub fn deviations(candidate: &Candidate, size: f64, settings: &Settings, declare
     let scaled = tolerance.scales.contains(&candidate.size) && neutral != 0.0;
     let sd = if scaled { sd * neutral.abs() } else { sd };
     if sd > 0.0 { (size - neutral).abs() / sd } else { f64::INFINITY }
-}
-
-/// More evidence than the best candidate reaches by chance in any draw from the covariance.
-fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
-    use rayon::prelude::*;
-    let mut most: Vec<f64> = (0..DRAWS)
-        .into_par_iter()
-        .map(|draw| {
-            let mut random = Gauss::new(seed ^ (draw as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15));
-            let z: Vec<f64> = (0..features).map(|_| random.next()).collect();
-            fitter.most(&z)
-        })
-        .collect();
-    most.sort_by(f64::total_cmp);
-    most.last().copied().unwrap_or(0.0) + 3.0
-}
-
-/// Refuses a member that views contradict, or that a single section carries.
-fn guard(
-    (covariance, seen): (&Covariance, &Observations),
-    families: &[Vec<View>],
-    fitter: &Fitter<'_>,
-    difference: &[f64],
-    chosen: &Chosen,
-    fit: &Fitted,
-) -> Judged {
-    let rest = left(fitter.candidates, &fitter.masks, difference, chosen);
-    let fitted = (&fitter.candidates[fit.candidate], &fitter.masks[fit.mask], fit);
-    let mut judged = Judged::Sound;
-    for family in families {
-        match contradiction(covariance, family, fitted, &rest) {
-            Judged::Sound => {}
-            Judged::Doubtful => judged = Judged::Doubtful,
-            refused @ Judged::Refused(_) => return refused,
-        }
-    }
-    let change = fit.change(fitter.candidates, &fitter.masks);
-    carried(covariance, &fitter.masks[fit.mask], &change, &rest).map_or(judged, |(at, share)| {
-        let section = seen.sections[at].section.name();
-        Judged::Refused(format!("without section {section} only {:.0} % of the evidence is left", 100.0 * share))
-    })
-}
-
-/// Candidates that are worth their other sizes, and towards which: those within reach of the best for the whole difference, for what a first set of
-/// causes leaves, or for what it leaves without one of them; and the members of that set.
-fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, f64)> {
-    let pending = |fit: &&Fitted| fitter.candidates[fit.candidate].pending_towards(fit.size);
-    let towards = |fit: &Fitted| (fit.candidate, fit.size);
-    let mut found: Vec<(usize, f64)> = chosen.members.iter().filter(pending).map(towards).collect();
-    let without = |member: &Fitted| chosen.rest.iter().zip(&member.whitened).map(|(rest, own)| rest + own).collect();
-    let mut rests: Vec<Vec<f64>> = vec![z.to_vec(), chosen.rest.clone()];
-    if chosen.members.len() > 1 {
-        rests.extend(chosen.members.iter().map(without));
-    }
-    for rest in rests {
-        let fits = fitter.all(&rest);
-        let best = fits.iter().map(|fit| fit.evidence).fold(0.0, f64::max);
-        let near = |fit: &&Fitted| fit.evidence >= (NEAR * best).max(WORTH) && pending(fit);
-        found.extend(fits.iter().filter(near).map(towards));
-    }
-    // One after the other in the order of the catalogue; a second one on the same side finds nothing left.
-    found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    found
 }
 
 /// Whitened size of a change.

@@ -4,6 +4,9 @@ use super::candidates::Candidate;
 use super::fit::{Fitted, Fitter, less};
 use super::whiten::dot;
 
+/// A size that is a declared tolerance is named from so many standard deviations on: what is declared is an estimate itself.
+pub const TOLERANCE_SD: f64 = 3.5;
+
 /// What a member must bring.
 #[derive(Clone, Copy, Debug)]
 pub struct Bars {

@@ -1,0 +1,175 @@
+//! The search, with what it asks for simulated: until neither the answer nor a veto rests on interpolation.
+
+use super::bench::Runs;
+use super::candidates::{Candidate, Workshop};
+use super::fit::{Fitted, Fitter, Known, Mask};
+use super::guards::{View, carried, contradiction};
+use super::lack::left;
+use super::masks::section_masks;
+use super::search::{Bars, Chosen, Judged, Refused, TOLERANCE_SD, plausible, refit, search};
+use super::settle::{ROUNDS, polish};
+use super::whiten::{Covariance, Whitener};
+use crate::effects::Gauss;
+
+/// Draws for the threshold.
+const DRAWS: usize = 60;
+/// Evidence below which no cause is named: real discrepancies are not those of the covariance.
+const FLOOR: f64 = 30.0;
+/// The same for an operation on the signals, which no such discrepancy enters: half as much, where 10 is called very strong (Kass and
+/// Raftery 1995).
+const FLOOR_EXACT: f64 = 15.0;
+/// A candidate is simulated at all its sizes from this share of the best evidence on, and from this evidence on.
+pub const NEAR: f64 = 0.5;
+pub const WORTH: f64 = 10.0;
+
+/// What is searched, and by what it is weighed.
+pub struct Converging<'a> {
+    pub workshop: &'a Workshop<'a>,
+    pub covariance: &'a Covariance,
+    pub whitener: &'a Whitener,
+    /// Measured - simulated.
+    pub difference: &'a [f64],
+    pub families: &'a [Vec<View>],
+    /// How many declared standard deviations a size is from neutral.
+    pub far: &'a (dyn Fn(&Candidate, f64) -> f64 + Sync),
+    pub seed: u64,
+}
+
+/// What was found.
+pub struct Converged {
+    pub chosen: Chosen,
+    pub refused: Vec<Refused>,
+    pub bars: Bars,
+    pub known: Known,
+}
+
+impl Converging<'_> {
+    /// Searches until no candidate that matters has sizes left to be simulated.
+    pub fn search(&self, candidates: &mut [Candidate], masks: &mut Vec<Mask>, runs: &mut Runs) -> Converged {
+        let (workshop, whitener) = (self.workshop, self.whitener);
+        let z = whitener.apply(self.difference);
+        let mut refused = Vec::new();
+        let mut known = Known::new();
+        let mut chance = None;
+        let mut reconsidered: Vec<usize> = Vec::new();
+        let (chosen, bars) = loop {
+            let fitter = Fitter::knowing(whitener, candidates, masks.clone(), std::mem::take(&mut known));
+            let bars = bars(*chance.get_or_insert_with(|| limit(&fitter, z.len(), self.seed)));
+            refused.clear();
+            let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
+            let found = search(&fitter, &z, &bars, self.far, &guard, &mut refused);
+            let wanted = promising(&fitter, &z, &found);
+            let more = if wanted.is_empty() { section_masks(&fitter, &z, &found, workshop.seen) } else { Vec::new() };
+            known = fitter.whitened;
+            if wanted.is_empty() && more.is_empty() {
+                // Nor may a veto: what was refused is looked at again with the size that was found.
+                let again: Vec<Fitted> = refused
+                    .iter()
+                    .map(|refused: &Refused| refused.fitted.clone())
+                    .filter(|fit| fit.evidence >= NEAR * found.evidence() && !reconsidered.contains(&fit.candidate))
+                    .collect();
+                reconsidered.extend(again.iter().map(|fit| fit.candidate));
+                if !polish(workshop, candidates, &again, runs) {
+                    break (found, bars);
+                }
+            }
+            masks.extend(more);
+            wanted.into_iter().for_each(|(at, size)| workshop.refine(&mut candidates[at], size, runs));
+            (workshop.trying)("weighing");
+        };
+        self.simulated((candidates, masks), &z, Converged { chosen, refused, bars, known }, runs)
+    }
+
+    /// The members fitted again with the sizes that were found simulated; one that was above the bar by interpolation alone goes.
+    fn simulated(&self, (candidates, masks): (&mut [Candidate], &[Mask]), z: &[f64], mut now: Converged, runs: &mut Runs) -> Converged {
+        for _ in 0..ROUNDS {
+            if !polish(self.workshop, candidates, &now.chosen.members, runs) {
+                break;
+            }
+            let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), now.known);
+            refit(&fitter, z, &mut now.chosen, 6);
+            now.known = fitter.whitened;
+        }
+        let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), now.known);
+        let fault = |member: &Fitted, count: usize| {
+            if member.evidence < now.bars.least(&fitter.candidates[member.candidate], count) {
+                return Some("simulated at the size that was found, it has too little evidence");
+            }
+            (!plausible(&fitter.candidates[member.candidate], member.size))
+                .then_some("beside the others it asks for a size that is not plausible")
+        };
+        let first_fault = |members: &[Fitted]| {
+            let count = members.len();
+            members.iter().enumerate().find_map(|(at, member)| Some((at, fault(member, count)?)))
+        };
+        while let Some((at, reason)) = first_fault(&now.chosen.members) {
+            let fitted = now.chosen.members.remove(at);
+            now.refused.push(Refused { fitted, reason: reason.into() });
+            refit(&fitter, z, &mut now.chosen, 6);
+        }
+        now.known = fitter.whitened;
+        now
+    }
+
+    /// Refuses a member that views contradict, or that a single section carries.
+    fn guard(&self, fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> Judged {
+        let rest = left(fitter.candidates, &fitter.masks, self.difference, chosen);
+        let fitted = (&fitter.candidates[fit.candidate], &fitter.masks[fit.mask], fit);
+        let mut judged = Judged::Sound;
+        for family in self.families {
+            match contradiction(self.covariance, family, fitted, &rest) {
+                Judged::Sound => {}
+                Judged::Doubtful => judged = Judged::Doubtful,
+                refused @ Judged::Refused(_) => return refused,
+            }
+        }
+        let change = fit.change(fitter.candidates, &fitter.masks);
+        carried(self.covariance, &fitter.masks[fit.mask], &change, &rest).map_or(judged, |(at, share)| {
+            let section = self.workshop.seen.sections[at].section.name();
+            Judged::Refused(format!("without section {section} only {:.0} % of the evidence is left", 100.0 * share))
+        })
+    }
+}
+
+/// Bars from what chance reaches.
+fn bars(chance: f64) -> Bars {
+    let first = chance.max(FLOOR);
+    Bars { first, exact: chance.max(FLOOR_EXACT), next: 1.25 * first, confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.12, most: 3 }
+}
+
+/// More evidence than the best candidate reaches by chance in any draw from the covariance.
+fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
+    use rayon::prelude::*;
+    let mut most: Vec<f64> = (0..DRAWS)
+        .into_par_iter()
+        .map(|draw| {
+            let mut random = Gauss::new(seed ^ (draw as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+            let z: Vec<f64> = (0..features).map(|_| random.next()).collect();
+            fitter.most(&z)
+        })
+        .collect();
+    most.sort_by(f64::total_cmp);
+    most.last().copied().unwrap_or(0.0) + 3.0
+}
+
+/// Candidates that are worth their other sizes, and towards which: those within reach of the best for the whole difference, for what a first set of
+/// causes leaves, or for what it leaves without one of them; and the members of that set.
+fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, f64)> {
+    let pending = |fit: &&Fitted| fitter.candidates[fit.candidate].pending_towards(fit.size);
+    let towards = |fit: &Fitted| (fit.candidate, fit.size);
+    let mut found: Vec<(usize, f64)> = chosen.members.iter().filter(pending).map(towards).collect();
+    let without = |member: &Fitted| chosen.rest.iter().zip(&member.whitened).map(|(rest, own)| rest + own).collect();
+    let mut rests: Vec<Vec<f64>> = vec![z.to_vec(), chosen.rest.clone()];
+    if chosen.members.len() > 1 {
+        rests.extend(chosen.members.iter().map(without));
+    }
+    for rest in rests {
+        let fits = fitter.all(&rest);
+        let best = fits.iter().map(|fit| fit.evidence).fold(0.0, f64::max);
+        let near = |fit: &&Fitted| fit.evidence >= (NEAR * best).max(WORTH) && pending(fit);
+        found.extend(fits.iter().filter(near).map(towards));
+    }
+    // One after the other in the order of the catalogue; a second one on the same side finds nothing left.
+    found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    found
+}
