@@ -7,7 +7,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::inputs::{Prepared, prepare};
-use super::output::{Console, Exit};
+use super::output::{Console, Exit, reports};
 use super::simulate::load_catalogue;
 use super::simulator::{Chosen, SimulatorChoice};
 use crate::data::hash::sha256;
@@ -18,7 +18,7 @@ use crate::diagnose::settings::Settings;
 use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
 use crate::library;
 use crate::problem::{Problem, Problems, Severity};
-use crate::report::{diagnosis as report, html, typst};
+use crate::report::diagnosis as report;
 use crate::result::diagnosis::Diagnosis;
 use crate::simulate::{Builtin, Simulator, sections};
 
@@ -129,18 +129,9 @@ impl Diagnose {
 }
 
 /// All files of a diagnosis.
-fn files(outcome: &Outcome) -> Result<Vec<(&'static str, Vec<u8>)>, Problems> {
-    let json = json(&outcome.diagnosis);
+fn files(outcome: &Outcome) -> Result<Vec<(String, Vec<u8>)>, Problems> {
     let (data, figures) = (report::document(&outcome.diagnosis, &outcome.before), report::figures(&outcome.diagnosis));
-    let attachment = typst::Attachment {
-        name: "diagnosis.json",
-        mime: "application/json",
-        bytes: json.as_bytes(),
-        description: "Every number of this diagnosis",
-    };
-    let pdf = typst::typeset_study(&data, &figures, &[attachment])?.bytes;
-    let html = html::study_html(&data, &figures)?.into_bytes();
-    Ok(vec![("diagnosis.json", json.into_bytes()), ("report.pdf", pdf), ("report.html", html)])
+    reports(("diagnosis.json", "Every number of this diagnosis"), json(&outcome.diagnosis), &data, &figures)
 }
 
 /// The text of `diagnosis.json`.

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use super::Color;
 use crate::problem::{Problem, Problems};
+use crate::report::study::Document;
+use crate::report::{html, typst};
 
 /// The exit codes of the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,4 +85,20 @@ impl Console {
             Err(problem) => self.fail(problem, Exit::Unfinished),
         }
     }
+}
+
+/// A document as report.pdf, with its numbers attached, as report.html, and the numbers themselves as `name`.
+///
+/// # Errors
+/// A template or a text that cannot be typeset.
+pub fn reports(
+    (name, description): (&'static str, &'static str),
+    numbers: String,
+    data: &Document,
+    figures: &[(String, String)],
+) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+    let attachment = typst::Attachment { name, mime: "application/json", bytes: numbers.as_bytes(), description };
+    let pdf = typst::typeset_study(data, figures, &[attachment])?.bytes;
+    let html = html::study_html(data, figures)?.into_bytes();
+    Ok(vec![("report.pdf".into(), pdf), ("report.html".into(), html), (name.into(), numbers.into_bytes())])
 }

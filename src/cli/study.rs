@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 
 use super::inputs::{Prepared, prepare, progress_bar};
-use super::output::{Console, Exit};
+use super::output::{Console, Exit, reports};
 use super::values::{numbers, values};
 use crate::data::write::Outputs;
 use crate::problem::{Problem, Problems};
-use crate::report::{html, study as report, typst};
+use crate::report::study as report;
 use crate::result::study as found;
 use crate::robustness::{self, Settings, Synchronisation, Vary};
 use crate::study;
@@ -227,14 +227,6 @@ fn files(study: &found::Study) -> Result<Vec<(String, Vec<u8>)>, Problems> {
     let tables = report::tables::tables(study).map_err(|error| Problems(vec![Problem::error("table", error.to_string())]))?;
     let mut files: Vec<(String, Vec<u8>)> = tables.into_iter().map(|(name, bytes)| (format!("tables/{name}"), bytes)).collect();
     let (data, figures) = (report::document(study), report::figures(study));
-    let attachment = typst::Attachment {
-        name: "study.json",
-        mime: "application/json",
-        bytes: json.as_bytes(),
-        description: "Every number of this study",
-    };
-    files.push(("report.pdf".into(), typst::typeset_study(&data, &figures, &[attachment])?.bytes));
-    files.push(("report.html".into(), html::study_html(&data, &figures)?.into_bytes()));
-    files.push(("study.json".into(), json.into_bytes()));
+    files.extend(reports(("study.json", "Every number of this study"), json, &data, &figures)?);
     Ok(files)
 }

@@ -104,7 +104,7 @@ impl Converging<'_> {
         };
         while let Some((at, reason)) = first_fault(&now.chosen.members) {
             let fitted = now.chosen.members.remove(at);
-            now.refused.push(Refused { fitted, reason: reason.into() });
+            now.refused.push(Refused::new(fitted, reason));
             refit(&fitter, z, &mut now.chosen, 6);
         }
         now.known = fitter.whitened;
@@ -120,7 +120,7 @@ impl Converging<'_> {
             match contradiction(self.covariance, family, fitted, &rest) {
                 Judged::Sound => {}
                 Judged::Doubtful => judged = Judged::Doubtful,
-                refused @ Judged::Refused(_) => return refused,
+                refused @ (Judged::Refused(_) | Judged::Contradicted(_)) => return refused,
             }
         }
         let change = fit.change(fitter.candidates, &fitter.masks);

@@ -301,6 +301,21 @@ fn allowed(candidates: &[Candidate], masks: &[Mask], candidate: usize, mask: usi
 }
 
 impl Mask {
+    /// Sections that the data chose are those that ask for most: by how many standard deviations the mean of so many of them is off
+    /// where each differs by chance alone. 0 where nothing was chosen.
+    #[must_use]
+    pub fn picked(&self) -> f64 {
+        use statrs::distribution::{Continuous, ContinuousCDF, Normal};
+        let inside = self.sections.iter().filter(|inside| **inside).count();
+        let share = inside as f64 / self.sections.len().max(1) as f64;
+        if self.asked_by.is_none() || inside == 0 || share >= 1.0 {
+            return 0.0;
+        }
+        // The mean of the upper tail of a normal distribution.
+        let normal = Normal::standard();
+        normal.pdf(normal.inverse_cdf(1.0 - share)) / share
+    }
+
     /// A change where the mask is, nothing elsewhere.
     #[must_use]
     pub fn on(&self, change: &[f64]) -> Vec<f64> {

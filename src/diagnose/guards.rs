@@ -196,7 +196,7 @@ pub fn contradiction(
     if low.1 >= SOME || below < SURE {
         return Judged::Doubtful;
     }
-    Judged::Refused(format!("{} ask for {:.0} % of it, {} for {:.0} %", high.0.says, 100.0 * high.1, low.0.says, 100.0 * low.1))
+    Judged::Contradicted(format!("{} ask for {:.0} % of it, {} for {:.0} %", high.0.says, 100.0 * high.1, low.0.says, 100.0 * low.1))
 }
 
 /// A view that asks for less than this share of an effect contradicts it, if it is by so many standard errors below what all ask for.
@@ -253,9 +253,9 @@ mod tests {
                 |feature: usize| View { says: format!("view {feature}"), sections: (0..SECTIONS).collect(), features: vec![feature] };
             contradiction(&covariance, &[view(0), view(1)], (&candidate, &mask, &fit), &per_section(large, 0.0))
         };
-        assert!(matches!(judged(2.0, true), Judged::Refused(_)));
-        assert!(matches!(judged(2.0, false), Judged::Refused(_)));
-        assert!(matches!(judged(3.0, true), Judged::Refused(_)));
+        assert!(matches!(judged(2.0, true), Judged::Contradicted(_)));
+        assert!(matches!(judged(2.0, false), Judged::Contradicted(_)));
+        assert!(matches!(judged(3.0, true), Judged::Contradicted(_)));
         assert_eq!(judged(3.0, false), Judged::Doubtful);
     }
 }

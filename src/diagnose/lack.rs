@@ -132,7 +132,7 @@ pub fn drop_what_harms(
             return now;
         }
         let reason = format!("what channels show beyond what is allowed for grows from {:.0} to {:.0}", excess(&then), excess(&now));
-        refused.push(Refused { fitted: chosen.members[last].clone(), reason });
+        refused.push(Refused::new(chosen.members[last].clone(), reason));
         *chosen = without;
     }
 }

@@ -12,7 +12,7 @@ use super::lack::{Lack, drop_what_harms, lack_after, lack_of_fit, unexplained};
 use super::masks::masks;
 use super::observe::Observations;
 use super::reference::Reference;
-use super::search::{Bars, Chosen, Refused, chi_squared, nearest, refit, rivals};
+use super::search::{Bars, Chosen, Refused, chi_squared, contradicting, nearest, refit, rivals};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
 use super::settle::{Settled, Weighed};
@@ -70,6 +70,8 @@ pub struct Found {
     pub nearest: Vec<Fitted>,
     /// What no effect of the catalogue moves, where it explains more than the answer.
     pub suspect: Option<Suspect>,
+    /// What views contradict and has more evidence than the answer, for what that leaves.
+    pub contradicting: Option<(Refused, f64)>,
     /// By member: whether it stands when other sections are drawn.
     pub stability: Vec<Stability>,
     /// Channels and kinds where what is left, and what was there, is more than is allowed for.
@@ -210,6 +212,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         rivals: Vec::new(),
         nearest: Vec::new(),
         suspect,
+        contradicting: None,
         stability: Vec::new(),
         lack_before,
         lack_after,
@@ -229,7 +232,7 @@ impl Found {
         if at == 0 {
             self.suspect = None;
         }
-        self.refused.push(Refused { fitted: self.chosen.members.remove(at), reason });
+        self.refused.push(Refused::new(self.chosen.members.remove(at), reason));
         self.fit_again();
         if unexplained(&self.lack_before, &self.lack_after).1 {
             self.beside = self.covariance.clone();
@@ -249,6 +252,7 @@ impl Found {
         refit(&fitter, &z, &mut first, 6);
         self.rivals = rivals(&fitter, &z, &first);
         self.nearest = nearest(&fitter, &first, &self.refused);
+        self.contradicting = contradicting(&fitter, &first, &self.refused);
         let (own, sized) = (self.weighing.apply(&self.difference), &self.chosen);
         let sizes = Fitter::of(&self.weighing, &self.candidates, self.masks.clone(), &sized.members);
         self.stability = stability((&fitter, &z, &first), (&sizes, &own, sized), &self.refused, &self.strata, seed);

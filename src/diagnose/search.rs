@@ -53,7 +53,20 @@ pub enum Judged {
     Sound,
     /// It may stay if it proves itself elsewhere.
     Doubtful,
+    /// Views of the data ask for sizes that contradict each other.
+    Contradicted(String),
     Refused(String),
+}
+
+impl Judged {
+    /// A fit that was refused, with the reason; nothing if it was not.
+    fn refused(self, fitted: Fitted) -> Option<Refused> {
+        let contradicted = matches!(self, Self::Contradicted(_));
+        match self {
+            Self::Refused(reason) | Self::Contradicted(reason) => Some(Refused { fitted, reason, contradicted }),
+            Self::Sound | Self::Doubtful => None,
+        }
+    }
 }
 
 /// Judges a fit as a further member.
@@ -64,6 +77,15 @@ pub type Guard<'a> = &'a (dyn Fn(&Fitted, &Chosen) -> Judged + Sync);
 pub struct Refused {
     pub fitted: Fitted,
     pub reason: String,
+    /// Whether views contradicted each other.
+    pub contradicted: bool,
+}
+
+impl Refused {
+    #[must_use]
+    pub fn new(fitted: Fitted, reason: impl Into<String>) -> Self {
+        Self { fitted, reason: reason.into(), contradicted: false }
+    }
 }
 
 impl Chosen {
@@ -97,7 +119,7 @@ pub fn search(
         let mut fits = fitter.all(&chosen.rest);
         fits.iter_mut().for_each(|fit| unconfine(fitter, &chosen.rest, fit, bars));
         fits.retain(|fit| fit.evidence >= bar(fit) && !barred.contains(&fit.candidate) && !taken(fitter, &chosen, fit));
-        fits.retain(|fit| far(&fitter.candidates[fit.candidate], fit.size) >= bars.tolerance_sd);
+        fits.retain(|fit| far(&fitter.candidates[fit.candidate], fit.size) >= bars.tolerance_sd + fitter.masks[fit.mask].picked());
         fits.retain(|fit| plausible(&fitter.candidates[fit.candidate], fit.size));
         // Sections that the data chose themselves must say it twice as loud.
         fits.retain(|fit| fitter.masks[fit.mask].asked_by.is_none() || fit.evidence >= 2.0 * bar(fit));
@@ -110,9 +132,9 @@ pub fn search(
         match guard(&best, &chosen) {
             Judged::Sound => {}
             Judged::Doubtful => best.doubtful = true,
-            Judged::Refused(reason) => {
+            judged @ (Judged::Refused(_) | Judged::Contradicted(_)) => {
                 barred.push(best.candidate);
-                refused.push(Refused { fitted: best, reason });
+                refused.extend(judged.refused(best));
                 continue;
             }
         }
@@ -122,7 +144,7 @@ pub fn search(
             let last = chosen.members.pop().expect("just pushed");
             barred.push(last.candidate);
             let reason = format!("it mostly undoes what {} does", fitter.candidates[chosen.members[other].candidate].effect);
-            refused.push(Refused { fitted: last, reason });
+            refused.push(Refused::new(last, reason));
             refit(fitter, z, &mut chosen, 4);
             continue;
         }
@@ -229,6 +251,18 @@ pub fn nearest(fitter: &Fitter<'_>, chosen: &Chosen, refused: &[Refused]) -> Vec
         }
     }
     told
+}
+
+/// What views contradict and has more evidence, for what a set leaves, than any member: it stands for something that is there and that
+/// no effect explains.
+#[must_use]
+pub fn contradicting(fitter: &Fitter<'_>, chosen: &Chosen, refused: &[Refused]) -> Option<(Refused, f64)> {
+    let most = chosen.members.iter().map(|member| member.evidence).reduce(f64::max)?;
+    let fits = refused.iter().filter(|refused| refused.contradicted).filter_map(|refused| {
+        let left = fitter.fit(&chosen.rest, refused.fitted.candidate, refused.fitted.mask)?;
+        (left.evidence > most).then(|| (refused.clone(), left.evidence))
+    });
+    fits.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Chi-squared of a whitened difference.

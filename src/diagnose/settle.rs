@@ -98,19 +98,17 @@ impl Settled<'_> {
             }
             self.refined((candidates, masks), &mut now, runs);
             while now.chosen.members.get(count).is_some_and(|next| next.evidence < bars.next) {
-                let reason = "with the tolerances as they act beside what was found before it, it has too little evidence".into();
-                refused.push(Refused { fitted: now.chosen.members.remove(count), reason });
+                let reason = "with the tolerances as they act beside what was found before it, it has too little evidence";
+                refused.push(Refused::new(now.chosen.members.remove(count), reason));
                 self.refined((candidates, masks), &mut now, runs);
             }
             let members = &now.chosen.members;
             let weak = |at: usize| {
                 let (member, of) = (&members[at], &candidates[members[at].candidate]);
-                let away = (self.far)(of, member.size);
+                let (away, needed) = ((self.far)(of, member.size), bars.tolerance_sd + masks[member.mask].picked());
                 let reason = match () {
                     () if member.evidence < bars.least(of, members.len()) => "it has too little evidence".to_string(),
-                    () if away < bars.tolerance_sd => {
-                        format!("its size is {away:.1} declared standard deviations off, not {:.1}", bars.tolerance_sd)
-                    }
+                    () if away < needed => format!("its size is {away:.1} declared standard deviations off, not {needed:.1}"),
                     () => return None,
                 };
                 Some((at, format!("with the tolerances as they act beside it, {reason}")))
@@ -119,7 +117,7 @@ impl Settled<'_> {
                 count += 1;
                 continue;
             };
-            refused.push(Refused { fitted: now.chosen.members.remove(weak), reason });
+            refused.push(Refused::new(now.chosen.members.remove(weak), reason));
             now = now.by(without.clone(), self.difference);
             self.refined((candidates, masks), &mut now, runs);
             count = 1;

@@ -29,7 +29,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let verdict = match () {
         () if !named && !lacking && found.seen.faults.is_empty() => "no significant gap",
         () if !named => "unexplained",
-        () if too_much || found.suspect.is_some() => "unexplained",
+        () if too_much || found.suspect.is_some() || found.contradicting.is_some() => "unexplained",
         () if ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
         () => "explained",
     };
@@ -326,8 +326,15 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
                     suspect.key, suspect.factor, suspect.evidence, suspect.answer
                 ));
             }
+            if let Some((refused, evidence)) = &found.contradicting {
+                let looks = cause(inputs, found, std::slice::from_ref(&refused.fitted), 0).says;
+                let reason = &refused.reason;
+                lines.push(format!(
+                    "What is left looks in part like another effect, with more evidence ({evidence:.0}) than any that is named, and contradicts it: {looks}, but {reason}."
+                ));
+            }
             lines.push(match named.is_empty() {
-                true if found.suspect.is_some() => {
+                true if found.suspect.is_some() || found.contradicting.is_some() => {
                     "Beside the effects that come nearest, nothing is left that is more than is allowed for.".into()
                 }
                 true => format!("Beside that, nothing is left that an effect of the catalogue `{catalogue}` should explain."),
