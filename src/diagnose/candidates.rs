@@ -82,6 +82,12 @@ impl Candidate {
         self.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size)
     }
 
+    /// Whether it is the same cause, be it by another parameter.
+    #[must_use]
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.effect == other.effect && self.channels == other.channels
+    }
+
     /// Whether a size lies on the same side of neutral as another.
     fn same_side(&self, size: f64, other: f64) -> bool {
         self.neutral().is_none_or(|neutral| (size < neutral) == (other < neutral))

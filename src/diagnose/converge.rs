@@ -22,6 +22,9 @@ const FLOOR_EXACT: f64 = 15.0;
 pub const NEAR: f64 = 0.5;
 pub const WORTH: f64 = 10.0;
 
+/// With so much more evidence another takes the place of a member, where one beside it has gone.
+const BETTER: f64 = 8.0;
+
 /// What is searched, and by what it is weighed.
 pub struct Converging<'a> {
     pub workshop: &'a Workshop<'a>,
@@ -109,6 +112,35 @@ impl Converging<'_> {
         }
         now.known = fitter.whitened;
         now
+    }
+
+    /// Where a member that others were chosen beside has gone, one of them may have another in its place that has more evidence now.
+    /// Whether any was exchanged.
+    pub fn exchange(&self, (candidates, masks): (&[Candidate], &[Mask]), now: &mut Chosen, refused: &[Refused], known: &mut Known) -> bool {
+        let z = self.whitener.apply(self.difference);
+        let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), std::mem::take(known));
+        refit(&fitter, &z, now, 6);
+        let mut any = false;
+        for at in 0..now.members.len() {
+            let mut others = now.clone();
+            let member = others.members.remove(at);
+            others.rest = now.left_by_others(&z, at);
+            let mut fits = fitter.all(&others.rest);
+            fits.retain(|fit| {
+                let (of, mask) = (&candidates[fit.candidate], &masks[fit.mask]);
+                let free = refused.iter().all(|refused| !candidates[refused.fitted.candidate].is_like(of)) && mask.asked_by.is_none();
+                let more = fit.evidence > member.evidence + BETTER;
+                free && more && plausible(of, fit.size) && (self.far)(of, fit.size) >= TOLERANCE_SD
+            });
+            fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+            if let Some(better) = fits.into_iter().find(|fit| self.guard(&fitter, &others, fit) == Judged::Sound) {
+                now.members[at] = better;
+                refit(&fitter, &z, now, 6);
+                any = true;
+            }
+        }
+        *known = fitter.whitened;
+        any
     }
 
     /// Refuses a member that views contradict, or that a single section carries.

@@ -175,7 +175,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         far: &far,
         seed: inputs.seed,
     };
-    let Converged { chosen, mut refused, bars, known } = converging.search(&mut candidates, &mut masks, &mut runs);
+    let Converged { chosen, mut refused, bars, mut known } = converging.search(&mut candidates, &mut masks, &mut runs);
     let lack_before = lack_of_fit(&whole, &seen, &difference);
     let z = whitener.apply(&difference);
     let first = Weighed { covariance: whole.clone(), whitener: whitener.clone(), z: z.clone(), chosen };
@@ -188,7 +188,13 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         difference: &difference,
         far: &far,
     };
-    let (beside, settled) = again.answer((&mut candidates, &masks), first, &lack_before, &bars, &mut refused, &mut runs);
+    let before = refused.len();
+    let (mut beside, mut settled) = again.answer((&mut candidates, &masks), first.clone(), &lack_before, &bars, &mut refused, &mut runs);
+    let mut left = settled.chosen.clone();
+    if refused.len() > before && converging.exchange((&candidates, &masks), &mut left, &refused, &mut known) {
+        let first = Weighed { chosen: left, ..first };
+        (beside, settled) = again.answer((&mut candidates, &masks), first, &lack_before, &bars, &mut refused, &mut runs);
+    }
     let Weighed { covariance: settled, whitener: weighing, z: own, mut chosen } = settled;
     let fitter = Fitter::of(&weighing, &candidates, masks.clone(), &chosen.members);
     refit(&fitter, &own, &mut chosen, 6);

@@ -20,7 +20,7 @@ const ROUNDS: usize = 2;
 const ALIKE: f64 = 0.02;
 /// So much more evidence than the answer's, and so large a share of it more, is better.
 const BETTER: f64 = 8.0;
-const BETTER_SHARE: f64 = 0.12;
+const BETTER_SHARE: f64 = 0.5;
 
 /// A parameter that explains more than the answer.
 #[derive(Clone, Debug)]

@@ -145,12 +145,15 @@ fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
             continue;
         }
         // What a guard refused is told as such; it is no rival.
-        if found.refused.iter().any(|refused| refused.fitted.candidate == fit.candidate) || !plausible(of, fit.size) {
+        if found.refused.iter().any(|refused| found.candidates[refused.fitted.candidate].is_like(of)) || !plausible(of, fit.size) {
+            continue;
+        }
+        // What is within a declared tolerance is allowed for already.
+        if deviations(of, fit.size, inputs.settings, &found.declared) < TOLERANCE_SD {
             continue;
         }
         let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(NEAREST)
-            && fit.evidence > if of.exact { found.bars.exact } else { found.bars.first }
-            && deviations(&found.candidates[fit.candidate], fit.size, inputs.settings, &found.declared) >= TOLERANCE_SD;
+            && fit.evidence > if of.exact { found.bars.exact } else { found.bars.first };
         let mut members = found.chosen.members.clone();
         members[*at] = fit.clone();
         let mut cause = cause(inputs, found, &members, causes.len() + 2);
