@@ -356,3 +356,18 @@ fn between(from: f64, to: f64, share: f64) -> f64 {
 pub fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The mean of the upper half of a standard normal distribution is (2 / pi)^1/2 = 0.798, of the upper quarter 1.271 (tables of
+    /// selection intensity, Falconer and Mackay 1996, appendix A).
+    #[test]
+    fn sections_that_were_picked_are_off_by_chance() {
+        let mask = |inside: usize, asked_by| Mask { confined: None, sections: (0..16).map(|at| at < inside).collect(), asked_by };
+        assert!((mask(8, Some(0)).picked() - std::f64::consts::FRAC_2_PI.sqrt()).abs() < 1e-9);
+        assert!((mask(4, Some(0)).picked() - 1.271).abs() < 1e-3);
+        assert_eq!((mask(8, None).picked(), mask(16, Some(0)).picked()), (0.0, 0.0));
+    }
+}

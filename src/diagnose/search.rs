@@ -270,3 +270,39 @@ pub fn contradicting(fitter: &Fitter<'_>, chosen: &Chosen, refused: &[Refused]) 
 pub fn chi_squared(z: &[f64]) -> f64 {
     dot(z, z)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::candidates::Node;
+    use crate::diagnose::fit::Mask;
+    use crate::diagnose::whiten::Covariance;
+
+    /// Ten sections of two features of unit variance: one is off by 2, which a member explains, the other by 3, which a refused effect
+    /// would.
+    #[test]
+    fn more_than_the_answer_that_views_contradict_is_told() {
+        const SECTIONS: usize = 10;
+        let per_section = |a: f64, b: f64| (0..SECTIONS).flat_map(|_| [a, b]).collect::<Vec<f64>>();
+        let covariance = Covariance { diagonal: vec![1.0; 2 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 2 };
+        let path = |effect: &str, change: Vec<f64>| {
+            Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change }])
+        };
+        let candidates = [path("named", per_section(10.0, 0.0)), path("refused", per_section(0.0, 10.0))];
+        let whitener = covariance.whitener();
+        let everywhere = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
+        let fitter = Fitter::new(&whitener, &candidates, vec![everywhere]);
+        let told = |second: f64, contradicted: bool| {
+            let z = per_section(2.0, second);
+            let fit = |candidate: usize| fitter.fit(&z, candidate, 0).expect("a path");
+            let mut chosen = Chosen { members: vec![fit(0)], rest: z.clone() };
+            refit(&fitter, &z, &mut chosen, 2);
+            let refused = Refused { contradicted, ..Refused::new(fit(1), "views differ") };
+            contradicting(&fitter, &chosen, &[refused]).map(|(_, evidence)| evidence)
+        };
+        // 10 * 3^2 less the price of a path of 10 * 10^1/2 standard deviations: 2 ln (31.6 / (2 pi)^1/2) = 5.07.
+        let evidence = told(3.0, true).expect("it has more");
+        assert!((evidence - (90.0 - 5.07)).abs() < 0.01, "{evidence}");
+        assert_eq!((told(3.0, false), told(1.9, true)), (None, None));
+    }
+}
