@@ -1,10 +1,11 @@
 //! The diagnosis of a campaign: find, add, run the protocol again, say.
 
+use super::observe::Observed;
 use super::run::{Found, Inputs, find};
 use super::shrink::{applied, compare, folds, improved, shares, trained};
 use crate::certify::{Compiled, certify};
 use crate::data::Campaign;
-use crate::effects::{Applied, Catalogue, Signals};
+use crate::effects::{Applied, Catalogue, Gauss, Signals};
 use crate::problem::{Problem, Problems};
 use crate::result::Certification;
 use crate::result::diagnosis::Diagnosis;
@@ -59,7 +60,8 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, sections: Vec<Section>
             found.refuse(idle, reason, inputs.seed);
             continue;
         }
-        shrink = Some(compare(&before, &made, inputs.seed, shares(&found)));
+        let noise = noisy(&found, inputs.seed).map(|records| evaluate(&found, &records)).transpose()?;
+        shrink = Some(compare(&before, &made, noise.as_ref(), inputs.seed, shares(&found)));
         after = Some(made);
         let all = applied(&found, &found.chosen.members);
         records = improved(&found, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
@@ -83,6 +85,23 @@ fn unseen(inputs: &Inputs<'_>, found: &Found, without: Option<usize>) -> Result<
     improved(found, inputs.catalogue, inputs.simulator, &of).map_err(|problem| Problems(vec![problem]))
 }
 
+/// What was measured with the declared white noise once more; nothing where none is declared.
+fn noisy(found: &Found, seed: u64) -> Option<Vec<Signals>> {
+    let seen = &found.seen;
+    seen.noise.iter().any(|sd| *sd > 0.0).then(|| {
+        let mut random = Gauss::new(seed);
+        let mut with_noise = |observed: &Observed| {
+            let mut signals = observed.measured.clone();
+            for (channel, sd) in seen.layout.channels.iter().zip(&seen.noise) {
+                let values = signals.channels.iter_mut().filter(|known| known.name == channel.name).flat_map(|known| &mut known.values);
+                values.for_each(|value| *value += sd * random.next());
+            }
+            signals
+        };
+        seen.sections.iter().map(&mut with_noise).collect()
+    })
+}
+
 type Evaluate<'a> = &'a dyn Fn(&Found, &[Signals]) -> Result<Certification, Problems>;
 
 /// The member that removes least of the gap on sections that the fit did not see, if that is nothing to speak of, and what it does
@@ -98,7 +117,7 @@ fn idle(
     let mut worst: Option<(usize, f64)> = None;
     for member in 0..count {
         let without = if count == 1 { before.clone() } else { evaluate(found, &unseen(inputs, found, Some(member))?)? };
-        let earned = compare(&without, after, inputs.seed, Vec::new());
+        let earned = compare(&without, after, None, inputs.seed, Vec::new());
         let Some(touched) = earned.touched else { continue };
         // Means over signals may hide what single values show.
         let by_value = 1.0 - (1.0 - touched.variance_explained).max(0.0).sqrt();
@@ -138,7 +157,7 @@ pub fn effect_of_truth(
     let features: Vec<f64> = records.iter().enumerate().flat_map(|(at, signals)| found.seen.of(at, signals, true)).collect();
     let detectability = super::run::length(&found.whitener, &super::fit::less(&features, &found.simulated));
     let made = evaluated(campaign, compiled, found, &records, &outcome.units, RunSettings { traces: 0 }).ok()?;
-    Some((detectability, compare(&outcome.before, &made, 1, Vec::new()).fraction_removed))
+    Some((detectability, compare(&outcome.before, &made, None, 1, Vec::new()).fraction_removed))
 }
 
 /// The protocol on a copy of the campaign with other simulated records.

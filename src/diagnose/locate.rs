@@ -159,6 +159,10 @@ pub fn covariate(settings: &Settings, found: &Found) -> Option<String> {
     let values: Vec<f64> = (0..found.seen.sections.len()).map(|at| rest[found.seen.place(at, feature)]).collect();
     let order: Vec<f64> = (0..values.len()).map(|at| at as f64 + 1.0).collect();
     let mut named: Vec<(String, Vec<f64>)> = vec![("the order of the sections".into(), order)];
+    let sides: Vec<f64> = found.seen.sections.iter().map(|observed| settings.side(&observed.section)).collect();
+    if sides.iter().any(|side| *side != 0.0) {
+        named.push(("the direction of the curve".into(), sides));
+    }
     for covariate in &settings.covariates {
         let column = covariate.strip_prefix(INVERSE).unwrap_or(covariate);
         let inverse = column.len() < covariate.len();

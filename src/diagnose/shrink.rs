@@ -112,20 +112,39 @@ pub fn improved(
 /// touches it.
 const TOUCHED: f64 = 0.1;
 
-/// Before and after, quantity by quantity, with the interval of what is removed.
+/// Before and after, quantity by quantity, with the interval of what is removed. `noise` is the protocol on records that differ by
+/// nothing but the declared noise.
 #[must_use]
-pub fn compare(before: &Certification, after: &Certification, seed: u64, shares: Vec<(String, f64)>) -> Shrink {
+pub fn compare(
+    before: &Certification,
+    after: &Certification,
+    noise: Option<&Certification>,
+    seed: u64,
+    shares: Vec<(String, f64)>,
+) -> Shrink {
     let every: Vec<usize> = (0..before.quantities.len()).collect();
     let whole = removed(before, after, &every, seed);
     let touched: Vec<usize> = every.into_iter().filter(|at| change(&before.quantities[*at], &after.quantities[*at]) >= TOUCHED).collect();
-    let quantities = before.quantities.iter().zip(&after.quantities).map(|(before, after)| QuantityShrink {
-        id: before.id.clone(),
-        normalised_std_before: normalised(before, "std"),
-        normalised_std_after: normalised(after, "std"),
-        normalised_mean_before: normalised(before, "mean"),
-        normalised_mean_after: normalised(after, "mean"),
-        variance_explained: explained(before, after),
-    });
+    let quantity = |at: usize| {
+        let (was, is) = (&before.quantities[at], &after.quantities[at]);
+        let floor = noise.map_or(0.0, |noise| sum_of_squares(&noise.quantities[at]));
+        let (from, to) = (sum_of_squares(was), sum_of_squares(is));
+        let own = removed(before, after, &[at], seed);
+        QuantityShrink {
+            id: was.id.clone(),
+            normalised_std_before: normalised(was, "std"),
+            normalised_std_after: normalised(is, "std"),
+            normalised_mean_before: normalised(was, "mean"),
+            normalised_mean_after: normalised(is, "mean"),
+            variance_explained: explained(from, to, 0.0),
+            noise_floor: noise.filter(|_| from > 0.0).map(|_| floor / from),
+            variance_explained_above_noise: noise.and_then(|_| explained(from, to, floor)),
+            fraction_removed: own.fraction_removed,
+            low: own.low,
+            high: own.high,
+        }
+    };
+    let quantities = (0..before.quantities.len()).map(quantity);
     Shrink {
         measure: "root mean square of the normalised means and standard deviations of all quantities".into(),
         before: whole.before,
@@ -190,9 +209,13 @@ fn normalised(quantity: &QuantityResult, name: &str) -> Option<f64> {
     quantity.statistics.iter().find(|statistic| statistic.name.starts_with(name)).and_then(|statistic| statistic.normalised).map(f64::abs)
 }
 
-fn explained(before: &QuantityResult, after: &QuantityResult) -> Option<f64> {
-    let square = |quantity: &QuantityResult| quantity.values.iter().map(|value| value.difference.powi(2)).sum::<f64>();
-    let (from, to) = (square(before), square(after));
+fn sum_of_squares(quantity: &QuantityResult) -> f64 {
+    quantity.values.iter().map(|value| value.difference.powi(2)).sum()
+}
+
+/// Share removed of a sum of squares above a floor.
+fn explained(before: f64, after: f64, floor: f64) -> Option<f64> {
+    let (from, to) = (before - floor, (after - floor).max(0.0));
     (from > 0.0).then(|| 1.0 - to / from)
 }
 
@@ -230,4 +253,19 @@ pub fn shares(found: &Found) -> Vec<(String, f64)> {
     let all: f64 = found.chosen.members.iter().map(|member| dot(&member.whitened, &member.whitened)).sum();
     let share = |member: &Fitted| dot(&member.whitened, &member.whitened) / all.max(1e-300);
     found.chosen.members.iter().map(|member| (found.candidates[member.candidate].effect.clone(), share(member))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 25 to 5 is four fifths; above a floor of 5 it is all, above one of 4 it is 20 of 21, and above 25 there is nothing to explain.
+    #[test]
+    fn what_noise_makes_is_not_to_be_explained() {
+        assert_eq!(explained(25.0, 5.0, 0.0), Some(0.8));
+        assert_eq!(explained(25.0, 5.0, 5.0), Some(1.0));
+        assert!((explained(25.0, 5.0, 4.0).expect("above") - 20.0 / 21.0).abs() < 1e-12);
+        assert_eq!(explained(25.0, 3.0, 5.0), Some(1.0));
+        assert_eq!(explained(25.0, 5.0, 25.0), None);
+    }
 }

@@ -269,6 +269,8 @@ fn causes(found: &Diagnosis) -> Chapter {
 
 fn shrunk(shrink: &Shrink) -> Chapter {
     let number = |value: Option<f64>| value.map_or_else(|| number::NONE.to_owned(), |value| number::fixed(value, 3));
+    let percent = |value: f64| number::fixed(100.0 * value, 0);
+    let share = |value: Option<f64>| value.map_or_else(|| number::NONE.to_owned(), |value| format!("{} %", percent(value)));
     let row = |quantity: &QuantityShrink| {
         vec![
             quantity.id.clone(),
@@ -276,16 +278,20 @@ fn shrunk(shrink: &Shrink) -> Chapter {
             number(quantity.normalised_mean_after),
             number(quantity.normalised_std_before),
             number(quantity.normalised_std_after),
-            quantity.variance_explained.map_or_else(|| number::NONE.to_owned(), |share| format!("{} %", number::fixed(100.0 * share, 0))),
+            format!("{} ({} to {}) %", percent(quantity.fraction_removed), percent(quantity.low), percent(quantity.high)),
+            share(quantity.variance_explained),
+            share(quantity.variance_explained_above_noise),
         ]
     };
     let head = vec![
         Head::text("Quantity"),
         Head::number("Mean before"),
         Head::number("after"),
-        Head::number("Standard deviation before"),
+        Head::number("Std before"),
         Head::number("after"),
+        Head::number("Removed"),
         Head::number("Squares removed"),
+        Head::number("above noise"),
     ];
     let mut items = vec![
         Item::text(format!(
@@ -297,7 +303,10 @@ fn shrunk(shrink: &Shrink) -> Chapter {
         Item::figure("before-after", "Normalised values before and with the effects", "Two marks per statistic, joined by a line"),
         Item::Table {
             table: Table {
-                caption: "Normalised values before and with the effects".into(),
+                caption: "Normalised mean and standard deviation before and with the effects; what is removed of their root mean square, \
+                          with a 90 % interval by resampling sections; and of the squared differences, as they are and above what the \
+                          declared noise of the channels makes by itself"
+                    .into(),
                 head,
                 rows: shrink.quantities.iter().map(row).collect(),
             },

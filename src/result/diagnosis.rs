@@ -232,6 +232,14 @@ pub struct QuantityShrink {
     pub normalised_mean_after: Option<f64>,
     /// Of the sum of squared differences, the share removed.
     pub variance_explained: Option<f64>,
+    /// Share of the sum of squared differences that the declared noise of the channels makes by itself; nothing where none is declared.
+    pub noise_floor: Option<f64>,
+    /// The share removed of what is above the noise; nothing where nothing is.
+    pub variance_explained_above_noise: Option<f64>,
+    /// Share removed of the root mean square of its normalised values, 90 % by resampling sections.
+    pub fraction_removed: f64,
+    pub low: f64,
+    pub high: f64,
 }
 
 #[derive(Clone, Debug, Serialize)]

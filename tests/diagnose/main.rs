@@ -200,6 +200,14 @@ fn payload() {
     let mass = effects[0]["parameters"]["payload.mass"]["value"].as_f64().unwrap();
     assert!((mass / 4000.0 - 1.0).abs() < 0.08, "{mass}");
     assert!(found["shrink"]["fraction_removed"].as_f64().unwrap() > 0.7, "{:#}", found["shrink"]);
+    let quantities = found["shrink"]["quantities"].as_array().unwrap();
+    for quantity in quantities {
+        let number = |key: &str| quantity[key].as_f64().unwrap_or_else(|| panic!("{key}: {quantity:#}"));
+        assert!(number("low") <= number("high") && (0.0..0.5).contains(&number("noise_floor")), "{quantity:#}");
+    }
+    // The weight is in the quasi-static vertical forces, far above their noise.
+    let vertical = quantities.iter().find(|quantity| quantity["id"] == "Q_qst").unwrap();
+    assert!(vertical["variance_explained_above_noise"].as_f64().unwrap() > 0.9, "{vertical:#}");
     assert!(fs::read_dir(better.join("simulation")).unwrap().count() >= 12);
     let text = || fs::read_to_string(campaign.with_extension("diagnosis").join("diagnosis.json")).unwrap();
     let before = text();
