@@ -112,13 +112,14 @@ fn places(found: &Diagnosis) -> Chapter {
         Head::text("Position"),
         Head::short("Band"),
         Head::short("Zone"),
-        Head::number("Measured - simulated"),
-        Head::number("Share of the gap"),
+        Head::number("Difference"),
+        Head::number("Share"),
         Head::number("p"),
         Head::short("Significant"),
     ];
     let caption = "Cells by their share of the gap, tested against noise, declared tolerances and what a model may be wrong in; \
-                   significant at a false discovery rate of 5 %. Quasi-static differences count towards the simulated side; those of bands are relative";
+                   significant at a false discovery rate of 5 %. Differences are measured - simulated. Quasi-static differences count \
+                   towards the simulated side; those of bands are relative";
     let table = Table { caption: caption.into(), head, rows: rows.collect() };
     let significant = found.r#where.iter().filter(|place| place.significant).count();
     let mut text = format!(
