@@ -49,7 +49,8 @@ pub fn suspect(
     let member = first.members.first().filter(|member| !candidates[member.candidate].exact)?;
     let rest = first.left_by_others(z, 0);
     let of = settings.tolerances.iter().filter(|tolerance| tolerance.suspects);
-    let keys: Vec<&String> = of.flat_map(|tolerance| &tolerance.scales).filter(|key| (workshop.neutral)(key).is_some()).collect();
+    let there = |key: &&String| (workshop.neutral)(key).is_some_and(|value| value != 0.0);
+    let keys: Vec<&String> = of.flat_map(|tolerance| &tolerance.scales).filter(there).collect();
     let everywhere = masks.first()?.clone();
     let fitted = |path: &Candidate| Fitter::new(whitener, std::slice::from_ref(path), vec![everywhere.clone()]).fit(&rest, 0, 0);
     let simulate = |path: &mut Candidate, factors: &[f64], runs: &mut Runs| {
@@ -85,9 +86,6 @@ pub fn suspect(
     }
     let (path, fit) = paths.into_iter().max_by(|a, b| a.1.evidence.total_cmp(&b.1.evidence))?;
     let (evidence, answer) = (fit.evidence, member.evidence);
-    if std::env::var("SUSDBG").is_ok() {
-        eprintln!("suspect {} {} {evidence} {answer}", path.size, fit.size);
-    }
     (evidence > answer + BETTER.max(BETTER_SHARE * answer)).then_some(Suspect { key: path.size, factor: fit.size, evidence, answer })
 }
 
