@@ -4,10 +4,12 @@
 //! Sections are each other's repetition here: intervals and the choice between the two are by resampling them, so that nothing need
 //! be known of noise or model.
 
-use super::features::{Piece, Spectrum, median};
+use super::features::{Piece, Spectrum};
 use super::observe::{Observations, piece};
 use super::settings::{Settings, Shape as Wanted};
 use crate::effects::{Gauss, Signals};
+use crate::metrics::percentile::{Method, percentiles};
+use crate::metrics::statistics::{Divisor, standard_deviation};
 use crate::result::diagnosis::{Ratio, Shape, Strongest};
 
 /// Points of a spectrum to the octave, each the power of a sixth of an octave around it.
@@ -84,11 +86,8 @@ impl Compared {
         };
         let part = 1.0 / pairs.len() as f64;
         for (simulated, measured, noise) in pairs {
-            let spread = |values: &[f64], more: f64| {
-                let mean = values.iter().sum::<f64>() / values.len() as f64;
-                (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64 + more * more).sqrt()
-            };
-            let rms = spread(&measured.values, 0.0) / spread(&simulated.values, *noise);
+            let spread = |values: &[f64]| standard_deviation(values, Divisor::Population);
+            let rms = spread(&measured.values)? / spread(&simulated.values)?.hypot(*noise);
             let peak = peak(&measured.values, percentile)? / peak(&simulated.values, percentile)?;
             if !(rms.is_normal() && peak.is_normal()) {
                 return None;
@@ -120,16 +119,8 @@ fn band(frequency: f64, length: f64) -> (f64, f64) {
 
 /// How far the percentile lies from the median, to the larger side.
 fn peak(values: &[f64], percentile: f64) -> Option<f64> {
-    let middle = median(values)?;
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let at = |share: f64| {
-        let place = share * (sorted.len() - 1) as f64;
-        let (low, part) = (place.floor() as usize, place.fract());
-        sorted[low] + part * (sorted[(low + 1).min(sorted.len() - 1)] - sorted[low])
-    };
-    let share = percentile / 100.0;
-    Some((at(share) - middle).max(middle - at(1.0 - share)))
+    let at = percentiles(values, &[100.0 - percentile, 50.0, percentile], Method::Linear).ok()?;
+    Some((at[2] - at[1]).max(at[1] - at[0]))
 }
 
 /// Rows of ratios, one a section, at points that are alike for all: at the same frequency, or at the same wavelength.
