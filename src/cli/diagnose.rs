@@ -15,12 +15,13 @@ use crate::data::write::Outputs;
 use crate::data::{Campaign, RecordKind};
 use crate::diagnose::run::Inputs;
 use crate::diagnose::settings::Settings;
+use crate::diagnose::standing::Reference;
 use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
 use crate::library;
 use crate::problem::{Problem, Problems, Severity};
 use crate::report::diagnosis as report;
 use crate::result::diagnosis::Diagnosis;
-use crate::simulate::{Builtin, Simulator, sections};
+use crate::simulate::{Builtin, sections};
 
 #[derive(Debug, Args)]
 pub struct Diagnose {
@@ -156,35 +157,35 @@ pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &m
     let catalogue = load_catalogue(asked.catalogue, problems)?;
     let settings = Settings::read(&catalogue, problems)?;
     let sections = sections(&campaign, problems)?;
-    let mut lacking = Problems::default();
-    let external = asked.simulator.is_some_and(SimulatorChoice::external);
-    let chosen = match asked.simulator {
-        Some(choice) if external => Some(choice.open(&campaign, problems)?),
-        _ => Builtin::new(&campaign, &mut lacking).map(|model| Chosen::Builtin(Box::new(model))),
-    };
-    // Without a model that can run, what can be done is done. What is there and wrong is to be mended.
-    for problem in lacking.0 {
-        let severity = if WRONG.contains(&problem.code) { Severity::Error } else { Severity::Warning };
-        problems.push(Problem { severity, ..problem });
-    }
-    if problems.errors() > 0 {
+    let references: Vec<Campaign> = asked.references.iter().map(|folder| Campaign::open(folder, problems)).collect::<Option<_>>()?;
+    // What is learnt from it would be the gap itself.
+    let whole = |folder: &Path| folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
+    if let Some(same) = asked.references.iter().find(|folder| whole(folder) == whole(asked.folder)) {
+        let says = format!("`{}` is the campaign itself: its gap would be taken for what the model is wrong in anyway", same.display());
+        problems.push(Problem::error("reference", says).help("give a campaign of the same vehicle whose state is known"));
         return None;
     }
-    let simulator: Option<&dyn Simulator> = chosen.as_ref().map(Chosen::simulator);
-    let cache = asked.resume;
-    let seed = asked.seed;
-    let cache = match cache.map(|cache| kept(cache, &campaign, &settings)) {
-        None => None,
-        Some(Ok(cache)) => Some(cache),
-        Some(Err(problem)) => {
-            problems.push(problem);
-            return None;
-        }
+    // A campaign, what simulates it, and where its runs are kept.
+    let mut with_all = |campaign| {
+        let chosen = simulating(asked.simulator, campaign, problems)?;
+        let cache = asked.resume.map(|folder| kept(folder, campaign, &settings)).transpose();
+        Some((chosen, cache.map_err(|problem| problems.push(problem)).ok()?))
     };
-    let references: Vec<Campaign> = asked.references.iter().map(|folder| Campaign::open(folder, problems)).collect::<Option<_>>()?;
-    let references: Vec<&Campaign> = references.iter().collect();
-    let inputs =
-        Inputs { references: &references, campaign: &campaign, catalogue: &catalogue, settings: &settings, simulator, cache, seed, trying };
+    let (chosen, cache) = with_all(&campaign)?;
+    let of_references: Vec<_> = references.iter().map(&mut with_all).collect::<Option<_>>()?;
+    let references: Vec<Reference<'_>> = std::iter::zip(&references, &of_references)
+        .map(|(campaign, (chosen, cache))| Reference { campaign, simulator: chosen.as_ref().map(Chosen::simulator), cache: cache.clone() })
+        .collect();
+    let inputs = Inputs {
+        references: &references,
+        campaign: &campaign,
+        catalogue: &catalogue,
+        settings: &settings,
+        simulator: chosen.as_ref().map(Chosen::simulator),
+        cache,
+        seed: asked.seed,
+        trying,
+    };
     match diagnose(&inputs, &compiled, sections) {
         Ok(outcome) => {
             problems.0.extend(outcome.warnings.0.iter().cloned());
@@ -195,6 +196,21 @@ pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &m
             None
         }
     }
+}
+
+/// What simulates a campaign; without a model that can run, nothing, and what can be done is done. `None` where what is there is wrong
+/// and to be mended.
+fn simulating<'a>(choice: Option<&SimulatorChoice>, campaign: &'a Campaign, problems: &mut Problems) -> Option<Option<Chosen<'a>>> {
+    let mut lacking = Problems::default();
+    let chosen = match choice {
+        Some(choice) if choice.external() => Some(choice.open(campaign, problems)?),
+        _ => Builtin::new(campaign, &mut lacking).map(|model| Chosen::Builtin(Box::new(model))),
+    };
+    for problem in lacking.0 {
+        let severity = if WRONG.contains(&problem.code) { Severity::Error } else { Severity::Warning };
+        problems.push(Problem { severity, ..problem });
+    }
+    (problems.errors() == 0).then_some(chosen)
 }
 
 /// Runs kept in a folder, by everything that they and their features depend on.

@@ -205,3 +205,64 @@ fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, f64
     found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::candidates::Node;
+    use crate::diagnose::features::Layout;
+    use crate::diagnose::observe::Observations;
+    use crate::effects::Catalogue;
+    use crate::source::Source;
+
+    const SECTIONS: usize = 10;
+
+    /// Ten sections of three features of unit variance, the second of which is off by 3. A member that moves the first as well was
+    /// chosen beside one that moved the first back: alone it explains 10 * 3^2 / 2. Another moves the second alone and explains all of
+    /// 10 * 3^2. Both pay the same for their paths.
+    #[test]
+    fn where_a_member_has_gone_another_takes_the_place_of_what_was_chosen_beside_it() {
+        let per_section = |of: [f64; 3]| (0..SECTIONS).flat_map(|_| of).collect::<Vec<f64>>();
+        let path = |effect: &str, change: [f64; 3]| {
+            Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change: per_section(change) }])
+        };
+        let side = 10.0 / 2_f64.sqrt();
+        let candidates = [path("both", [side, side, 0.0]), path("gone", [-10.0, 0.0, 0.0]), path("second", [0.0, 10.0, 0.0])];
+        let covariance = Covariance { diagonal: vec![1.0; 3 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 3 };
+        let whitener = covariance.whitener();
+        let masks = [Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None }];
+        let layout = Layout { channels: Vec::new(), edges: Vec::new(), alike: (0.0, 1.0), furthest: 1.0 };
+        let (noise, left_out, faults) = (Vec::new(), Vec::new(), Vec::new());
+        let seen = Observations { layout, features: Vec::new(), sections: Vec::new(), noise, left_out, faults };
+        let (groups, units, effects) = (Vec::new(), Vec::new(), Vec::new());
+        let source = Source::new("", "");
+        let catalogue = Catalogue { name: String::new(), title: String::new(), source, groups, units, effects, diagnosis: None };
+        let (base, simulated) = (Vec::new(), Vec::new());
+        let workshop = Workshop { seen: &seen, catalogue: &catalogue, bench: None, base, simulated, neutral: &|_| None, trying: &|_| {} };
+        let exchanged = |second: f64, refused: &[usize]| {
+            let difference = per_section([0.0, second, 0.0]);
+            let converging = Converging {
+                workshop: &workshop,
+                covariance: &covariance,
+                whitener: &whitener,
+                difference: &difference,
+                families: &[],
+                far: &|_, _| 100.0,
+                seed: 1,
+            };
+            let fitter = Fitter::new(&whitener, &candidates, masks.to_vec());
+            let fit = |candidate: usize| fitter.fit(&difference, candidate, 0).expect("a path");
+            let mut now = Chosen { members: vec![fit(0)], rest: difference.clone() };
+            let refused: Vec<Refused> = refused.iter().map(|at| Refused::new(fit(*at), "gone")).collect();
+            let any = converging.exchange((&candidates, &masks), &mut now, &refused, &mut Known::new());
+            let [member] = &now.members[..] else { panic!("{} members", now.members.len()) };
+            (any, member.candidate, member.size, member.fall)
+        };
+        let (any, candidate, size, fall) = exchanged(3.0, &[1]);
+        assert!(any && candidate == 2, "{candidate}");
+        assert!((size - 3.0).abs() < 1e-9 && (fall - 90.0).abs() < 1e-9, "{size}, {fall}");
+        // What was refused takes no place; nor does what explains little more: 10 * 1.2^2 / 2 is less than 8.
+        assert_eq!(exchanged(3.0, &[1, 2]).1, 0);
+        assert_eq!(exchanged(1.2, &[1]).1, 0);
+    }
+}

@@ -3,6 +3,7 @@
 use super::features::Kind;
 use super::observe::{Observations, piece};
 use super::settings::{Discrepancy, FeatureKind, Moves, Over, Settings, Times};
+use super::standing::Standing;
 use super::whiten::Covariance;
 use crate::effects::Gauss;
 
@@ -25,7 +26,22 @@ pub struct Sensitivity {
     pub shared: bool,
 }
 
-/// The covariance of `measured - simulated` without any effect. `simulated` are the features of the campaign's simulation.
+/// A column that sections share, by what it stands for.
+#[derive(Clone, Debug)]
+pub struct Keyed {
+    pub key: String,
+    pub values: Vec<f64>,
+}
+
+/// Takes what is expected of the tolerances off a difference.
+pub fn expect(sensitivities: &[Sensitivity], difference: &mut [f64]) {
+    for sensitivity in sensitivities.iter().filter(|sensitivity| sensitivity.expected != 0.0) {
+        difference.iter_mut().zip(&sensitivity.column).for_each(|(difference, column)| *difference -= sensitivity.expected * column);
+    }
+}
+
+/// The covariance of `measured - simulated` without any effect. `simulated` are the features of the campaign's simulation; without
+/// `standing`, noise and tolerances alone.
 #[must_use]
 pub fn covariance(
     seen: &Observations,
@@ -33,7 +49,7 @@ pub fn covariance(
     simulated: &[f64],
     sensitivities: &[Sensitivity],
     declared: &dyn Fn(&str) -> Option<f64>,
-    with_discrepancies: bool,
+    standing: Option<&Standing>,
 ) -> Covariance {
     let size = seen.features.len();
     let mut covariance = Covariance { diagonal: diagonal(seen, settings), inside: Vec::new(), shared: Vec::new(), size };
@@ -50,12 +66,27 @@ pub fn covariance(
     for channel in 0..seen.layout.channels.len() {
         covariance.shared.extend(calibration(seen, settings, simulated, channel, declared));
     }
-    if with_discrepancies {
-        for discrepancy in &settings.discrepancies {
-            discrepant(seen, settings, discrepancy, &mut covariance);
-        }
+    if let Some(standing) = standing {
+        let (columns, inside) = discrepancies(seen, settings);
+        covariance.shared.extend(standing.weighed(columns));
+        covariance.inside.extend(inside);
     }
+    covariance.shared.retain(|column| column.iter().any(|x| *x != 0.0));
+    covariance.inside.retain(|(_, column)| column.iter().any(|x| *x != 0.0));
     covariance
+}
+
+/// A section, and a column of its features.
+type Inside = (usize, Vec<f64>);
+
+/// Columns of all discrepancies: those that sections share, and those inside one.
+#[must_use]
+pub fn discrepancies(seen: &Observations, settings: &Settings) -> (Vec<Keyed>, Vec<Inside>) {
+    let (mut shared, mut inside) = (Vec::new(), Vec::new());
+    for (number, discrepancy) in settings.discrepancies.iter().enumerate() {
+        discrepant(seen, settings, (number, discrepancy), &mut shared, &mut inside);
+    }
+    (shared, inside)
 }
 
 /// Gain and offset of a channel, as declared.
@@ -151,7 +182,13 @@ fn bootstrap(values: &[f64], rate: f64, seed: u64) -> f64 {
 }
 
 /// Columns of a discrepancy.
-fn discrepant(seen: &Observations, settings: &Settings, discrepancy: &Discrepancy, covariance: &mut Covariance) {
+fn discrepant(
+    seen: &Observations,
+    settings: &Settings,
+    (number, discrepancy): (usize, &Discrepancy),
+    shared: &mut Vec<Keyed>,
+    inside: &mut Vec<Inside>,
+) {
     let size = seen.features.len();
     let bands = seen.layout.edges.len().saturating_sub(1);
     // Kinds that move together.
@@ -175,23 +212,28 @@ fn discrepant(seen: &Observations, settings: &Settings, discrepancy: &Discrepanc
                 }
                 values
             };
+            let names: Vec<&str> = members.iter().map(|(channel, _)| seen.layout.channels[*channel].name.as_str()).collect();
+            let key = format!("{number} {at} {}", names.join(" "));
             match discrepancy.over {
-                Over::Sections => covariance.inside.extend((0..seen.sections.len()).map(|section| (section, value(section)))),
-                Over::All => covariance.shared.push((0..seen.sections.len()).flat_map(value).collect()),
+                Over::Sections => inside.extend((0..seen.sections.len()).map(|section| (section, value(section)))),
+                Over::All => shared.push(Keyed { key, values: (0..seen.sections.len()).flat_map(value).collect() }),
                 Over::Strata => {
                     for stratum in strata(seen, settings) {
-                        let mut column = vec![0.0; seen.len()];
-                        for section in stratum {
-                            column[section * size..(section + 1) * size].copy_from_slice(&value(section));
+                        let mut values = vec![0.0; seen.len()];
+                        for section in &stratum {
+                            values[section * size..(section + 1) * size].copy_from_slice(&value(*section));
                         }
-                        covariance.shared.push(column);
+                        shared.push(Keyed { key: format!("{key} in {}", stratum_of(seen, settings, stratum[0])), values });
                     }
                 }
             }
         }
     }
-    covariance.shared.retain(|column| column.iter().any(|x| *x != 0.0));
-    covariance.inside.retain(|(_, column)| column.iter().any(|x| *x != 0.0));
+}
+
+/// The stratum of a section.
+fn stratum_of<'a>(seen: &'a Observations, settings: &Settings, section: usize) -> &'a str {
+    settings.stratum.as_deref().and_then(|column| seen.sections[section].section.fact(column)).unwrap_or("")
 }
 
 /// Sections by stratum, in the order in which strata first appear.
@@ -199,8 +241,7 @@ fn discrepant(seen: &Observations, settings: &Settings, discrepancy: &Discrepanc
 pub fn strata(seen: &Observations, settings: &Settings) -> Vec<Vec<usize>> {
     let mut found: Vec<(String, Vec<usize>)> = Vec::new();
     for at in seen.first_runs() {
-        let observed = &seen.sections[at];
-        let value = settings.stratum.as_deref().and_then(|column| observed.section.fact(column)).unwrap_or("").to_string();
+        let value = stratum_of(seen, settings, at).to_string();
         match found.iter_mut().find(|(known, _)| *known == value) {
             Some((_, sections)) => sections.push(at),
             None => found.push((value, vec![at])),

@@ -4,19 +4,19 @@ use super::bench::{Bench, Runs};
 use super::cache::Cache;
 use super::candidates::{Candidate, Trying, Workshop};
 use super::converge::{Converged, Converging};
-use super::covariance::{Sensitivity, covariance, strata};
+use super::covariance::{Sensitivity, covariance, discrepancies, expect, strata};
 use super::declared::Declared;
 use super::fit::{Fitted, Fitter, Known, Mask, less};
 use super::guards::families;
 use super::lack::{Lack, drop_what_harms, lack_after, lack_of_fit, unexplained};
 use super::masks::masks;
 use super::observe::Observations;
-use super::reference::Reference;
 use super::search::{Bars, Chosen, Refused, chi_squared, contradicting, nearest, refit, rivals};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
 use super::settle::{Settled, Weighed};
 use super::stability::{Stability, stability};
+use super::standing::{Reference, learnt};
 use super::suspects::{Suspect, suspect};
 use super::whiten::{Covariance, Whitener, dot};
 use crate::data::Campaign;
@@ -33,7 +33,7 @@ pub struct Inputs<'a> {
     pub simulator: Option<&'a dyn Simulator>,
     pub cache: Option<Cache>,
     /// Campaigns whose state is known.
-    pub references: &'a [&'a Campaign],
+    pub references: &'a [Reference<'a>],
     pub seed: u64,
     pub trying: Trying<'a>,
 }
@@ -121,14 +121,9 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let simulated = seen.all(true, |observed| &observed.simulated);
     let measured = seen.all(false, |observed| &observed.measured);
     let mut difference = less(&measured, &simulated);
-    let mut reference = Reference::default();
-    for campaign in inputs.references {
-        let sections = crate::simulate::sections(campaign, problems)?;
-        reference.learn(&Observations::read(campaign, sections, inputs.catalogue, settings, &declared, &unit, problems)?, settings);
-    }
-    reference.take_off(&seen, settings, &mut difference);
-    let settings = &reference.narrowed(settings);
     let mut runs = Runs::default();
+    let standing = learnt(inputs, &mut runs, problems)?;
+    standing.take_off(&discrepancies(&seen, settings).0, &mut difference);
     let bench = inputs.simulator.map(|simulator| Bench { seen: &seen, simulator, cache: inputs.cache.clone(), set: Vec::new() });
     (inputs.trying)("simulation without effects");
     let base = match bench.as_ref().map(|bench| bench.features(&[])).transpose() {
@@ -144,10 +139,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         None => Vec::new(),
     };
     let sensitivities: Vec<Sensitivity> = columns.iter().flatten().cloned().collect();
-    // What was learnt from a reference has that in it already.
-    for sensitivity in sensitivities.iter().filter(|sensitivity| sensitivity.expected != 0.0 && inputs.references.is_empty()) {
-        difference.iter_mut().zip(&sensitivity.column).for_each(|(difference, column)| *difference -= sensitivity.expected * column);
-    }
+    expect(&sensitivities, &mut difference);
     let workshop = Workshop {
         seen: &seen,
         catalogue: inputs.catalogue,
@@ -159,8 +151,8 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     };
     let mut candidates = workshop.candidates(&mut runs);
     (inputs.trying)("weighing");
-    let whole = covariance(&seen, settings, &simulated, &sensitivities, &declared, true);
-    let tolerated = covariance(&seen, settings, &simulated, &sensitivities, &declared, false);
+    let whole = covariance(&seen, settings, &simulated, &sensitivities, &declared, Some(&standing));
+    let tolerated = covariance(&seen, settings, &simulated, &sensitivities, &declared, None);
     let whitener = whole.whitener();
     let mut masks = masks(&seen, settings);
     let strata = strata(&seen, settings);
@@ -183,6 +175,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         workshop: &workshop,
         settings,
         columns: &columns,
+        standing: &standing,
         value: &value,
         declared: &declared,
         difference: &difference,

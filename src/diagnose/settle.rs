@@ -10,6 +10,7 @@ use super::lack::{Lack, lack_after, unexplained};
 use super::search::{Bars, Chosen, Refused, refit};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
+use super::standing::Standing;
 use super::whiten::{Covariance, Whitener, dot};
 use crate::effects::{Action, Effect};
 use crate::simulate::Plan;
@@ -45,6 +46,8 @@ pub struct Settled<'a> {
     pub settings: &'a Settings,
     /// Of the tolerances, without effects.
     pub columns: &'a [Option<Sensitivity>],
+    /// What is known of the discrepancies.
+    pub standing: &'a Standing,
     /// What a parameter has where nothing is set.
     pub value: &'a (dyn Fn(&str) -> Option<f64> + Sync),
     pub declared: &'a dyn Fn(&str) -> Option<f64>,
@@ -186,7 +189,7 @@ impl Settled<'_> {
     }
 
     fn of(&self, columns: &[Sensitivity]) -> Covariance {
-        covariance(self.workshop.seen, self.settings, &self.workshop.simulated, columns, self.declared, true)
+        covariance(self.workshop.seen, self.settings, &self.workshop.simulated, columns, self.declared, Some(self.standing))
     }
 
     /// Which columns matter.

@@ -47,7 +47,9 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let radius = |key: &str| super::run::value_of(inputs.campaign, key);
     let shapes = super::shapes::shapes(inputs.settings, &found.seen, &radius, inputs.seed);
     let mut says = says(inputs, found, verdict, &causes, shrink.as_ref(), unexplained_share);
+    let (trends, together) = super::trends::trends(inputs.settings, found, units);
     if verdict == "unexplained" {
+        says.extend(super::trends::worth_a_word(&trends));
         says.extend(super::invariants::worst(&invariants));
         says.extend(super::shapes::worth_a_word(&shapes));
     }
@@ -68,7 +70,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     };
     notes.extend(alone(found));
     if !inputs.references.is_empty() {
-        let names: Vec<&str> = inputs.references.iter().map(|campaign| campaign.name.as_str()).collect();
+        let names: Vec<&str> = inputs.references.iter().map(|reference| reference.campaign.name.as_str()).collect();
         notes.push(format!("what the simulation is wrong in anyway was learnt from: {}", names.join(", ")));
     }
     if inputs.simulator.is_none() {
@@ -82,6 +84,8 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         faults: found.seen.faults.clone(),
         r#where: super::locate::locate(inputs.settings, found, units),
         invariants,
+        trends,
+        together,
         shapes,
         causes,
         vetoed: vetoed(inputs, found),
@@ -345,9 +349,6 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
             });
             if let Some(first) = causes.first() {
                 lines.push(format!("Explained in part: {}; {:.0} % of the excess is left.", first.says, 100.0 * unexplained));
-            }
-            if let Some(says) = super::locate::covariate(inputs.settings, found) {
-                lines.push(says);
             }
         }
     }

@@ -16,6 +16,9 @@ pub struct Diagnosis {
     pub faults: Vec<Fault>,
     pub r#where: Vec<Where>,
     pub invariants: Vec<Invariant>,
+    pub trends: Vec<Trend>,
+    /// Covariates that go together, so that the campaign cannot tell which of them a trend follows.
+    pub together: Vec<String>,
     pub shapes: Vec<Shape>,
     pub causes: Vec<Cause>,
     pub vetoed: Vec<Vetoed>,
@@ -101,6 +104,39 @@ pub struct Invariant {
     pub after: f64,
     /// One standard deviation of what is allowed for.
     pub allowed: f64,
+}
+
+/// How a difference changes with something that the section table says, over all sections: generalised least squares on that alone.
+#[derive(Clone, Debug, Serialize)]
+pub struct Trend {
+    pub quantity: String,
+    pub position: String,
+    pub signals: Vec<String>,
+    pub wavelength_or_band: String,
+    pub covariate: String,
+    /// What the table says where it is least, and where it is most.
+    pub from: String,
+    pub to: String,
+    /// Of the changes; `-` for ratios.
+    pub unit: String,
+    pub before: Slope,
+    /// With the causes added.
+    pub after: Slope,
+}
+
+/// What measured - simulated grows by over the range of a covariate, with a 90 % interval: levels in their unit, in curves turned to one
+/// side where they turn with the curve; bands as a ratio of rms less one.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Slope {
+    pub change: f64,
+    pub low: f64,
+    pub high: f64,
+    /// Of the differences themselves with the covariate, whatever may differ.
+    pub correlation: f64,
+    /// That there is no such trend.
+    pub p_value: f64,
+    /// Below the limit of the false discovery rate.
+    pub significant: bool,
 }
 
 /// How the dynamic content of a group of channels differs, over all sections.

@@ -7,6 +7,7 @@ use std::path::Path;
 use fishplate::data::Campaign;
 use fishplate::diagnose::run::{Found, Inputs, find};
 use fishplate::diagnose::settings::Settings;
+use fishplate::diagnose::standing::Reference;
 use fishplate::effects::{Channel, Signals};
 use fishplate::library;
 use fishplate::problem::{Problem, Problems};
@@ -39,10 +40,12 @@ struct Truth {
     stiffness: f64,
     /// Of the force in the section number [`ALONE`], in N.
     jump: f64,
+    /// Of the force in all sections, in N.
+    lift: f64,
 }
 
 const ALONE: usize = 5;
-const NOTHING: Truth = Truth { slack: 0.0, off: 0.0, stiffness: 1.0, jump: 0.0 };
+const NOTHING: Truth = Truth { slack: 0.0, off: 0.0, stiffness: 1.0, jump: 0.0, lift: 0.0 };
 
 struct Formula;
 
@@ -80,6 +83,7 @@ effects:
 diagnosis:
   groups:
     forces: {unit: N, level: true, bands: 0, says: force, level sd: 0.2}
+  covariates: [load, 1 / load, zone]
   tolerances:
     rise: {default: 0.05, scales: [rise]}
 ";
@@ -100,7 +104,7 @@ fn campaign(folder: &Path, truth: Truth) {
     for (at, load) in LOADS.iter().enumerate() {
         writeln!(table, "S{at},1,0,39.9,{load}").unwrap();
         let measured = force(*load, truth.slack, RISE * (1.0 + truth.off * RISE_SD), STIFFNESS * truth.stiffness);
-        let measured = measured + if at == ALONE { truth.jump } else { 0.0 };
+        let measured = measured + truth.lift + if at == ALONE { truth.jump } else { 0.0 };
         let truths = [("simulation", force(*load, 0.0, RISE, STIFFNESS)), ("measurement", measured)];
         for (kind, level) in truths {
             let mut record = "time [s],distance [m],F [N]\n".to_string();
@@ -112,6 +116,11 @@ fn campaign(folder: &Path, truth: Truth) {
 }
 
 fn found(effects: &str, truth: Truth) -> Found {
+    found_by(effects, truth, &[]).0
+}
+
+/// `known` are campaigns whose state is known.
+fn found_by(effects: &str, truth: Truth, known: &[Truth]) -> (Found, Settings) {
     let folder = tempfile::tempdir().unwrap();
     campaign(folder.path(), truth);
     let mut problems = Problems::default();
@@ -120,18 +129,30 @@ fn found(effects: &str, truth: Truth) -> Found {
     let settings = catalogue.as_ref().and_then(|catalogue| Settings::read(catalogue, &mut problems));
     let campaign = Campaign::open(folder.path(), &mut problems);
     let (Some(catalogue), Some(settings), Some(campaign)) = (catalogue, settings, campaign) else { panic!("{}", problems.render(false)) };
+    let known: Vec<(tempfile::TempDir, Campaign)> = known
+        .iter()
+        .map(|truth| {
+            let folder = tempfile::tempdir().unwrap();
+            self::campaign(folder.path(), *truth);
+            let campaign = Campaign::open(folder.path(), &mut problems).unwrap();
+            (folder, campaign)
+        })
+        .collect();
+    let references: Vec<Reference<'_>> =
+        known.iter().map(|(_, campaign)| Reference { campaign, simulator: Some(&Formula), cache: None }).collect();
     let inputs = Inputs {
         campaign: &campaign,
         catalogue: &catalogue,
         settings: &settings,
         simulator: Some(&Formula),
         cache: None,
-        references: &[],
+        references: &references,
         seed: 1,
         trying: &|_| {},
     };
     let all: Vec<Section> = sections(&campaign, &mut problems).unwrap();
-    find(&inputs, all, &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)))
+    let found = find(&inputs, all, &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+    (found, settings)
 }
 
 /// `a' C^-1 r / a' C^-1 a` where C has the variance of a level on its diagonal and one column c besides: a' (v I + c c')^-1 b =
@@ -196,4 +217,57 @@ fn a_parameter_that_no_effect_moves_is_a_suspect() {
     assert!(suspect.key == "stiffness" && (suspect.factor - 1.9).abs() < 1e-6, "{suspect:?}");
     assert!(suspect.evidence > suspect.answer, "{suspect:?}");
     assert!(found(&effects, Truth { slack: 0.8, ..NOTHING }).suspect.is_none());
+}
+
+/// A stiffness of 1.2 times what is assumed lifts the force by 0.2 (1 - slack) stiffness times the load: 1.26 N from the least load to
+/// the most, whatever the covariance, and as much from the first section to the last, loads being in order. Its error is that of
+/// generalised least squares with the covariance written out.
+#[test]
+fn a_difference_that_grows_with_a_column_is_told_with_its_slope() {
+    let (found, settings) = found_by(EFFECTS, Truth { stiffness: 1.2, ..NOTHING }, &[]);
+    let (trends, together) = fishplate::diagnose::trends::trends(&settings, &found, &Vec::new());
+    let over = |name: &str| trends.iter().find(|trend| trend.covariate == name).unwrap_or_else(|| panic!("no trend over {name}"));
+    let load = over("load");
+    let wanted = 0.2 * (1.0 - SLACK) * STIFFNESS * (LOADS[7] - LOADS[0]);
+    assert!((load.before.change - wanted).abs() < 1e-6, "{} for {wanted}", load.before.change);
+    assert!((load.before.correlation - 1.0).abs() < 1e-9);
+    assert_eq!((load.from.as_str(), load.to.as_str()), ("1", "4.5"));
+    // Of the matrix X' C^-1 X, X = [1, scaled load], the lower right of the inverse.
+    let column = &found.covariance.shared[0];
+    let ones = [1.0; 8];
+    let scaled = LOADS.map(|load| (load - LOADS[0]) / (LOADS[7] - LOADS[0]));
+    let product = |a: &[f64; 8], b: &[f64; 8]| {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let v = LEVEL_SD * LEVEL_SD;
+        (dot(a, b) - dot(a, column) * dot(column, b) / (v + dot(column, column))) / v
+    };
+    let (aa, ab, bb) = (product(&ones, &ones), product(&ones, &scaled), product(&scaled, &scaled));
+    let error = (aa / (aa * bb - ab * ab)).sqrt();
+    assert!((load.before.high - wanted - 1.645 * error).abs() < 1e-6, "{} for {}", load.before.high, wanted + 1.645 * error);
+    assert!((over("the order of the sections").before.change - wanted).abs() < 1e-6);
+    assert_eq!(over("1 / load").from, "load 4.5", "the reciprocal is least where the load is most");
+    assert!(trends.iter().all(|trend| trend.covariate != "zone"), "what is the same everywhere is no covariate");
+    assert!(together.iter().any(|pair| pair.starts_with("the order of the sections and load (1.00)")), "{together:?}");
+}
+
+/// One column of 2 N for all sections, three quarters of whose variance stands. Two references that are off by 1.5 N and 1.1 N say what it
+/// is, by Bayes' rule for a single number: the eight sections of each weigh 8 / (v + 8 * 2^2 / 4). What is expected of it is taken off,
+/// and what is left of it is in the covariance.
+#[test]
+fn what_stands_is_learnt_from_campaigns_of_known_state() {
+    let (sd, lifts, own) = (2.0, [1.5, 1.1], 0.25);
+    let tolerances = EFFECTS.find("  tolerances:").unwrap();
+    let effects = format!("{}  discrepancies: [{{of: level, channels: {{F: 1}}, sd: {sd}}}]\n", &EFFECTS[..tolerances]);
+    let known = lifts.map(|lift| Truth { lift, ..NOTHING });
+    let (found, _) = found_by(&effects, Truth { lift: 1.3, ..NOTHING }, &known);
+    let weigh = 8.0 / (LEVEL_SD * LEVEL_SD + 8.0 * own * sd * sd);
+    let stands = 1.0 - own;
+    let variance = 1.0 / (1.0 + 2.0 * weigh * stands * sd * sd);
+    let mean = variance * stands * sd * weigh * (lifts[0] + lifts[1]);
+    for difference in &found.difference {
+        assert!((difference - (1.3 - sd * mean)).abs() < 1e-9, "{difference} for {}", 1.3 - sd * mean);
+    }
+    let [column] = &found.covariance.shared[..] else { panic!("{} columns", found.covariance.shared.len()) };
+    let wanted = sd * (own + stands * variance).sqrt();
+    assert!(column.iter().all(|value| (value - wanted).abs() < 1e-9), "{column:?} for {wanted}");
 }

@@ -172,6 +172,17 @@ fn a_table_of_sections_that_cannot_be_read_is_told_once() {
     }
 }
 
+/// From itself nothing can be learnt that stands beside its gap, by whatever path it is given.
+#[test]
+fn a_campaign_is_no_reference_for_itself() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good");
+    let out = folder().join("itself");
+    let same = example.join("../coach-good");
+    let ran = fishplate(&["diagnose", example.to_str().unwrap(), "--reference", same.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    let says = String::from_utf8(ran.stderr).unwrap();
+    assert!(ran.status.code() == Some(2) && says.contains("is the campaign itself") && !out.exists(), "{says}");
+}
+
 /// In one test, one after the other: each uses the runs of the one before.
 #[test]
 fn what_is_hidden_is_found_and_nothing_is_invented() {
