@@ -20,7 +20,7 @@ pub struct Bars {
     pub confined: f64,
     /// A size that is a declared tolerance must be so many standard deviations from neutral.
     pub tolerance_sd: f64,
-    /// Share of the fall of the first member that a further one must bring.
+    /// Share of the fall of the strongest simulated member that a further one must bring.
     pub share: f64,
     pub most: usize,
 }
@@ -123,10 +123,10 @@ pub fn search(
         fits.retain(|fit| plausible(&fitter.candidates[fit.candidate], fit.size));
         // Sections that the data chose themselves must say it twice as loud.
         fits.retain(|fit| fitter.masks[fit.mask].asked_by.is_none() || fit.evidence >= 2.0 * bar(fit));
-        if let Some(first) = chosen.members.first() {
-            let least = bars.share * first.fall;
-            fits.retain(|fit| fit.fall >= least);
-        }
+        // What a simulated change is wrong by looks like something else; an operation on the signals leaves nothing.
+        let simulated = chosen.members.iter().filter(|member| !fitter.candidates[member.candidate].exact);
+        let least = bars.share * simulated.map(|member| member.fall).fold(0.0, f64::max);
+        fits.retain(|fit| fit.fall >= least);
         fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         let Some(mut best) = fits.into_iter().next() else { break };
         match guard(&best, &chosen) {
@@ -304,5 +304,31 @@ mod tests {
         let evidence = told(3.0, true).expect("it has more");
         assert!((evidence - (90.0 - 5.07)).abs() < 0.01, "{evidence}");
         assert_eq!((told(3.0, false), told(1.9, true)), (None, None));
+    }
+
+    /// Ten sections of two features of unit variance, off by 30 and by 3: falls of 9000 and 90. A simulated change of the first size may be
+    /// wrong by as much as the second shows; an operation on the signals leaves nothing.
+    #[test]
+    fn what_a_large_effect_may_be_wrong_by_is_not_named_beside_it() {
+        const SECTIONS: usize = 10;
+        let per_section = |a: f64, b: f64| (0..SECTIONS).flat_map(|_| [a, b]).collect::<Vec<f64>>();
+        let covariance = Covariance { diagonal: vec![1.0; 2 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 2 };
+        let path = |effect: &str, change: Vec<f64>, exact: bool| Candidate {
+            exact,
+            range: (0.0, 100.0),
+            ..Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 100.0, change }])
+        };
+        let whitener = covariance.whitener();
+        let everywhere = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
+        let bars = Bars { first: 30.0, exact: 15.0, next: 37.5, confined: 15.0, tolerance_sd: 3.5, share: 0.12, most: 3 };
+        let z = per_section(30.0, 3.0);
+        let named = |exact: bool| {
+            let candidates = [path("large", per_section(100.0, 0.0), exact), path("small", per_section(0.0, 100.0), false)];
+            let fitter = Fitter::new(&whitener, &candidates, vec![everywhere.clone()]);
+            let found = search(&fitter, &z, &bars, &|_, _| 100.0, &|_, _| Judged::Sound, &mut Vec::new());
+            found.members.iter().map(|member| (member.candidate, member.fall.round())).collect::<Vec<_>>()
+        };
+        assert_eq!(named(false), [(0, 9000.0)]);
+        assert_eq!(named(true), [(0, 9000.0), (1, 90.0)]);
     }
 }

@@ -37,18 +37,26 @@ pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>,
     let sections = [found.seen.first_runs()];
     let covariates = covariates(settings, &found.seen);
     // Single channels as well: what drifts or fades is one of them, on whichever side of the curve its wheel runs.
+    // They are not turned with the curve.
     let alone = |name: &str| Position { name: name.into(), straight: vec![name.into()], mirrored: vec![name.into()] };
-    let channels = found.seen.layout.channels.iter().map(|of| alone(&of.name));
-    let places: Vec<Position> = positions(settings).into_iter().chain(channels).collect();
-    let of_kind = |kind: Kind| places.iter().flat_map(|position| cells(settings, found, kind, position, &sections)).collect::<Vec<Cell>>();
-    let cells: Vec<Cell> = kinds(found).flat_map(of_kind).collect();
+    let channels = found.seen.layout.channels.iter().map(|of| (alone(&of.name), false));
+    let places: Vec<(Position, bool)> = positions(settings).into_iter().map(|position| (position, true)).chain(channels).collect();
+    let of_place = |kind: Kind, (position, turns): &(Position, bool)| {
+        cells(settings, found, kind, position, &sections).into_iter().map(|cell| (cell, *turns)).collect::<Vec<(Cell, bool)>>()
+    };
+    let cells: Vec<(Cell, bool)> = kinds(found).flat_map(|kind| places.iter().flat_map(move |place| of_place(kind, place))).collect();
     let changes: Vec<Vec<f64>> = found.chosen.members.iter().map(|member| member.change(&found.candidates, &found.masks)).collect();
     let wider = found.beside.allowing(changes.iter());
     let rest = left(&found.candidates, &found.masks, &found.difference, &found.chosen);
     let fold = Fold::new(settings, &found.seen, &found.simulated);
-    let of_cell = |cell: &Cell| {
-        let before = slopes(found, cell, &fold, &covariates, (&found.covariance, &found.difference));
-        let after = slopes(found, cell, &fold, &covariates, (&wider, &rest));
+    let of_cell = |(cell, turns): &(Cell, bool)| {
+        let sign = |(section, feature): &(usize, usize)| match turns {
+            true => fold.sign(*section, found.seen.features[*feature].channel, cell.kind),
+            false => 1.0,
+        };
+        let sides: Vec<f64> = cell.members.iter().map(sign).collect();
+        let before = slopes(found, cell, &sides, &covariates, (&found.covariance, &found.difference));
+        let after = slopes(found, cell, &sides, &covariates, (&wider, &rest));
         let trend = |((covariate, before), after): ((&Covariate, Option<Slope>), Option<Slope>)| {
             let [from, to] = covariate.ends.clone();
             Some(Trend {
@@ -100,24 +108,23 @@ pub fn change(trend: &Trend, change: f64) -> String {
     if trend.unit == "-" { format!("{:.0} %", 100.0 * change) } else { format!("{change:.2} {}", trend.unit) }
 }
 
-/// The slope of a cell over each covariate; nothing where they do not differ in its sections.
+/// The slope of a cell over each covariate, its members times the sides they are turned to; nothing where covariates do not differ in its
+/// sections.
 fn slopes(
     found: &Found,
     cell: &Cell,
-    fold: &Fold,
+    turns: &[f64],
     covariates: &[Covariate],
     (covariance, rest): (&Covariance, &[f64]),
 ) -> Vec<Option<Slope>> {
-    let channel = |feature: usize| found.seen.features[feature].channel;
-    let turns: Vec<f64> = cell.members.iter().map(|(section, feature)| fold.sign(*section, channel(*feature), cell.kind)).collect();
     let place = |(section, feature): &(usize, usize)| found.seen.place(*section, *feature);
     let values: Vec<f64> = cell.members.iter().map(|member| rest[place(member)]).collect();
     let among = covariance.among(&cell.members);
     let of = |covariate: &Covariate| {
         let x: Vec<f64> = cell.members.iter().map(|(section, _)| covariate.values[*section]).collect();
-        let turned: Vec<f64> = x.iter().zip(&turns).map(|(x, side)| x * side).collect();
-        let (change, error) = among.slope([&turns, &turned], &values)?;
-        let upright: Vec<f64> = values.iter().zip(&turns).map(|(value, side)| value * side).collect();
+        let turned: Vec<f64> = x.iter().zip(turns).map(|(x, side)| x * side).collect();
+        let (change, error) = among.slope([turns, &turned], &values)?;
+        let upright: Vec<f64> = values.iter().zip(turns).map(|(value, side)| value * side).collect();
         let law = Normal::standard();
         let in_words = |value: f64| if cell.kind == Kind::Level { value } else { value.exp() - 1.0 };
         Some(Slope {

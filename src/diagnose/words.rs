@@ -1,21 +1,16 @@
-//! The answer in words and numbers: verdict, causes, rivals, what to measure next.
+//! The answer in words and numbers.
 
 use super::causes::cause;
+use super::detectable::detectable;
 use super::features::Kind;
 use super::fit::Fitted;
 use super::lack::{LACK, unexplained};
-use super::run::{Found, Inputs, chi, deviations, length};
-use super::search::{TOLERANCE_SD, plausible};
-use crate::effects::Effect;
-use crate::result::diagnosis::{Cause, Detectable, Diagnosis, Fault, How, Nearest, Shrink, Vetoed};
+use super::rivals::{ambiguity, discriminating, probabilities};
+use super::run::{Found, Inputs, chi, deviations};
+use super::search::TOLERANCE_SD;
+use super::suspects::Suspect;
+use crate::result::diagnosis::{Cause, Diagnosis, Fault, How, Nearest, Shrink, Vetoed};
 use crate::simulate::Units;
-
-/// Whitened length of a change that can be identified.
-const SEEN: f64 = 5.0;
-/// Rivals with so much less evidence cannot be told from the answer.
-const NEAREST: f64 = 8.0;
-/// Evidence is divided by this before it becomes a probability: real discrepancies are not those of the covariance.
-const TEMPERATURE: f64 = 4.0;
 
 /// Puts what was found into an answer.
 #[must_use]
@@ -29,8 +24,8 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let verdict = match () {
         () if !named && !lacking && found.seen.faults.is_empty() => "no significant gap",
         () if !named => "unexplained",
-        () if too_much || found.suspect.is_some() || found.contradicting.is_some() => "unexplained",
-        () if ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
+        () if too_much || found.suspect.as_ref().is_some_and(Suspect::beats) || found.contradicting.is_some() => "unexplained",
+        () if found.suspect.is_some() || ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
         () => "explained",
     };
     let mut causes = vec![];
@@ -41,7 +36,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         causes.extend(ambiguous.into_iter().filter(|rival| verdict != "unexplained" || rival.evidence <= best));
         causes.iter_mut().enumerate().for_each(|(at, cause)| cause.rank = at + 1);
     }
-    probabilities(&mut causes, verdict);
+    probabilities(&mut causes, verdict, found.suspect.is_some());
     let discriminating_measurement = discriminating(inputs, found, &causes, verdict);
     let invariants = super::invariants::invariants(inputs.settings, found, units);
     let radius = |key: &str| super::run::value_of(inputs.campaign, key);
@@ -119,7 +114,6 @@ fn simulated_time(found: &Found) -> f64 {
     all * found.runs.made as f64 / found.seen.sections.len().max(1) as f64
 }
 
-/// Sets in which another effect takes the place of a member, and that the data cannot tell from the answer.
 /// Sections that stand out alone beside an answer, with the channels that they do so in.
 fn alone(found: &Found) -> Option<String> {
     let one = |at: usize| {
@@ -131,93 +125,6 @@ fn alone(found: &Found) -> Option<String> {
     let all: Vec<String> = (0..found.seen.sections.len()).filter_map(one).collect();
     let told = !all.is_empty() && !found.chosen.members.is_empty();
     told.then(|| format!("sections that stand out alone, and do not decide whether the gap is explained: {}", all.join("; ")))
-}
-
-fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
-    let best = found.chosen.evidence();
-    let mut causes: Vec<Cause> = Vec::new();
-    let own = |at: usize| &found.candidates[found.chosen.members[at].candidate];
-    for (at, fit, fall) in &found.rivals {
-        let of = &found.candidates[fit.candidate];
-        // The same on another channel is another cause, where the data cannot tell which channel it is.
-        let elsewhere = of.effect == own(*at).effect && of.channels != own(*at).channels && !of.channels.is_empty() && *fall <= NEAREST;
-        let named = found.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect);
-        if named && !elsewhere {
-            continue;
-        }
-        if causes.len() >= 5 || causes.iter().any(|cause| cause.effects.iter().any(|effect| effect.name == of.effect)) {
-            continue;
-        }
-        // What a guard refused is told as such; it is no rival.
-        if found.refused.iter().any(|refused| found.candidates[refused.fitted.candidate].is_like(of)) || !plausible(of, fit.size) {
-            continue;
-        }
-        // What is within a declared tolerance is allowed for already.
-        if deviations(of, fit.size, inputs.settings, &found.declared) < TOLERANCE_SD {
-            continue;
-        }
-        let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(NEAREST)
-            && fit.evidence > if of.exact { found.bars.exact } else { found.bars.first };
-        let mut members = found.chosen.members.clone();
-        members[*at] = fit.clone();
-        let mut cause = cause(inputs, found, &members, causes.len() + 2);
-        cause.in_ambiguity_set = near;
-        cause.evidence = best - fall;
-        causes.push(cause);
-    }
-    causes
-}
-
-fn probabilities(causes: &mut [Cause], verdict: &str) {
-    // A rival may have more evidence than an answer that was chosen with the tolerances as they act beside it: then it is as probable.
-    let best = causes.first().map_or(0.0, |answer| answer.evidence);
-    let weights: Vec<f64> = causes.iter().map(|cause| ((cause.evidence - best).min(0.0) / (2.0 * TEMPERATURE)).exp()).collect();
-    // Something outside the catalogue is possible as well; more so where something is left.
-    let outside = if verdict == "unexplained" { 4.0 } else { 0.05 };
-    let all = weights.iter().sum::<f64>() + outside;
-    causes.iter_mut().zip(weights).for_each(|(cause, weight)| cause.probability = weight / all);
-    if verdict == "unexplained" {
-        causes.iter_mut().for_each(|cause| cause.in_ambiguity_set = false);
-    }
-}
-
-fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: &str) -> Option<String> {
-    if verdict != "ambiguous" {
-        return None;
-    }
-    let effects = causes.iter().filter(|cause| cause.in_ambiguity_set).flat_map(|cause| &cause.effects);
-    let mut measurements: Vec<String> = Vec::new();
-    for effect in effects {
-        let known: Option<&Effect> = inputs.catalogue.effect(&effect.name);
-        if let Some(settled) = known.and_then(|known| known.settled_by.clone())
-            && !measurements.contains(&settled)
-        {
-            measurements.push(settled);
-        }
-    }
-    measurements.extend(more_sections(inputs, found, causes));
-    (!measurements.is_empty()).then(|| measurements.join("; or "))
-}
-
-/// More sections of the kind that tells the answer from its nearest rival best.
-fn more_sections(inputs: &Inputs<'_>, found: &Found, causes: &[Cause]) -> Option<String> {
-    let near =
-        |name: &str| causes.iter().skip(1).any(|cause| cause.in_ambiguity_set && cause.effects.iter().any(|effect| effect.name == name));
-    let (at, rival, _) = found.rivals.iter().find(|(at, fit, _)| {
-        let effect = |fit: &Fitted| found.candidates[fit.candidate].effect.as_str();
-        near(effect(fit)) && effect(fit) != effect(&found.chosen.members[*at])
-    })?;
-    let apart = super::apart::apart(found, &found.chosen.members[*at], rival)?;
-    let sections: Vec<&str> = apart.sections.iter().map(|at| found.seen.sections[*at].section.name()).collect();
-    let stratum = inputs.settings.stratum.as_deref();
-    let kind = apart.sections.first().zip(stratum).and_then(|(at, column)| found.seen.sections[*at].section.says(column));
-    Some(format!(
-        "as many sections again like {} ({}): the two nearest causes, {:.1} standard deviations apart now, would be {:.1}",
-        sections.join(", "),
-        kind.unwrap_or_else(|| "the kind that helps most".into()),
-        apart.now,
-        apart.then
-    ))
 }
 
 fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
@@ -234,57 +141,6 @@ fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
         }
     };
     found.refused.iter().map(one).collect()
-}
-
-fn detectable(found: &Found) -> Vec<Detectable> {
-    let mut list: Vec<Detectable> = Vec::new();
-    for candidate in found.candidates.iter().filter(|candidate| !candidate.discrete && candidate.fixed.is_empty()) {
-        let Some(neutral) = candidate.neutral().filter(|neutral| neutral.is_finite()) else { continue };
-        let mut nodes: Vec<(f64, f64)> = candidate
-            .nodes
-            .iter()
-            .filter(|node| !node.change.is_empty())
-            .map(|node| (node.size - neutral, length(&found.whitener, &node.change)))
-            .collect();
-        nodes.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
-        let below = nodes.iter().copied().filter(|(away, _)| *away < 0.0);
-        let above = nodes.iter().copied().filter(|(away, _)| *away > 0.0);
-        let (below, above) = (long_enough(below), long_enough(above));
-        let nearer = |a: f64, b: f64| if a.abs() <= b.abs() { a } else { b };
-        let made = Detectable {
-            effect: candidate.effect.clone(),
-            parameter: candidate.size.clone(),
-            unit: candidate.unit.text.clone(),
-            neutral,
-            smallest: below.zip(above).map(|(a, b)| nearer(a, b)).or(below).or(above),
-            below,
-            above,
-        };
-        let alike = |known: &&mut Detectable| known.effect == made.effect && known.parameter == made.parameter && known.unit == made.unit;
-        match list.iter_mut().find(alike) {
-            Some(_) if candidate.channels.is_empty() => {}
-            Some(known) => {
-                let farther = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| if a.abs() >= b.abs() { a } else { b });
-                known.smallest = farther(known.smallest, made.smallest);
-                (known.below, known.above) = (farther(known.below, made.below), farther(known.above, made.above));
-            }
-            None => list.push(made),
-        }
-    }
-    list
-}
-
-/// Where the whitened change on one side of neutral grows to what can be seen: `nodes` are distances and lengths, in order, linear in
-/// between. Nothing if it does not.
-fn long_enough(nodes: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
-    let mut before = (0.0, 0.0);
-    for (away, long) in nodes {
-        if long >= SEEN {
-            return Some(before.0 + (away - before.0) * (SEEN - before.1) / (long - before.1));
-        }
-        before = (away, long);
-    }
-    None
 }
 
 /// What would have been named next, and what it wants for that.
@@ -315,7 +171,13 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
         }
         "explained" => lines.push(format!("{}.", causes[0].says)),
         "ambiguous" => {
-            let set: Vec<&str> = causes.iter().filter(|cause| cause.in_ambiguity_set).map(|cause| cause.says.as_str()).collect();
+            let mut set: Vec<String> = causes.iter().filter(|cause| cause.in_ambiguity_set).map(|cause| cause.says.clone()).collect();
+            set.extend(
+                found
+                    .suspect
+                    .as_ref()
+                    .map(|suspect| format!("`{}` times {:.2}, which no effect of the catalogue moves", suspect.key, suspect.factor)),
+            );
             lines.push(format!("The data cannot tell apart: {}.", set.join(" | ")));
         }
         _ => {
@@ -329,8 +191,12 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
             let catalogue = &inputs.catalogue.name;
             if let Some(suspect) = &found.suspect {
                 lines.push(format!(
-                    "Outside the catalogue: `{}` times {:.2} explains more than any effect does (evidence {:.0} against {:.0}).",
-                    suspect.key, suspect.factor, suspect.evidence, suspect.answer
+                    "Outside the catalogue: `{}` times {:.2} explains more than {} (evidence {:.0} against {:.0}).",
+                    suspect.key,
+                    suspect.factor,
+                    if suspect.of_all { "all effects together" } else { "any effect does" },
+                    suspect.evidence,
+                    suspect.answer
                 ));
             }
             if let Some((refused, evidence)) = &found.contradicting {
@@ -363,17 +229,4 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
         ));
     }
     lines
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Lengths 2 at 1 and 6 at 3: five at 1 + 2 * 3 / 4.
-    #[test]
-    fn what_can_be_seen_lies_between_the_sizes_that_were_tried() {
-        assert_eq!(long_enough([(1.0, 2.0), (3.0, 6.0)].into_iter()), Some(2.5));
-        assert_eq!(long_enough([(-2.0, 10.0)].into_iter()), Some(-1.0));
-        assert_eq!(long_enough([(1.0, 2.0), (3.0, 4.0)].into_iter()), None);
-    }
 }

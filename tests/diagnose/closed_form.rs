@@ -250,6 +250,23 @@ fn a_difference_that_grows_with_a_column_is_told_with_its_slope() {
     assert!(together.iter().any(|pair| pair.starts_with("the order of the sections and load (1.00)")), "{together:?}");
 }
 
+/// The same stiffness with an effect that moves it: what is named is that, and it is no suspect beside itself.
+#[test]
+fn a_parameter_that_an_effect_moves_is_no_suspect() {
+    let stiff = "  stiff:
+    title: Stiff
+    means: it is stiffer
+    acts on: vehicle
+    parameters:
+      stiffness: {unit: '-', neutral: 2, default: 3, range: [0, 10], trials: [3, 4, 5], means: stiffness, simulators: {formula: stiffness}}
+";
+    let effects = format!("{EFFECTS}{SUSPECT}").replacen("diagnosis:", &format!("{stiff}diagnosis:"), 1);
+    let found = found(&effects, Truth { stiffness: 1.9, ..NOTHING });
+    let [member] = &found.chosen.members[..] else { panic!("{} members", found.chosen.members.len()) };
+    assert!(found.candidates[member.candidate].effect == "stiff" && (member.size - 1.9 * STIFFNESS).abs() < 1e-6, "{}", member.size);
+    assert!(found.suspect.is_none(), "{:?}", found.suspect);
+}
+
 /// One column of 2 N for all sections, three quarters of whose variance stands. Two references that are off by 1.5 N and 1.1 N say what it
 /// is, by Bayes' rule for a single number: the eight sections of each weigh 8 / (v + 8 * 2^2 / 4). What is expected of it is taken off,
 /// and what is left of it is in the covariance.

@@ -205,10 +205,20 @@ fn a_mirrored_campaign_gives_the_mirrored_answer() {
         names.sort();
         names
     };
-    let (first, here) = (&base().1.places[0], &mirrored.places[0]);
-    let mut expected: Vec<String> = signals(first).iter().map(|name| other_side(name)).collect();
-    expected.sort();
-    assert_eq!((&first["zones"], &first["says"], expected), (&here["zones"], &here["says"], signals(here)));
+    // Cell by cell: the order of those that hold nearly the same is chance.
+    let number = |place: &Value, key: &str| place[key].as_f64().unwrap();
+    for place in base().1.places.iter().take(10) {
+        let mut expected: Vec<String> = signals(place).iter().map(|name| other_side(name)).collect();
+        expected.sort();
+        let there = mirrored.places.iter().find(|other| other["says"] == place["says"] && other["zones"] == place["zones"]);
+        let there = there.unwrap_or_else(|| panic!("{} is nowhere", place["says"]));
+        assert_eq!(signals(there), expected);
+        // Branches of contact differ a little between left and right; with two sections to a cell its share does more.
+        for (key, room) in [("difference", 0.06), ("share_of_gap", 0.15)] {
+            let (here, there) = (number(place, key), number(there, key));
+            assert!((here - there).abs() < room + 0.01 * here.abs(), "{} of {}: {here} and {there}", key, place["says"]);
+        }
+    }
 }
 
 /// A catalogue with one more effect that has nothing to do with it.

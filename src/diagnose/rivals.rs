@@ -1,0 +1,106 @@
+//! What else may be the cause, how probable each is, and what to measure where the data cannot tell.
+
+use super::causes::cause;
+use super::fit::Fitted;
+use super::run::{Found, Inputs, deviations};
+use super::search::{TOLERANCE_SD, plausible};
+use crate::effects::Effect;
+use crate::result::diagnosis::Cause;
+
+/// Rivals with so much less evidence cannot be told from the answer.
+const NEAREST: f64 = 8.0;
+/// Evidence is divided by this before it becomes a probability: real discrepancies are not those of the covariance.
+const TEMPERATURE: f64 = 4.0;
+
+/// Sets in which another effect takes the place of a member, and whether the data can tell them from the answer.
+pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
+    let best = found.chosen.evidence();
+    let mut causes: Vec<Cause> = Vec::new();
+    let own = |at: usize| &found.candidates[found.chosen.members[at].candidate];
+    for (at, fit, fall) in &found.rivals {
+        let of = &found.candidates[fit.candidate];
+        // The same on another channel is another cause, where the data cannot tell which channel it is.
+        let elsewhere = of.effect == own(*at).effect && of.channels != own(*at).channels && !of.channels.is_empty() && *fall <= NEAREST;
+        let named = found.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect);
+        if named && !elsewhere {
+            continue;
+        }
+        if causes.len() >= 5 || causes.iter().any(|cause| cause.effects.iter().any(|effect| effect.name == of.effect)) {
+            continue;
+        }
+        // What a guard refused is told as such; it is no rival.
+        if found.refused.iter().any(|refused| found.candidates[refused.fitted.candidate].is_like(of)) || !plausible(of, fit.size) {
+            continue;
+        }
+        // What is within a declared tolerance is allowed for already.
+        if deviations(of, fit.size, inputs.settings, &found.declared) < TOLERANCE_SD {
+            continue;
+        }
+        let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(NEAREST)
+            && fit.evidence > if of.exact { found.bars.exact } else { found.bars.first };
+        let mut members = found.chosen.members.clone();
+        members[*at] = fit.clone();
+        let mut cause = cause(inputs, found, &members, causes.len() + 2);
+        cause.in_ambiguity_set = near;
+        cause.evidence = best - fall;
+        causes.push(cause);
+    }
+    causes
+}
+
+pub fn probabilities(causes: &mut [Cause], verdict: &str, suspected: bool) {
+    // A rival may have more evidence than an answer that was chosen with the tolerances as they act beside it: then it is as probable.
+    let best = causes.first().map_or(0.0, |answer| answer.evidence);
+    let weights: Vec<f64> = causes.iter().map(|cause| ((cause.evidence - best).min(0.0) / (2.0 * TEMPERATURE)).exp()).collect();
+    // Something outside the catalogue is possible as well; more so where something is left.
+    let outside = match verdict {
+        "unexplained" => 4.0,
+        _ if suspected => 1.0,
+        _ => 0.05,
+    };
+    let all = weights.iter().sum::<f64>() + outside;
+    causes.iter_mut().zip(weights).for_each(|(cause, weight)| cause.probability = weight / all);
+    if verdict == "unexplained" {
+        causes.iter_mut().for_each(|cause| cause.in_ambiguity_set = false);
+    }
+}
+
+pub fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: &str) -> Option<String> {
+    if verdict != "ambiguous" {
+        return None;
+    }
+    let effects = causes.iter().filter(|cause| cause.in_ambiguity_set).flat_map(|cause| &cause.effects);
+    let mut measurements: Vec<String> = Vec::new();
+    for effect in effects {
+        let known: Option<&Effect> = inputs.catalogue.effect(&effect.name);
+        if let Some(settled) = known.and_then(|known| known.settled_by.clone())
+            && !measurements.contains(&settled)
+        {
+            measurements.push(settled);
+        }
+    }
+    measurements.extend(found.suspect.as_ref().map(|suspect| format!("`{}` itself, measured", suspect.key)));
+    measurements.extend(more_sections(inputs, found, causes));
+    (!measurements.is_empty()).then(|| measurements.join("; or "))
+}
+
+/// More sections of the kind that tells the answer from its nearest rival best.
+fn more_sections(inputs: &Inputs<'_>, found: &Found, causes: &[Cause]) -> Option<String> {
+    let near =
+        |name: &str| causes.iter().skip(1).any(|cause| cause.in_ambiguity_set && cause.effects.iter().any(|effect| effect.name == name));
+    let (at, rival, _) = found.rivals.iter().find(|(at, fit, _)| {
+        let effect = |fit: &Fitted| found.candidates[fit.candidate].effect.as_str();
+        near(effect(fit)) && effect(fit) != effect(&found.chosen.members[*at])
+    })?;
+    let apart = super::apart::apart(found, &found.chosen.members[*at], rival)?;
+    let sections: Vec<&str> = apart.sections.iter().map(|at| found.seen.sections[*at].section.name()).collect();
+    let stratum = inputs.settings.stratum.as_deref();
+    let kind = apart.sections.first().zip(stratum).and_then(|(at, column)| found.seen.sections[*at].section.says(column));
+    Some(format!(
+        "as many sections again like {} ({}): the two nearest causes, {:.1} standard deviations apart now, would be {:.1}",
+        sections.join(", "),
+        kind.unwrap_or_else(|| "the kind that helps most".into()),
+        apart.now,
+        apart.then
+    ))
+}
