@@ -6,13 +6,15 @@ use crate::report::study::{Chapter, Document, Head, Item, Table};
 use crate::report::view::{self, Fact, Finding};
 use crate::result::Certification;
 use crate::result::diagnosis::{
-    Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Trend, Value,
+    Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Trend, Value, Where,
 };
 
 /// Cells listed; all of them stand in diagnosis.json.
 const CELLS: usize = 30;
+/// Of the gap: what rounds to nothing is not listed.
+const LEAST_SHARE: f64 = 0.0005;
 /// Trends listed, likewise; fewer where none is significant.
-const TRENDS: usize = 16;
+const TRENDS: usize = 12;
 const FEW: usize = 4;
 
 /// The diagnosis as both reports print it. `before` is the protocol on the campaign as it is.
@@ -96,7 +98,8 @@ fn answer(found: &Diagnosis) -> Chapter {
 }
 
 fn places(found: &Diagnosis) -> Chapter {
-    let rows = found.r#where.iter().take(CELLS).map(|place| {
+    let told = |place: &&Where| place.significant || place.share_of_gap >= LEAST_SHARE;
+    let rows = found.r#where.iter().take(CELLS).filter(told).map(|place| {
         vec![
             place.quantity.clone(),
             place.says.split(", ").skip(1).take(2).filter(|part| *part != place.wavelength_or_band).collect::<Vec<_>>().join(", "),
@@ -201,7 +204,7 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
     let listed: Vec<&Trend> = if significant.is_empty() { found.trends.iter().take(FEW).collect() } else { significant };
     let row = |trend: &&Trend| {
         let change = |slope: &Slope| {
-            let of = |value: f64| if trend.unit == "-" { number::fixed(100.0 * value, 0) } else { number::significant(value, 3) };
+            let of = |value: f64| if trend.unit == "-" { number::fixed(100.0 * value, 0) } else { number::significant(value, 2) };
             let unit = if trend.unit == "-" { "%" } else { &trend.unit };
             let mark = if slope.significant { " *" } else { "" };
             format!("{} ({} to {}) {unit}{mark}", of(slope.change), of(slope.low), of(slope.high))
@@ -209,7 +212,7 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
         vec![
             format!("{}, {}", trend.quantity, trend.position),
             trend.wavelength_or_band.clone(),
-            format!("{}: {} to {}", trend.covariate, trend.from, trend.to),
+            over(trend),
             change(&trend.before),
             if named { change(&trend.after) } else { number::NONE.to_owned() },
             number::fixed(if named { trend.after.correlation } else { trend.before.correlation }, 2),
@@ -217,17 +220,25 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
     };
     let caption = "What measured - simulated changes by over the range of what the section table says, by generalised least squares on that \
                    alone, with a 90 % interval; * significant at a false discovery rate of 5 %. Levels that turn with the curve count as in one \
-                   direction. The correlation is that of the differences as they are, with the effects";
+                   direction. r is the correlation of the differences as they are, with the effects";
     let head = vec![
         Head::text("Quantity"),
         Head::short("Band"),
         Head::text("Over"),
         Head::number("As simulated"),
-        Head::number("With the effects"),
-        Head::number("Correlation"),
+        Head::number("With effects"),
+        Head::number("r"),
     ];
     let table = Table { caption: caption.into(), head, rows: listed.iter().take(TRENDS).map(row).collect() };
     vec![Item::text(text), Item::Table { table }]
+}
+
+/// A covariate with its ends, the unit once.
+fn over(trend: &Trend) -> String {
+    let unit = |end: &str| end.rsplit_once(' ').map(|(_, unit)| unit.to_owned());
+    let same = unit(&trend.from).filter(|of| Some(of) == unit(&trend.to).as_ref());
+    let from = same.and_then(|unit| trend.from.strip_suffix(&unit).map(str::trim_end)).unwrap_or(&trend.from);
+    format!("{}: {from} to {}", trend.covariate, trend.to)
 }
 
 fn shapes(all: &[Shape]) -> Table {
