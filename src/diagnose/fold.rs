@@ -45,8 +45,7 @@ impl Fold {
     }
 
     /// The channel that stands at this one's place in a section; and the other way round.
-    #[must_use]
-    pub fn channel(&self, section: usize, channel: usize) -> usize {
+    fn channel(&self, section: usize, channel: usize) -> usize {
         if self.mirrored[section] { self.partner[channel] } else { channel }
     }
 

@@ -12,6 +12,9 @@ use super::suspects::Suspect;
 use crate::result::diagnosis::{Cause, Diagnosis, Fault, How, Nearest, Shrink, Vetoed};
 use crate::simulate::Units;
 
+/// Trends that are less probable than this are told, be they significant among all or not.
+const TOLD: f64 = 0.05;
+
 /// Puts what was found into an answer.
 #[must_use]
 pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Option<Shrink>) -> Diagnosis {
@@ -42,7 +45,9 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let radius = |key: &str| super::run::value_of(inputs.campaign, key);
     let shapes = super::shapes::shapes(inputs.settings, &found.seen, &radius, inputs.seed);
     let mut says = says(inputs, found, verdict, &causes, shrink.as_ref(), unexplained_share);
-    let (trends, together) = super::trends::trends(inputs.settings, found, units);
+    let (mut trends, together) = super::trends::trends(inputs.settings, found, units);
+    let trends_tested = trends.len();
+    trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
     if verdict == "unexplained" {
         says.extend(super::trends::worth_a_word(&trends));
         says.extend(super::invariants::worst(&invariants));
@@ -80,6 +85,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         r#where: super::locate::locate(inputs.settings, found, units),
         invariants,
         trends,
+        trends_tested,
         together,
         shapes,
         causes,

@@ -13,7 +13,7 @@ use crate::result::diagnosis::{
 const CELLS: usize = 30;
 /// Of the gap: what rounds to nothing is not listed.
 const LEAST_SHARE: f64 = 0.0005;
-/// Trends listed, likewise; fewer where none is significant.
+/// Trends listed; fewer where none is significant.
 const TRENDS: usize = 12;
 const FEW: usize = 4;
 
@@ -181,14 +181,15 @@ fn invariants(all: &[Invariant]) -> Table {
 
 /// Trends that are significant before or after, or the nearest to it.
 fn trends(found: &Diagnosis) -> Vec<Item> {
-    if found.trends.is_empty() {
+    if found.trends_tested == 0 {
         return Vec::new();
     }
     let significant: Vec<&Trend> = found.trends.iter().filter(|trend| trend.before.significant || trend.after.significant).collect();
     let gone = significant.iter().filter(|trend| !trend.after.significant).count();
-    let mut text = format!("Of {} trends of a difference over one of what the section table says, ", found.trends.len());
+    let mut text = format!("Of {} trends of a difference over one of what the section table says, ", found.trends_tested);
     let named = !found.causes.is_empty();
     text += &match (significant.len(), named) {
+        (0, _) if found.trends.is_empty() => "none is more than what may differ.".to_owned(),
         (0, _) => "none is more than what may differ; the nearest to it are listed.".to_owned(),
         (some, true) => {
             format!("{some} are more than what may differ as simulated or with the effects; {gone} of these are not with the effects.")
@@ -230,7 +231,7 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
         Head::number("r"),
     ];
     let table = Table { caption: caption.into(), head, rows: listed.iter().take(TRENDS).map(row).collect() };
-    vec![Item::text(text), Item::Table { table }]
+    if table.rows.is_empty() { vec![Item::text(text)] } else { vec![Item::text(text), Item::Table { table }] }
 }
 
 /// A covariate with its ends, the unit once.

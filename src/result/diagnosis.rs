@@ -16,7 +16,10 @@ pub struct Diagnosis {
     pub faults: Vec<Fault>,
     pub r#where: Vec<Where>,
     pub invariants: Vec<Invariant>,
+    /// Those with a probability of less than 0.05 before or after, the least probable first.
     pub trends: Vec<Trend>,
+    /// How many were looked at.
+    pub trends_tested: usize,
     /// Covariates that go together, so that the campaign cannot tell which of them a trend follows.
     pub together: Vec<String>,
     pub shapes: Vec<Shape>,
