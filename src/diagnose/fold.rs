@@ -55,3 +55,61 @@ impl Fold {
         if kind == Kind::Level && self.turns[channel] && self.mirrored[section] { -1.0 } else { 1.0 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::features::{ChannelFeatures, Feature, Layout};
+    use crate::diagnose::observe::Observed;
+    use crate::diagnose::settings::Position;
+    use crate::effects::Signals;
+    use crate::simulate::{Fact, Section};
+    use crate::units::Unit;
+
+    /// A right and a left curve: the outer wheel is guided by 10 to the one and the other side, and carries 60 in both.
+    #[test]
+    fn guiding_forces_turn_with_the_curve_and_vertical_forces_do_not() {
+        let section = |direction: &str| {
+            let fact = |name: &str, text: &str| Fact { name: name.into(), text: text.into(), unit: None };
+            Section { facts: vec![fact("radius", "300"), fact("direction", direction)], ..Section::nowhere() }
+        };
+        let none = || Signals { axis: Vec::new(), over_time: false, rate: 1.0, channels: Vec::new() };
+        let observed = |direction: &str| Observed {
+            section: section(direction),
+            simulated: none(),
+            measured: none(),
+            references: Vec::new(),
+            again: false,
+        };
+        let channel = |(name, group): (&str, usize)| ChannelFeatures {
+            name: name.into(),
+            group,
+            unit: Unit::one(),
+            level: true,
+            bands: 0,
+            alike: false,
+        };
+        let channels = [("Y_L", 0), ("Y_R", 0), ("Q_L", 1), ("Q_R", 1)].map(channel).to_vec();
+        let seen = Observations {
+            features: (0..4).map(|channel| Feature { channel, kind: Kind::Level }).collect(),
+            layout: Layout { channels, edges: Vec::new(), alike: (0.0, 1.0), furthest: 1.0 },
+            sections: vec![observed("right"), observed("left")],
+            noise: Vec::new(),
+            left_out: Vec::new(),
+            faults: Vec::new(),
+        };
+        let names = |names: [&str; 2]| names.map(str::to_string).to_vec();
+        let position =
+            |name: &str, straight, mirrored| Position { name: name.into(), straight: names(straight), mirrored: names(mirrored) };
+        let settings = Settings {
+            mirror: Some(("direction".into(), "left".into())),
+            positions: vec![position("outer", ["Y_L", "Q_L"], ["Y_R", "Q_R"]), position("inner", ["Y_R", "Q_R"], ["Y_L", "Q_L"])],
+            ..Settings::default()
+        };
+        let fold = Fold::new(&settings, &seen, &[10.0, -3.0, 60.0, 50.0, 3.0, -10.0, 50.0, 60.0]);
+        let signs = |section: usize| [0, 1, 2, 3].map(|channel| fold.sign(section, channel, Kind::Level));
+        assert_eq!((signs(0), signs(1)), ([1.0; 4], [-1.0, -1.0, 1.0, 1.0]));
+        assert_eq!([0, 1, 2, 3].map(|channel| fold.channel(1, channel)), [1, 0, 3, 2]);
+        assert_eq!(fold.sign(1, 0, Kind::Band(0)), 1.0);
+    }
+}
