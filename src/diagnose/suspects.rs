@@ -43,7 +43,7 @@ impl Suspect {
     /// Whether it leaves nothing of the answer, and is not only as likely.
     #[must_use]
     pub fn beats(&self) -> bool {
-        // One cause instead of several needs no more than to be better.
+        // One cause instead of several need not be half as good again.
         self.evidence > self.answer + if self.of_all { BETTER } else { BETTER.max(BETTER_SHARE * self.answer) }
     }
 }

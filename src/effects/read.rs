@@ -101,8 +101,14 @@ fn read_below(
     }
     reader.units.clone_from(&catalogue.units);
     for (key, node) in tree.get("effects").map_or(&[][..], Node::entries) {
+        let removed = node.scalar_text() == Some("remove");
+        if removed && catalogue.effect(&key.text).is_none() {
+            let known = catalogue.effects.iter().map(|effect| effect.name.as_str());
+            let says = format!("there is no effect `{}` to remove", key.text);
+            reader.problems.push(Problem::error("unknown-effect", says).at(&key.span).suggest(&key.text, known));
+        }
         catalogue.effects.retain(|effect| effect.name != key.text);
-        if node.scalar_text() == Some("remove") {
+        if removed {
             continue;
         }
         if let Some(effect) = reader.effect(&key.text, key, node) {
