@@ -27,7 +27,7 @@ impl Covariance {
 #[must_use]
 pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Invariant> {
     let seen = &found.seen;
-    let rest = left(&found.candidates, &found.masks, &found.difference, &found.chosen);
+    let rest = left(&found.candidates, &found.masks, &found.difference_beside, &found.chosen);
     let sections = seen.first_runs();
     let side = |at: usize| settings.side(&seen.sections[at].section);
     let mut all = Vec::new();

@@ -59,8 +59,10 @@ pub struct Found {
     /// Noise and tolerances alone.
     pub tolerated: Covariance,
     pub whitener: Whitener,
-    /// Measured - simulated.
+    /// Measured - simulated, without what is expected of the tolerances.
     pub difference: Vec<f64>,
+    /// The same, without what is expected of the tolerances as they act beside the members.
+    pub difference_beside: Vec<f64>,
     pub simulated: Vec<f64>,
     pub chosen: Chosen,
     pub refused: Vec<Refused>,
@@ -139,6 +141,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         None => Vec::new(),
     };
     let sensitivities: Vec<Sensitivity> = columns.iter().flatten().cloned().collect();
+    let whole_difference = difference.clone();
     expect(&sensitivities, &mut difference);
     let workshop = Workshop {
         seen: &seen,
@@ -170,7 +173,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let Converged { chosen, mut refused, bars, mut known } = converging.search(&mut candidates, &mut masks, &mut runs);
     let lack_before = lack_of_fit(&whole, &seen, &difference);
     let z = whitener.apply(&difference);
-    let first = Weighed { covariance: whole.clone(), whitener: whitener.clone(), z: z.clone(), chosen };
+    let first = Weighed { difference: difference.clone(), covariance: whole.clone(), whitener: whitener.clone(), z: z.clone(), chosen };
     let again = Settled {
         workshop: &workshop,
         settings,
@@ -178,7 +181,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         standing: &standing,
         value: &value,
         declared: &declared,
-        difference: &difference,
+        whole: &whole_difference,
         far: &far,
     };
     let before = refused.len();
@@ -188,10 +191,10 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         let first = Weighed { chosen: left, ..first };
         (beside, settled) = again.answer((&mut candidates, &masks), first, &lack_before, &bars, &mut refused, &mut runs);
     }
-    let Weighed { covariance: settled, whitener: weighing, z: own, mut chosen } = settled;
+    let Weighed { difference: difference_beside, covariance: settled, whitener: weighing, z: own, mut chosen } = settled;
     let fitter = Fitter::of(&weighing, &candidates, masks.clone(), &chosen.members);
     refit(&fitter, &own, &mut chosen, 6);
-    let lack_after = drop_what_harms(&fitter, (&beside, &seen), (&difference, &own), &mut chosen, &mut refused, &lack_before);
+    let lack_after = drop_what_harms(&fitter, (&beside, &seen), (&difference_beside, &own), &mut chosen, &mut refused, &lack_before);
     drop(fitter);
     let suspect = suspect(&workshop, settings, (&whitener, &z), (&candidates, &masks, &chosen), &mut runs);
     drop(bench);
@@ -205,6 +208,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         settled,
         weighing,
         difference,
+        difference_beside,
         simulated,
         chosen,
         refused,
@@ -236,6 +240,7 @@ impl Found {
         if unexplained(&self.lack_before, &self.lack_after).1 {
             self.beside = self.covariance.clone();
             self.settled = self.covariance.clone();
+            self.difference_beside = self.difference.clone();
             self.weighing = self.whitener.clone();
             self.fit_again();
         }
@@ -252,7 +257,7 @@ impl Found {
         self.rivals = rivals(&fitter, &z, &first);
         self.nearest = nearest(&fitter, &first, &self.refused);
         self.contradicting = contradicting(&fitter, &first, &self.refused);
-        let (own, sized) = (self.weighing.apply(&self.difference), &self.chosen);
+        let (own, sized) = (self.weighing.apply(&self.difference_beside), &self.chosen);
         let sizes = Fitter::of(&self.weighing, &self.candidates, self.masks.clone(), &sized.members);
         self.stability = stability((&fitter, &z, &first), (&sizes, &own, sized), &self.refused, &self.strata, seed);
         for (member, first) in self.chosen.members.iter_mut().zip(first.members) {
@@ -263,8 +268,8 @@ impl Found {
     fn fit_again(&mut self) {
         self.chosen.members = super::shrink::trained(self, &[]);
         self.chosen.rest =
-            self.chosen.members.iter().fold(self.weighing.apply(&self.difference), |rest, member| less(&rest, &member.whitened));
-        self.lack_after = lack_after(&self.beside, &self.seen, (&self.candidates, &self.masks), &self.difference, &self.chosen);
+            self.chosen.members.iter().fold(self.weighing.apply(&self.difference_beside), |rest, member| less(&rest, &member.whitened));
+        self.lack_after = lack_after(&self.beside, &self.seen, (&self.candidates, &self.masks), &self.difference_beside, &self.chosen);
     }
 }
 

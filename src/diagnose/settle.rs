@@ -3,7 +3,7 @@
 
 use super::bench::{Bench, Runs, Set};
 use super::candidates::{Candidate, Workshop, applied};
-use super::covariance::{NOTHING, Sensitivity, covariance};
+use super::covariance::{NOTHING, Sensitivity, covariance, expect};
 use super::features::Kind;
 use super::fit::{Fitted, Fitter, Mask};
 use super::lack::{Lack, lack_after, unexplained};
@@ -26,6 +26,8 @@ const ALIKE: f64 = 0.01;
 /// A set of effects, and how it is weighed.
 #[derive(Clone)]
 pub struct Weighed {
+    /// Measured - simulated, without what is expected of the tolerances as they act beside the set.
+    pub difference: Vec<f64>,
     pub covariance: Covariance,
     pub whitener: Whitener,
     /// The whitened difference.
@@ -34,9 +36,9 @@ pub struct Weighed {
 }
 
 impl Weighed {
-    fn by(self, covariance: Covariance, difference: &[f64]) -> Self {
+    fn by(self, covariance: Covariance, difference: Vec<f64>) -> Self {
         let whitener = covariance.whitener();
-        Self { z: whitener.apply(difference), covariance, whitener, chosen: self.chosen }
+        Self { z: whitener.apply(&difference), difference, covariance, whitener, chosen: self.chosen }
     }
 }
 
@@ -51,8 +53,8 @@ pub struct Settled<'a> {
     /// What a parameter has where nothing is set.
     pub value: &'a (dyn Fn(&str) -> Option<f64> + Sync),
     pub declared: &'a dyn Fn(&str) -> Option<f64>,
-    /// Measured - simulated.
-    pub difference: &'a [f64],
+    /// Measured - simulated, with what is expected of the tolerances.
+    pub whole: &'a [f64],
     /// How many declared standard deviations a size is from neutral.
     pub far: &'a dyn Fn(&Candidate, f64) -> f64,
 }
@@ -70,7 +72,7 @@ impl Settled<'_> {
         runs: &mut Runs,
     ) -> (Covariance, Weighed) {
         let lack = |candidates: &[Candidate], now: &Weighed| {
-            lack_after(&now.covariance, self.workshop.seen, (candidates, masks), self.difference, &now.chosen)
+            lack_after(&now.covariance, self.workshop.seen, (candidates, masks), &now.difference, &now.chosen)
         };
         let before = refused.len();
         let mut now = self.settle((candidates, masks), first.clone(), bars, refused, runs);
@@ -93,11 +95,11 @@ impl Settled<'_> {
         refused: &mut Vec<Refused>,
         runs: &mut Runs,
     ) -> Weighed {
-        let without = now.covariance.clone();
+        let without = (now.covariance.clone(), now.difference.clone());
         let mut count = 1;
         while count <= now.chosen.members.len() {
-            if let Some(there) = self.covariance((candidates, masks), &now.chosen.members[..count], runs) {
-                now = now.by(there, self.difference);
+            if let Some((covariance, difference)) = self.beside((candidates, masks), &now.chosen.members[..count], runs) {
+                now = now.by(covariance, difference);
             }
             self.refined((candidates, masks), &mut now, runs);
             while now.chosen.members.get(count).is_some_and(|next| next.evidence < bars.next) {
@@ -121,7 +123,7 @@ impl Settled<'_> {
                 continue;
             };
             refused.push(Refused::new(now.chosen.members.remove(weak), reason));
-            now = now.by(without.clone(), self.difference);
+            now = now.by(without.0.clone(), without.1.clone());
             self.refined((candidates, masks), &mut now, runs);
             count = 1;
         }
@@ -149,7 +151,8 @@ impl Settled<'_> {
         if covariance.diagonal == now.covariance.diagonal {
             return now;
         }
-        now = now.by(covariance, self.difference);
+        let difference = std::mem::take(&mut now.difference);
+        now = now.by(covariance, difference);
         self.refined((candidates, masks), &mut now, runs);
         now
     }
@@ -165,8 +168,9 @@ impl Settled<'_> {
         }
     }
 
-    /// The covariance with the members in the simulation; nothing where no member is, or where one fails.
-    fn covariance(&self, (candidates, masks): (&[Candidate], &[Mask]), members: &[Fitted], runs: &mut Runs) -> Option<Covariance> {
+    /// The covariance with the members in the simulation, and the difference without what is expected there; nothing where no member is,
+    /// or where one fails.
+    fn beside(&self, (candidates, masks): (&[Candidate], &[Mask]), members: &[Fitted], runs: &mut Runs) -> Option<(Covariance, Vec<f64>)> {
         let bench = self.workshop.bench?;
         let added: Vec<Set> = members.iter().filter_map(|member| self.set(bench, &candidates[member.candidate], masks, member)).collect();
         if added.is_empty() {
@@ -185,7 +189,9 @@ impl Settled<'_> {
             let given = candidates[member.candidate].tolerance.as_ref();
             columns.iter_mut().filter(|column| Some(&column.tolerance) == given).for_each(|column| column.shared = false);
         }
-        Some(self.of(&columns))
+        let mut difference = self.whole.to_vec();
+        expect(&columns, &mut difference);
+        Some((self.of(&columns), difference))
     }
 
     fn of(&self, columns: &[Sensitivity]) -> Covariance {

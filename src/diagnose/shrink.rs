@@ -67,7 +67,7 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
         asked_by: mask.asked_by.map(|by| found.chosen.members.iter().position(|member| member.candidate == by).unwrap_or(usize::MAX)),
     });
     let fitter = Fitter::new(&whitener, &candidates, masks.collect());
-    let z = whitener.apply(&part(&found.difference));
+    let z = whitener.apply(&part(&found.difference_beside));
     let mut chosen = super::search::Chosen { members: Vec::new(), rest: z.clone() };
     for (at, member) in found.chosen.members.iter().enumerate() {
         let fitted = fitter.fit(&chosen.rest, at, member.mask).unwrap_or_else(|| member.clone());

@@ -18,8 +18,9 @@ use super::sensitivity::sensitivities;
 use super::settings::{Over, Settings};
 use super::whiten::Covariance;
 use crate::data::Campaign;
-use crate::problem::Problems;
+use crate::problem::{Problem, Problems};
 use crate::simulate::Simulator;
+use crate::yaml::{Key, Node};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Standard deviation of the part of a discrepancy that is each campaign's own, as a share of the whole: judgement.
@@ -121,9 +122,32 @@ pub fn learnt(inputs: &Inputs<'_>, runs: &mut Runs, problems: &mut Problems) -> 
     Some(Standing::learn(&shown?))
 }
 
+/// Numbers of a vehicle that another has not, with what that has, by their paths.
+fn differing<'a>(own: &'a Node, other: Option<&'a Node>, path: &str) -> Vec<(String, &'a Node, Option<&'a Node>)> {
+    let of = |(key, node): &'a (Key, Node)| {
+        let (path, there) = (format!("{path}{}", key.text), other.and_then(|other| other.get(&key.text)));
+        let below = differing(node, there, &format!("{path}."));
+        let differs = node.number().is_some() && node.number() != there.and_then(Node::number);
+        differs.then_some((path, node, there)).into_iter().chain(below)
+    };
+    own.entries().iter().flat_map(of).collect()
+}
+
+/// What stands is of one vehicle: says where the file of a reference has other numbers than the campaign's.
+fn check_vehicle(inputs: &Inputs<'_>, reference: &Campaign, problems: &mut Problems) {
+    let found = differing(&inputs.campaign.vehicle, Some(&reference.vehicle), "");
+    let Some((path, own, there)) = found.first() else { return };
+    let more = if found.len() > 1 { format!(" ({} more numbers differ)", found.len() - 1) } else { String::new() };
+    let has = there.map_or("not there".to_string(), |there| there.raw.clone());
+    let says = format!("the reference `{}` has another vehicle: `{path}` is {has} there{more}", reference.name);
+    problems
+        .push(Problem::warning("reference", says).at(&own.span).help("what the model is wrong in anyway is learnt as if it were the same"));
+}
+
 fn shown(inputs: &Inputs<'_>, reference: &Reference<'_>, runs: &mut Runs, problems: &mut Problems) -> Option<Shown> {
     (inputs.trying)(&format!("what stands in `{}`", reference.campaign.name));
     let (campaign, settings) = (reference.campaign, inputs.settings);
+    check_vehicle(inputs, campaign, problems);
     let admitted = Declared::read(campaign, settings, problems);
     let declared = |name: &str| admitted.get(name);
     let unit = |channel: &str| reference.simulator?.unit(channel);
@@ -152,4 +176,21 @@ fn own(settings: &Settings) -> Settings {
     let shared = own.discrepancies.iter_mut().filter(|discrepancy| discrepancy.over != Over::Sections);
     shared.for_each(|discrepancy| discrepancy.sd.iter_mut().for_each(|sd| *sd *= OWN));
     own
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+
+    #[test]
+    fn numbers_that_another_vehicle_has_not() {
+        let read = |text: &str| crate::yaml::load(&Source::new("vehicle.yaml", text), &mut Problems::default()).expect("a map");
+        let own = read("name: A\nfriction: 0.35\nbody:\n  mass: 32000.0\n  height: 1.8\n");
+        let other = read("name: B\nfriction: 0.350\nbody:\n  mass: 28000\n");
+        let found: Vec<(String, Option<&str>)> =
+            differing(&own, Some(&other), "").into_iter().map(|(path, _, there)| (path, there.map(|there| there.raw.as_str()))).collect();
+        assert_eq!(found, [("body.mass".to_string(), Some("28000")), ("body.height".to_string(), None)]);
+        assert!(differing(&own, Some(&own), "").is_empty());
+    }
 }

@@ -47,7 +47,7 @@ pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>,
     let cells: Vec<(Cell, bool)> = kinds(found).flat_map(|kind| places.iter().flat_map(move |place| of_place(kind, place))).collect();
     let changes: Vec<Vec<f64>> = found.chosen.members.iter().map(|member| member.change(&found.candidates, &found.masks)).collect();
     let wider = found.beside.allowing(changes.iter());
-    let rest = left(&found.candidates, &found.masks, &found.difference, &found.chosen);
+    let rest = left(&found.candidates, &found.masks, &found.difference_beside, &found.chosen);
     let fold = Fold::new(settings, &found.seen, &found.simulated);
     let of_cell = |(cell, turns): &(Cell, bool)| {
         let sign = |(section, feature): &(usize, usize)| match turns {

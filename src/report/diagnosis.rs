@@ -210,27 +210,23 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
             let mark = if slope.significant { " *" } else { "" };
             format!("{} ({} to {}) {unit}{mark}", of(slope.change), of(slope.low), of(slope.high))
         };
-        vec![
-            format!("{}, {}", trend.quantity, trend.position),
-            trend.wavelength_or_band.clone(),
-            over(trend),
-            change(&trend.before),
-            if named { change(&trend.after) } else { number::NONE.to_owned() },
-            number::fixed(if named { trend.after.correlation } else { trend.before.correlation }, 2),
-        ]
+        let last = if named { &trend.after } else { &trend.before };
+        let mut cells =
+            vec![format!("{}, {}", trend.quantity, trend.position), trend.wavelength_or_band.clone(), over(trend), change(&trend.before)];
+        cells.extend(named.then(|| change(last)));
+        cells.push(number::fixed(last.correlation, 2));
+        cells
     };
-    let caption = "What measured - simulated changes by over the range of what the section table says, by generalised least squares on that \
-                   alone, with a 90 % interval; * significant at a false discovery rate of 5 %. Levels that turn with the curve count as in one \
-                   direction. r is the correlation of the differences as they are, with the effects";
-    let head = vec![
-        Head::text("Quantity"),
-        Head::short("Band"),
-        Head::text("Over"),
-        Head::number("As simulated"),
-        Head::number("With effects"),
-        Head::number("r"),
-    ];
-    let table = Table { caption: caption.into(), head, rows: listed.iter().take(TRENDS).map(row).collect() };
+    let caption = format!(
+        "What measured - simulated changes by over the range of what the section table says, by generalised least squares on that \
+         alone, with a 90 % interval; * significant at a false discovery rate of 5 %. Levels that turn with the curve count as in one \
+         direction. r is the correlation of the differences as they are{}",
+        if named { ", with the effects" } else { "" }
+    );
+    let mut head = vec![Head::text("Quantity"), Head::short("Band"), Head::text("Over"), Head::number("As simulated")];
+    head.extend(named.then(|| Head::number("With effects")));
+    head.push(Head::number("r"));
+    let table = Table { caption, head, rows: listed.iter().take(TRENDS).map(row).collect() };
     if table.rows.is_empty() { vec![Item::text(text)] } else { vec![Item::text(text), Item::Table { table }] }
 }
 

@@ -207,6 +207,30 @@ fn tolerances_are_weighed_as_they_act_beside_what_is_found() {
     assert!((first - wanted).abs() > 0.01, "the test tells nothing");
 }
 
+/// Half a standard deviation of the rise is expected, and there. Without slack that is little; with the slack that is found it is nine
+/// times as much, and that is taken off: the size is that of generalised least squares with both as they act there.
+#[test]
+fn what_is_expected_of_a_tolerance_is_what_it_does_beside_what_is_found() {
+    let (truth, expected) = (0.8, 0.5);
+    let effects = EFFECTS.replace("default: 0.05,", "default: 0.05, expected: 0.5,");
+    let found = found(&effects, Truth { slack: truth, off: expected, ..NOTHING });
+    let [member] = &found.chosen.members[..] else { panic!("{:?}", found.chosen.members.len()) };
+    let change = LOADS.map(|load| RISE * load * load - STIFFNESS * load);
+    let size = |slack: f64| {
+        let column = LOADS.map(|load| RISE_SD * (slack + SLACK) * RISE * load * load);
+        let difference = std::array::from_fn::<f64, 8, _>(|at| {
+            let load = LOADS[at];
+            let measured = force(load, truth, RISE * (1.0 + expected * RISE_SD), STIFFNESS);
+            measured - force(load, 0.0, RISE, STIFFNESS) - expected * column[at]
+        });
+        least_squares(&change, &column, &difference)
+    };
+    let first = size(0.0);
+    let wanted = size(first);
+    assert!((member.size - wanted).abs() < 1e-6, "{} for {wanted}", member.size);
+    assert!((wanted - truth).abs() < 0.1 * (first - truth).abs(), "{first} and {wanted} for {truth}");
+}
+
 /// A stiffness of 1.9 times what is assumed raises the force in proportion to the load, which a slack of some size does in part. No
 /// effect stands for it: what is named is not the cause, and which parameter explains more is told. With a true slack it is not.
 #[test]
