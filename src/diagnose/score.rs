@@ -244,7 +244,10 @@ pub fn wilson(k: usize, n: usize) -> Option<(f64, f64)> {
     let (z, n, p) = (1.959_963_984_540_054_f64, n as f64, k as f64 / n as f64);
     let middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
     let half = z / (1.0 + z * z / n) * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
-    Some(((middle - half).max(0.0), (middle + half).min(1.0)))
+    // None and all are bounds themselves; rounding would leave them beside it.
+    let low = if k == 0 { 0.0 } else { middle - half };
+    let high = if p == 1.0 { 1.0 } else { middle + half };
+    Some((low, high))
 }
 
 #[cfg(test)]
@@ -257,6 +260,7 @@ mod tests {
         let (low, high) = wilson(8, 10).expect("ten cases");
         assert!((low - 0.4902).abs() < 1e-4 && (high - 0.9433).abs() < 1e-4, "{low} {high}");
         assert_eq!(wilson(0, 0), None);
+        assert_eq!((wilson(0, 12).map(|it| it.0), wilson(12, 12).map(|it| it.1)), (Some(0.0), Some(1.0)));
     }
 
     #[test]
