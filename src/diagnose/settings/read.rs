@@ -34,7 +34,7 @@ const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", 
 impl Settings {
     /// Reads them; a catalogue without any cannot be used for a diagnosis.
     ///
-    /// Problems: `key-missing`, `unknown-key`, `wrong-kind`, `unknown-channel`.
+    /// Problems: `key-missing`, `unknown-key`, `wrong-kind`, `range`, `unknown-channel`.
     pub fn read(catalogue: &Catalogue, problems: &mut Problems) -> Option<Self> {
         let before = problems.errors();
         let Some(node) = &catalogue.diagnosis else {
@@ -56,6 +56,10 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn wrong(&mut self, says: impl Into<String>, at: &Node) {
         self.problems.push(Problem::error("wrong-kind", says).at(&at.span));
+    }
+
+    fn outside(&mut self, says: impl Into<String>, at: &Node) {
+        self.problems.push(Problem::error("range", says).at(&at.span));
     }
 
     fn keys(&mut self, node: &Node, known: &[&str]) {
@@ -86,6 +90,24 @@ impl Reader<'_> {
                 default
             }),
         }
+    }
+
+    /// A standard deviation.
+    fn spread(&mut self, node: &Node, key: &str, default: f64) -> f64 {
+        let spread = self.number(node, key, default);
+        if let Some(found) = node.get(key).filter(|_| spread < 0.0) {
+            self.outside(format!("`{key}` is a standard deviation: it cannot be negative"), found);
+        }
+        spread
+    }
+
+    /// Frequencies in Hz, each above the one before.
+    fn rising(&mut self, node: &Node) -> Vec<f64> {
+        let found = self.numbers(node);
+        if found.first().is_some_and(|first| *first < 0.0) || found.windows(2).any(|pair| pair[1] <= pair[0]) {
+            self.outside("these are frequencies in Hz, each above the one before", node);
+        }
+        found
     }
 
     fn flag(&mut self, node: &Node, key: &str) -> bool {
@@ -129,30 +151,37 @@ impl Reader<'_> {
         found
     }
 
-    /// Channels with numbers.
-    fn weights(&mut self, node: &Node) -> Vec<(String, f64)> {
+    /// Numbers by their keys.
+    fn values(&mut self, node: &Node) -> Vec<(String, f64)> {
         let mut found = Vec::new();
         for (key, node) in node.entries() {
             match node.number() {
-                Some(weight) => found.push((key.text.clone(), weight)),
-                None => self.wrong(format!("`{}` needs a number, its weight", key.text), node),
+                Some(value) => found.push((key.text.clone(), value)),
+                None => self.wrong(format!("`{}` needs a number", key.text), node),
             }
+        }
+        found
+    }
+
+    /// Channels with their weights.
+    fn weights(&mut self, node: &Node) -> Vec<(String, f64)> {
+        for (key, _) in node.entries() {
             if !self.catalogue.groups.iter().any(|group| group.channels.contains(&key.text)) {
                 let problem = Problem::error("unknown-channel", format!("`{}` is no channel of a group", key.text)).at(&key.span);
                 let known = self.catalogue.groups.iter().flat_map(|group| &group.channels);
                 self.problems.push(problem.suggest(&key.text, known.map(String::as_str)));
             }
         }
-        found
+        self.values(node)
     }
 
     fn settings(&mut self, node: &Node) -> Settings {
         self.keys(node, &TOP);
-        let alike = node.get("alike").map_or(Vec::new(), |alike| self.numbers(alike));
+        let alike = node.get("alike").map_or(Vec::new(), |alike| self.rising(alike));
         let text = |key: &str| node.get(key).and_then(Node::scalar_text).map(str::to_string);
         let mirror = node.get("mirrored").and_then(|map| map.entries().first());
         let mut settings = Settings {
-            edges: node.get("bands").map_or(Vec::new(), |bands| self.numbers(bands)),
+            edges: node.get("bands").map_or(Vec::new(), |bands| self.rising(bands)),
             alike: (alike.first().copied().unwrap_or(0.5), alike.get(1).copied().unwrap_or(8.0)),
             furthest: self.number(node, "furthest lag", FURTHEST),
             confine: self.words(node.get("confine to")),
@@ -169,15 +198,19 @@ impl Reader<'_> {
                 continue;
             }
             let text = |key: &str| node.get(key).and_then(Node::scalar_text).map(str::to_string);
+            let (bands, most) = (self.number(node, "bands", 0.0), settings.edges.len().saturating_sub(1));
+            if let Some(found) = node.get("bands").filter(|_| bands.fract() != 0.0 || !(0.0..=most as f64).contains(&bands)) {
+                self.outside(format!("`bands` is how many of the {most} bands of the catalogue this group has"), found);
+            }
             settings.groups.push(GroupFeatures {
                 name: key.text.clone(),
                 level: self.flag(node, "level"),
-                bands: self.number(node, "bands", 0.0) as usize,
+                bands: bands as usize,
                 alike: self.flag(node, "alike"),
-                level_sd: self.number(node, "level sd", 0.1),
-                band_sd: self.number(node, "band sd", 0.1),
-                gain_sd: self.number(node, "gain sd", 0.1),
-                lag_sd: self.number(node, "lag sd", 1.0),
+                level_sd: self.spread(node, "level sd", 0.1),
+                band_sd: self.spread(node, "band sd", 0.1),
+                gain_sd: self.spread(node, "gain sd", 0.1),
+                lag_sd: self.spread(node, "lag sd", 1.0),
                 unit: self.unit(node),
                 noise: text("noise"),
                 offset: text("offset"),
@@ -188,20 +221,18 @@ impl Reader<'_> {
         }
         for (key, node) in node.get("tolerances").map_or(&[][..], Node::entries) {
             self.keys(node, &TOLERANCE);
-            let map = |key: &str| {
-                let entries = node.get(key).map_or(&[][..], Node::entries).iter();
-                entries.map(|(key, node)| (key.text.clone(), node.number().unwrap_or(1.0))).collect()
-            };
+            let mut map = |key: &str| node.get(key).map_or_else(Vec::new, |node| self.values(node));
+            let (adds, sets) = (map("adds"), map("sets"));
             let per_section = self.flag(node, "each section");
             let shared = node.get("shared").is_none() && !per_section || self.flag(node, "shared");
             settings.tolerances.push(Tolerance {
                 name: key.text.clone(),
                 unit: self.unit(node),
-                default: self.number(node, "default", 0.0),
+                default: self.spread(node, "default", 0.0),
                 expected: self.number(node, "expected", 0.0),
                 scales: self.words(node.get("scales")),
-                adds: map("adds"),
-                sets: map("sets"),
+                adds,
+                sets,
                 named: named(node),
                 per_section,
                 shared,
@@ -209,7 +240,7 @@ impl Reader<'_> {
             });
         }
         for node in node.get("discrepancies").map_or(&[][..], Node::items) {
-            if let Some(discrepancy) = self.discrepancy(node) {
+            if let Some(discrepancy) = self.discrepancy(node, settings.edges.len().saturating_sub(1)) {
                 settings.discrepancies.push(discrepancy);
             }
         }
@@ -243,7 +274,8 @@ impl Reader<'_> {
         Some(Shape { range: (low, high), percentile, wheel_radius })
     }
 
-    fn discrepancy(&mut self, node: &Node) -> Option<Discrepancy> {
+    /// `bands` is how many there are.
+    fn discrepancy(&mut self, node: &Node, bands: usize) -> Option<Discrepancy> {
         self.keys(node, &DISCREPANCY);
         let word = |key: &str| node.get(key).and_then(Node::scalar_text).unwrap_or_default().to_string();
         let feature = match word("of").as_str() {
@@ -282,17 +314,27 @@ impl Reader<'_> {
             }
         };
         let times = word("times");
-        let times = match times.split_once(" / radius") {
+        let radius = times.split_once(" / radius").and_then(|(number, sign)| Some((number.trim().parse::<f64>().ok()?, sign)));
+        let times = match radius.filter(|(number, _)| number.is_finite()) {
             _ if times.is_empty() => Times::One,
             _ if times == "side" => Times::Side,
-            Some((number, "")) => Times::Over(number.trim().parse().unwrap_or(1.0)),
-            Some((number, " unsigned")) => Times::Unsigned(number.trim().parse().unwrap_or(1.0)),
+            Some((number, "")) => Times::Over(number),
+            Some((number, " unsigned")) => Times::Unsigned(number),
             _ => {
                 self.wrong(format!("`times` is side, `400 / radius` or `400 / radius unsigned`, not `{times}`"), node);
                 return None;
             }
         };
-        let sd = node.get("sd").map_or(Vec::new(), |sd| self.numbers(sd));
+        let Some(given) = node.get("sd") else {
+            self.problems.push(Problem::error("key-missing", "a discrepancy needs `sd`, its standard deviation").at(&node.span));
+            return None;
+        };
+        let sd = self.numbers(given);
+        let most = if feature == FeatureKind::Bands { bands } else { 1 };
+        if sd.len() > most || sd.iter().any(|sd| *sd < 0.0) {
+            let many = if most == 1 { "one number".to_string() } else { format!("one number, or one for each of the {most} bands") };
+            self.outside(format!("`sd` is {many}, none of them negative"), given);
+        }
         Some(Discrepancy { feature, channels, sd, moves, over, times })
     }
 }
@@ -303,4 +345,52 @@ fn named(node: &Node) -> Vec<(String, Span)> {
     let maps = maps.map(|(key, _)| (key.text.clone(), key.span.clone()));
     let scaled = node.get("scales").into_iter().flat_map(Node::items);
     scaled.filter_map(|item| Some((item.scalar_text()?.to_string(), item.span.clone()))).chain(maps).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+
+    const SOUND: &str = "catalogue: one
+title: One
+groups: {forces: [F]}
+units: {forces: N}
+effects: {}
+diagnosis:
+  bands: [1, 2, 4]
+  groups: {forces: {unit: N, level: true, bands: 2, level sd: 0.2}}
+  tolerances: {load: {default: 0.1, adds: {mass: 1}}}
+  discrepancies: [{of: bands, channels: [forces], sd: [0.1, 0.2], times: 400 / radius}]
+";
+
+    fn read(text: &str) -> (bool, Problems) {
+        let (source, mut problems) = (Source::new("effects.yaml", text), Problems::default());
+        let catalogue = crate::effects::read(&source, &crate::library::parent_catalogue, &[], &mut problems).expect("a catalogue");
+        (Settings::read(&catalogue, &mut problems).is_some(), problems)
+    }
+
+    #[test]
+    fn numbers_that_cannot_be_are_told_where_they_are() {
+        let (sound, problems) = read(SOUND);
+        assert!(sound, "{}", problems.render(false));
+        for (good, bad, says, place) in [
+            ("[1, 2, 4]", "[1, 4, 2]", "each above the one before", "7:10"),
+            ("bands: 2,", "bands: 3,", "how many of the 2 bands", "8:50"),
+            ("bands: 2,", "bands: 1.5,", "how many of the 2 bands", "8:50"),
+            ("level sd: 0.2", "level sd: -0.2", "cannot be negative", "8:63"),
+            ("default: 0.1", "default: -0.1", "cannot be negative", "9:32"),
+            ("mass: 1", "mass: much", "`mass` needs a number", "9:50"),
+            ("sd: [0.1, 0.2]", "sd: [0.1, 0.2, 0.3]", "one for each of the 2 bands", "10:55"),
+            ("sd: [0.1, 0.2]", "sd: [0.1, -0.2]", "none of them negative", "10:55"),
+            ("sd: [0.1, 0.2], ", "", "needs `sd`", "10:19"),
+            ("400 / radius", "much / radius", "not `much / radius`", "10:19"),
+        ] {
+            let text = SOUND.replacen(good, bad, 1);
+            assert_ne!(text, SOUND);
+            let (sound, problems) = read(&text);
+            let told = problems.render(false);
+            assert!(!sound && told.contains(says) && told.contains(&format!("effects.yaml:{place}\n")), "{bad}: {told}");
+        }
+    }
 }
