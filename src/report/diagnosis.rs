@@ -141,7 +141,7 @@ fn places(found: &Diagnosis) -> Chapter {
     let map = Item::figure("map", caption, "A map of cells, darker where more of the gap lies");
     let mut items = vec![Item::text(text), map, Item::Table { table }];
     if !found.invariants.is_empty() {
-        items.push(Item::Table { table: invariants(&found.invariants) });
+        items.push(Item::Table { table: invariants(&found.invariants, !found.causes.is_empty()) });
     }
     items.extend(trends(found));
     if !found.shapes.is_empty() {
@@ -151,31 +151,23 @@ fn places(found: &Diagnosis) -> Chapter {
     chapter("where", "Where the gap lies", items)
 }
 
-fn invariants(all: &[Invariant]) -> Table {
+/// Columns with the effects where there are any.
+fn invariants(all: &[Invariant], named: bool) -> Table {
     let rows = all.iter().map(|one| {
         let number = |value: f64| format!("{} {}", number::significant(value, 3), one.unit);
         let off = |value: f64| if one.allowed > 0.0 { number::fixed(value.abs() / one.allowed, 1) } else { number::NONE.to_owned() };
-        vec![
-            one.name.clone(),
-            one.parity.to_owned(),
-            number(one.before),
-            number(one.after),
-            number(one.allowed),
-            off(one.before),
-            off(one.after),
-        ]
+        let mut cells = vec![one.name.clone(), one.parity.to_owned(), number(one.before)];
+        cells.extend(named.then(|| number(one.after)));
+        cells.extend([number(one.allowed), off(one.before)]);
+        cells.extend(named.then(|| off(one.after)));
+        cells
     });
     let caption = "Sums of quasi-static forces that only some causes can move, measured - simulated, mean over the sections; \
-                   allowed is one standard deviation, the last two columns count in it";
-    let head = vec![
-        Head::text("Sum"),
-        Head::text("To which side"),
-        Head::number("As simulated"),
-        Head::number("With the effects"),
-        Head::number("Allowed"),
-        Head::number("Off before"),
-        Head::number("Off after"),
-    ];
+                   allowed is one standard deviation, in which it is counted how far off they are";
+    let mut head = vec![Head::text("Sum"), Head::text("To which side"), Head::number("As simulated")];
+    head.extend(named.then(|| Head::number("With the effects")));
+    head.extend([Head::number("Allowed"), Head::number(if named { "Off before" } else { "Off" })]);
+    head.extend(named.then(|| Head::number("Off after")));
     Table { caption: caption.into(), head, rows: rows.collect() }
 }
 
