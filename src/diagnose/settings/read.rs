@@ -178,6 +178,9 @@ impl Reader<'_> {
     fn settings(&mut self, node: &Node) -> Settings {
         self.keys(node, &TOP);
         let alike = node.get("alike").map_or(Vec::new(), |alike| self.rising(alike));
+        if let Some(found) = node.get("alike").filter(|_| alike.len() != 2) {
+            self.outside("`alike` is two frequencies in Hz", found);
+        }
         let text = |key: &str| node.get(key).and_then(Node::scalar_text).map(str::to_string);
         let mirror = node.get("mirrored").and_then(|map| map.entries().first());
         let mut settings = Settings {
@@ -289,7 +292,11 @@ impl Reader<'_> {
                 return None;
             }
         };
-        let channels = node.get("channels")?;
+        let Some(channels) = node.get("channels") else {
+            self.problems
+                .push(Problem::error("key-missing", "a discrepancy needs `channels`: groups, or channels with weights").at(&node.span));
+            return None;
+        };
         let channels = if channels.entries().is_empty() {
             self.channels(channels).into_iter().map(|channel| (channel, 1.0)).collect()
         } else {
@@ -321,7 +328,10 @@ impl Reader<'_> {
             Some((number, "")) => Times::Over(number),
             Some((number, " unsigned")) => Times::Unsigned(number),
             _ => {
-                self.wrong(format!("`times` is side, `400 / radius` or `400 / radius unsigned`, not `{times}`"), node);
+                self.wrong(
+                    format!("`times` is side, `400 / radius` or `400 / radius unsigned`, not `{times}`"),
+                    node.get("times").unwrap_or(node),
+                );
                 return None;
             }
         };
@@ -331,7 +341,7 @@ impl Reader<'_> {
         };
         let sd = self.numbers(given);
         let most = if feature == FeatureKind::Bands { bands } else { 1 };
-        if sd.len() > most || sd.iter().any(|sd| *sd < 0.0) {
+        if sd.is_empty() || sd.len() > most || sd.iter().any(|sd| *sd < 0.0) {
             let many = if most == 1 { "one number".to_string() } else { format!("one number, or one for each of the {most} bands") };
             self.outside(format!("`sd` is {many}, none of them negative"), given);
         }
@@ -384,7 +394,10 @@ diagnosis:
             ("sd: [0.1, 0.2]", "sd: [0.1, 0.2, 0.3]", "one for each of the 2 bands", "10:55"),
             ("sd: [0.1, 0.2]", "sd: [0.1, -0.2]", "none of them negative", "10:55"),
             ("sd: [0.1, 0.2], ", "", "needs `sd`", "10:19"),
-            ("400 / radius", "much / radius", "not `much / radius`", "10:19"),
+            ("400 / radius", "much / radius", "not `much / radius`", "10:74"),
+            ("channels: [forces], ", "", "needs `channels`", "10:19"),
+            ("sd: [0.1, 0.2]", "sd: []", "none of them negative", "10:55"),
+            ("[1, 2, 4]\n", "[1, 2, 4]\n  alike: [8]\n", "`alike` is two", "8:10"),
         ] {
             let text = SOUND.replacen(good, bad, 1);
             assert_ne!(text, SOUND);
