@@ -54,7 +54,7 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
     let stability = stability_of(found, member);
     // Uncertainty of the fit, of what lies between the nodes, and of which sections there are.
     let error = if member.slope > 0.0 { 1.645 * (1.0 / member.slope).hypot(0.02 * member.size.abs().min(1e12)) } else { 0.0 };
-    let (low, high) = stability.map_or((member.size, member.size), |stability| (stability.low, stability.high));
+    let (low, high) = stability.as_ref().map_or((member.size, member.size), |stability| (stability.low, stability.high));
     let (below, above) = (error.hypot((member.size - low).max(0.0)), error.hypot((high - member.size).max(0.0)));
     let interval =
         (!of.discrete && member.size.is_finite()).then(|| ((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)));
@@ -96,7 +96,7 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
 /// Of a member of the answer; a rival has none.
 fn stability_of(found: &Found, member: &Fitted) -> Option<Stability> {
     let own = |known: &Fitted| known.candidate == member.candidate && known.mask == member.mask;
-    found.chosen.members.iter().position(own).and_then(|at| found.stability.get(at).copied())
+    found.chosen.members.iter().position(own).and_then(|at| found.stability.get(at).cloned())
 }
 
 /// `zones` and `sections` are lists, a direction is one word.

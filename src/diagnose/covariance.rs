@@ -23,7 +23,8 @@ pub struct Sensitivity {
     /// How much of it is expected to be there.
     pub expected: f64,
     pub per_section: bool,
-    pub shared: bool,
+    /// How much of a standard deviation all sections have in common.
+    pub shared: f64,
 }
 
 /// A column that sections share, by what it stands for.
@@ -54,8 +55,8 @@ pub fn covariance(
     let size = seen.features.len();
     let mut covariance = Covariance { diagonal: diagonal(seen, settings), inside: Vec::new(), shared: Vec::new(), size };
     for sensitivity in sensitivities {
-        if sensitivity.shared {
-            covariance.shared.push(sensitivity.column.clone());
+        if sensitivity.shared > 0.0 {
+            covariance.shared.push(sensitivity.column.iter().map(|x| sensitivity.shared * x).collect());
         }
         if sensitivity.per_section {
             for section in 0..seen.sections.len() {

@@ -19,16 +19,16 @@ const LITTLE: f64 = 10.0;
 /// Of the change that an effect makes, what the model that makes it is wrong by, feature by feature.
 const WRONG: f64 = 0.2;
 
-impl Covariance {
-    /// With room for what is wrong in changes that are taken off.
-    #[must_use]
-    pub fn allowing<'a>(&self, changes: impl Iterator<Item = &'a Vec<f64>>) -> Self {
-        let mut wider = self.clone();
-        for change in changes {
-            wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| *variance += (WRONG * change).powi(2));
-        }
-        wider
+/// The covariance beside an answer, with room for what is wrong in the changes of its members: an operation on the signals has nothing
+/// wrong.
+#[must_use]
+pub fn with_room(beside: &Covariance, candidates: &[Candidate], masks: &[Mask], chosen: &Chosen) -> Covariance {
+    let mut wider = beside.clone();
+    for member in chosen.members.iter().filter(|member| !candidates[member.candidate].exact) {
+        let change = member.change(candidates, masks);
+        wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| *variance += (WRONG * change).powi(2));
     }
+    wider
 }
 
 /// How far a channel goes beyond what is allowed for, in its levels or in all else.
@@ -152,14 +152,14 @@ pub fn lack_after(
     difference: &[f64],
     chosen: &Chosen,
 ) -> Vec<Lack> {
-    let changes: Vec<Vec<f64>> = chosen.members.iter().map(|member| member.change(candidates, masks)).collect();
-    let rest = changes.iter().fold(difference.to_vec(), |rest, change| less(&rest, change));
-    lack_of_fit(&covariance.allowing(changes.iter()), seen, &rest)
+    let rest = left(candidates, masks, difference, chosen);
+    lack_of_fit(&with_room(covariance, candidates, masks, chosen), seen, &rest)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::candidates::Node;
 
     /// Sixteen sections of nine features of unit variance: one that is off by 10 in each of them has a chi-squared of 900.
     #[test]
@@ -174,5 +174,22 @@ mod tests {
         assert_eq!(lack(&[3]), (900.0, 0.0, vec![3]));
         let (with_them, chi, alone) = lack(&[3, 7, 11]);
         assert_eq!((with_them, chi, alone.len()), (2700.0, 900.0, 2));
+    }
+
+    /// A change of 10 that is simulated may be wrong by 2, one by an operation on the signals by nothing.
+    #[test]
+    fn only_what_is_simulated_may_be_wrong() {
+        let covariance = Covariance { diagonal: vec![1.0; 2], inside: Vec::new(), shared: Vec::new(), size: 1 };
+        let whitener = covariance.whitener();
+        let nodes = vec![Node { size: 0.0, change: Vec::new() }, Node { size: 1.0, change: vec![10.0; 2] }];
+        for (exact, variance) in [(false, 1.0 + 4.0), (true, 1.0)] {
+            let candidates = [Candidate { exact, ..Candidate::path("effect", nodes.clone()) }];
+            let masks = vec![Mask { confined: None, sections: vec![true; 2], asked_by: None }];
+            let fitter = Fitter::new(&whitener, &candidates, masks.clone());
+            let member = fitter.fit(&[10.0; 2], 0, 0).expect("a path");
+            let chosen = Chosen { rest: vec![0.0; 2], members: vec![member] };
+            let wider = with_room(&covariance, &candidates, &masks, &chosen);
+            assert!(wider.diagonal.iter().all(|seen| (seen - variance).abs() < 1e-9), "{:?}", wider.diagonal);
+        }
     }
 }

@@ -37,21 +37,29 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
             continue;
         }
         let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(NEAREST)
-            && fit.evidence > if of.exact { found.bars.exact } else { found.bars.first };
+            && fit.evidence > if of.exact { found.bars.exact } else { found.bars.first }
+            || found.stability.get(*at).is_some_and(|stability| stability.as_well(fit.candidate));
+        let drawn = found.stability.get(*at).map_or(0.0, |stability| stability.instead_of(fit.candidate));
         let mut members = found.chosen.members.clone();
         members[*at] = fit.clone();
         let mut cause = cause(inputs, found, &members, causes.len() + 2);
-        cause.in_ambiguity_set = near;
+        (cause.in_ambiguity_set, cause.probability) = (near, drawn);
         cause.evidence = best - fall;
         causes.push(cause);
     }
     causes
 }
 
-pub fn probabilities(causes: &mut [Cause], verdict: &str, suspected: bool) {
+/// How probable each cause is. `failing` is the least share of the resamples in which a member is first, where that is too few: then
+/// causes are as probable as they are often first, which they have as `probability` before.
+pub fn probabilities(causes: &mut [Cause], verdict: &str, suspected: bool, failing: Option<f64>) {
     // A rival may have more evidence than an answer that was chosen with the tolerances as they act beside it: then it is as probable.
     let best = causes.first().map_or(0.0, |answer| answer.evidence);
-    let weights: Vec<f64> = causes.iter().map(|cause| ((cause.evidence - best).min(0.0) / (2.0 * TEMPERATURE)).exp()).collect();
+    let by_evidence = |cause: &Cause| ((cause.evidence - best).min(0.0) / (2.0 * TEMPERATURE)).exp();
+    let weights: Vec<f64> = match failing {
+        Some(first) => causes.iter().map(|cause| if cause.rank == 1 { first } else { cause.probability }).collect(),
+        None => causes.iter().map(by_evidence).collect(),
+    };
     // Something outside the catalogue is possible as well; more so where something is left.
     let outside = match verdict {
         "unexplained" => 4.0,

@@ -187,7 +187,7 @@ impl Settled<'_> {
         // What a member gives the size of is not free any more, but for the scatter of single sections.
         for member in members.iter().filter(|member| member.mask == 0) {
             let given = candidates[member.candidate].tolerance.as_ref();
-            columns.iter_mut().filter(|column| Some(&column.tolerance) == given).for_each(|column| column.shared = false);
+            columns.iter_mut().filter(|column| Some(&column.tolerance) == given).for_each(|column| column.shared = 0.0);
         }
         let mut difference = self.whole.to_vec();
         expect(&columns, &mut difference);

@@ -13,14 +13,41 @@ const DRAWS: usize = 400;
 /// Candidates with this share of a member's evidence may take its place.
 const NEAR: f64 = 0.3;
 
+/// A member that is first in fewer of the resamples is not told from others.
+const FIRST: f64 = 0.5;
+
 /// How a member fares over resamples of the sections.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Stability {
     /// Share of the resamples in which no other effect has more evidence.
     pub first: f64,
     /// Sizes that 5 % and 95 % of the resamples stay below.
     pub low: f64,
     pub high: f64,
+    /// Candidates that are first in its place in some resamples, and in which share of them.
+    pub instead: Vec<(usize, f64)>,
+}
+
+impl Stability {
+    /// Whether another effect has more evidence in most of the resamples.
+    #[must_use]
+    pub fn fails(&self) -> bool {
+        self.first < FIRST
+    }
+
+    /// Share of the resamples in which a candidate is first in the place of the member.
+    #[must_use]
+    pub fn instead_of(&self, candidate: usize) -> f64 {
+        self.instead.iter().find(|(other, _)| *other == candidate).map_or(0.0, |(_, share)| *share)
+    }
+
+    /// Whether a candidate must be told beside a member that fails: first half as often as what is first most often, or more.
+    #[must_use]
+    pub fn as_well(&self, candidate: usize) -> bool {
+        let share = self.instead_of(candidate);
+        let most = self.instead.iter().fold(self.first, |most, (_, share)| most.max(*share));
+        self.fails() && share >= 0.5 * most
+    }
 }
 
 /// A fitter, the difference whitened by it, and the members as it sees them.
@@ -44,27 +71,39 @@ pub fn stability(
         let fits = fitter.all(&rest).into_iter();
         let fits = fits.filter(|fit| refused.iter().all(|refused| refused.fitted.candidate != fit.candidate));
         let near = fits.filter(|fit| fit.evidence >= NEAR * member.evidence && effect(fit.candidate) != effect(member.candidate));
-        let rivals: Vec<(BySection, f64)> =
-            near.filter_map(|fit| Some((fitter.by_section(&rest, fit.candidate, fit.mask)?, fit.fall - fit.evidence))).collect();
+        let rivals: Vec<(BySection, f64, usize)> = near
+            .filter_map(|fit| Some((fitter.by_section(&rest, fit.candidate, fit.mask)?, fit.fall - fit.evidence, fit.candidate)))
+            .collect();
         let own = fitter.by_section(&rest, member.candidate, member.mask);
         let own_size = sizes.by_section(&sized.left_by_others(sized_z, at), member.candidate, member.mask);
         let price = member.fall - member.evidence;
-        let drawn: Vec<(bool, f64)> = draws
+        let drawn: Vec<(Option<usize>, Option<f64>)> = draws
             .par_iter()
-            .filter_map(|times| {
-                let (fall, _) = own.as_ref()?.fit(times)?;
-                let (_, size) = own_size.as_ref()?.fit(times)?;
-                let beaten = rivals.iter().any(|(rival, cost)| rival.fit(times).is_some_and(|(other, _)| other - cost > fall - price));
-                Some((!beaten, size))
+            .map(|times| {
+                // Where none of the sections that it shows in is drawn, it explains nothing, and has no size.
+                let fall = own.as_ref().and_then(|own| own.fit(times)).map_or(0.0, |(fall, _)| fall);
+                let size = own_size.as_ref().and_then(|own| own.fit(times)).map(|(_, size)| size);
+                let others = rivals.iter().filter_map(|(rival, cost, candidate)| Some((rival.fit(times)?.0 - cost, *candidate)));
+                let beaten_by = others.filter(|(other, _)| *other > fall - price).max_by(|a, b| a.0.total_cmp(&b.0));
+                (beaten_by.map(|(_, candidate)| candidate), size)
             })
             .collect();
-        let mut sizes: Vec<f64> = drawn.iter().map(|(_, size)| *size).collect();
+        let share = |of: Option<usize>| drawn.iter().filter(|(by, _)| *by == of).count() as f64 / drawn.len().max(1) as f64;
+        let mut instead: Vec<(usize, f64)> = Vec::new();
+        for (_, _, candidate) in &rivals {
+            if instead.iter().all(|(known, _)| known != candidate) {
+                instead.push((*candidate, share(Some(*candidate))));
+            }
+        }
+        instead.retain(|(_, share)| *share > 0.0);
+        let mut sizes: Vec<f64> = drawn.iter().filter_map(|(_, size)| *size).collect();
         sizes.sort_by(f64::total_cmp);
         let quantile = |share: f64| sizes.get(((sizes.len() as f64 * share) as usize).min(sizes.len().saturating_sub(1)));
         Stability {
-            first: drawn.iter().filter(|(first, _)| *first).count() as f64 / drawn.len().max(1) as f64,
+            first: share(None),
             low: quantile(0.05).copied().unwrap_or(member.size),
             high: quantile(0.95).copied().unwrap_or(member.size),
+            instead,
         }
     };
     (0..chosen.members.len()).map(one).collect()
@@ -113,10 +152,35 @@ mod tests {
         let member = fitter.fit(&z, 0, 0).expect("a path");
         assert!((member.size - mean).abs() < 1e-9, "{}", member.size);
         let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member] };
-        let found = stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), &[], &[(0..SECTIONS).collect()], 1)[0];
+        let found = stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), &[], &[(0..SECTIONS).collect()], 1).remove(0);
         assert_eq!(found.first, 1.0);
         for (bound, away) in [(found.low, -1.645 * error), (found.high, 1.645 * error)] {
             assert!((bound - mean - away).abs() < 0.25 * away.abs(), "{bound} for {}", mean + away);
         }
+    }
+
+    /// All evidence for one effect is in one section, 25 each time that it is drawn; the other has 1.75 in each of the other 19. So the
+    /// one is first where its section is drawn twice or more: 1 - 0.95^20 - 20 * 0.05 * 0.95^19 = 0.264 of the resamples (binomial).
+    #[test]
+    fn an_effect_that_one_section_carries_is_not_told_from_one_that_all_others_show() {
+        const SECTIONS: usize = 20;
+        let covariance = Covariance { diagonal: vec![1.0; SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 1 };
+        let whitener = covariance.whitener();
+        let (mut once, mut others) = (vec![0.0; SECTIONS], vec![10.0; SECTIONS]);
+        (once[3], others[3]) = (10.0, 0.0);
+        let z: Vec<f64> = (0..SECTIONS).map(|at| if at == 3 { 5.0 } else { 1.75_f64.sqrt() }).collect();
+        let candidates = [candidate("once", once), candidate("others", others)];
+        let mask = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
+        let fitter = Fitter::new(&whitener, &candidates, vec![mask]);
+        let of = |candidate: usize| {
+            let member = fitter.fit(&z, candidate, 0).expect("a path");
+            let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member] };
+            stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), &[], &[(0..SECTIONS).collect()], 1).remove(0)
+        };
+        let (once, others) = (of(0), of(1));
+        let (wanted, error) = (0.264, (0.264 * 0.736 / DRAWS as f64).sqrt());
+        assert!((once.first - wanted).abs() < 3.0 * error, "{once:?}");
+        assert!(once.fails() && once.as_well(1) && (once.instead_of(1) + once.first - 1.0).abs() < 1e-12, "{once:?}");
+        assert!(!others.fails() && !others.as_well(0) && (others.instead_of(0) - once.first).abs() < 1e-12, "{others:?}");
     }
 }

@@ -4,7 +4,7 @@
 use super::cells::{Cell, cells, kinds, positions, significant_up_to};
 use super::features::Kind;
 use super::fold::Fold;
-use super::lack::left;
+use super::lack::{left, with_room};
 use super::observe::Observations;
 use super::run::Found;
 use super::settings::{Position, Settings};
@@ -45,8 +45,7 @@ pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>,
         cells(settings, found, kind, position, &sections).into_iter().map(|cell| (cell, *turns)).collect::<Vec<(Cell, bool)>>()
     };
     let cells: Vec<(Cell, bool)> = kinds(found).flat_map(|kind| places.iter().flat_map(move |place| of_place(kind, place))).collect();
-    let changes: Vec<Vec<f64>> = found.chosen.members.iter().map(|member| member.change(&found.candidates, &found.masks)).collect();
-    let wider = found.beside.allowing(changes.iter());
+    let wider = with_room(&found.beside, &found.candidates, &found.masks, &found.chosen);
     let rest = left(&found.candidates, &found.masks, &found.difference_beside, &found.chosen);
     let fold = Fold::new(settings, &found.seen, &found.simulated);
     let of_cell = |(cell, turns): &(Cell, bool)| {
@@ -83,6 +82,17 @@ pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>,
     }
     trends.sort_by(|a, b| a.before.p_value.total_cmp(&b.before.p_value));
     (trends, together(&covariates, &sections[0]))
+}
+
+/// Whether what is left follows something for certain: the chance of any such trend among all that were tested (Bonferroni) is less than
+/// this. What is allowed for is judgement, so that chance alone would say too little.
+const CERTAIN: f64 = 1e-5;
+
+/// Whether what the causes leave grows with something, for certain.
+#[must_use]
+pub fn certain(trends: &[Trend]) -> bool {
+    let tested = trends.len() as f64;
+    trends.iter().any(|trend| trend.after.p_value * tested < CERTAIN)
 }
 
 /// What is left follows, in words: the trend that is least probable with the causes added, if it is significant.

@@ -8,6 +8,7 @@ use super::lack::{LACK, unexplained};
 use super::rivals::{ambiguity, discriminating, probabilities};
 use super::run::{Found, Inputs, chi, deviations};
 use super::search::TOLERANCE_SD;
+use super::stability::Stability;
 use super::suspects::Suspect;
 use crate::result::diagnosis::{Cause, Diagnosis, Fault, How, Nearest, Shrink, Vetoed};
 use crate::simulate::Units;
@@ -24,11 +25,16 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let lacking = found.lack_after.iter().any(|lack| lack.sigma_with_them > LACK);
     let ambiguous = ambiguity(inputs, found);
     let named = !found.chosen.members.is_empty();
+    let invariants = super::invariants::invariants(inputs.settings, found, units);
+    let (mut trends, together) = super::trends::trends(inputs.settings, found, units);
+    // No chance, whatever share of the gap it is.
+    let left = super::trends::certain(&trends) || super::invariants::broken(&invariants);
     let verdict = match () {
-        () if !named && !lacking && found.seen.faults.is_empty() => "no significant gap",
-        () if !named => "unexplained",
+        () if !named && !lacking && !left && found.seen.faults.is_empty() => "no significant gap",
+        () if !named || left => "unexplained",
         () if too_much || found.suspect.as_ref().is_some_and(Suspect::beats) || found.contradicting.is_some() => "unexplained",
         () if found.suspect.is_some() || ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
+        () if found.stability.iter().any(Stability::fails) => "ambiguous",
         () => "explained",
     };
     let mut causes = vec![];
@@ -39,13 +45,12 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         causes.extend(ambiguous.into_iter().filter(|rival| verdict != "unexplained" || rival.evidence <= best));
         causes.iter_mut().enumerate().for_each(|(at, cause)| cause.rank = at + 1);
     }
-    probabilities(&mut causes, verdict, found.suspect.is_some());
+    let least = found.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
+    probabilities(&mut causes, verdict, found.suspect.is_some(), least);
     let discriminating_measurement = discriminating(inputs, found, &causes, verdict);
-    let invariants = super::invariants::invariants(inputs.settings, found, units);
     let radius = |key: &str| super::run::value_of(inputs.campaign, key);
     let shapes = super::shapes::shapes(inputs.settings, &found.seen, &radius, inputs.seed);
-    let mut says = says(inputs, found, verdict, &causes, shrink.as_ref(), unexplained_share);
-    let (mut trends, together) = super::trends::trends(inputs.settings, found, units);
+    let mut says = says(inputs, found, (verdict, left), &causes, shrink.as_ref(), unexplained_share);
     let trends_tested = trends.len();
     trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
     if verdict == "unexplained" {
@@ -168,7 +173,14 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
     found.nearest.iter().map(one).collect()
 }
 
-fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shrink: Option<&Shrink>, unexplained: f64) -> Vec<String> {
+fn says(
+    inputs: &Inputs<'_>,
+    found: &Found,
+    (verdict, left): (&str, bool),
+    causes: &[Cause],
+    shrink: Option<&Shrink>,
+    unexplained: f64,
+) -> Vec<String> {
     let faulty = |fault: &Fault| format!("Fault of the recording: {} (sections {}).", fault.says, fault.sections.join(", "));
     let mut lines: Vec<String> = found.seen.faults.iter().map(faulty).collect();
     match verdict {
@@ -184,7 +196,17 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
                     .as_ref()
                     .map(|suspect| format!("`{}` times {:.2}, which no effect of the catalogue moves", suspect.key, suspect.factor)),
             );
-            lines.push(format!("The data cannot tell apart: {}.", set.join(" | ")));
+            lines.push(match &set[..] {
+                [alone] => format!("{alone}; the data cannot tell it from all else."),
+                all => format!("The data cannot tell apart: {}.", all.join(" | ")),
+            });
+            let failing = found.chosen.members.iter().zip(&found.stability).filter(|(_, stability)| stability.fails());
+            lines.extend(failing.map(|(member, stability)| {
+                let effect = &found.candidates[member.candidate].effect;
+                let title = inputs.catalogue.effect(effect).map_or(effect, |effect| &effect.title);
+                let beaten = 100.0 * (1.0 - stability.first);
+                format!("{title}: where the sections are drawn anew, another effect has more evidence in {beaten:.0} % of the draws.")
+            }));
         }
         _ => {
             let mut worst: Vec<_> = found.lack_after.iter().filter(|lack| lack.sigma_with_them > LACK).collect();
@@ -216,6 +238,7 @@ fn says(inputs: &Inputs<'_>, found: &Found, verdict: &str, causes: &[Cause], shr
                 true if found.suspect.is_some() || found.contradicting.is_some() => {
                     "Beside the effects that come nearest, nothing is left that is more than is allowed for.".into()
                 }
+                true if left => format!("No effect of the catalogue `{catalogue}` explains the gap: what is left is no chance."),
                 true => format!("Beside that, nothing is left that an effect of the catalogue `{catalogue}` should explain."),
                 false => format!("No effect of the catalogue `{catalogue}` explains the gap. It is left in {}.", named.join(", ")),
             });

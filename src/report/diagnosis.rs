@@ -155,15 +155,15 @@ fn places(found: &Diagnosis) -> Chapter {
 fn invariants(all: &[Invariant], named: bool) -> Table {
     let rows = all.iter().map(|one| {
         let number = |value: f64| format!("{} {}", number::significant(value, 3), one.unit);
-        let off = |value: f64| if one.allowed > 0.0 { number::fixed(value.abs() / one.allowed, 1) } else { number::NONE.to_owned() };
+        let off = |value: f64, allowed: f64| if allowed > 0.0 { number::fixed(value.abs() / allowed, 1) } else { number::NONE.to_owned() };
         let mut cells = vec![one.name.clone(), one.parity.to_owned(), number(one.before)];
         cells.extend(named.then(|| number(one.after)));
-        cells.extend([number(one.allowed), off(one.before)]);
-        cells.extend(named.then(|| off(one.after)));
+        cells.extend([number(one.allowed), off(one.before, one.allowed)]);
+        cells.extend(named.then(|| off(one.after, one.allowed_after)));
         cells
     });
     let caption = "Sums of quasi-static forces that only some causes can move, measured - simulated, mean over the sections; \
-                   allowed is one standard deviation, in which it is counted how far off they are";
+                   allowed is one standard deviation, in which it is counted how far off they are (after: as it is beside the effects)";
     let mut head = vec![Head::text("Sum"), Head::text("To which side"), Head::number("As simulated")];
     head.extend(named.then(|| Head::number("With the effects")));
     head.extend([Head::number("Allowed"), Head::number(if named { "Off before" } else { "Off" })]);

@@ -107,6 +107,8 @@ pub struct Invariant {
     pub after: f64,
     /// One standard deviation of what is allowed for.
     pub allowed: f64,
+    /// The same beside the causes.
+    pub allowed_after: f64,
 }
 
 /// How a difference changes with something that the section table says, over all sections: generalised least squares on that alone.

@@ -8,6 +8,7 @@ use fishplate::data::Campaign;
 use fishplate::diagnose::run::{Found, Inputs, find};
 use fishplate::diagnose::settings::Settings;
 use fishplate::diagnose::standing::Reference;
+use fishplate::diagnose::trends::certain;
 use fishplate::effects::{Channel, Signals};
 use fishplate::library;
 use fishplate::problem::{Problem, Problems};
@@ -207,6 +208,21 @@ fn tolerances_are_weighed_as_they_act_beside_what_is_found() {
     assert!((first - wanted).abs() > 0.01, "the test tells nothing");
 }
 
+/// Of a tolerance that each section has for itself, seven tenths are common to all: a column over all sections of 0.7 standard
+/// deviations, and a whole one in each.
+#[test]
+fn of_a_tolerance_of_single_sections_all_have_a_part_in_common() {
+    let effects = EFFECTS.replace("default: 0.05,", "default: 0.05, each section: true, shared: 0.7,");
+    let found = found(&effects, NOTHING);
+    let whole = LOADS.map(|load| RISE_SD * SLACK * RISE * load * load);
+    assert_eq!((found.covariance.shared.len(), found.covariance.inside.len()), (1, LOADS.len()));
+    for (at, whole) in whole.iter().enumerate() {
+        assert!((found.covariance.shared[0][at] - 0.7 * whole).abs() < 1e-6 * whole);
+        let (section, own) = &found.covariance.inside[at];
+        assert!(*section == at && (own[0] - whole).abs() < 1e-6 * whole);
+    }
+}
+
 /// Half a standard deviation of the rise is expected, and there. Without slack that is little; with the slack that is found it is nine
 /// times as much, and that is taken off: the size is that of generalised least squares with both as they act there.
 #[test]
@@ -269,6 +285,16 @@ fn a_difference_that_grows_with_a_column_is_told_with_its_slope() {
     let error = (aa / (aa * bb - ab * ab)).sqrt();
     assert!((load.before.high - wanted - 1.645 * error).abs() < 1e-6, "{} for {}", load.before.high, wanted + 1.645 * error);
     assert!((over("the order of the sections").before.change - wanted).abs() < 1e-6);
+    // 12.6 standard errors: no chance among a few trends. Nothing grows with nothing.
+    // Six trends: their chance is below 1e-5 from 4.79 standard errors on, which lies between 1.26 and 1.28 times the stiffness.
+    let (head, tail) = (EFFECTS.find("effects:").unwrap(), EFFECTS.find("diagnosis:").unwrap());
+    let no_effects = format!("{}effects: {{}}\n{}", &EFFECTS[..head], &EFFECTS[tail..]);
+    for (stiffness, sure) in [(1.26, false), (1.28, true)] {
+        let (found, settings) = found_by(&no_effects, Truth { stiffness, ..NOTHING }, &[]);
+        let errors = (stiffness - 1.0) / 0.2 * wanted / error;
+        assert!(found.chosen.members.is_empty() && (errors > 4.79) == sure, "{errors}");
+        assert_eq!(certain(&fishplate::diagnose::trends::trends(&settings, &found, &Vec::new()).0), sure);
+    }
     assert_eq!(over("1 / load").from, "load 4.5", "the reciprocal is least where the load is most");
     assert!(trends.iter().all(|trend| trend.covariate != "zone"), "what is the same everywhere is no covariate");
     assert!(together.iter().any(|pair| pair.starts_with("the order of the sections and load (1.00)")), "{together:?}");

@@ -91,8 +91,8 @@ pub struct Tolerance {
     pub expected: f64,
     /// Whether each section has its own.
     pub per_section: bool,
-    /// Whether all sections share one.
-    pub shared: bool,
+    /// How much of one standard deviation all sections have in common, from 0 to 1.
+    pub shared: f64,
     /// Whether each parameter that it scales is looked at alone, as a cause that no effect stands for.
     pub suspects: bool,
 }

@@ -227,7 +227,10 @@ impl Reader<'_> {
             let mut map = |key: &str| node.get(key).map_or_else(Vec::new, |node| self.values(node));
             let (adds, sets) = (map("adds"), map("sets"));
             let per_section = self.flag(node, "each section");
-            let shared = node.get("shared").is_none() && !per_section || self.flag(node, "shared");
+            let shared = self.spread(node, "shared", if per_section { 0.0 } else { 1.0 });
+            if let Some(found) = node.get("shared").filter(|_| shared > 1.0) {
+                self.outside("`shared` is how much of one standard deviation all sections have in common, from 0 to 1", found);
+            }
             settings.tolerances.push(Tolerance {
                 name: key.text.clone(),
                 unit: self.unit(node),
@@ -390,6 +393,7 @@ diagnosis:
             ("bands: 2,", "bands: 1.5,", "how many of the 2 bands", "8:50"),
             ("level sd: 0.2", "level sd: -0.2", "cannot be negative", "8:63"),
             ("default: 0.1", "default: -0.1", "cannot be negative", "9:32"),
+            ("default: 0.1", "default: 0.1, shared: 1.5", "from 0 to 1", "9:45"),
             ("mass: 1", "mass: much", "`mass` needs a number", "9:50"),
             ("sd: [0.1, 0.2]", "sd: [0.1, 0.2, 0.3]", "one for each of the 2 bands", "10:55"),
             ("sd: [0.1, 0.2]", "sd: [0.1, -0.2]", "none of them negative", "10:55"),
