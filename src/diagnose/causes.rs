@@ -7,7 +7,7 @@ use super::fit::Fitted;
 use super::run::{Found, Inputs};
 use super::stability::Stability;
 use crate::effects::Action;
-use crate::result::diagnosis::{Cause, NamedEffect, Value};
+use crate::result::diagnosis::{Cause, NamedEffect, Told, Value};
 
 /// A set of effects as a cause.
 #[must_use]
@@ -18,19 +18,17 @@ pub fn cause(inputs: &Inputs<'_>, found: &Found, members: &[Fitted], rank: usize
 }
 
 fn in_words(effect: &NamedEffect) -> String {
-    let values = effect.parameters.iter().map(|(name, value)| {
+    let values = effect.told().into_iter().map(|Told { parameter, value, channels }| {
         let interval = match (value.low, value.high) {
             (Some(low), Some(high)) => format!(" ({} to {})", short(low), short(high)),
             _ => String::new(),
         };
-        let number = value.value.as_f64().map_or_else(|| value.value.to_string(), short);
+        let number = value.value.as_f64().map_or_else(|| value.text(), short);
         let unit = if value.unit == "-" { String::new() } else { format!(" {}", value.unit) };
-        format!("{name} {number}{unit}{interval}")
+        let on = if channels.is_empty() { String::new() } else { format!(" on {}", channels.join(", ")) };
+        format!("{parameter} {number}{unit}{interval}{on}")
     });
-    let confined = effect.confined_to.as_ref().map_or(String::new(), |confined| {
-        let parts: Vec<String> = confined.iter().map(|(column, values)| format!("{column} {values}")).collect();
-        format!(", only in {}", parts.join(", "))
-    });
+    let confined = effect.confined().map_or(String::new(), |confined| format!(", only in {confined}"));
     format!("{}: {}{confined}", effect.title, values.collect::<Vec<_>>().join(", "))
 }
 
@@ -83,6 +81,7 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
         name: of.effect.clone(),
         title: effect.map_or_else(|| of.effect.clone(), |effect| effect.title.clone()),
         parameters,
+        channels: of.channels.clone(),
         confined_to: found.masks[member.mask].confined.as_ref().map(|(column, values)| confined(column, values)),
         stability: stability.map(|stability| stability.first),
         added_by: match effect.map(|effect| &effect.action) {

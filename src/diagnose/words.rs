@@ -248,14 +248,17 @@ fn says(
         }
     }
     if let Some(shrink) = shrink {
-        lines.push(format!(
-            "On sections kept out of the fit the gap falls from {:.3} to {:.3}: {:.0} % is removed ({:.0} to {:.0} %).",
-            shrink.before,
-            shrink.after,
-            100.0 * shrink.fraction_removed,
-            100.0 * shrink.low,
-            100.0 * shrink.high
-        ));
+        let (before, after, low, high) = (shrink.before, shrink.after, 100.0 * shrink.low, 100.0 * shrink.high);
+        let removed = 100.0 * shrink.fraction_removed;
+        lines.push(match removed < 0.0 {
+            false => format!(
+                "On sections kept out of the fit the gap falls from {before:.3} to {after:.3}: {removed:.0} % is removed ({low:.0} to {high:.0} %)."
+            ),
+            true => format!(
+                "On sections kept out of the fit the gap grows from {before:.3} to {after:.3}: by {:.0} % ({:.0} to {:.0} %).",
+                -removed, -high, -low
+            ),
+        });
     }
     lines
 }

@@ -6,7 +6,7 @@ use crate::report::study::{Chapter, Document, Head, Item, Table};
 use crate::report::view::{self, Fact, Finding};
 use crate::result::Certification;
 use crate::result::diagnosis::{
-    Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Trend, Value, Where,
+    Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Told, Trend, Value, Where,
 };
 
 /// Cells listed; all of them stand in diagnosis.json.
@@ -106,11 +106,11 @@ fn places(found: &Diagnosis) -> Chapter {
             place.wavelength_or_band.clone(),
             place.zones.join(", "),
             if place.unit == "-" {
-                format!("{} %", number::fixed(100.0 * place.difference, 0))
+                number::with_unit(&number::fixed(100.0 * place.difference, 0), "%")
             } else {
-                format!("{} {}", number::significant(place.difference, 3), place.unit)
+                number::with_unit(&number::significant(place.difference, 3), &place.unit)
             },
-            format!("{} %", number::fixed(100.0 * place.share_of_gap, 1)),
+            number::with_unit(&number::fixed(100.0 * place.share_of_gap, 1), "%"),
             if place.p_value < 1e-6 { "< 0.000001".into() } else { number::significant(place.p_value, 2) },
             if place.significant { "yes".into() } else { "no".into() },
         ]
@@ -154,7 +154,7 @@ fn places(found: &Diagnosis) -> Chapter {
 /// Columns with the effects where there are any.
 fn invariants(all: &[Invariant], named: bool) -> Table {
     let rows = all.iter().map(|one| {
-        let number = |value: f64| format!("{} {}", number::significant(value, 3), one.unit);
+        let number = |value: f64| number::with_unit(&number::significant(value, 3), &one.unit);
         let off = |value: f64, allowed: f64| if allowed > 0.0 { number::fixed(value.abs() / allowed, 1) } else { number::NONE.to_owned() };
         let mut cells = vec![one.name.clone(), one.parity.to_owned(), number(one.before)];
         cells.extend(named.then(|| number(one.after)));
@@ -200,7 +200,8 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
             let of = |value: f64| if trend.unit == "-" { number::fixed(100.0 * value, 0) } else { number::significant(value, 2) };
             let unit = if trend.unit == "-" { "%" } else { &trend.unit };
             let mark = if slope.significant { " *" } else { "" };
-            format!("{} ({} to {}) {unit}{mark}", of(slope.change), of(slope.low), of(slope.high))
+            let between = format!("({} to {})", of(slope.low), of(slope.high));
+            format!("{} {}{mark}", of(slope.change), number::with_unit(&between, unit))
         };
         let last = if named { &trend.after } else { &trend.before };
         let mut cells =
@@ -262,8 +263,8 @@ fn shapes(all: &[Shape]) -> Table {
 }
 
 fn value(value: &Value) -> String {
-    let unit = if value.unit == "-" { String::new() } else { format!(" {}", value.unit) };
-    value.value.as_f64().map_or_else(|| value.value.to_string(), |number| format!("{}{unit}", number::significant(number, 4)))
+    let printed = |number: f64| number::with_unit(&number::significant(number, 4), &value.unit);
+    value.value.as_f64().map_or_else(|| value.text(), printed)
 }
 
 fn interval(value: &Value) -> String {
@@ -276,16 +277,18 @@ fn interval(value: &Value) -> String {
 fn cause_rows(cause: &Cause) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     for effect in &cause.effects {
-        for (name, given) in &effect.parameters {
+        for (at, Told { parameter, value: given, channels }) in effect.told().into_iter().enumerate() {
             let first = rows.is_empty();
+            let on = if channels.is_empty() { String::new() } else { format!(" on {}", channels.join(", ")) };
+            let confined = effect.confined().map_or(String::new(), |confined| format!(", only in {confined}"));
             let only = |text: String| if first { text } else { String::new() };
             rows.push(vec![
                 only(cause.rank.to_string()),
-                effect.title.clone(),
-                name.clone(),
+                if at == 0 { format!("{}{on}{confined}", effect.title) } else { String::new() },
+                parameter,
                 value(given),
                 interval(given),
-                only(format!("{} %", number::fixed(100.0 * cause.probability, 1))),
+                only(number::with_unit(&number::fixed(100.0 * cause.probability, 1), "%")),
                 only(number::fixed(cause.evidence, 0)),
                 only(if cause.in_ambiguity_set { "yes".into() } else { "no".into() }),
             ]);

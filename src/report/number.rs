@@ -94,6 +94,11 @@ pub fn count(value: u64) -> String {
     text
 }
 
+/// A printed number with its unit, which a line never breaks apart; a plain number stays alone.
+pub fn with_unit(number: &str, unit: &str) -> String {
+    if unit.is_empty() || unit == "-" { number.to_owned() } else { format!("{number}\u{a0}{}", self::unit(unit)) }
+}
+
 /// A unit as printed: `m/s^2` becomes `m/s²`, the plain number's `-` an en dash.
 pub fn unit(text: &str) -> String {
     if text.is_empty() || text == "-" {
@@ -216,6 +221,8 @@ mod tests {
         assert_eq!(unit("m/s^2"), "m/s²");
         assert_eq!(unit("kg*m^-1"), "kg·m⁻¹");
         assert_eq!(unit("-"), "–");
+        assert_eq!(with_unit("9.81", "m/s^2"), "9.81\u{a0}m/s²");
+        assert_eq!(with_unit("0.35", "-"), "0.35");
         assert_eq!(in_text("-12.5"), "−12.5");
         assert_eq!(in_text("a-b"), "a-b");
         assert!(!is_number("inf") && !is_number("") && !is_number("right"));

@@ -204,6 +204,9 @@ pub struct NamedEffect {
     pub name: String,
     pub title: String,
     pub parameters: IndexMap<String, Value>,
+    /// Channels that it acts on.
+    #[serde(skip)]
+    pub channels: Vec<String>,
     pub confined_to: Option<IndexMap<String, serde_json::Value>>,
     /// How it was added: by which simulator, or an operation on the signals.
     pub added_by: String,
@@ -211,8 +214,67 @@ pub struct NamedEffect {
     pub stability: Option<f64>,
 }
 
+/// Parameters as they are told: what several channels have alike is one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Told<'a> {
+    pub parameter: String,
+    pub value: &'a Value,
+    /// Channels that it is of.
+    pub channels: Vec<String>,
+}
+
+impl NamedEffect {
+    /// Its parameters, to be read.
+    #[must_use]
+    pub fn told(&self) -> Vec<Told<'_>> {
+        let mut told: Vec<Told<'_>> = Vec::new();
+        for (name, value) in &self.parameters {
+            // A list of names says on which channels the one before acts.
+            if let (Some(names), Some(last)) = (value.names(), told.last_mut()) {
+                last.channels = names;
+                continue;
+            }
+            match (name.rsplit_once('.').filter(|(_, channel)| self.channels.iter().any(|known| known == channel)), told.last_mut()) {
+                (Some((of, channel)), Some(last)) if last.parameter == of && last.value == value => last.channels.push(channel.into()),
+                (Some((of, channel)), _) => told.push(Told { parameter: of.into(), value, channels: vec![channel.into()] }),
+                (None, _) => told.push(Told { parameter: name.clone(), value, channels: Vec::new() }),
+            }
+        }
+        told
+    }
+
+    /// Where it is confined to, such as `zones 3, 4`.
+    #[must_use]
+    pub fn confined(&self) -> Option<String> {
+        let parts = self.confined_to.as_ref()?.iter().map(|(column, values)| format!("{column} {}", flat(values)));
+        Some(parts.collect::<Vec<_>>().join(", "))
+    }
+}
+
+impl Value {
+    /// What it says where it is no number.
+    #[must_use]
+    pub fn text(&self) -> String {
+        flat(&self.value)
+    }
+
+    /// The names that it lists.
+    fn names(&self) -> Option<Vec<String>> {
+        self.value.as_array()?.iter().map(|name| name.as_str().map(str::to_owned)).collect()
+    }
+}
+
+/// What a list holds, lists in it as well, with commas.
+fn flat(value: &serde_json::Value) -> String {
+    match value {
+        serde_json::Value::Array(all) => all.iter().map(flat).collect::<Vec<_>>().join(", "),
+        serde_json::Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
 /// A parameter with its interval (90 %).
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Value {
     pub value: serde_json::Value,
     pub unit: String,
@@ -326,4 +388,42 @@ pub struct How {
 /// Names that are whole numbers are written as such.
 fn as_numbers<S: serde::Serializer>(names: &[String], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(names.iter().map(|name| name.parse::<i64>().map_or_else(|_| name.as_str().into(), serde_json::Value::from)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn effect(parameters: &[(&str, serde_json::Value)]) -> NamedEffect {
+        let value = |value: &serde_json::Value| Value { value: value.clone(), unit: "-".into(), low: None, high: None };
+        NamedEffect {
+            name: "effect".into(),
+            title: "Effect".into(),
+            channels: vec!["Y_1R".into(), "Y_1L".into(), "Q_1R".into()],
+            parameters: parameters.iter().map(|(name, of)| ((*name).to_owned(), value(of))).collect(),
+            confined_to: Some(IndexMap::from([("zones".into(), json!([3, 4]))])),
+            added_by: String::new(),
+            stability: None,
+        }
+    }
+
+    #[test]
+    fn what_channels_have_alike_is_told_once() {
+        let told = |parameters: &[(&str, serde_json::Value)]| {
+            let effect = effect(parameters);
+            let one = |told: Told<'_>| format!("{} {} on {}", told.parameter, told.value.text(), told.channels.join(" "));
+            effect.told().into_iter().map(one).collect::<Vec<_>>()
+        };
+        let alike = [("measurement.gain.Y_1R", json!(0.8)), ("measurement.gain.Y_1L", json!(0.8)), ("measurement.gain.Q_1R", json!(0.8))];
+        assert_eq!(told(&alike), ["measurement.gain 0.8 on Y_1R Y_1L Q_1R"]);
+        assert_eq!(told(&alike[..1]), ["measurement.gain 0.8 on Y_1R"]);
+        // What only has the same value is another parameter.
+        let others = [("out_of_roundness.wheelset", json!(2)), ("out_of_roundness.harmonic", json!(2))];
+        assert_eq!(told(&others), ["out_of_roundness.wheelset 2 on ", "out_of_roundness.harmonic 2 on "]);
+        let low_pass = [("measurement.lowpass", json!(6)), ("measurement.lowpass_channels", json!(["Y_1R", "Y_1L"]))];
+        assert_eq!(told(&low_pass), ["measurement.lowpass 6 on Y_1R Y_1L"]);
+        assert_eq!(told(&[("measurement.swap", json!([["Y_1R", "Y_2R"]]))]), ["measurement.swap Y_1R, Y_2R on "]);
+        assert_eq!(effect(&[]).confined().as_deref(), Some("zones 3, 4"));
+    }
 }

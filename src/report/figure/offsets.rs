@@ -14,8 +14,7 @@ const LABELS: f64 = 26.0;
 
 /// Statistics of one selection: a mark for every offset, one panel for means and one for everything else.
 pub fn selection(study: &SyncStudy) -> String {
-    let name = |at: &AtOffset| format!("{} {}", number::significant(at.offset, 4), study.axis_unit);
-    let entries = study.offsets.iter().enumerate().map(|(n, at)| Entry::mark(Mark::nth(n), color(n), name(at)));
+    let entries = study.offsets.iter().enumerate().map(|(n, at)| Entry::mark(Mark::nth(n), color(n), name(study, at)));
     let legend = Legend::new(entries.collect(), WIDTH - 40.0);
     let top = legend.height() + 8.0;
     let of = |mean: bool| -> Vec<(usize, String)> {
@@ -41,6 +40,10 @@ pub fn selection(study: &SyncStudy) -> String {
     canvas.finish()
 }
 
+fn name(study: &SyncStudy, at: &AtOffset) -> String {
+    number::with_unit(&number::significant(at.offset, 4), &study.axis_unit)
+}
+
 fn panel(canvas: &mut Canvas, study: &SyncStudy, (title, signed): (&str, bool), statistics: &[(usize, String)], top: f64) {
     let value = |at: &AtOffset, statistic: usize| at.selected.get(statistic).and_then(|one| one.normalised);
     let values = study.offsets.iter().flat_map(|at| statistics.iter().filter_map(move |(statistic, _)| value(at, *statistic)));
@@ -64,7 +67,7 @@ fn panel(canvas: &mut Canvas, study: &SyncStudy, (title, signed): (&str, bool), 
         for (n, at) in study.offsets.iter().enumerate() {
             let Some(value) = value(at, *statistic) else { continue };
             let x = frame.x.at(place as f64 + 0.12 + 0.76 * (n as f64 + 0.5) / count);
-            let shown = format!("{label}, {} {}: {}", number::significant(at.offset, 4), study.axis_unit, number::fixed(value, 3));
+            let shown = format!("{label}, {}: {}", name(study, at), number::fixed(value, 3));
             canvas.group(&Group { class: "mark", title: Some(&shown), ..Group::default() }, |layer| {
                 layer.mark(Mark::nth(n), (x, y.at(value.clamp(y.low, y.high))), 1.6, color(n));
             });

@@ -83,11 +83,7 @@ pub(super) fn pair_group<'a>(pair: &'a PairValue, title: &'a str) -> Group<'a> {
 
 /// What is shown while the pointer rests on a pair.
 pub(super) fn tooltip(pair: &PairValue, unit: &str, decimals: usize) -> String {
-    let shown = |value: f64| {
-        let unit = number::unit(unit);
-        let value = number::fixed(value, decimals);
-        if unit == number::NONE { value } else { format!("{value} {unit}") }
-    };
+    let shown = |value: f64| number::with_unit(&number::fixed(value, decimals), unit);
     let mut text = format!("{}, {}", pair.section, pair.signal);
     if let Some(zone) = &pair.zone {
         text.push_str(&format!(", zone {zone}"));

@@ -7,7 +7,7 @@ use crate::report::view::Fact;
 use crate::result::study::{AtOffset, SyncStudy};
 
 fn shown(found: &SyncStudy, offset: f64) -> String {
-    format!("{} {}", number::significant(offset, 4), number::unit(&found.axis_unit))
+    number::with_unit(&number::significant(offset, 4), &found.axis_unit)
 }
 
 pub fn opening(found: &SyncStudy) -> Opening {
