@@ -40,7 +40,7 @@ fn shapes<'a>(svg: &'a str, class: &str) -> Vec<(&'a str, Tag<'a>)> {
 /// `simulated 1.25 kN` in a title.
 fn value(title: &str, side: &str) -> f64 {
     let (_, rest) = title.split_once(&format!("{side} ")).expect("the side is in the title");
-    let number = rest.split([' ', ',']).next().unwrap_or_default();
+    let number = rest.split(|c: char| c.is_whitespace() || c == ',').next().unwrap_or_default();
     number.replace('−', "-").parse().expect("a number")
 }
 
