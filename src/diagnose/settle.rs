@@ -40,6 +40,17 @@ impl Weighed {
         let whitener = covariance.whitener();
         Self { z: whitener.apply(&difference), difference, covariance, whitener, chosen: self.chosen }
     }
+
+    /// A size in sections that the data chose, less what the other sections ask for to the same side: they are not chosen for what all
+    /// have. The size itself where nothing was chosen.
+    fn beside_the_others(&self, of: &Candidate, mask: &Mask, size: f64) -> f64 {
+        let Some(neutral) = of.neutral().filter(|_| mask.asked_by.is_some()) else { return size };
+        let others = Mask { confined: None, sections: mask.sections.iter().map(|inside| !inside).collect(), asked_by: None };
+        let fitter = Fitter::new(&self.whitener, std::slice::from_ref(of), vec![others]);
+        let elsewhere = fitter.fit(&self.chosen.rest, 0, 0).map_or(0.0, |fit| fit.size - neutral);
+        let here = size - neutral;
+        neutral + here.signum() * (here.abs() - (here.signum() * elsewhere).clamp(0.0, here.abs()))
+    }
 }
 
 /// What the covariance without effects was made of.
@@ -110,10 +121,12 @@ impl Settled<'_> {
             let members = &now.chosen.members;
             let weak = |at: usize| {
                 let (member, of) = (&members[at], &candidates[members[at].candidate]);
-                let (away, needed) = ((self.far)(of, member.size), bars.tolerance_sd + masks[member.mask].picked());
+                let contrast = now.beside_the_others(of, &masks[member.mask], member.size);
+                let (away, needed) = ((self.far)(of, contrast), bars.tolerance_sd + masks[member.mask].picked());
+                let from = if masks[member.mask].asked_by.is_some() { " from that of the other sections" } else { "" };
                 let reason = match () {
                     () if member.evidence < bars.least(of, members.len()) => "it has too little evidence".to_string(),
-                    () if away < needed => format!("its size is {away:.1} declared standard deviations off, not {needed:.1}"),
+                    () if away < needed => format!("its size is {away:.1} declared standard deviations off{from}, not {needed:.1}"),
                     () => return None,
                 };
                 Some((at, format!("with the tolerances as they act beside it, {reason}")))
@@ -235,4 +248,33 @@ pub fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], fits: &[Fit
         }
     }
     added
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::candidates::Node;
+    use crate::diagnose::fit::less;
+
+    /// One feature in each of eight sections, of unit variance: three that the data chose ask for 5, the others for 2, or for -2.
+    #[test]
+    fn what_all_sections_have_is_no_reason_to_choose_some() {
+        let covariance = Covariance { diagonal: vec![1.0; 8], inside: Vec::new(), shared: Vec::new(), size: 1 };
+        let nodes = [-10.0, 0.0, 10.0].map(|size| Node { size, change: if size == 0.0 { Vec::new() } else { vec![size; 8] } });
+        let candidates = [Candidate::path("effect", nodes.to_vec())];
+        let size = |others: f64, asked_by: Option<usize>| {
+            let difference: Vec<f64> = (0..8).map(|at| if at < 3 { 5.0 } else { others }).collect();
+            let mask = Mask { confined: None, sections: (0..8).map(|at| at < 3).collect(), asked_by };
+            let whitener = covariance.whitener();
+            let member = Fitter::new(&whitener, &candidates, vec![mask.clone()]).fit(&difference, 0, 0).expect("a path");
+            let chosen = Chosen { rest: less(&difference, &member.whitened), members: vec![member.clone()] };
+            let z = difference.clone();
+            let weighed = Weighed { difference, covariance: covariance.clone(), whitener, z, chosen };
+            weighed.beside_the_others(&candidates[0], &mask, member.size)
+        };
+        for (others, asked_by, wanted) in [(2.0, Some(0), 3.0), (-2.0, Some(0), 5.0), (6.0, Some(0), 0.0), (2.0, None, 5.0)] {
+            let found = size(others, asked_by);
+            assert!((found - wanted).abs() < 1e-9, "{found} for {wanted}");
+        }
+    }
 }
