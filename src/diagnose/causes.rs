@@ -7,7 +7,7 @@ use super::fit::Fitted;
 use super::run::{Found, Inputs};
 use super::stability::Stability;
 use crate::effects::Action;
-use crate::result::diagnosis::{Cause, NamedEffect, Told, Value};
+use crate::result::diagnosis::{Cause, NamedEffect, Value};
 
 /// A set of effects as a cause.
 #[must_use]
@@ -18,18 +18,17 @@ pub fn cause(inputs: &Inputs<'_>, found: &Found, members: &[Fitted], rank: usize
 }
 
 fn in_words(effect: &NamedEffect) -> String {
-    let values = effect.told().into_iter().map(|Told { parameter, value, channels }| {
+    let values = effect.told().into_iter().map(|told| {
+        let (parameter, value) = (&told.parameter, told.value);
         let interval = match (value.low, value.high) {
             (Some(low), Some(high)) => format!(" ({} to {})", short(low), short(high)),
             _ => String::new(),
         };
         let number = value.value.as_f64().map_or_else(|| value.text(), short);
         let unit = if value.unit == "-" { String::new() } else { format!(" {}", value.unit) };
-        let on = if channels.is_empty() { String::new() } else { format!(" on {}", channels.join(", ")) };
-        format!("{parameter} {number}{unit}{interval}{on}")
+        format!("{parameter} {number}{unit}{interval}{}", told.on())
     });
-    let confined = effect.confined().map_or(String::new(), |confined| format!(", only in {confined}"));
-    format!("{}: {}{confined}", effect.title, values.collect::<Vec<_>>().join(", "))
+    format!("{}: {}{}", effect.title, values.collect::<Vec<_>>().join(", "), effect.only_in())
 }
 
 /// Four significant digits.

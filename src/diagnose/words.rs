@@ -8,7 +8,6 @@ use super::lack::{LACK, unexplained};
 use super::rivals::{ambiguity, discriminating, probabilities};
 use super::run::{Found, Inputs, chi, deviations};
 use super::search::TOLERANCE_SD;
-use super::stability::Stability;
 use super::suspects::Suspect;
 use crate::result::diagnosis::{Cause, Diagnosis, Fault, How, Nearest, Shrink, Vetoed};
 use crate::simulate::Units;
@@ -29,12 +28,13 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let (mut trends, together) = super::trends::trends(inputs.settings, found, units);
     // No chance, whatever share of the gap it is.
     let left = super::trends::certain(&trends) || super::invariants::broken(&invariants);
+    // The least share of the resamples in which a member is first, where that is too few.
+    let least = found.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
     let verdict = match () {
         () if !named && !lacking && !left && found.seen.faults.is_empty() => "no significant gap",
         () if !named || left => "unexplained",
         () if too_much || found.suspect.as_ref().is_some_and(Suspect::beats) || found.contradicting.is_some() => "unexplained",
-        () if found.suspect.is_some() || ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
-        () if found.stability.iter().any(Stability::fails) => "ambiguous",
+        () if found.suspect.is_some() || least.is_some() || ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
         () => "explained",
     };
     let mut causes = vec![];
@@ -45,7 +45,6 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         causes.extend(ambiguous.into_iter().filter(|rival| verdict != "unexplained" || rival.evidence <= best));
         causes.iter_mut().enumerate().for_each(|(at, cause)| cause.rank = at + 1);
     }
-    let least = found.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
     probabilities(&mut causes, verdict, found.suspect.is_some(), least);
     let discriminating_measurement = discriminating(inputs, found, &causes, verdict);
     let radius = |key: &str| super::run::value_of(inputs.campaign, key);

@@ -6,7 +6,7 @@ use crate::report::study::{Chapter, Document, Head, Item, Table};
 use crate::report::view::{self, Fact, Finding};
 use crate::result::Certification;
 use crate::result::diagnosis::{
-    Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Told, Trend, Value, Where,
+    Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Trend, Value, Where,
 };
 
 /// Cells listed; all of them stand in diagnosis.json.
@@ -277,17 +277,15 @@ fn interval(value: &Value) -> String {
 fn cause_rows(cause: &Cause) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     for effect in &cause.effects {
-        for (at, Told { parameter, value: given, channels }) in effect.told().into_iter().enumerate() {
+        for (at, told) in effect.told().into_iter().enumerate() {
             let first = rows.is_empty();
-            let on = if channels.is_empty() { String::new() } else { format!(" on {}", channels.join(", ")) };
-            let confined = effect.confined().map_or(String::new(), |confined| format!(", only in {confined}"));
             let only = |text: String| if first { text } else { String::new() };
             rows.push(vec![
                 only(cause.rank.to_string()),
-                if at == 0 { format!("{}{on}{confined}", effect.title) } else { String::new() },
-                parameter,
-                value(given),
-                interval(given),
+                if at == 0 { format!("{}{}{}", effect.title, told.on(), effect.only_in()) } else { String::new() },
+                told.parameter.clone(),
+                value(told.value),
+                interval(told.value),
                 only(number::with_unit(&number::fixed(100.0 * cause.probability, 1), "%")),
                 only(number::fixed(cause.evidence, 0)),
                 only(if cause.in_ambiguity_set { "yes".into() } else { "no".into() }),

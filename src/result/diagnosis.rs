@@ -243,11 +243,20 @@ impl NamedEffect {
         told
     }
 
-    /// Where it is confined to, such as `zones 3, 4`.
+    /// Where it is confined to, such as `, only in zones 3, 4`; nothing where it is everywhere.
     #[must_use]
-    pub fn confined(&self) -> Option<String> {
-        let parts = self.confined_to.as_ref()?.iter().map(|(column, values)| format!("{column} {}", flat(values)));
-        Some(parts.collect::<Vec<_>>().join(", "))
+    pub fn only_in(&self) -> String {
+        let parts = self.confined_to.iter().flatten().map(|(column, values)| format!("{column} {}", flat(values)));
+        let parts = parts.collect::<Vec<_>>().join(", ");
+        if parts.is_empty() { parts } else { format!(", only in {parts}") }
+    }
+}
+
+impl Told<'_> {
+    /// Its channels, such as ` on Y_1R, Y_1L`; nothing where it has none.
+    #[must_use]
+    pub fn on(&self) -> String {
+        if self.channels.is_empty() { String::new() } else { format!(" on {}", self.channels.join(", ")) }
     }
 }
 
@@ -412,18 +421,19 @@ mod tests {
     fn what_channels_have_alike_is_told_once() {
         let told = |parameters: &[(&str, serde_json::Value)]| {
             let effect = effect(parameters);
-            let one = |told: Told<'_>| format!("{} {} on {}", told.parameter, told.value.text(), told.channels.join(" "));
+            let one = |told: Told<'_>| format!("{} {}{}", told.parameter, told.value.text(), told.on());
             effect.told().into_iter().map(one).collect::<Vec<_>>()
         };
         let alike = [("measurement.gain.Y_1R", json!(0.8)), ("measurement.gain.Y_1L", json!(0.8)), ("measurement.gain.Q_1R", json!(0.8))];
-        assert_eq!(told(&alike), ["measurement.gain 0.8 on Y_1R Y_1L Q_1R"]);
+        assert_eq!(told(&alike), ["measurement.gain 0.8 on Y_1R, Y_1L, Q_1R"]);
         assert_eq!(told(&alike[..1]), ["measurement.gain 0.8 on Y_1R"]);
         // What only has the same value is another parameter.
         let others = [("out_of_roundness.wheelset", json!(2)), ("out_of_roundness.harmonic", json!(2))];
-        assert_eq!(told(&others), ["out_of_roundness.wheelset 2 on ", "out_of_roundness.harmonic 2 on "]);
+        assert_eq!(told(&others), ["out_of_roundness.wheelset 2", "out_of_roundness.harmonic 2"]);
         let low_pass = [("measurement.lowpass", json!(6)), ("measurement.lowpass_channels", json!(["Y_1R", "Y_1L"]))];
-        assert_eq!(told(&low_pass), ["measurement.lowpass 6 on Y_1R Y_1L"]);
-        assert_eq!(told(&[("measurement.swap", json!([["Y_1R", "Y_2R"]]))]), ["measurement.swap Y_1R, Y_2R on "]);
-        assert_eq!(effect(&[]).confined().as_deref(), Some("zones 3, 4"));
+        assert_eq!(told(&low_pass), ["measurement.lowpass 6 on Y_1R, Y_1L"]);
+        assert_eq!(told(&[("measurement.swap", json!([["Y_1R", "Y_2R"]]))]), ["measurement.swap Y_1R, Y_2R"]);
+        assert_eq!(effect(&[]).only_in(), ", only in zones 3, 4");
+        assert_eq!(NamedEffect { confined_to: None, ..effect(&[]) }.only_in(), "");
     }
 }
