@@ -111,7 +111,7 @@ fn places(found: &Diagnosis) -> Chapter {
                 number::with_unit(&number::significant(place.difference, 3), &place.unit)
             },
             number::with_unit(&number::fixed(100.0 * place.share_of_gap, 1), "%"),
-            if place.p_value < 1e-6 { "< 0.000001".into() } else { number::significant(place.p_value, 2) },
+            if place.p_value < 1e-6 { "<\u{a0}0.000001".into() } else { number::significant(place.p_value, 2) },
             if place.significant { "yes".into() } else { "no".into() },
         ]
     });
