@@ -27,7 +27,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let invariants = super::invariants::invariants(inputs.settings, found, units);
     let (mut trends, together) = super::trends::trends(inputs.settings, found, units);
     // No chance, whatever share of the gap it is.
-    let left = super::trends::certain(&trends) || super::invariants::broken(&invariants);
+    let left = super::trends::certain(&trends);
     // The least share of the resamples in which a member is first, where that is too few.
     let least = found.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
     let verdict = match () {
