@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use crate::check::plan::{Parameter, Plan, SetBy};
+use crate::check::plan::{DatumKind, Parameter, Plan, Scalar, SetBy};
 use crate::check::{self, Overrides, diff, family::Family};
 use crate::data::Campaign;
 use crate::data::campaign::Fact;
@@ -18,6 +18,23 @@ pub struct Compiled {
     pub family: Family,
     pub plan: Plan,
     pub graph: Graph,
+}
+
+impl Compiled {
+    /// The text of a section column as one of the words that the protocol declares for it, or why it is none; `None` where it declares
+    /// no words.
+    #[must_use]
+    pub fn word(&self, column: &str, text: &str) -> Option<Result<String, String>> {
+        let datum = self.plan.columns.iter().find(|datum| datum.key == column)?;
+        match (&datum.kind, &datum.default) {
+            (DatumKind::Words(_), Some(Scalar::Word(word))) if text.is_empty() => Some(Ok(word.clone())),
+            (DatumKind::Words(_), _) => Some(run::scalar(&datum.kind, text).map(|known| match known {
+                Scalar::Word(word) => word,
+                Scalar::Number(_) | Scalar::Flag(_) => text.to_string(),
+            })),
+            _ => None,
+        }
+    }
 }
 
 /// Checks and compiles a protocol with parameters set from outside.

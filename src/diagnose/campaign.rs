@@ -34,8 +34,9 @@ pub struct Outcome {
 ///
 /// # Errors
 /// The campaign cannot be compared or evaluated; a simulation fails.
-pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, sections: Vec<Section>) -> Result<Outcome, Problems> {
+pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Section>) -> Result<Outcome, Problems> {
     let mut problems = Problems::default();
+    super::columns::in_words_of(compiled, inputs.settings, inputs.campaign, &mut sections, &mut problems);
     let (_, mut units, _) = match sections.first() {
         Some(first) => recorded(inputs.campaign, crate::data::RecordKind::Simulation, first).map_err(Problems)?,
         None => return Err(Problems(vec![Problem::error("no-sections", "the campaign has no sections")])),

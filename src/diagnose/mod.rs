@@ -9,6 +9,7 @@ mod campaign;
 pub mod candidates;
 mod causes;
 mod cells;
+mod columns;
 mod converge;
 pub mod covariance;
 pub mod declared;

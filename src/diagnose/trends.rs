@@ -7,14 +7,12 @@ use super::fold::Fold;
 use super::lack::{left, with_room};
 use super::observe::Observations;
 use super::run::Found;
-use super::settings::{Position, Settings};
+use super::settings::{INVERSE, Position, Settings};
 use super::whiten::Covariance;
 use crate::result::diagnosis::{Slope, Trend};
 use crate::simulate::Units;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Before the name of a column whose reciprocal is meant.
-const INVERSE: &str = "1 / ";
 /// Half the width of a 90 % interval, in standard errors.
 const NINETY: f64 = 1.645;
 /// Covariates that go together by more than this cannot be told apart by the campaign.

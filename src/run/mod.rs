@@ -22,7 +22,7 @@ use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::{DataItem, FileHash, QuantityResult, SectionResult, Trace, Verdict, ZoneResult};
 
-pub use facts::Facts;
+pub use facts::{Facts, scalar};
 pub use judge::Judged;
 use pairs::SectionValues;
 use pool::Pool;

@@ -90,16 +90,22 @@ fn diagnose(campaign: &Path, more: &[&str]) -> (Value, Option<i32>) {
     (serde_json::from_str(&fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap(), ran.status.code())
 }
 
-/// A declared tolerance that the catalogue does not know, or in a unit that it cannot be in, is told where it stands. Without a
-/// track nothing is simulated, so that this takes no time.
-#[test]
-fn a_tolerance_that_cannot_be_used_is_told() {
-    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good");
-    let to = folder().join("tolerances");
-    copy(&example, &to);
+/// `examples/coach-good` without a track: nothing is simulated, so that a diagnosis takes no time.
+fn without_track(name: &str) -> PathBuf {
+    let to = folder().join(name);
+    copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good"), &to);
     fs::remove_dir_all(to.join("track")).unwrap();
     let text = fs::read_to_string(to.join("campaign.yaml")).unwrap();
     let text = text.lines().filter(|line| !line.starts_with("track:")).fold(String::new(), |all, line| all + line + "\n");
+    fs::write(to.join("campaign.yaml"), text).unwrap();
+    to
+}
+
+/// A declared tolerance that the catalogue does not know, or in a unit that it cannot be in, is told where it stands.
+#[test]
+fn a_tolerance_that_cannot_be_used_is_told() {
+    let to = without_track("tolerances");
+    let text = fs::read_to_string(to.join("campaign.yaml")).unwrap();
     let run = |from: &str, into: &str| {
         assert!(text.contains(from), "{text}");
         fs::write(to.join("campaign.yaml"), text.replace(from, into)).unwrap();
@@ -169,6 +175,64 @@ fn a_table_of_sections_that_cannot_be_read_is_told_once() {
         assert_eq!(ran.status.code(), Some(2), "{told}");
         assert!(told.contains(says) && told.contains(place) && told.matches("error[").count() == 1, "{told}");
         assert!(!out.exists());
+    }
+}
+
+/// A column that the section table does not have tells no sections apart, and a zone that the protocol does not know is none of its
+/// zones: both are told where they stand, and a zone written `1.0` is zone 1.
+#[test]
+fn columns_that_are_not_there_and_zones_that_are_none_are_told() {
+    let to = without_track("columns");
+    let exchange = |file: &Path, pairs: &[(&str, &str)]| {
+        let text = fs::read_to_string(file).unwrap();
+        pairs.iter().fold(text, |text, (from, into)| {
+            assert!(text.contains(from), "{from} in {text}");
+            text.replacen(from, into, 1)
+        })
+    };
+    let run = |catalogue: &str, table: &str| {
+        let effects = to.with_extension("effects.yaml");
+        fs::write(&effects, catalogue).unwrap();
+        fs::write(to.join("sections.csv"), table).unwrap();
+        let out = to.with_extension("diagnosis");
+        let _ = fs::remove_dir_all(&out);
+        let ran = fishplate(&["diagnose", to.to_str().unwrap(), "--effects", effects.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        (ran.status.code(), String::from_utf8(ran.stderr).unwrap(), fs::read_to_string(out.join("diagnosis.json")).unwrap_or_default())
+    };
+    let catalogue = Path::new(env!("CARGO_MANIFEST_DIR")).join("effects/bogie-vehicle.yaml");
+    let (good, right) = (exchange(&catalogue, &[]), exchange(&to.join("sections.csv"), &[]));
+    let (code, says, found) = run(&good, &right);
+    assert!(code.is_some_and(|code| code <= 1) && !says.contains("unknown-column") && !says.contains("section-data"), "{says}");
+    // As numbers with a point, which is what is left of whole numbers in many a table.
+    let (code_of_numbers, says, same) = run(&good, &right.replace(",1,", ",1.0,").replace(",4,", ",4.0,"));
+    assert!(code_of_numbers == code && !says.contains("section-data") && same == found, "{says}");
+
+    let wrong = exchange(
+        &catalogue,
+        &[
+            ("strata: zone", "strata: zones"),
+            ("[zone, direction]", "[zone, directon]"),
+            ("cant deficiency, speed", "cant defficiency, speed"),
+        ],
+    );
+    let (code, says, _) = run(&wrong, &right.replacen("S02,1,", "S02,x,", 1));
+    assert!(code.is_some_and(|code| code <= 1), "{says}");
+    for (column, near) in [("zones", "zone"), ("directon", "direction"), ("cant defficiency", "cant deficiency")] {
+        assert!(says.contains(&format!("no column `{column}`")) && says.contains(&format!("did you mean `{near}`?")), "{says}");
+    }
+    // Where the catalogue names the column as well.
+    assert!(says.contains("`zone`: `x` is none of 1, 2, 3, 4") && says.contains("sections.csv:3:5"), "{says}");
+
+    // What is no name, no single column, and no channel.
+    let cases = [
+        ("strata: zone", "strata: {zone: 1}", "a name or a list of names is needed here"),
+        ("mirrored: {direction: left}", "mirrored: left", "`mirrored` is one column and its value"),
+        ("channels: [Y_1L, Y_3L, Q_1L, Q_3L]", "channels: [Y_1X]", "`Y_1X` is no group and no channel of one"),
+        ("{channels: [Y_1L,", "{chanels: [Y_1L,", "needs `channels`"),
+    ];
+    for (from, into, wanted) in cases {
+        let (code, says, found) = run(&exchange(&catalogue, &[(from, into)]), &right);
+        assert!(code == Some(2) && says.contains(wanted) && says.contains("effects.yaml:") && found.is_empty(), "{says}");
     }
 }
 

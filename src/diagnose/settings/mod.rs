@@ -6,6 +6,9 @@ use crate::simulate::Section;
 use crate::source::Span;
 use crate::units::Unit;
 
+/// Before a covariate: its reciprocal.
+pub const INVERSE: &str = "1 / ";
+
 /// The `diagnosis` part of a catalogue.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
@@ -26,6 +29,8 @@ pub struct Settings {
     pub mirror: Option<(String, String)>,
     /// The column that sections are stratified by.
     pub stratum: Option<String>,
+    /// Every column of the section table that is named above, and where.
+    pub columns: Vec<(String, Span)>,
     pub positions: Vec<Position>,
     /// Sums of channels with weights, by name.
     pub invariants: Vec<(String, Vec<(String, f64)>)>,

@@ -1,11 +1,11 @@
 //! Reads the `diagnosis` part of a catalogue.
 
-use super::{Discrepancy, FeatureKind, GroupFeatures, Moves, Over, Position, Settings, Shape, Times, Tolerance};
+use super::{Discrepancy, FeatureKind, GroupFeatures, INVERSE, Moves, Over, Position, Settings, Shape, Times, Tolerance};
 use crate::effects::Catalogue;
 use crate::problem::{Problem, Problems};
 use crate::source::Span;
 use crate::units::Unit;
-use crate::yaml::{Node, Value};
+use crate::yaml::{Key, Node, Value};
 
 /// Lag in m beyond which records belong to other places.
 const FURTHEST: f64 = 50.0;
@@ -129,12 +129,25 @@ impl Reader<'_> {
         })
     }
 
-    fn words(&self, node: Option<&Node>) -> Vec<String> {
+    /// A word or a list of words.
+    fn words(&mut self, node: Option<&Node>) -> Vec<String> {
+        self.placed(node).into_iter().map(|(word, _)| word).collect()
+    }
+
+    fn placed(&mut self, node: Option<&Node>) -> Vec<(String, Span)> {
         let Some(node) = node else { return Vec::new() };
-        match node.scalar_text() {
-            Some(text) => vec![text.to_string()],
-            None => node.items().iter().filter_map(|item| Some(item.scalar_text()?.to_string())).collect(),
+        let items = match &node.value {
+            Value::List(items) => items.as_slice(),
+            _ => std::slice::from_ref(node),
+        };
+        let mut found = Vec::new();
+        for item in items {
+            match item.scalar_text() {
+                Some(text) => found.push((text.to_string(), item.span.clone())),
+                None => self.wrong(format!("a name or a list of names is needed here, not {}", item.kind_in_words()), item),
+            }
         }
+        found
     }
 
     fn channels(&mut self, node: &Node) -> Vec<String> {
@@ -149,6 +162,19 @@ impl Reader<'_> {
             }
         }
         found
+    }
+
+    /// The column whose value says that a section is mirrored, and that value.
+    fn mirror(&mut self, node: Option<&Node>) -> Option<(Key, String)> {
+        let node = node?;
+        let only = match node.entries() {
+            [(column, value)] => value.scalar_text().map(|value| (column.clone(), value.to_string())),
+            _ => None,
+        };
+        if only.is_none() {
+            self.wrong("`mirrored` is one column and its value, such as `{direction: left}`", node);
+        }
+        only
     }
 
     /// Numbers by their keys.
@@ -181,16 +207,22 @@ impl Reader<'_> {
         if let Some(found) = node.get("alike").filter(|_| alike.len() != 2) {
             self.outside("`alike` is two frequencies in Hz", found);
         }
-        let text = |key: &str| node.get(key).and_then(Node::scalar_text).map(str::to_string);
-        let mirror = node.get("mirrored").and_then(|map| map.entries().first());
+        let (strata, confine, covariates) =
+            (self.placed(node.get("strata")), self.placed(node.get("confine to")), self.placed(node.get("covariates")));
+        let mirror = self.mirror(node.get("mirrored"));
+        let inverse = |name: &str| name.strip_prefix(INVERSE).unwrap_or(name).to_string();
+        let columns = [&strata, &confine, &covariates].into_iter().flatten().map(|(name, span)| (inverse(name), span.clone()));
+        let columns = columns.chain(mirror.iter().map(|(key, _)| (key.text.clone(), key.span.clone()))).collect();
+        let names = |placed: Vec<(String, Span)>| placed.into_iter().map(|(name, _)| name).collect::<Vec<_>>();
         let mut settings = Settings {
             edges: node.get("bands").map_or(Vec::new(), |bands| self.rising(bands)),
             alike: (alike.first().copied().unwrap_or(0.5), alike.get(1).copied().unwrap_or(8.0)),
             furthest: self.number(node, "furthest lag", FURTHEST),
-            confine: self.words(node.get("confine to")),
-            covariates: self.words(node.get("covariates")),
-            mirror: mirror.map(|(key, value)| (key.text.clone(), value.raw.clone())),
-            stratum: text("strata"),
+            confine: names(confine),
+            covariates: names(covariates),
+            mirror: mirror.map(|(key, value)| (key.text, value)),
+            stratum: names(strata).into_iter().next(),
+            columns,
             ..Settings::default()
         };
         for (key, node) in node.get("groups").map_or(&[][..], Node::entries) {
@@ -255,9 +287,15 @@ impl Reader<'_> {
             settings.invariants.push((key.text.clone(), weights));
         }
         for (key, node) in node.get("positions").map_or(&[][..], Node::entries) {
-            let (straight, mirrored) = match node.get("mirrored") {
-                Some(mirrored) => (self.words(node.get("channels")), self.words(Some(mirrored))),
-                None => (self.words(Some(node)), self.words(Some(node))),
+            let (straight, mirrored) = match (node.get("channels"), node.get("mirrored")) {
+                (Some(channels), Some(mirrored)) => (self.channels(channels), self.channels(mirrored)),
+                (Some(channels), None) => (self.channels(channels), self.channels(channels)),
+                (None, None) if node.entries().is_empty() => (self.channels(node), self.channels(node)),
+                (None, _) => {
+                    let says = format!("the position `{}` needs `channels`", key.text);
+                    self.problems.push(Problem::error("key-missing", says).at(&node.span));
+                    continue;
+                }
             };
             settings.positions.push(Position { name: key.text.clone(), straight, mirrored });
         }
