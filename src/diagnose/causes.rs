@@ -32,7 +32,7 @@ fn in_words(effect: &NamedEffect) -> String {
 }
 
 /// Four significant digits.
-fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }

@@ -331,6 +331,17 @@ impl Mask {
 }
 
 impl Fitted {
+    /// Raw change of the features per unit of the size, where it is.
+    #[must_use]
+    pub fn tangent(&self, candidates: &[Candidate], masks: &[Mask]) -> Vec<f64> {
+        let [from, to] = [self.segment, self.segment + 1].map(|node| &candidates[self.candidate].nodes[node]);
+        // What `between` grows by with the share.
+        let width = if to.size.is_infinite() { from.size / (1.0 - self.share).powi(2) } else { to.size - from.size };
+        let get = |node: &Vec<f64>, i: usize| node.get(i).copied().unwrap_or(0.0);
+        let raw = |i: usize| (get(&to.change, i) - get(&from.change, i)) / width;
+        masks[self.mask].on(&(0..from.change.len().max(to.change.len())).map(raw).collect::<Vec<f64>>())
+    }
+
     /// Raw change of the features.
     #[must_use]
     pub fn change(&self, candidates: &[Candidate], masks: &[Mask]) -> Vec<f64> {

@@ -36,6 +36,7 @@ mod shapes;
 pub mod shrink;
 pub mod stability;
 pub mod standing;
+pub mod steady;
 mod suspects;
 pub mod trends;
 pub mod whiten;

@@ -279,11 +279,12 @@ pub fn deviations(candidate: &Candidate, size: f64, settings: &Settings, declare
     let tolerance = candidate.tolerance.as_ref().and_then(|name| settings.tolerances.iter().find(|one| one.name == *name));
     let (Some(tolerance), Some(neutral)) = (tolerance, candidate.neutral()) else { return f64::INFINITY };
     let sd = declared.get(&tolerance.name).unwrap_or(tolerance.default);
+    // Of what is declared for single sections, what all of them have in common is less.
+    let sd = if tolerance.shared > 0.0 { sd * tolerance.shared } else { sd };
+    let sd = sd.hypot(tolerance.besides);
     // What is scaled is declared as a share of what the vehicle file has.
     let scaled = tolerance.scales.contains(&candidate.size) && neutral != 0.0;
     let sd = if scaled { sd * neutral.abs() } else { sd };
-    // Of what is declared for single sections, what all of them have in common is less.
-    let sd = if tolerance.shared > 0.0 { sd * tolerance.shared } else { sd };
     if sd > 0.0 { (size - neutral).abs() / sd } else { f64::INFINITY }
 }
 
@@ -312,7 +313,7 @@ mod tests {
     /// as many where all sections have half of a standard deviation in common, as many where they have nothing in common.
     #[test]
     fn what_is_scaled_is_declared_as_a_share_of_what_the_vehicle_has() {
-        let deviations_of = |scales: &[&str], neutral: f64, shared: f64| {
+        let deviations_of = |scales: &[&str], neutral: f64, shared: f64, besides: f64| {
             let tolerance = Tolerance {
                 name: "declared".into(),
                 unit: crate::units::Unit::one(),
@@ -324,6 +325,7 @@ mod tests {
                 expected: 0.0,
                 per_section: false,
                 shared,
+                besides,
                 suspects: false,
             };
             let settings = Settings { tolerances: vec![tolerance], ..Settings::default() };
@@ -331,11 +333,13 @@ mod tests {
             let candidate = Candidate { tolerance: Some("declared".into()), ..Candidate::path("effect", nodes) };
             deviations(&candidate, neutral + 0.14, &settings, &Declared::default())
         };
-        assert!((deviations_of(&["size"], 0.7, 1.0) - 4.0).abs() < 1e-9);
-        assert!((deviations_of(&["another"], 0.7, 1.0) - 2.8).abs() < 1e-9);
-        assert!((deviations_of(&["another"], 0.7, 0.5) - 5.6).abs() < 1e-9);
-        assert!((deviations_of(&["another"], 0.7, 0.0) - 2.8).abs() < 1e-9);
+        assert!((deviations_of(&["size"], 0.7, 1.0, 0.0) - 4.0).abs() < 1e-9);
+        assert!((deviations_of(&["another"], 0.7, 1.0, 0.0) - 2.8).abs() < 1e-9);
+        assert!((deviations_of(&["another"], 0.7, 0.5, 0.0) - 5.6).abs() < 1e-9);
+        assert!((deviations_of(&["another"], 0.7, 0.0, 0.0) - 2.8).abs() < 1e-9);
+        // 5 % and 12 % besides are 13 %.
+        assert!((deviations_of(&["size"], 0.7, 1.0, 0.12) - 0.14 / (0.7 * 0.13)).abs() < 1e-9);
         // A share of nothing would be infinitely far: it is taken as it stands.
-        assert!((deviations_of(&["size"], 0.0, 1.0) - 2.8).abs() < 1e-9);
+        assert!((deviations_of(&["size"], 0.0, 1.0, 0.0) - 2.8).abs() < 1e-9);
     }
 }

@@ -14,18 +14,18 @@ use crate::simulate::Units;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Half the width of a 90 % interval, in standard errors.
-const NINETY: f64 = 1.645;
+pub const NINETY: f64 = 1.645;
 /// Covariates that go together by more than this cannot be told apart by the campaign.
 const TOGETHER: f64 = 0.8;
 
 /// Something that differs from section to section.
 #[derive(Debug)]
-struct Covariate {
-    name: String,
+pub struct Covariate {
+    pub name: String,
     /// By section, from 0 where it is least to 1 where it is most.
-    values: Vec<f64>,
+    pub values: Vec<f64>,
     /// What the table says of the least and of the most.
-    ends: [String; 2],
+    pub ends: [String; 2],
 }
 
 /// All trends, the least probable first, and the covariates that go together, in words.
@@ -84,7 +84,7 @@ pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>,
 
 /// Whether what is left follows something for certain: the chance of any such trend among all that were tested (Bonferroni) is less than
 /// this. What is allowed for is judgement, so that chance alone would say too little.
-const CERTAIN: f64 = 1e-5;
+pub const CERTAIN: f64 = 1e-5;
 
 /// Whether what the causes leave grows with something, for certain.
 #[must_use]
@@ -148,7 +148,7 @@ fn slopes(
 }
 
 /// What the sections differ in: their order, the direction of the curve, and the columns that the catalogue names.
-fn covariates(settings: &Settings, seen: &Observations) -> Vec<Covariate> {
+pub fn covariates(settings: &Settings, seen: &Observations) -> Vec<Covariate> {
     let sections = || seen.sections.iter().map(|observed| &observed.section);
     let order = (0..seen.sections.len()).map(|at| at as f64).collect();
     let mut all = vec![scaled("the order of the sections", order, &|at| seen.sections[at].section.name().to_string())];

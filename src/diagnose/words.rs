@@ -26,8 +26,9 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let named = !found.chosen.members.is_empty();
     let invariants = super::invariants::invariants(inputs.settings, found, units);
     let (mut trends, together) = super::trends::trends(inputs.settings, found, units);
+    let drifts = super::steady::drifts(inputs.settings, found);
     // No chance, whatever share of the gap it is.
-    let left = super::trends::certain(&trends);
+    let left = super::trends::certain(&trends) || super::steady::certain(&drifts).is_some();
     // The least share of the resamples in which a member is first, where that is too few.
     let least = found.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
     let verdict = match () {
@@ -53,6 +54,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let trends_tested = trends.len();
     trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
     if verdict == "unexplained" {
+        says.extend(super::steady::worth_a_word(inputs.catalogue, &drifts));
         says.extend(super::trends::worth_a_word(&trends));
         says.extend(super::invariants::worst(&invariants));
         says.extend(super::shapes::worth_a_word(&shapes));
@@ -91,6 +93,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         trends,
         trends_tested,
         together,
+        drifts,
         shapes,
         causes,
         vetoed: vetoed(inputs, found),

@@ -22,6 +22,8 @@ pub struct Diagnosis {
     pub trends_tested: usize,
     /// Covariates that go together, so that the campaign cannot tell which of them a trend follows.
     pub together: Vec<String>,
+    /// How the sizes of operations on the signals change over the campaign: one size should do.
+    pub drifts: Vec<Drift>,
     pub shapes: Vec<Shape>,
     pub causes: Vec<Cause>,
     pub vetoed: Vec<Vetoed>,
@@ -127,6 +129,25 @@ pub struct Trend {
     pub before: Slope,
     /// With the causes added.
     pub after: Slope,
+}
+
+/// What the size of an effect changes by over the range of a covariate, with a 90 % interval.
+#[derive(Clone, Debug, Serialize)]
+pub struct Drift {
+    pub effect: String,
+    pub signals: Vec<String>,
+    pub parameter: String,
+    /// Of the change.
+    pub unit: String,
+    pub covariate: String,
+    /// What the table says where it is least, and where it is most.
+    pub from: String,
+    pub to: String,
+    pub change: f64,
+    pub low: f64,
+    pub high: f64,
+    /// That the size is the same everywhere.
+    pub p_value: f64,
 }
 
 /// What measured - simulated grows by over the range of a covariate, with a 90 % interval: levels in their unit, in curves turned to one

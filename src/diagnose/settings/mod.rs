@@ -98,6 +98,8 @@ pub struct Tolerance {
     pub per_section: bool,
     /// How much of one standard deviation all sections have in common, from 0 to 1.
     pub shared: f64,
+    /// One standard deviation of what may be off in the same way besides, whatever is declared: an effect must be further out than both.
+    pub besides: f64,
     /// Whether each parameter that it scales is looked at alone, as a cause that no effect stands for.
     pub suspects: bool,
 }

@@ -28,7 +28,7 @@ const TOP: [&str; 13] = [
 const GROUP: [&str; 13] =
     ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says", "unit"];
 const SHAPE: [&str; 3] = ["range", "percentile", "wheel radius"];
-const TOLERANCE: [&str; 9] = ["default", "unit", "expected", "scales", "adds", "sets", "each section", "shared", "suspects"];
+const TOLERANCE: [&str; 10] = ["default", "unit", "expected", "scales", "adds", "sets", "each section", "shared", "besides", "suspects"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
 impl Settings {
@@ -274,6 +274,7 @@ impl Reader<'_> {
                 named: named(node),
                 per_section,
                 shared,
+                besides: self.spread(node, "besides", 0.0),
                 suspects: self.flag(node, "suspects"),
             });
         }
@@ -432,6 +433,7 @@ diagnosis:
             ("level sd: 0.2", "level sd: -0.2", "cannot be negative", "8:63"),
             ("default: 0.1", "default: -0.1", "cannot be negative", "9:32"),
             ("default: 0.1", "default: 0.1, shared: 1.5", "from 0 to 1", "9:45"),
+            ("default: 0.1", "default: 0.1, besides: -1", "cannot be negative", "9:46"),
             ("mass: 1", "mass: much", "`mass` needs a number", "9:50"),
             ("sd: [0.1, 0.2]", "sd: [0.1, 0.2, 0.3]", "one for each of the 2 bands", "10:55"),
             ("sd: [0.1, 0.2]", "sd: [0.1, -0.2]", "none of them negative", "10:55"),
