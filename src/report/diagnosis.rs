@@ -9,8 +9,9 @@ use crate::result::diagnosis::{
     Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Trend, Value, Where,
 };
 
-/// Cells listed; all of them stand in diagnosis.json.
+/// Significant cells listed, and how many are listed with others where fewer are; all of them stand in diagnosis.json.
 const CELLS: usize = 30;
+const FIRST_CELLS: usize = 12;
 /// Of the gap: what rounds to nothing is not listed.
 const LEAST_SHARE: f64 = 0.0005;
 /// Trends listed; fewer where none is significant.
@@ -98,8 +99,8 @@ fn answer(found: &Diagnosis) -> Chapter {
 }
 
 fn places(found: &Diagnosis) -> Chapter {
-    let told = |place: &&Where| place.significant || place.share_of_gap >= LEAST_SHARE;
-    let rows = found.r#where.iter().take(CELLS).filter(told).map(|place| {
+    let told = |(at, place): &(usize, &Where)| place.significant || *at < FIRST_CELLS && place.share_of_gap >= LEAST_SHARE;
+    let rows = found.r#where.iter().enumerate().filter(told).take(CELLS).map(|(_, place)| {
         vec![
             place.quantity.clone(),
             place.says.split(", ").skip(1).take(2).filter(|part| *part != place.wavelength_or_band).collect::<Vec<_>>().join(", "),

@@ -63,7 +63,8 @@ pub fn before_after(shrink: &Shrink) -> String {
     canvas.finish()
 }
 
-const PANEL: f64 = 118.0;
+// Two pictures of two rows fit one page.
+const PANEL: f64 = 92.0;
 const BETWEEN: f64 = 40.0;
 
 /// Channels of a section, two in a row: measured broad and light, simulated dashed, with the effects dark.
