@@ -2,7 +2,7 @@
 
 use super::candidates::Candidate;
 use super::features::Kind;
-use super::fit::{Fitter, Mask, less};
+use super::fit::{Fitted, Fitter, Mask, less};
 use super::guards::{View, part};
 use super::observe::Observations;
 use super::search::{Chosen, Refused, refit};
@@ -18,6 +18,8 @@ const LITTLE: f64 = 10.0;
 
 /// Of the change that an effect makes, what the model that makes it is wrong by, feature by feature.
 const WRONG: f64 = 0.2;
+/// Of that of the levels as one.
+const WRONG_LEVEL: f64 = 0.05;
 
 /// The covariance beside an answer, with room for what is wrong in the changes of its members: an operation on the signals has nothing
 /// wrong.
@@ -29,6 +31,22 @@ pub fn with_room(beside: &Covariance, candidates: &[Candidate], masks: &[Mask], 
         wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| *variance += (WRONG * change).powi(2));
     }
     wider
+}
+
+/// What a model has wrong of the changes of the members, as one: little of the levels, which follow from equilibrium, more of all else.
+/// It leaves a size as it is that only the one or the other says, and makes its interval wider. `levels` says which features of a section
+/// are levels.
+#[must_use]
+pub fn wrong_as_one(levels: &[bool], candidates: &[Candidate], masks: &[Mask], members: &[Fitted]) -> Vec<Vec<f64>> {
+    let mut columns = Vec::new();
+    for member in members.iter().filter(|member| !candidates[member.candidate].exact) {
+        let change = member.change(candidates, masks);
+        for (level, share) in [(true, WRONG_LEVEL), (false, WRONG)] {
+            let inside = |at: usize| levels[at % levels.len()] == level;
+            columns.push(change.iter().enumerate().map(|(at, change)| if inside(at) { share * change } else { 0.0 }).collect());
+        }
+    }
+    columns
 }
 
 /// How far a channel goes beyond what is allowed for, in its levels or in all else.
@@ -174,6 +192,36 @@ mod tests {
         assert_eq!(lack(&[3]), (900.0, 0.0, vec![3]));
         let (with_them, chi, alone) = lack(&[3, 7, 11]);
         assert_eq!((with_them, chi, alone.len()), (2700.0, 900.0, 2));
+    }
+
+    /// Levels ask for a size of 1, all else for one of 0.5, both without noise: 0.05 and 0.2 of either are wrong, so that the size is
+    /// (1 / 0.05^2 + 0.5 / 0.2^2) / (1 / 0.05^2 + 1 / 0.2^2) = 0.9706, with an error of 1 / (1 / 0.05^2 + 1 / 0.2^2)^1/2 of it. An operation
+    /// on the signals has nothing wrong: there it is the mean.
+    #[test]
+    fn levels_say_more_of_a_size_than_all_else() {
+        const SECTIONS: usize = 3;
+        let per_section = |level: f64, rest: f64| (0..SECTIONS).flat_map(|_| [level, rest]).collect::<Vec<f64>>();
+        let masks = vec![Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None }];
+        let nodes = vec![Node { size: 0.0, change: Vec::new() }, Node { size: 2.0, change: per_section(20.0, 20.0) }];
+        let of = |exact: bool| {
+            let mut covariance = Covariance { diagonal: vec![1e-6; 2 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 2 };
+            let candidates = [Candidate { exact, ..Candidate::path("effect", nodes.clone()) }];
+            let fit = |covariance: &Covariance| {
+                let whitener = covariance.whitener();
+                let z = whitener.apply(&per_section(10.0, 5.0));
+                Fitter::new(&whitener, &candidates, masks.clone()).fit(&z, 0, 0).expect("a path")
+            };
+            let first = fit(&covariance);
+            assert!((first.size - 0.75).abs() < 1e-9);
+            covariance.shared = wrong_as_one(&[true, false], &candidates, &masks, std::slice::from_ref(&first));
+            let fitted = fit(&covariance);
+            (fitted.size, 1.0 / fitted.slope / first.size)
+        };
+        let weights = [0.05_f64.powi(-2), 0.2_f64.powi(-2)];
+        let (size, error) = of(false);
+        assert!((size - (weights[0] + 0.5 * weights[1]) / (weights[0] + weights[1])).abs() < 1e-5, "{size}");
+        assert!((error - (weights[0] + weights[1]).powf(-0.5)).abs() < 1e-5, "{error}");
+        assert!((of(true).0 - 0.75).abs() < 1e-9);
     }
 
     /// A change of 10 that is simulated may be wrong by 2, one by an operation on the signals by nothing.

@@ -8,7 +8,7 @@ use super::covariance::{Sensitivity, covariance, discrepancies, expect, strata};
 use super::declared::Declared;
 use super::fit::{Fitted, Fitter, Known, Mask, less};
 use super::guards::families;
-use super::lack::{Lack, drop_what_harms, lack_after, lack_of_fit, unexplained};
+use super::lack::{Lack, drop_what_harms, lack_after, lack_of_fit, left, unexplained};
 use super::masks::masks;
 use super::observe::Observations;
 use super::search::{Bars, Chosen, Refused, chi_squared, contradicting, nearest, refit, rivals};
@@ -298,9 +298,11 @@ pub fn length(whitener: &Whitener, change: &[f64]) -> f64 {
 /// Chi-squared per feature before and after.
 #[must_use]
 pub fn chi(found: &Found) -> (f64, f64) {
-    let before = found.weighing.apply(&found.difference);
+    let beside = found.beside.whitener();
+    let before = beside.apply(&found.difference);
+    let after = beside.apply(&left(&found.candidates, &found.masks, &found.difference_beside, &found.chosen));
     let n = before.len().max(1) as f64;
-    (chi_squared(&before) / n, chi_squared(&found.chosen.rest) / n)
+    (chi_squared(&before) / n, chi_squared(&after) / n)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::candidates::{Candidate, Workshop, applied};
 use super::covariance::{NOTHING, Sensitivity, covariance, expect};
 use super::features::Kind;
 use super::fit::{Fitted, Fitter, Mask};
-use super::lack::{Lack, lack_after, unexplained};
+use super::lack::{Lack, lack_after, unexplained, wrong_as_one};
 use super::search::{Bars, Chosen, Refused, refit};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
@@ -93,7 +93,7 @@ impl Settled<'_> {
             now = first;
         }
         let (beside, left) = (now.covariance.clone(), lack(candidates, &now));
-        (beside, self.without_those_alone((candidates, masks), now, &left, runs))
+        (beside, self.sized((candidates, masks), now, &left, runs))
     }
 
     /// Weighs with the tolerances as they act beside the first member, then beside the first two, and so on: what one seemed to
@@ -143,14 +143,9 @@ impl Settled<'_> {
         now
     }
 
-    /// Fits the members again without what stands out in a section alone: it would pull at the sizes with all that it is off.
-    fn without_those_alone(
-        &self,
-        (candidates, masks): (&mut [Candidate], &[Mask]),
-        mut now: Weighed,
-        lack: &[Lack],
-        runs: &mut Runs,
-    ) -> Weighed {
+    /// Fits the members again by what their sizes follow from: without what stands out in a section alone, which would pull with all that
+    /// it is off, and with the levels and all else of a simulated change as wrong, each as one, as a model may be.
+    fn sized(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Weighed, lack: &[Lack], runs: &mut Runs) -> Weighed {
         let seen = self.workshop.seen;
         let mut covariance = now.covariance.clone();
         for one in lack {
@@ -161,9 +156,8 @@ impl Settled<'_> {
                 }
             }
         }
-        if covariance.diagonal == now.covariance.diagonal {
-            return now;
-        }
+        let levels: Vec<bool> = seen.features.iter().map(|feature| feature.kind == Kind::Level).collect();
+        covariance.shared.extend(wrong_as_one(&levels, candidates, masks, &now.chosen.members));
         let difference = std::mem::take(&mut now.difference);
         now = now.by(covariance, difference);
         self.refined((candidates, masks), &mut now, runs);
