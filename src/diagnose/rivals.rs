@@ -33,7 +33,7 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
             continue;
         }
         // What is within a declared tolerance is allowed for already.
-        if deviations(of, fit.size, inputs.settings, &found.declared) < TOLERANCE_SD {
+        if deviations(of, fit.size, inputs.settings, &found.declared, true) < TOLERANCE_SD {
             continue;
         }
         let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(NEAREST)

@@ -160,7 +160,9 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let mut masks = masks(&seen, settings);
     let strata = strata(&seen, settings);
     let families = families(&seen, &strata);
-    let far = |candidate: &Candidate, size: f64| deviations(candidate, size, settings, &admitted);
+    let far = |candidate: &Candidate, size: f64| deviations(candidate, size, settings, &admitted, false);
+    // What lies between the two takes its part of the difference, so that nothing else does, and is not named.
+    let further = |candidate: &Candidate, size: f64| deviations(candidate, size, settings, &admitted, true);
     let converging = Converging {
         workshop: &workshop,
         covariance: &whole,
@@ -182,7 +184,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         value: &value,
         declared: &declared,
         whole: &whole_difference,
-        far: &far,
+        far: &further,
     };
     let before = refused.len();
     let (mut beside, mut settled) = again.answer((&mut candidates, &masks), first.clone(), &lack_before, &bars, &mut refused, &mut runs);
@@ -273,15 +275,16 @@ impl Found {
     }
 }
 
-/// How many declared standard deviations a size is from neutral; infinitely many for an effect that is no tolerance.
+/// How many declared standard deviations a size is from neutral, with what may be off `besides` or without; infinitely many for an effect
+/// that is no tolerance.
 #[must_use]
-pub fn deviations(candidate: &Candidate, size: f64, settings: &Settings, declared: &Declared) -> f64 {
+pub fn deviations(candidate: &Candidate, size: f64, settings: &Settings, declared: &Declared, besides: bool) -> f64 {
     let tolerance = candidate.tolerance.as_ref().and_then(|name| settings.tolerances.iter().find(|one| one.name == *name));
     let (Some(tolerance), Some(neutral)) = (tolerance, candidate.neutral()) else { return f64::INFINITY };
     let sd = declared.get(&tolerance.name).unwrap_or(tolerance.default);
     // Of what is declared for single sections, what all of them have in common is less.
     let sd = if tolerance.shared > 0.0 { sd * tolerance.shared } else { sd };
-    let sd = sd.hypot(tolerance.besides);
+    let sd = if besides { sd.hypot(tolerance.besides) } else { sd };
     // What is scaled is declared as a share of what the vehicle file has.
     let scaled = tolerance.scales.contains(&candidate.size) && neutral != 0.0;
     let sd = if scaled { sd * neutral.abs() } else { sd };
@@ -333,7 +336,7 @@ mod tests {
             let settings = Settings { tolerances: vec![tolerance], ..Settings::default() };
             let nodes = vec![Node { size: neutral, change: Vec::new() }, Node { size: 2.0, change: vec![1.0] }];
             let candidate = Candidate { tolerance: Some("declared".into()), ..Candidate::path("effect", nodes) };
-            deviations(&candidate, neutral + 0.14, &settings, &Declared::default())
+            deviations(&candidate, neutral + 0.14, &settings, &Declared::default(), besides > 0.0)
         };
         assert!((deviations_of(&["size"], 0.7, 1.0, 0.0) - 4.0).abs() < 1e-9);
         assert!((deviations_of(&["another"], 0.7, 1.0, 0.0) - 2.8).abs() < 1e-9);

@@ -162,7 +162,7 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
         let of = &found.candidates[fit.candidate];
         let bar = if found.chosen.members.is_empty() { found.bars.alone(of) } else { found.bars.next };
         let needed = if found.masks[fit.mask].asked_by.is_some() { 2.0 * bar } else { bar };
-        let away = deviations(&found.candidates[fit.candidate], fit.size, inputs.settings, &found.declared);
+        let away = deviations(&found.candidates[fit.candidate], fit.size, inputs.settings, &found.declared, true);
         let wants = match () {
             () if fit.evidence < needed => format!("evidence of {needed:.1}"),
             () if away < TOLERANCE_SD => {
