@@ -31,10 +31,8 @@ pub fn in_words_of(compiled: &Compiled, settings: &Settings, campaign: &Campaign
                 None => {}
                 Some(Ok(word)) => fact.text = word,
                 Some(Err(says)) => {
-                    let says = format!(
-                        "`{column}`: {says}; the protocol does not use this section, the diagnosis takes it for one of its own kind"
-                    );
-                    problems.push(Problem::warning("section-data", says).at(&cell.span));
+                    let problem = Problem::warning("section-data", format!("`{column}`: {says}")).at(&cell.span);
+                    problems.push(problem.help("the protocol does not use this section; the diagnosis takes it for one of its own kind"));
                 }
             }
         }
