@@ -8,12 +8,12 @@ use std::fs;
 use std::path::PathBuf;
 
 use common::pools::{every, limit, quantity, sections, sorted, zones};
+use fishplate::metrics::interval::wilson;
 use fishplate::result::Verdict;
 use fishplate::result::study::Spread;
 use fishplate::run::pool::{Pool, Rule, Section};
 use fishplate::study::case::Case;
 use fishplate::study::random::{Random, draw};
-use fishplate::study::sampling::wilson;
 use fishplate::study::{Settings, enumerate, reduced, sampling, selections};
 use proptest::prelude::*;
 
@@ -230,6 +230,7 @@ fn wilson_interval_as_published() {
     assert!((low - 0.2553).abs() < 5e-5 && (high - 0.3662).abs() < 5e-5, "{low} {high}");
     assert_eq!(wilson(0, 10).0, 0.0);
     assert!((wilson(10, 10).1 - 1.0).abs() < 1e-12);
+    assert_eq!(wilson(0, 0), (0.0, 1.0));
 }
 
 #[test]

@@ -11,7 +11,7 @@ use super::simulate::load_catalogue;
 use crate::data::write::write_whole;
 use crate::diagnose::score::{Truth, blind, case};
 use crate::diagnose::settings::Settings;
-use crate::diagnose::{Outcome, effect_of_truth};
+use crate::diagnose::{Outcome, Really, effect_of_truth};
 use crate::effects::Catalogue;
 use crate::library;
 use crate::problem::{Problem, Problems};
@@ -82,7 +82,7 @@ impl Blinded {
         for score in &scored.scores {
             let value = score.value.map_or("-".to_string(), |value| format!("{value:.3}"));
             let interval = score.low.zip(score.high).map_or(String::new(), |(low, high)| format!("  ({low:.2} to {high:.2})"));
-            console.say(&format!("{:52} {:4} cases  {value}{interval}", score.name, score.cases));
+            console.say(&format!("{:56} {:4}  {value}{interval}", score.name, score.cases));
         }
         Exit::Done
     }
@@ -112,11 +112,11 @@ impl Blinded {
             Ok(truth) => truth,
             Err(fault) => return Ok(without(&name, format!("truth.json: {fault}"))),
         };
-        let (detectability, removed) = self.true_effect(folder, &campaign, &outcome, catalogue, &truth);
-        Ok(case(&name, &outcome.diagnosis, &truth, detectability, removed))
+        let really = self.true_effect(folder, &campaign, &outcome, catalogue, &truth);
+        Ok(case(&name, &outcome.diagnosis, &truth, really.as_ref(), &outcome.found.seen.sections))
     }
 
-    /// Whitened size of the true effects, and how much of the gap they remove.
+    /// What the true effects do; nothing if there are none, or if the catalogue does not know them.
     fn true_effect(
         &self,
         folder: &Path,
@@ -124,33 +124,15 @@ impl Blinded {
         outcome: &Outcome,
         catalogue: &Catalogue,
         truth: &Truth,
-    ) -> (Option<f64>, Option<f64>) {
-        let Some(effects) = truth.applied(catalogue).filter(|effects| !effects.is_empty()) else { return (None, None) };
-        let mut problems = Problems::default();
-        let Some(prepared) = super::inputs::prepare(folder, self.protocol.as_deref(), &[], &mut problems) else { return (None, None) };
+    ) -> Option<Really> {
+        let effects = truth.applied(catalogue).filter(|effects| !effects.is_empty())?;
+        let prepared = super::inputs::prepare(folder, self.protocol.as_deref(), &[], &mut Problems::default())?;
         effect_of_truth(campaign, &prepared.compiled, outcome, catalogue, &effects)
-            .map_or((None, None), |(d, removed)| (Some(d), Some(removed)))
     }
 }
 
 fn without(campaign: &str, fault: String) -> Case {
-    Case {
-        campaign: campaign.to_string(),
-        kind: String::new(),
-        truth: Vec::new(),
-        verdict: String::new(),
-        named: Vec::new(),
-        ambiguity_set: Vec::new(),
-        detectability: None,
-        first_is_right: false,
-        in_first_two: false,
-        in_set: false,
-        parameter_error: None,
-        shrink_said: None,
-        shrink_true: None,
-        probability: None,
-        fault: Some(fault),
-    }
+    Case { campaign: campaign.to_string(), fault: Some(fault), ..Case::default() }
 }
 
 /// Campaigns at or below a folder.

@@ -2,6 +2,7 @@
 
 use super::observe::Observed;
 use super::run::{Found, Inputs, find};
+use super::settings::Settings;
 use super::shrink::{applied, compare, folds, improved, shares, trained};
 use crate::certify::{Compiled, certify};
 use crate::data::Campaign;
@@ -142,7 +143,18 @@ const EARNED: f64 = 0.05;
 /// more the louder the features speak, since a gap that another one hides grows when one of the two is mended.
 const STRONG: f64 = 4.0 / 3.0;
 
-/// What effects that are known to be true would have done: their whitened size, and the share of the gap that they remove.
+/// What effects that are known to be true would have done.
+#[derive(Clone, Debug)]
+pub struct Really {
+    /// Whitened size, in standard deviations.
+    pub detectability: f64,
+    /// Share of the gap that they remove.
+    pub removed: f64,
+    /// Cells of the map that they move.
+    pub cells: Vec<String>,
+}
+
+/// Effects that are known to be true, added to the simulation. Nothing if they cannot be.
 #[must_use]
 pub fn effect_of_truth(
     campaign: &Campaign,
@@ -150,15 +162,20 @@ pub fn effect_of_truth(
     outcome: &Outcome,
     catalogue: &Catalogue,
     effects: &[Applied],
-) -> Option<(f64, f64)> {
+) -> Option<Really> {
     let found = &outcome.found;
     let model = crate::simulate::Builtin::new(campaign, &mut Problems::default());
     let simulator = model.as_ref().map(|model| model as &dyn Simulator);
     let records = improved(found, catalogue, simulator, &|_| effects.to_vec()).ok()?;
     let features: Vec<f64> = records.iter().enumerate().flat_map(|(at, signals)| found.seen.of(at, signals, true)).collect();
-    let detectability = super::run::length(&found.whitener, &super::fit::less(&features, &found.simulated));
+    let change = super::fit::less(&features, &found.simulated);
     let made = evaluated(campaign, compiled, found, &records, &outcome.units, RunSettings { traces: 0 }).ok()?;
-    Some((detectability, compare(&outcome.before, &made, None, 1, Vec::new()).fraction_removed))
+    let settings = Settings::read(catalogue, &mut Problems::default())?;
+    Some(Really {
+        detectability: super::run::length(&found.whitener, &change),
+        removed: compare(&outcome.before, &made, None, 1, Vec::new()).fraction_removed,
+        cells: super::locate::moved(&settings, found, &change),
+    })
 }
 
 /// The protocol on a copy of the campaign with other simulated records.

@@ -12,36 +12,57 @@ use crate::simulate::Units;
 #[must_use]
 pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
     use rayon::prelude::*;
-    let positions = positions(settings);
-    let of_kind = |kind: Kind| positions.iter().flat_map(move |position| cells(settings, found, kind, position, &found.strata));
-    let cells: Vec<Cell> = kinds(found).flat_map(of_kind).collect();
+    let cells = map(settings, found);
     let tested: Vec<(f64, f64, f64)> = cells.par_iter().map(|cell| test(found, cell)).collect();
     let total: f64 = tested.iter().map(|(excess, ..)| excess.max(0.0)).sum::<f64>().max(1e-300);
     let limit = significant_up_to(&tested.iter().map(|(_, p_value, _)| *p_value).collect::<Vec<f64>>());
-    let place = |(cell, (excess, p_value, mean)): (&Cell, &(f64, f64, f64))| {
-        let group = &settings.groups[cell.group];
-        let band = cell.band(found);
-        let section = |at: &usize| &found.seen.sections[*at].section;
-        let column = settings.stratum.as_deref();
-        let stratum = column.zip(cell.sections.first()).and_then(|(column, at)| section(at).fact(column)).unwrap_or("");
-        Where {
-            quantity: group.says.clone(),
-            says: format!("{}, {}, {band}, {} {stratum}", group.says, cell.position, column.unwrap_or("all")),
-            signals: cell.signals(found),
-            zones: vec![stratum.to_string()],
-            sections: cell.sections.iter().map(|at| section(at).name().to_string()).collect(),
-            wavelength_or_band: band,
-            difference: if cell.kind == Kind::Level { *mean } else { mean.exp() - 1.0 },
-            unit: cell.unit(found, units),
-            share_of_gap: excess.max(0.0) / total,
-            p_value: *p_value,
-            significant: *p_value <= limit,
-        }
+    let place = |(cell, (excess, p_value, mean)): (&Cell, &(f64, f64, f64))| Where {
+        quantity: settings.groups[cell.group].says.clone(),
+        says: says(settings, found, cell),
+        signals: cell.signals(found),
+        zones: vec![stratum(settings, found, cell).to_string()],
+        sections: cell.sections.iter().map(|at| found.seen.sections[*at].section.name().to_string()).collect(),
+        wavelength_or_band: cell.band(found),
+        difference: if cell.kind == Kind::Level { *mean } else { mean.exp() - 1.0 },
+        unit: cell.unit(found, units),
+        share_of_gap: excess.max(0.0) / total,
+        p_value: *p_value,
+        significant: *p_value <= limit,
     };
     let mut places: Vec<Where> = cells.iter().zip(&tested).map(place).collect();
     places
         .sort_by(|a, b| (b.significant, b.share_of_gap).partial_cmp(&(a.significant, a.share_of_gap)).unwrap_or(std::cmp::Ordering::Equal));
     places
+}
+
+/// The cells that a change of the features moves by more than three standard deviations of all that is allowed for, in the words of the
+/// map: what a diagnosis could have told of its places.
+#[must_use]
+pub fn moved(settings: &Settings, found: &Found, change: &[f64]) -> Vec<String> {
+    const MOVED: f64 = 3.0;
+    let far = |cell: &Cell| {
+        let values: Vec<f64> = cell.members.iter().map(|(section, feature)| change[found.seen.place(*section, *feature)]).collect();
+        found.covariance.among(&cell.members).chi_squared(&values) > MOVED * MOVED
+    };
+    map(settings, found).into_iter().filter(far).map(|cell| says(settings, found, &cell)).collect()
+}
+
+/// Every cell.
+fn map(settings: &Settings, found: &Found) -> Vec<Cell> {
+    let positions = positions(settings);
+    let of_kind = |kind: Kind| positions.iter().flat_map(move |position| cells(settings, found, kind, position, &found.strata));
+    kinds(found).flat_map(of_kind).collect()
+}
+
+/// What the sections of a cell have in common.
+fn stratum<'a>(settings: &Settings, found: &'a Found, cell: &Cell) -> &'a str {
+    let of = |(column, at): (&str, &usize)| found.seen.sections[*at].section.fact(column);
+    settings.stratum.as_deref().zip(cell.sections.first()).and_then(of).unwrap_or("")
+}
+
+fn says(settings: &Settings, found: &Found, cell: &Cell) -> String {
+    let (group, column) = (&settings.groups[cell.group].says, settings.stratum.as_deref().unwrap_or("all"));
+    format!("{group}, {}, {}, {column} {}", cell.position, cell.band(found), stratum(settings, found, cell))
 }
 
 /// Excess of chi-squared over what noise and tolerances give, its probability, and the mean difference.

@@ -43,4 +43,4 @@ pub mod whiten;
 mod words;
 
 pub use cache::Cache;
-pub use campaign::{Outcome, diagnose, effect_of_truth, write_improved};
+pub use campaign::{Outcome, Really, diagnose, effect_of_truth, write_improved};

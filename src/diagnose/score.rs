@@ -3,8 +3,11 @@
 use indexmap::IndexMap;
 use serde_json::Value;
 
+use super::campaign::Really;
+use super::observe::Observed;
 use crate::effects::{Action, Applied, CHANNEL, Catalogue, Confined};
-use crate::result::blind::{Blind, Case, Score};
+use crate::metrics::interval::wilson;
+use crate::result::blind::{Blind, BySize, Calibration, Case, Places, Score};
 use crate::result::diagnosis::{Cause, Diagnosis, NamedEffect};
 
 /// An effect of a truth.
@@ -32,15 +35,9 @@ impl Truth {
         let json: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let kind = json["kind"].as_str().ok_or("it has no `kind`")?.to_string();
         let effects = json["effects"].as_array().cloned().unwrap_or_default();
-        let list = |value: &Value| -> Vec<String> {
-            let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_string);
-            value.as_array().map_or_else(|| vec![text(value)], |items| items.iter().map(text).collect())
-        };
         let one = |effect: &Value| {
-            let confined = [("zones", "zone"), ("direction", "direction"), ("sections", "section")].iter().find_map(|(key, column)| {
-                let values = effect.get(*key).filter(|value| !value.is_null())?;
-                Some(Confined { column: (*column).to_string(), values: list(values) })
-            });
+            let confined =
+                ["zones", "direction", "sections"].iter().find_map(|key| effect.get(*key).and_then(|values| confined(key, values)));
             let parameters = effect["parameters"].as_object().into_iter().flatten().map(|(key, value)| (key.clone(), value.clone()));
             Ok(True {
                 name: effect["name"].as_str().ok_or("an effect has no `name`")?.to_string(),
@@ -56,6 +53,22 @@ impl Truth {
     pub fn applied(&self, catalogue: &Catalogue) -> Option<Vec<Applied>> {
         self.effects.iter().map(|effect| effect.applied(catalogue)).collect()
     }
+}
+
+/// Sections as a truth and an answer write them: a key, and one value or a list.
+fn confined(key: &str, values: &Value) -> Option<Confined> {
+    let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_string);
+    let column = match key {
+        "zones" => "zone",
+        "sections" => "section",
+        other => other,
+    };
+    let values = match values {
+        Value::Null => return None,
+        Value::Array(items) => items.iter().map(text).collect(),
+        one => vec![text(one)],
+    };
+    Some(Confined { column: column.to_string(), values })
 }
 
 impl True {
@@ -114,6 +127,20 @@ impl True {
         !by_channel || channels.len() < self.parameters.len()
     }
 
+    /// Where this effect acts, and where it does as it was named; nothing if that is everywhere.
+    fn sections(&self, named: &NamedEffect, sections: &[Observed]) -> Option<Places> {
+        let told = named.confined_to.iter().flatten().find_map(|(key, values)| confined(key, values));
+        if self.confined.is_none() && told.is_none() {
+            return None;
+        }
+        let acts = |confined: &Option<Confined>, at: &Observed| {
+            confined.as_ref().is_none_or(|confined| at.section.fact(&confined.column).is_some_and(|value| confined.has(value)))
+        };
+        let both: Vec<(bool, bool)> = sections.iter().map(|at| (acts(&self.confined, at), acts(&told, at))).collect();
+        let count = |holds: &dyn Fn(&(bool, bool)) -> bool| both.iter().filter(|one| holds(one)).count();
+        Some(Places { truly: count(&|one| one.0), told: count(&|one| one.1), both: count(&|one| one.0 && one.1) })
+    }
+
     fn error(&self, named: &NamedEffect) -> Option<f64> {
         self.parameters.iter().find_map(|(key, value)| {
             let (truth, said) = (value.as_f64()?, named.parameters.get(key)?.value.as_f64()?);
@@ -122,9 +149,20 @@ impl True {
     }
 }
 
+/// Cells that are called significant against those that the truth moves; with nothing hidden none is.
+fn cells(diagnosis: &Diagnosis, truth: &Truth, really: Option<&Really>) -> Option<Places> {
+    let moved: &[String] = match really {
+        Some(really) => &really.cells,
+        None if truth.kind == "none" => &[],
+        None => return None,
+    };
+    let told: Vec<&String> = diagnosis.r#where.iter().filter(|place| place.significant).map(|place| &place.says).collect();
+    Some(Places { truly: moved.len(), told: told.len(), both: told.iter().filter(|says| moved.contains(says)).count() })
+}
+
 /// One case: the diagnosis, which is written already, against the truth.
 #[must_use]
-pub fn case(campaign: &str, diagnosis: &Diagnosis, truth: &Truth, detectability: Option<f64>, shrink_true: Option<f64>) -> Case {
+pub fn case(campaign: &str, diagnosis: &Diagnosis, truth: &Truth, really: Option<&Really>, sections: &[Observed]) -> Case {
     let names = |cause: &Cause| cause.effects.iter().map(|effect| effect.name.clone()).collect::<Vec<_>>();
     let right = |cause: &Cause| {
         !truth.effects.is_empty()
@@ -140,6 +178,14 @@ pub fn case(campaign: &str, diagnosis: &Diagnosis, truth: &Truth, detectability:
             truth.effects.iter().filter_map(|one| cause.effects.iter().find(|named| one.is(named)).and_then(|named| one.error(named)));
         pairs.reduce(f64::max)
     });
+    let acts = first.and_then(|cause| {
+        truth
+            .effects
+            .iter()
+            .find_map(|one| cause.effects.iter().find(|named| one.is(named)).and_then(|named| one.sections(named, sections)))
+    });
+    let moving = really.filter(|really| !really.cells.is_empty());
+    let first_cell = moving.zip(diagnosis.r#where.first()).map(|(really, place)| really.cells.contains(&place.says));
     Case {
         campaign: campaign.to_string(),
         kind: truth.kind.clone(),
@@ -147,14 +193,17 @@ pub fn case(campaign: &str, diagnosis: &Diagnosis, truth: &Truth, detectability:
         verdict: diagnosis.verdict.to_string(),
         named: first.map(names).unwrap_or_default(),
         ambiguity_set: set.iter().flat_map(|cause| names(cause)).collect(),
-        detectability,
+        detectability: really.map(|really| really.detectability),
         first_is_right: first.is_some_and(right),
         in_first_two: causes.iter().take(2).any(right),
         in_set: set.iter().any(|cause| right(cause)),
         parameter_error: error,
         shrink_said: diagnosis.shrink.as_ref().filter(|_| answered).map(|shrink| shrink.fraction_removed),
-        shrink_true,
+        shrink_true: really.map(|really| really.removed),
         probability: first.map(|cause| cause.probability),
+        cells: cells(diagnosis, truth, really),
+        first_cell_moved: first_cell,
+        sections: acts,
         fault: None,
     }
 }
@@ -169,18 +218,20 @@ pub fn blind(cases: Vec<Case>) -> Blind {
     let of = |kind: &str| good.iter().copied().filter(|case| case.kind == kind).collect::<Vec<_>>();
     let seen = |case: &&Case| case.detectability.is_some_and(|d| d >= DETECTABLE);
     let singles: Vec<&Case> = of("single").into_iter().filter(seen).collect();
-    let share = |name: &str, cases: &[&Case], holds: &dyn Fn(&Case) -> bool| {
-        let n = cases.len();
-        let k = cases.iter().filter(|case| holds(case)).count();
-        let interval = wilson(k, n);
-        Score {
-            name: name.into(),
-            cases: n,
-            value: (n > 0).then(|| k as f64 / n as f64),
-            low: interval.map(|i| i.0),
-            high: interval.map(|i| i.1),
-        }
+    let portion = |name: &str, k: usize, n: usize| {
+        let (value, interval) = (k as f64 / n as f64, wilson(k as u64, n as u64));
+        let known = |value: f64| (n > 0).then_some(value);
+        Score { name: name.into(), cases: n, value: known(value), low: known(interval.0), high: known(interval.1) }
     };
+    let share = |name: &str, cases: &[&Case], holds: &dyn Fn(&Case) -> bool| {
+        portion(name, cases.iter().filter(|case| holds(case)).count(), cases.len())
+    };
+    let places = |of: &dyn Fn(&Case) -> Option<Places>| {
+        let join = |a: Places, b: Places| Places { truly: a.truly + b.truly, told: a.told + b.told, both: a.both + b.both };
+        good.iter().filter_map(|case| of(case)).fold(Places::default(), join)
+    };
+    let (cells, sections) = (places(&|case| case.cells), places(&|case| case.sections));
+    let placed: Vec<&Case> = good.iter().copied().filter(|case| case.first_cell_moved.is_some()).collect();
     let quantile = |name: &str, mut values: Vec<f64>, at: f64| {
         values.sort_by(f64::total_cmp);
         let value = (!values.is_empty()).then(|| values[((values.len() - 1) as f64 * at).round() as usize]);
@@ -203,6 +254,11 @@ pub fn blind(cases: Vec<Case>) -> Blind {
         share("traps avoided", &of("trap"), &|case| case.first_is_right || case.named.is_empty()),
         share("pairs: both found", &of("pair"), &|case| case.truth.iter().all(|name| case.named.contains(name))),
         share("pairs: at least one found", &of("pair"), &|case| case.truth.iter().any(|name| case.named.contains(name))),
+        portion("cells of the map called significant: moved by the truth", cells.both, cells.told),
+        portion("cells of the map moved by the truth: called significant", cells.both, cells.truly),
+        share("first cell of the map: moved by the truth", &placed, &|case| case.first_cell_moved == Some(true)),
+        portion("confined effects, sections named: true", sections.both, sections.told),
+        portion("confined effects, true sections: named", sections.both, sections.truly),
         quantile("error of the shrink, median, percentage points", shrink.clone(), 0.5),
         quantile("error of the shrink, 90 %, percentage points", shrink, 0.9),
         quantile("error of the parameter, median, relative", errors.clone(), 0.5),
@@ -219,49 +275,26 @@ pub fn blind(cases: Vec<Case>) -> Blind {
         let high = edges.get(at + 1).copied().unwrap_or(f64::INFINITY);
         let inside: Vec<&&Case> =
             good.iter().filter(|case| case.kind == "single" && case.detectability.is_some_and(|d| d >= *low && d < high)).collect();
-        (*low, inside.len(), inside.iter().filter(|case| case.first_is_right).count())
+        let named = inside.iter().filter(|case| case.first_is_right).count();
+        let interval = wilson(named as u64, inside.len() as u64);
+        BySize { from: *low, cases: inside.len(), named, low: interval.0, high: interval.1 }
     });
     let by_detectability = by_detectability.collect();
     let bins = (0..5).filter_map(|bin| {
         let (low, high) = (0.2 * f64::from(bin), 0.2 * f64::from(bin + 1) + 1e-9);
         let inside: Vec<&&Case> = good.iter().filter(|case| case.probability.is_some_and(|p| p >= low && p < high)).collect();
-        let n = inside.len();
-        (n > 0).then(|| {
-            let mean = inside.iter().filter_map(|case| case.probability).sum::<f64>() / n as f64;
-            (mean, inside.iter().filter(|case| case.first_is_right).count() as f64 / n as f64, n)
-        })
+        let (cases, right) = (inside.len(), inside.iter().filter(|case| case.first_is_right).count());
+        let said = inside.iter().filter_map(|case| case.probability).sum::<f64>() / cases as f64;
+        let interval = wilson(right as u64, cases as u64);
+        (cases > 0).then_some(Calibration { said, cases, right, low: interval.0, high: interval.1 })
     });
     let calibration = bins.collect();
     Blind { fishplate: env!("CARGO_PKG_VERSION"), scores, confusion, by_detectability, calibration, cases }
 }
 
-/// Interval of a share, 95 % (Wilson 1927).
-#[must_use]
-pub fn wilson(k: usize, n: usize) -> Option<(f64, f64)> {
-    if n == 0 {
-        return None;
-    }
-    let (z, n, p) = (1.959_963_984_540_054_f64, n as f64, k as f64 / n as f64);
-    let middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
-    let half = z / (1.0 + z * z / n) * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
-    // None and all are bounds themselves; rounding would leave them beside it.
-    let low = if k == 0 { 0.0 } else { middle - half };
-    let high = if p == 1.0 { 1.0 } else { middle + half };
-    Some((low, high))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// 8 of 10: 0.490 to 0.943 (Newcombe 1998, method 3).
-    #[test]
-    fn wilson_of_eight_in_ten() {
-        let (low, high) = wilson(8, 10).expect("ten cases");
-        assert!((low - 0.4902).abs() < 1e-4 && (high - 0.9433).abs() < 1e-4, "{low} {high}");
-        assert_eq!(wilson(0, 0), None);
-        assert_eq!((wilson(0, 12).map(|it| it.0), wilson(12, 12).map(|it| it.1)), (Some(0.0), Some(1.0)));
-    }
 
     #[test]
     fn truths_are_read() {
@@ -269,5 +302,22 @@ mod tests {
         let truth = Truth::read(text).expect("a truth");
         assert_eq!(truth.effects[0].confined, Some(Confined { column: "zone".into(), values: vec!["4".into()] }));
         assert!(Truth::read("{}").is_err() && Truth::read("no json").is_err());
+    }
+
+    /// Cells and sections are counted over all cases: 7 of 8 told are true, 7 of 10 true ones are told. Nothing hidden and one cell
+    /// told is one more that is not true.
+    #[test]
+    fn places_are_counted_over_all_cases() {
+        let places = |truly, told, both| Some(Places { truly, told, both });
+        let case = |cells, sections| Case { kind: "single".into(), cells, sections, ..Case::default() };
+        let scored = blind(vec![case(places(6, 5, 5), None), case(places(4, 2, 2), places(4, 5, 3)), case(places(0, 1, 0), None)]);
+        let of = |name: &str| scored.scores.iter().find(|score| score.name == name).expect("a score of this name");
+        let (precision, recall) =
+            (of("cells of the map called significant: moved by the truth"), of("cells of the map moved by the truth: called significant"));
+        assert_eq!((precision.cases, precision.value, recall.cases, recall.value), (8, Some(0.875), 10, Some(0.7)));
+        assert_eq!(precision.low.zip(precision.high), Some(wilson(7, 8)));
+        assert_eq!(of("confined effects, sections named: true").value, Some(0.6));
+        assert_eq!(of("confined effects, true sections: named").value, Some(0.75));
+        assert_eq!(of("traps avoided").value, None);
     }
 }

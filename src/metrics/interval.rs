@@ -1,4 +1,4 @@
-//! Confidence intervals of the mean and the standard deviation of normally distributed values.
+//! Confidence intervals of the mean and the standard deviation of normally distributed values, and of a share.
 
 use statrs::distribution::{ChiSquared, Continuous, ContinuousCDF, StudentsT};
 
@@ -36,6 +36,22 @@ pub fn standard_deviation_interval(values: &[f64], confidence: f64) -> Option<In
     let upper = upper_tail(confidence)?;
     let end = |probability: f64| deviation * (degrees / chi_squared.inverse_cdf(probability)).sqrt();
     Some(Interval { low: end(upper), high: end(1.0 - upper) }).filter(Interval::is_finite)
+}
+
+/// Interval of a share, 95 % (Wilson 1927): how many of how many. Of none every share is possible.
+#[must_use]
+pub fn wilson(good: u64, all: u64) -> (f64, f64) {
+    /// 97.5 % value of the normal distribution.
+    const NORMAL: f64 = 1.959_963_984_540_054;
+    if all == 0 {
+        return (0.0, 1.0);
+    }
+    let (n, p) = (all as f64, good as f64 / all as f64);
+    let square = NORMAL * NORMAL;
+    let center = (p + square / (2.0 * n)) / (1.0 + square / n);
+    let half = NORMAL / (1.0 + square / n) * (p * (1.0 - p) / n + square / (4.0 * n * n)).sqrt();
+    // At the ends the two terms cancel, but for rounding.
+    (if good == 0 { 0.0 } else { (center - half).max(0.0) }, if good == all { 1.0 } else { (center + half).min(1.0) })
 }
 
 /// The value that Student's t exceeds with probability 1 - `probability`, which is above one half.

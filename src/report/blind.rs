@@ -13,11 +13,9 @@ pub fn chapters(blind: &Blind) -> Vec<Chapter> {
         title: title.into(),
         items: vec![Item::Table { table: Table { caption: caption.into(), head, rows } }],
     };
+    let between = |low: f64, high: f64| format!("{} to {}", number::fixed(low, 2), number::fixed(high, 2));
     let scores = blind.scores.iter().map(|score| {
-        let interval = score
-            .low
-            .zip(score.high)
-            .map_or_else(String::new, |(low, high)| format!("{} to {}", number::fixed(low, 2), number::fixed(high, 2)));
+        let interval = score.low.zip(score.high).map_or_else(String::new, |(low, high)| between(low, high));
         vec![score.name.clone(), score.cases.to_string(), number(score.value), interval]
     });
     let cases = blind.cases.iter().map(|case| {
@@ -38,16 +36,21 @@ pub fn chapters(blind: &Blind) -> Vec<Chapter> {
     for (truth, named) in &blind.confusion {
         confusion.extend(named.iter().map(|(name, count)| vec![truth.clone(), name.clone(), count.to_string()]));
     }
-    let by_size =
-        blind.by_detectability.iter().map(|(low, cases, named)| vec![number::fixed(*low, 0), cases.to_string(), named.to_string()]);
-    let calibration =
-        blind.calibration.iter().map(|(said, right, cases)| vec![number::fixed(*said, 2), number::fixed(*right, 2), cases.to_string()]);
+    let by_size = blind
+        .by_detectability
+        .iter()
+        .filter(|one| one.cases > 0)
+        .map(|one| vec![number::fixed(one.from, 0), one.cases.to_string(), one.named.to_string(), between(one.low, one.high)]);
+    let calibration = blind
+        .calibration
+        .iter()
+        .map(|bin| vec![number::fixed(bin.said, 2), bin.cases.to_string(), bin.right.to_string(), between(bin.low, bin.high)]);
     let (text, short, numeric) = (Head::text, Head::short, Head::number);
     vec![
         chapter(
             "scores",
             "Scores",
-            vec![text("Score"), numeric("Cases"), numeric("Value"), numeric("95 % interval")],
+            vec![text("Score"), numeric("Cases, cells or sections"), numeric("Value"), numeric("95 % interval")],
             scores.collect(),
             "Shares with Wilson's intervals",
         ),
@@ -79,16 +82,16 @@ pub fn chapters(blind: &Blind) -> Vec<Chapter> {
         chapter(
             "detectability",
             "Score against detectability",
-            vec![numeric("d from"), numeric("Cases"), numeric("Named first")],
+            vec![numeric("d from"), numeric("Cases"), numeric("Named first"), numeric("95 % interval of the share")],
             by_size.collect(),
             "Single effects",
         ),
         chapter(
             "calibration",
             "Probabilities",
-            vec![numeric("Said"), numeric("Right"), numeric("Cases")],
+            vec![numeric("Said"), numeric("Cases"), numeric("Right"), numeric("95 % interval of the share")],
             calibration.collect(),
-            "Mean probability of the first cause, and the share of cases in which it is right",
+            "Mean probability of the first cause, and in how many cases it is right",
         ),
     ]
 }

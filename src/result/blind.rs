@@ -10,14 +10,35 @@ pub struct Blind {
     pub scores: Vec<Score>,
     /// Named first, by what is true: counts.
     pub confusion: IndexMap<String, IndexMap<String, usize>>,
-    /// Share named first by detectability: lower edge, cases, named.
-    pub by_detectability: Vec<(f64, usize, usize)>,
-    /// Bins of the probability of the first cause: mean probability, share that is right, cases.
-    pub calibration: Vec<(f64, f64, usize)>,
+    /// Single effects by detectability, upwards.
+    pub by_detectability: Vec<BySize>,
+    /// Bins of the probability of the first cause.
+    pub calibration: Vec<Calibration>,
+}
+
+/// Single effects of a detectability from `from` on, as far as the next: how many, how many named first, and the interval of the share
+/// (Wilson, 95 %).
+#[derive(Clone, Debug, Serialize)]
+pub struct BySize {
+    pub from: f64,
+    pub cases: usize,
+    pub named: usize,
+    pub low: f64,
+    pub high: f64,
+}
+
+/// First causes of about the same probability: its mean, how many are right, and the interval of the share (Wilson, 95 %).
+#[derive(Clone, Debug, Serialize)]
+pub struct Calibration {
+    pub said: f64,
+    pub cases: usize,
+    pub right: usize,
+    pub low: f64,
+    pub high: f64,
 }
 
 /// One campaign.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Case {
     pub campaign: String,
     pub kind: String,
@@ -36,11 +57,25 @@ pub struct Case {
     pub shrink_said: Option<f64>,
     pub shrink_true: Option<f64>,
     pub probability: Option<f64>,
+    /// Cells of the map: moved by what is true, called significant, and both. Nothing where no catalogue has the truth.
+    pub cells: Option<Places>,
+    /// Whether what is true moves the first cell of the map; nothing where it moves none.
+    pub first_cell_moved: Option<bool>,
+    /// Sections in which the effects act that are named and true: in truth, as named, and both. Nothing where they act everywhere.
+    pub sections: Option<Places>,
     /// Why there is no diagnosis or no truth.
     pub fault: Option<String>,
 }
 
-/// A share of cases with its interval (Wilson, 95 %), or a median.
+/// How many places are true, how many were told, and how many both.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Places {
+    pub truly: usize,
+    pub told: usize,
+    pub both: usize,
+}
+
+/// A share of cases, or of places in them, with its interval (Wilson, 95 %), or a median.
 #[derive(Clone, Debug, Serialize)]
 pub struct Score {
     pub name: String,

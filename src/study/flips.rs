@@ -9,7 +9,8 @@ use super::fails::Fails;
 use super::halves::Halves;
 use super::judged::{Sums, Tally};
 use super::random::{Random, draw};
-use super::sampling::{BATCH, MOST_DRAWN, ROUND, wilson};
+use super::sampling::{BATCH, MOST_DRAWN, ROUND};
+use crate::metrics::interval::wilson;
 use crate::result::Verdict;
 use crate::result::study::Flips;
 

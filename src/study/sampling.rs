@@ -11,6 +11,7 @@ use super::judged::{Sums, Tally};
 use super::known::{self, known};
 use super::quartiles::estimated;
 use super::random::{Random, draw};
+use crate::metrics::interval::wilson;
 use crate::result::Verdict;
 use crate::result::study::{Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection};
 
@@ -21,19 +22,6 @@ pub(super) const ROUND: usize = 8;
 pub(super) const MOST_DRAWN: usize = 1 << 22;
 /// Selections whose values are kept for the estimated quartiles.
 const KEPT: usize = 1 << 16;
-/// 97.5 % value of the normal distribution.
-const NORMAL: f64 = 1.959_963_985;
-
-/// Wilson's 95 % interval of a share.
-pub fn wilson(good: u64, all: u64) -> (f64, f64) {
-    let (n, p) = (all as f64, good as f64 / all as f64);
-    let square = NORMAL * NORMAL;
-    let center = (p + square / (2.0 * n)) / (1.0 + square / n);
-    let half = NORMAL / (1.0 + square / n) * (p * (1.0 - p) / n + square / (4.0 * n * n)).sqrt();
-    // At the ends the two terms cancel, but for rounding.
-    (if good == 0 { 0.0 } else { (center - half).max(0.0) }, if good == all { 1.0 } else { (center + half).min(1.0) })
-}
-
 /// What some selections came to.
 struct Drawn {
     validated: u64,

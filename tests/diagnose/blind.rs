@@ -38,6 +38,12 @@ fn campaigns_with_withheld_truths_are_diagnosed_and_scored() {
         assert!(case["parameter_error"].as_f64().unwrap() < 0.35, "{case:#}");
         let (said, really) = (case["shrink_said"].as_f64().unwrap(), case["shrink_true"].as_f64().unwrap());
         assert!((said - really).abs() < 0.1, "{case:#}");
+        let cells = |of: &str| case["cells"][of].as_u64().unwrap();
+        assert!(cells("both") <= cells("told").min(cells("truly")), "{case:#}");
     }
+    // Nothing hidden: no cell is called significant. Outside the catalogue nobody can say which cells are.
+    let of_kind = |kind: &str| cases.iter().find(|case| case["kind"] == kind).unwrap();
+    assert_eq!(of_kind("none")["cells"], serde_json::json!({"truly": 0, "told": 0, "both": 0}));
+    assert!(of_kind("outside")["cells"].is_null());
     assert!(fs::read_to_string(out.join("blind.html")).unwrap().contains("Wilson"));
 }
