@@ -1,16 +1,10 @@
 //! What may differ without any effect: noise, declared tolerances, and what the simulation is allowed to be wrong in.
 
 use super::features::Kind;
-use super::observe::{Observations, piece};
+use super::observe::Observations;
 use super::settings::{Discrepancy, FeatureKind, Moves, Over, Settings, Times};
 use super::standing::Standing;
 use super::whiten::Covariance;
-use crate::effects::Gauss;
-
-/// Blocks of the difference of levels are at least this long, in s.
-const BLOCK: f64 = 1.0;
-/// Draws of the block bootstrap.
-const DRAWS: usize = 60;
 
 /// Variance of what tells nothing.
 pub const NOTHING: f64 = 1e12;
@@ -133,53 +127,22 @@ fn diagonal(seen: &Observations, settings: &Settings) -> Vec<f64> {
             continue;
         }
         for feature in &seen.features {
-            let of = &seen.layout.channels[feature.channel];
-            let group = &settings.groups[of.group];
+            let group = &settings.groups[seen.layout.channels[feature.channel].group];
+            let scatter = &observed.scatter[feature.channel];
             variances.push(match feature.kind {
-                Kind::Level => {
-                    let (measured, simulated) =
-                        (piece(&observed.measured, &of.name, &observed.section), piece(&observed.simulated, &of.name, &observed.section));
-                    let own = measured.zip(simulated).map_or(0.0, |(m, s)| {
-                        let difference: Vec<f64> = m.values.iter().zip(&s.values).map(|(m, s)| m - s).collect();
-                        bootstrap(&difference, m.rate, at as u64)
-                    });
-                    own + group.level_sd * group.level_sd
-                }
+                Kind::Level => scatter.level + group.level_sd * group.level_sd,
                 Kind::Band(band) => {
                     // Of the logarithm of an rms over a band of width B in a time T: 1 / (4 B T) for each of two records, half of it common.
                     let width = seen.layout.edges[band + 1] - seen.layout.edges[band];
                     0.25 / (width * length).max(0.5) + group.band_sd * group.band_sd
                 }
                 Kind::Gain => group.gain_sd * group.gain_sd + 0.1 / length.max(1.0),
-                Kind::Lag => group.lag_sd * group.lag_sd,
+                Kind::Lag if scatter.has_lag => group.lag_sd * group.lag_sd,
+                Kind::Lag => NOTHING,
             });
         }
     }
     variances
-}
-
-/// Variance of the mean by moving blocks (Künsch 1989).
-fn bootstrap(values: &[f64], rate: f64, seed: u64) -> f64 {
-    let block = ((BLOCK * rate) as usize).clamp(1, values.len().max(1));
-    if values.len() <= block {
-        return 0.0;
-    }
-    let mut sums = vec![0.0];
-    values.iter().for_each(|value| sums.push(sums[sums.len() - 1] + value));
-    let count = values.len().div_ceil(block);
-    let mut random = Gauss::new(seed.wrapping_mul(0x5851_F42D_4C95_7F2D) ^ values.len() as u64);
-    let mut means = Vec::with_capacity(DRAWS);
-    for _ in 0..DRAWS {
-        let total: f64 = (0..count)
-            .map(|_| {
-                let from = random.below(values.len() - block + 1);
-                sums[from + block] - sums[from]
-            })
-            .sum();
-        means.push(total / (count * block) as f64);
-    }
-    let mean = means.iter().sum::<f64>() / DRAWS as f64;
-    means.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (DRAWS - 1) as f64
 }
 
 /// Columns of a discrepancy.

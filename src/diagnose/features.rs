@@ -157,34 +157,80 @@ impl Spectrum {
     /// Regression of `self` on `reference` over a band: its gain, and the lag in samples at which the two are most alike, be it
     /// upside down.
     #[must_use]
-    pub fn alike(&self, reference: &Self, (low, high): (f64, f64), furthest: usize) -> (f64, f64) {
+    pub fn alike(&self, reference: &Self, band: (f64, f64), furthest: usize) -> (f64, f64) {
+        self.correlated(reference, band, furthest).map_or((0.0, 0.0), |alike| (alike.gain(), alike.lag()))
+    }
+
+    /// How much alike the two are at the best of the other lags, as a share of what they are at the lag where they are most: near 1,
+    /// where next to nothing decides which of them that is, as of a slow sway that comes again and again.
+    #[must_use]
+    pub fn next_best(&self, reference: &Self, band: (f64, f64), furthest: usize) -> f64 {
+        self.correlated(reference, band, furthest).map_or(0.0, |alike| alike.next_best())
+    }
+
+    fn correlated(&self, reference: &Self, (low, high): (f64, f64), furthest: usize) -> Option<Correlated> {
         if self.padded != reference.padded {
-            return (0.0, 0.0);
+            return None;
         }
-        let range = reference.range(low, high);
-        let mut planner = RealFftPlanner::<f64>::new();
-        let inverse = planner.plan_fft_inverse(self.padded);
+        let inverse = RealFftPlanner::<f64>::new().plan_fft_inverse(self.padded);
         let mut cross = inverse.make_input_vec();
         let mut own = 0.0;
-        for i in range {
+        for i in reference.range(low, high) {
             let ((a, b), (c, d)) = (self.lines[i], reference.lines[i]);
             cross[i].re = a * c + b * d;
             cross[i].im = b * c - a * d;
             own += c * c + d * d;
         }
-        let mut correlation = inverse.make_output_vec();
-        let _ = inverse.process(&mut cross, &mut correlation);
+        let mut values = inverse.make_output_vec();
+        // The lengths are those of the plan: it cannot fail.
+        let _ = inverse.process(&mut cross, &mut values);
+        Some(Correlated { values, own, furthest: (furthest as i64).min(self.padded as i64 / 2 - 2) })
+    }
+}
+
+/// Two records over each other, at every lag.
+struct Correlated {
+    values: Vec<f64>,
+    /// Of the reference with itself, at no lag.
+    own: f64,
+    furthest: i64,
+}
+
+impl Correlated {
+    fn at(&self, lag: i64) -> f64 {
         // The transform of one-sided lines: the correlation is half the sum.
-        let at = |lag: i64| correlation[lag.rem_euclid(self.padded as i64) as usize] * 0.5;
-        let gain = |lag: i64| at(lag) / own.max(1e-300);
-        let furthest = (furthest as i64).min(self.padded as i64 / 2 - 2);
-        let most = |sign: f64| (-furthest..=furthest).max_by(|a, b| (sign * at(*a)).total_cmp(&(sign * at(*b)))).unwrap_or(0);
+        self.values[lag.rem_euclid(self.values.len() as i64) as usize] * 0.5
+    }
+
+    fn gain(&self) -> f64 {
+        self.at(0) / self.own.max(1e-300)
+    }
+
+    /// The lag at which the two are most alike, and -1 if it is upside down.
+    fn best(&self) -> (i64, f64) {
+        let signed = |sign: f64| move |a: &i64, b: &i64| (sign * self.at(*a)).total_cmp(&(sign * self.at(*b)));
+        let most = |sign: f64| (-self.furthest..=self.furthest).max_by(signed(sign)).unwrap_or(0);
         let (upright, inverted) = (most(1.0), most(-1.0));
-        let (best, sign) = if -at(inverted) > INVERTED * at(upright) { (inverted, -1.0) } else { (upright, 1.0) };
-        let (left, middle, right) = (sign * at(best - 1), sign * at(best), sign * at(best + 1));
+        if -self.at(inverted) > INVERTED * self.at(upright) { (inverted, -1.0) } else { (upright, 1.0) }
+    }
+
+    /// The same between samples.
+    fn lag(&self) -> f64 {
+        let (best, sign) = self.best();
+        let [left, middle, right] = [-1, 0, 1].map(|by| sign * self.at(best + by));
         let bend = left - 2.0 * middle + right;
-        let part = if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 };
-        (gain(0), best as f64 + part)
+        best as f64 + if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 }
+    }
+
+    fn next_best(&self) -> f64 {
+        let (best, sign) = self.best();
+        let beyond = |by: i64| {
+            let lags = move || std::iter::successors(Some(best), move |lag| Some(lag + by)).take_while(|lag| lag.abs() <= self.furthest);
+            // Down from the peak to where it rises again.
+            let down = lags().zip(lags().skip(1)).take_while(|(a, b)| sign * self.at(*b) < sign * self.at(*a)).count();
+            lags().skip(down).map(|lag| sign * self.at(lag)).fold(0.0, f64::max)
+        };
+        (beyond(-1).max(beyond(1)) / (sign * self.at(best)).max(1e-300)).min(1.0)
     }
 }
 
@@ -241,6 +287,18 @@ mod tests {
         let (gain, lag) = Spectrum::new(&sine(3.0, -3.0, 0)).alike(&a, (1.0, 8.0), 20);
         assert!((gain + 1.5).abs() < 1e-3, "{gain}");
         assert!(lag.abs() < 0.05, "{lag}");
+    }
+
+    /// A sine comes again after a period, but for the taper.
+    #[test]
+    fn what_comes_again_has_another_lag() {
+        let long = Spectrum::new(&sine(1.0, 2.0, 0));
+        let again = long.next_best(&long, (0.5, 8.0), 400);
+        // Hann's taper over 10 s with itself a second later.
+        let tapered = |n: usize| (std::f64::consts::PI * (n as f64 + 0.5) / 2000.0).sin().powi(2);
+        let wanted = (0..1800).map(|n| tapered(n) * tapered(n + 200)).sum::<f64>() / (0..2000).map(|n| tapered(n).powi(2)).sum::<f64>();
+        assert!((again - wanted).abs() < 0.01, "{again} for {wanted}");
+        assert_eq!(long.next_best(&long, (0.5, 8.0), 60), 0.0);
     }
 
     #[test]

@@ -58,6 +58,9 @@ pub struct Path {
     products: Vec<f64>,
 }
 
+/// How far from a size, as a share of it, nodes must lie that its slope is taken between.
+const APART: f64 = 0.05;
+
 /// Where on a path a difference is met best.
 #[derive(Clone, Copy, Debug)]
 struct Best {
@@ -131,6 +134,22 @@ impl Path {
         let lengths = nodes.iter().map(|node| product(node, node)).collect();
         let products = nodes.windows(2).map(|pair| product(&pair[0], &pair[1])).collect();
         Self { nodes, lengths, products }
+    }
+
+    /// Length of the change per unit of the size, between nodes that are some way to either side of it: between two that nearly are one,
+    /// what features scatter by would pass for a change. 0 where one of the two has no finite size.
+    fn slope(&self, of: &Candidate, segment: usize, size: f64) -> f64 {
+        let near = |at: &usize| (of.nodes[*at].size - size).abs() < APART * size.abs();
+        let from = (1..=segment).rev().find(|at| !near(at)).unwrap_or(0);
+        let last = of.nodes.len() - 1;
+        let to = (segment + 1..last).find(|at| !near(at)).unwrap_or(last);
+        let width = (of.nodes[to].size - of.nodes[from].size).abs();
+        let difference: f64 = match (&self.nodes[from], &self.nodes[to]) {
+            (a, b) if a.is_empty() => dot(b, b),
+            (a, b) if b.is_empty() => dot(a, a),
+            (a, b) => a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum(),
+        };
+        if width.is_finite() && width > 0.0 { difference.sqrt() / width } else { 0.0 }
     }
 }
 
@@ -245,11 +264,8 @@ impl<'a> Fitter<'a> {
             (a, b) if b.is_empty() => a.iter().map(|a| (1.0 - share) * a).collect(),
             (a, b) => a.iter().zip(b).map(|(a, b)| (1.0 - share) * a + share * b).collect(),
         };
-        let width = (to.size - from.size).abs();
-        let (aa, bb, across) = (path.lengths[segment], path.lengths[segment + 1], path.products[segment]);
-        let difference = (aa - 2.0 * across + bb).max(0.0).sqrt();
-        let slope = if width.is_finite() && width > 0.0 { difference / width } else { 0.0 };
         let size = between(from.size, to.size, share);
+        let slope = path.slope(of, segment, size);
         Fitted { candidate, mask, segment, share, size, fall, evidence, whitened, slope, doubtful: false }
     }
 
@@ -371,6 +387,18 @@ pub fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::candidates::Node;
+
+    /// Three nodes on a line of slope 2 and one that is a little off beside the middle: the slope is that of the line.
+    #[test]
+    fn nodes_side_by_side_make_no_slope() {
+        let nodes = [(0.0, 0.0), (1.0, 2.0), (1.001, 2.5), (2.0, 4.0)];
+        let node = |(size, change): (f64, f64)| Node { size, change: if size == 0.0 { Vec::new() } else { vec![change] } };
+        let of = Candidate::path("effect", nodes.map(node).to_vec());
+        let path = Path::new(of.nodes.iter().map(|node| node.change.clone()).collect());
+        assert!((path.slope(&of, 1, 1.0005) - 2.0).abs() < 1e-12);
+        assert!((path.slope(&of, 0, 0.5) - 2.0).abs() < 1e-12);
+    }
 
     /// The mean of the upper half of a standard normal distribution is (2 / pi)^1/2 = 0.798, of the upper quarter 1.271 (tables of
     /// selection intensity, Falconer and Mackay 1996, appendix A).

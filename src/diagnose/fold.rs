@@ -79,6 +79,7 @@ mod tests {
             simulated: none(),
             measured: none(),
             references: Vec::new(),
+            scatter: Vec::new(),
             again: false,
         };
         let channel = |(name, group): (&str, usize)| ChannelFeatures {

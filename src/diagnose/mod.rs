@@ -27,6 +27,7 @@ pub mod observe;
 mod pictures;
 mod rivals;
 pub mod run;
+pub mod scatter;
 pub mod score;
 pub mod search;
 pub mod sensitivity;

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::faults::faults;
 use super::features::{ChannelFeatures, Feature, Kind, Layout, Piece, Spectrum, of_channel};
+use super::scatter::{Scatter, scatter};
 use super::settings::{GroupFeatures, Settings};
 use crate::data::{Campaign, RecordKind};
 use crate::effects::{Catalogue, Signals};
@@ -21,6 +22,8 @@ pub struct Observed {
     pub measured: Signals,
     /// Spectra of the simulated channels of the layout.
     pub references: Vec<Option<Spectrum>>,
+    /// How much the channels of the layout scatter.
+    pub scatter: Vec<Scatter>,
     /// Whether it is an earlier section measured again: it says nothing new about the simulation.
     pub again: bool,
 }
@@ -78,7 +81,7 @@ impl Observations {
         for (section, simulated, measured) in good {
             let again = section.fact("repeat of").is_some_and(|of| sections.iter().any(|known| known.section.name() == of))
                 || sections.iter().any(|known| known.measured.channels == measured.channels);
-            sections.push(Observed { section, simulated, measured, references: Vec::new(), again });
+            sections.push(Observed { section, simulated, measured, references: Vec::new(), scatter: Vec::new(), again });
         }
         let mut layout = Layout { channels: Vec::new(), edges: settings.edges.clone(), alike: settings.alike, furthest: settings.furthest };
         let everywhere = |name: &String| {
@@ -109,10 +112,16 @@ impl Observations {
             return None;
         }
         let features = layout.features();
-        sections.par_iter_mut().for_each(|observed| {
-            let spectrum =
-                |of: &ChannelFeatures| piece(&observed.simulated, &of.name, &observed.section).map(|piece| Spectrum::new(&piece));
+        sections.par_iter_mut().enumerate().for_each(|(at, observed)| {
+            let of = |signals: &Signals, of: &ChannelFeatures| piece(signals, &of.name, &observed.section);
+            let spectrum = |channel: &ChannelFeatures| of(&observed.simulated, channel).map(|piece| Spectrum::new(&piece));
             observed.references = layout.channels.iter().map(spectrum).collect();
+            let scatter = |(channel, reference): (&ChannelFeatures, &Option<Spectrum>)| {
+                let (measured, simulated) = of(&observed.measured, channel).zip(of(&observed.simulated, channel))?;
+                Some(scatter(&layout, &measured, &simulated, reference.as_ref()?, at as u64))
+            };
+            let both = layout.channels.iter().zip(&observed.references);
+            observed.scatter = both.map(|both| scatter(both).unwrap_or(Scatter { level: 0.0, has_lag: false })).collect();
         });
         Some(Self { layout, features, sections, noise, left_out, faults })
     }
