@@ -219,7 +219,9 @@ fn kept(folder: &Path, campaign: &Campaign, settings: &Settings) -> Result<Cache
         campaign.other_files(RecordKind::Measurement)?.iter().map(|(path, bytes)| format!("{path} {}", sha256(bytes))).collect();
     let Settings { edges, alike, groups, furthest, .. } = settings;
     let groups: Vec<_> = groups.iter().map(|group| (&group.name, group.level, group.bands, group.alike, &group.noise)).collect();
-    let of = format!("{} {} {edges:?} {alike:?} {groups:?} {furthest}", env!("CARGO_PKG_VERSION"), files.join(" "));
+    // Changes with what a feature is.
+    const FEATURES: &str = "levels are means";
+    let of = format!("{} {FEATURES} {} {edges:?} {alike:?} {groups:?} {furthest}", env!("CARGO_PKG_VERSION"), files.join(" "));
     Ok(Cache::new(folder, of))
 }
 

@@ -76,6 +76,16 @@ impl Candidate {
         }
     }
 
+    /// How far apart the changes of a feature are, between half of an effect of this size and half as much again.
+    #[must_use]
+    pub fn range_near(&self, size: f64, place: usize) -> f64 {
+        let reach = 0.5 * (size - self.neutral().unwrap_or(0.0)).abs();
+        let near = self.nodes.iter().filter(|node| (node.size - size).abs() <= reach);
+        let changes = near.map(|node| node.change.get(place).copied().unwrap_or(0.0));
+        let (low, high) = changes.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), change| (low.min(change), high.max(change)));
+        (high - low).max(0.0)
+    }
+
     /// Where nothing changes.
     #[must_use]
     pub fn neutral(&self) -> Option<f64> {
@@ -393,4 +403,17 @@ fn combinations(axes: &[(usize, Vec<f64>)]) -> Vec<Vec<(usize, f64)>> {
     axes.iter().fold(vec![Vec::new()], |known, (at, values)| {
         known.iter().flat_map(|one| values.iter().map(move |value| [one.clone(), vec![(*at, *value)]].concat())).collect()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A lag of 0, 1, 2 and then 30 along the sizes 0 to 3: around 1 it moves by no more than 1, around 2.5 it has jumped.
+    #[test]
+    fn what_jumps_between_sizes_is_seen_near_them() {
+        let node = |(size, lag): (f64, f64)| Node { size, change: if size == 0.0 { Vec::new() } else { vec![5.0, lag] } };
+        let of = Candidate::path("effect", [(0.0, 0.0), (1.0, 1.0), (1.5, 2.0), (3.0, 30.0)].map(node).to_vec());
+        assert_eq!([of.range_near(1.0, 1), of.range_near(2.5, 1), of.range_near(2.5, 0), of.range_near(0.0, 1)], [1.0, 28.0, 0.0, 0.0]);
+    }
 }

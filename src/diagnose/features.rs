@@ -27,7 +27,7 @@ pub struct ChannelFeatures {
     pub group: usize,
     /// What its levels are in.
     pub unit: Unit,
-    /// Whether its median is a feature.
+    /// Whether its level is a feature.
     pub level: bool,
     /// How many of the bands are features, from the lowest.
     pub bands: usize,
@@ -38,7 +38,7 @@ pub struct ChannelFeatures {
 /// What a feature is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
-    /// Median, in the unit of the channel.
+    /// Mean without spikes, in the unit of the channel.
     Level,
     /// Natural logarithm of the rms in a band.
     Band(usize),
@@ -97,15 +97,21 @@ pub struct Spectrum {
     padded: usize,
 }
 
-/// Median; `None` of nothing.
+/// Share of the samples at either end that count as the next one inside.
+const SPIKES: f64 = 0.01;
+
+/// What a signal is about: its mean, with the lowest and the highest hundredth of the samples put to the next inside, so that single
+/// spikes do not count (Winsor's mean, Dixon 1960). Of a signal that sways it scatters two to four times less than the median does, since
+/// whole periods cancel. `None` of nothing.
 #[must_use]
-pub fn median(values: &[f64]) -> Option<f64> {
+pub fn level(values: &[f64]) -> Option<f64> {
+    let last = values.len().checked_sub(1)?;
+    let out = (SPIKES * values.len() as f64) as usize;
     let mut sorted = values.to_vec();
-    let middle = sorted.len().checked_sub(1)? / 2;
-    let (_, low, above) = sorted.select_nth_unstable_by(middle, f64::total_cmp);
+    let (_, low, above) = sorted.select_nth_unstable_by(out, f64::total_cmp);
     let low = *low;
-    let high = above.iter().copied().fold(f64::INFINITY, f64::min);
-    Some(if values.len().is_multiple_of(2) { 0.5 * (low + high) } else { low })
+    let high = if above.is_empty() { low } else { *above.select_nth_unstable_by((last - 2 * out).saturating_sub(1), f64::total_cmp).1 };
+    Some(values.iter().map(|value| value.clamp(low, high.max(low))).sum::<f64>() / values.len() as f64)
 }
 
 /// A record is upside down if it is so much more like the reference that way: records that are hardly alike are it either way by chance.
@@ -240,7 +246,7 @@ impl Correlated {
 /// the powers, in the unit of the channel; `shift` where the piece's own axis lies behind that of the reference.
 pub fn of_channel(layout: &Layout, of: &ChannelFeatures, piece: &Piece, reference: Option<&Spectrum>, noise: f64, out: &mut Vec<f64>) {
     if of.level {
-        out.push(median(&piece.values).unwrap_or(0.0));
+        out.push(level(&piece.values).unwrap_or(0.0));
     }
     if of.bands == 0 && !of.alike {
         return;
@@ -301,10 +307,16 @@ mod tests {
         assert_eq!(long.next_best(&long, (0.5, 8.0), 60), 0.0);
     }
 
+    /// 200 values of which two at either end are put to the next: 2, 2, 2, 3, ..., 197, 197, 197; what they are does not count.
     #[test]
-    fn medians() {
-        assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
-        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), Some(2.5));
-        assert_eq!(median(&[]), None);
+    fn levels() {
+        let mut values: Vec<f64> = (0..200).map(f64::from).collect();
+        let mean = values.iter().sum::<f64>() / 200.0;
+        values[199] = 1e9;
+        values[0] = -1e6;
+        values.swap(3, 199);
+        assert_eq!(level(&values), Some(mean));
+        assert_eq!(level(&[3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!((level(&[]), level(&[5.0])), (None, Some(5.0)));
     }
 }

@@ -19,6 +19,9 @@ use crate::simulate::Plan;
 /// alone move them by about one.
 const MATTERS: f64 = 1.5;
 
+/// A lag that moves by so many of its standard deviations between half an effect and as much again has jumped.
+const JUMP: f64 = 5.0;
+
 /// How often the sizes that were found are added and fitted again, and what share of a size is no difference.
 pub const ROUNDS: usize = 3;
 const ALIKE: f64 = 0.01;
@@ -144,7 +147,7 @@ impl Settled<'_> {
     }
 
     /// Fits the members again by what their sizes follow from: without what stands out in a section alone, which would pull with all that
-    /// it is off, and with the levels and all else of a simulated change as wrong, each as one, as a model may be.
+    /// it is off, without lags that jump to another period of a sway between sizes, and with the levels and all else of a simulated change as wrong, each as one, as a model may be.
     fn sized(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Weighed, lack: &[Lack], runs: &mut Runs) -> Weighed {
         let seen = self.workshop.seen;
         let mut covariance = now.covariance.clone();
@@ -153,6 +156,16 @@ impl Settled<'_> {
             for (at, feature) in seen.features.iter().enumerate() {
                 if seen.layout.channels[feature.channel].name == one.channel && (feature.kind == Kind::Level) == level {
                     one.alone.iter().for_each(|section| covariance.diagonal[seen.place(*section, at)] = NOTHING);
+                }
+            }
+        }
+        for member in now.chosen.members.iter().filter(|member| !candidates[member.candidate].exact) {
+            for (at, feature) in seen.features.iter().enumerate().filter(|(_, feature)| feature.kind == Kind::Lag) {
+                let sd = self.settings.groups[seen.layout.channels[feature.channel].group].lag_sd;
+                for place in (0..seen.sections.len()).map(|section| seen.place(section, at)) {
+                    if candidates[member.candidate].range_near(member.size, place) > JUMP * sd {
+                        covariance.diagonal[place] = NOTHING;
+                    }
                 }
             }
         }
