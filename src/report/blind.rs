@@ -2,7 +2,16 @@
 
 use crate::report::number;
 use crate::report::study::{Chapter, Head, Item, Table};
-use crate::result::blind::Blind;
+use crate::result::blind::{Blind, Case};
+
+/// Where nothing of the catalogue is hidden, nothing is to be named with confidence.
+fn right(case: &Case) -> bool {
+    match case.kind.as_str() {
+        "none" => case.named.is_empty(),
+        "outside" => case.verdict != "explained",
+        _ => case.first_is_right,
+    }
+}
 
 /// Scores, cases, confusion, detectability, calibration.
 #[must_use]
@@ -25,7 +34,7 @@ pub fn chapters(blind: &Blind) -> Vec<Chapter> {
             case.truth.join(", "),
             case.fault.clone().unwrap_or_else(|| case.verdict.clone()),
             case.named.join(", "),
-            if case.first_is_right { "yes".into() } else { "no".into() },
+            if right(case) { "yes".into() } else { "no".into() },
             number(case.detectability),
             number(case.parameter_error),
             number(case.shrink_said),
