@@ -92,6 +92,15 @@ impl Reader<'_> {
         }
     }
 
+    /// How far a lag is looked for.
+    fn furthest(&mut self, node: &Node) -> f64 {
+        let furthest = self.number(node, "furthest lag", FURTHEST);
+        if let Some(found) = node.get("furthest lag").filter(|_| furthest <= 0.0) {
+            self.outside("`furthest lag` is a distance or a time: it must be positive", found);
+        }
+        furthest
+    }
+
     /// A standard deviation.
     fn spread(&mut self, node: &Node, key: &str, default: f64) -> f64 {
         let spread = self.number(node, key, default);
@@ -217,7 +226,7 @@ impl Reader<'_> {
         let mut settings = Settings {
             edges: node.get("bands").map_or(Vec::new(), |bands| self.rising(bands)),
             alike: (alike.first().copied().unwrap_or(0.5), alike.get(1).copied().unwrap_or(8.0)),
-            furthest: self.number(node, "furthest lag", FURTHEST),
+            furthest: self.furthest(node),
             confine: names(confine),
             covariates: names(covariates),
             mirror: mirror.map(|(key, value)| (key.text, value)),
@@ -442,6 +451,7 @@ diagnosis:
             ("channels: [forces], ", "", "needs `channels`", "10:19"),
             ("sd: [0.1, 0.2]", "sd: []", "none of them negative", "10:55"),
             ("[1, 2, 4]\n", "[1, 2, 4]\n  alike: [8]\n", "`alike` is two", "8:10"),
+            ("[1, 2, 4]\n", "[1, 2, 4]\n  furthest lag: -5\n", "must be positive", "8:17"),
         ] {
             let text = SOUND.replacen(good, bad, 1);
             assert_ne!(text, SOUND);
