@@ -56,6 +56,10 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     let mut records = Vec::new();
     let evaluate = |found: &Found, records: &[Signals]| evaluated(inputs.campaign, compiled, found, records, &units, settings);
     while !found.chosen.members.is_empty() {
+        if let Some((either, reason)) = super::causes::of_either_sign(&found) {
+            found.refuse(either, reason, inputs.seed);
+            continue;
+        }
         (inputs.trying)("the protocol with the effects");
         let made = evaluate(&found, &unseen(inputs, &found, None)?)?;
         if let Some((idle, reason)) = idle(inputs, &found, &before, &made, &evaluate)? {

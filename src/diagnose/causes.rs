@@ -40,6 +40,34 @@ pub fn short(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
+/// The 90 % interval of a size: uncertainty of the fit, of what lies between the nodes, and of which sections there are. Nothing for
+/// what has no size.
+#[must_use]
+pub fn interval(found: &Found, member: &Fitted) -> Option<(f64, f64)> {
+    let of = &found.candidates[member.candidate];
+    if of.discrete || !member.size.is_finite() {
+        return None;
+    }
+    let error = if member.slope > 0.0 { 1.645 * (1.0 / member.slope).hypot(0.02 * member.size.abs().min(1e12)) } else { 0.0 };
+    let drawn = stability_of(found, member).map_or((member.size, member.size), |stability| (stability.low, stability.high));
+    let (below, above) = (error.hypot((member.size - drawn.0).max(0.0)), error.hypot((drawn.1 - member.size).max(0.0)));
+    Some(((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)))
+}
+
+/// The member with least evidence of those whose interval holds the value that changes nothing, and why it is not named: however much
+/// the fit falls with it, other sections would have asked for the opposite.
+#[must_use]
+pub fn of_either_sign(found: &Found) -> Option<(usize, String)> {
+    let holds = |(at, member): (usize, &Fitted)| {
+        let (low, high) = interval(found, member)?;
+        let nothing = found.candidates[member.candidate].neutral()?;
+        let says = format!("the interval of its size, {} to {}, holds {}, which changes nothing", short(low), short(high), short(nothing));
+        (low <= nothing && nothing <= high).then_some((at, says, member.evidence))
+    };
+    let found = found.chosen.members.iter().enumerate().filter_map(holds).min_by(|a, b| a.2.total_cmp(&b.2));
+    found.map(|(at, says, _)| (at, says))
+}
+
 fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
     let of = &found.candidates[member.candidate];
     let effect = inputs.catalogue.effect(&of.effect);
@@ -48,13 +76,7 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
         let known = effect.and_then(|effect| effect.parameters.iter().find(|parameter| parameter.name == name));
         known.map_or("-".to_string(), |parameter| parameter.unit.text.clone())
     };
-    let stability = stability_of(found, member);
-    // Uncertainty of the fit, of what lies between the nodes, and of which sections there are.
-    let error = if member.slope > 0.0 { 1.645 * (1.0 / member.slope).hypot(0.02 * member.size.abs().min(1e12)) } else { 0.0 };
-    let (low, high) = stability.as_ref().map_or((member.size, member.size), |stability| (stability.low, stability.high));
-    let (below, above) = (error.hypot((member.size - low).max(0.0)), error.hypot((high - member.size).max(0.0)));
-    let interval =
-        (!of.discrete && member.size.is_finite()).then(|| ((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)));
+    let interval = interval(found, member);
     let mut push = |name: String, value: serde_json::Value, interval: Option<(f64, f64)>| {
         let unit = of.unit.text.clone();
         parameters.insert(name, Value { value, unit, low: interval.map(|(low, _)| low), high: interval.map(|(_, high)| high) });
@@ -82,7 +104,7 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
         parameters,
         channels: of.channels.clone(),
         confined_to: found.masks[member.mask].confined.as_ref().map(|(column, values)| confined(column, values)),
-        stability: stability.map(|stability| stability.first),
+        stability: stability_of(found, member).map(|stability| stability.first),
         added_by: match effect.map(|effect| &effect.action) {
             Some(Action::Signals(operator, _)) => format!("an operation on the signals: {}", operator.name()),
             Some(Action::Formulas(_)) => "expressions on the signals".into(),
