@@ -12,7 +12,7 @@ use super::sensitivity::sensitivities;
 use super::settings::Settings;
 use super::standing::Standing;
 use super::whiten::{Covariance, Whitener, dot};
-use crate::effects::{Action, Effect};
+use crate::effects::{Action, Applied, Effect};
 use crate::simulate::Plan;
 
 /// A tolerance that moves the features by less than so many standard deviations of everything else stays as it was: branches of contact
@@ -228,18 +228,19 @@ impl Settled<'_> {
         self.columns.iter().map(|column| column.as_ref().is_some_and(long)).collect()
     }
 
-    /// What a member sets in the simulator.
+    /// What a member sets in the simulator, or exchanges or turns round of its signals: another wheel's guiding force differs by other
+    /// tolerances. What else is done to signals leaves them as they are.
     fn set(&self, bench: &Bench<'_>, candidate: &Candidate, masks: &[Mask], member: &Fitted) -> Option<Set> {
         let effect: &Effect = self.workshop.catalogue.effect(&candidate.effect)?;
-        if !matches!(effect.action, Action::Simulator) || !member.size.is_finite() {
+        if !(matches!(effect.action, Action::Simulator) || candidate.discrete) || !member.size.is_finite() {
             return None;
         }
         let mut values = candidate.fixed.clone();
         values.push((candidate.size.clone(), member.size));
-        let effects = [applied(effect, values)];
+        let effects = [Applied { channels: candidate.channels.clone(), ..applied(effect, values) }];
         let section = &self.workshop.seen.sections[0].section;
         let plan = Plan::new(self.workshop.catalogue, &effects, section, bench.simulator.catalogue_name()).ok()?;
-        Some(Set { values: plan.settings, sections: (member.mask != 0).then(|| masks[member.mask].sections.clone()) })
+        Some(Set { plan, sections: (member.mask != 0).then(|| masks[member.mask].sections.clone()) })
     }
 }
 
