@@ -7,7 +7,7 @@ pub mod bench;
 mod cache;
 mod campaign;
 pub mod candidates;
-mod causes;
+pub mod causes;
 mod cells;
 mod columns;
 mod converge;

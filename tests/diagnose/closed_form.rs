@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use fishplate::data::Campaign;
+use fishplate::diagnose::causes::{interval, of_either_sign};
 use fishplate::diagnose::run::{Found, Inputs, find};
 use fishplate::diagnose::settings::Settings;
 use fishplate::diagnose::standing::Reference;
@@ -211,6 +212,43 @@ fn tolerances_are_weighed_as_they_act_beside_what_is_found() {
     let wanted = size(&column(first));
     assert!((member.size - wanted).abs() < 1e-6, "{} for {wanted}", member.size);
     assert!((first - wanted).abs() > 0.01, "the test tells nothing");
+}
+
+/// Slack that other sections ask for less than none of is not there, whatever its evidence; the interval ends where the range does.
+#[test]
+fn what_may_as_well_be_nothing_is_not_named() {
+    let mut found = found(EFFECTS, Truth { slack: 0.8, ..NOTHING });
+    assert!(interval(&found, &found.chosen.members[0]).is_some_and(|(low, high)| 0.5 < low && low < 0.8 && 0.8 < high && high < 1.1));
+    assert_eq!(of_either_sign(&found), None);
+    found.stability[0].low = -0.2;
+    let (at, says) = of_either_sign(&found).expect("an interval from nothing on");
+    assert!(at == 0 && says.contains("holds 0, which changes nothing"), "{says}");
+    found.refuse(at, says, 1);
+    assert!(found.chosen.members.is_empty() && found.refused.len() == 1);
+}
+
+/// The force was recorded with the wrong sign: beside that, more rise lowers what is recorded as much as it raised it before.
+#[test]
+fn tolerances_act_on_what_was_recorded() {
+    let turned = "
+  turned:
+    title: Sign
+    means: the wrong sign
+    acts on: measuring chain
+    operator: polarity
+    channels: [forces]
+    each: [forces]
+    parameters:
+      polarity.<channel>: {unit: '-', neutral: 1, default: -1, range: [-1, 1], trials: [-1], means: -1 where inverted}
+diagnosis:";
+    let found = found(&EFFECTS.replace("\ndiagnosis:", turned), Truth { gain: (-1.0, -1.0), ..NOTHING });
+    let [member] = &found.chosen.members[..] else { panic!("{:?}", found.chosen.members.len()) };
+    assert_eq!(found.candidates[member.candidate].effect, "turned");
+    for (at, load) in LOADS.iter().enumerate() {
+        let wanted = RISE_SD * SLACK * RISE * load * load;
+        let (before, beside) = (found.covariance.shared[0][at], found.beside.shared[0][at]);
+        assert!((before - wanted).abs() < 1e-6 * wanted && (beside + wanted).abs() < 1e-6 * wanted, "{before} and {beside} for {wanted}");
+    }
 }
 
 /// Of a tolerance that each section has for itself, seven tenths are common to all: a column over all sections of 0.7 standard
