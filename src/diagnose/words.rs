@@ -168,6 +168,8 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
             () if away < TOLERANCE_SD => {
                 format!("a size further from what is declared: {away:.1} of {TOLERANCE_SD:.1} standard deviations")
             }
+            // One at a time is looked at: what explains most.
+            () if found.chosen.members.is_empty() => "more evidence than what was refused in its place".into(),
             () => "a larger share of what is named".into(),
         };
         Nearest { effect: of.effect.clone(), says: cause(inputs, found, std::slice::from_ref(fit), 0).says, evidence: fit.evidence, wants }
