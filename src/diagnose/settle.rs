@@ -147,7 +147,8 @@ impl Settled<'_> {
     }
 
     /// Fits the members again by what their sizes follow from: without what stands out in a section alone, which would pull with all that
-    /// it is off, without lags that jump to another period of a sway between sizes, and with the levels and all else of a simulated change as wrong, each as one, as a model may be.
+    /// it is off, without lags that jump to another period of a sway between sizes, and with the levels and all else of a simulated
+    /// change as wrong, each as one, as a model may be.
     fn sized(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Weighed, lack: &[Lack], runs: &mut Runs) -> Weighed {
         let seen = self.workshop.seen;
         let mut covariance = now.covariance.clone();
