@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::bench::{Bench, Runs};
 use super::observe::Observations;
+use super::recorded::Recorded;
 use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Parameter, Signals};
 use crate::problem::Problem;
 use crate::units::Unit;
@@ -136,6 +137,8 @@ pub struct Workshop<'a> {
     pub base: Vec<f64>,
     /// Features of the campaign's simulation.
     pub simulated: Vec<f64>,
+    /// The same simulation as it would have been recorded: what operations of the measuring chain act on.
+    pub recorded: Recorded,
     /// Neutral values of simulator parameters.
     pub neutral: &'a (dyn Fn(&str) -> Option<f64> + Sync),
     pub trying: Trying<'a>,
@@ -291,7 +294,7 @@ impl Workshop<'_> {
         lists.into_par_iter().filter_map(make).collect()
     }
 
-    /// Effects by expressions on the signals: each set of sizes is applied to the campaign's simulation.
+    /// Effects by expressions on the signals: each set of sizes is applied to what would have been recorded.
     fn expressed(&self, effect: &Effect) -> Vec<Candidate> {
         let mut found = Vec::new();
         for fit in &effect.fits {
@@ -317,13 +320,13 @@ impl Workshop<'_> {
     fn expression(&self, applied: &Applied) -> Result<Vec<f64>, Problem> {
         let effects = std::slice::from_ref(applied);
         let each = |at: usize| {
-            let observed = &self.seen.sections[at];
-            let mut signals = observed.simulated.clone();
-            crate::simulate::Plan::new(self.catalogue, effects, &observed.section, None)?.operate(&mut signals, &observed.section)?;
-            Ok(self.seen.of(at, &signals, true))
+            let section = &self.seen.sections[at].section;
+            let mut signals = self.recorded.signals[at].clone();
+            crate::simulate::Plan::new(self.catalogue, effects, section, None)?.operate(&mut signals, section)?;
+            Ok(self.seen.of(at, &signals, false))
         };
-        let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.seen.sections.len()).into_par_iter().map(each).collect();
-        Ok(parts?.concat().iter().zip(&self.simulated).map(|(made, simulated)| made - simulated).collect())
+        let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.recorded.signals.len()).into_par_iter().map(each).collect();
+        Ok(parts?.concat().iter().zip(&self.recorded.features).map(|(made, without)| made - without).collect())
     }
 
     /// Channels of one group that could be exchanged.
@@ -347,28 +350,27 @@ impl Workshop<'_> {
         all.flat_map(|channel| channel.values.iter()).fold(0.0, |most, value| value.abs().max(most))
     }
 
-    /// How the features change with an operator on the simulated signals; nothing where it cannot be applied.
+    /// How the features change with an operator on what would have been recorded; nothing where it cannot be applied.
     #[must_use]
     pub fn operate(&self, operator: Operator, size: f64, channels: &[String]) -> Option<Vec<f64>> {
         let seen = self.seen;
         let touched = |name: &str| operator == Operator::Shift || channels.iter().any(|channel| channel == name);
         let mut change = Vec::with_capacity(seen.len());
-        for (at, observed) in seen.sections.iter().enumerate() {
+        for (at, recorded) in self.recorded.signals.iter().enumerate() {
             let mut signals = Signals {
-                axis: observed.simulated.axis.clone(),
-                over_time: observed.simulated.over_time,
-                rate: observed.simulated.rate,
-                channels: observed.simulated.channels.iter().filter(|channel| touched(&channel.name)).cloned().collect(),
+                axis: recorded.axis.clone(),
+                over_time: recorded.over_time,
+                rate: recorded.rate,
+                channels: recorded.channels.iter().filter(|channel| touched(&channel.name)).cloned().collect(),
             };
             signals.apply(operator, size, channels, 0).ok()?;
             for (number, channel) in seen.layout.channels.iter().enumerate() {
                 let from = change.len();
                 let wanted = seen.features.iter().filter(|feature| feature.channel == number).count();
                 if touched(&channel.name) {
-                    seen.of_channel(at, &signals, number, true, &mut change);
-                    for (offset, value) in change[from..].iter_mut().enumerate() {
-                        *value -= self.simulated[from + offset];
-                    }
+                    seen.of_channel(at, &signals, number, false, &mut change);
+                    let without = &self.recorded.features[from..];
+                    change[from..].iter_mut().zip(without).for_each(|(value, without)| *value -= without);
                 } else {
                     change.resize(from + wanted, 0.0);
                 }

@@ -212,6 +212,7 @@ mod tests {
     use crate::diagnose::candidates::Node;
     use crate::diagnose::features::Layout;
     use crate::diagnose::observe::Observations;
+    use crate::diagnose::recorded::Recorded;
     use crate::effects::Catalogue;
     use crate::source::Source;
 
@@ -238,7 +239,9 @@ mod tests {
         let source = Source::new("", "");
         let catalogue = Catalogue { name: String::new(), title: String::new(), source, groups, units, effects, diagnosis: None };
         let (base, simulated) = (Vec::new(), Vec::new());
-        let workshop = Workshop { seen: &seen, catalogue: &catalogue, bench: None, base, simulated, neutral: &|_| None, trying: &|_| {} };
+        let (recorded, trying, neutral) = (Recorded::default(), |_: &str| {}, |_: &str| None);
+        let workshop =
+            Workshop { seen: &seen, catalogue: &catalogue, bench: None, base, simulated, recorded, neutral: &neutral, trying: &trying };
         let exchanged = |second: f64, refused: &[usize]| {
             let difference = per_section([0.0, second, 0.0]);
             let converging = Converging {

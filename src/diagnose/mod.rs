@@ -25,6 +25,7 @@ mod locate;
 mod masks;
 pub mod observe;
 mod pictures;
+pub mod recorded;
 mod rivals;
 pub mod run;
 pub mod scatter;

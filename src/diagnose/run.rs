@@ -11,6 +11,7 @@ use super::guards::families;
 use super::lack::{Lack, drop_what_harms, lack_after, lack_of_fit, left, unexplained};
 use super::masks::masks;
 use super::observe::Observations;
+use super::recorded::as_recorded;
 use super::search::{Bars, Chosen, Refused, chi_squared, contradicting, nearest, refit, rivals};
 use super::sensitivity::sensitivities;
 use super::settings::Settings;
@@ -149,6 +150,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         bench: bench.as_ref(),
         base,
         simulated: simulated.clone(),
+        recorded: as_recorded(&seen, bench.as_ref(), settings, &value, &declared, &mut runs),
         neutral: &value,
         trying: inputs.trying,
     };

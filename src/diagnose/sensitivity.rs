@@ -58,6 +58,23 @@ pub fn sensitivities(
     columns
 }
 
+/// What is expected of the tolerances, as settings of the simulator. `value` is what a parameter has where nothing is set.
+#[must_use]
+pub fn expected(
+    settings: &Settings,
+    value: &dyn Fn(&str) -> Option<f64>,
+    declared: &dyn Fn(&str) -> Option<f64>,
+) -> Vec<(String, f64)> {
+    let mut there = Vec::new();
+    for tolerance in settings.tolerances.iter().filter(|tolerance| tolerance.expected != 0.0) {
+        let by = tolerance.expected * declared(&tolerance.name).unwrap_or(tolerance.default);
+        let scaled = tolerance.scales.iter().map(|key| (key, Move::Times(1.0 + by)));
+        let added = tolerance.adds.iter().map(|(key, factor)| (key, Move::Plus(factor * by)));
+        there.extend(scaled.chain(added).filter_map(|(key, by)| Some((key.clone(), by.from(value(key))?))));
+    }
+    there
+}
+
 /// How a parameter is moved.
 enum Move {
     Times(f64),
