@@ -418,4 +418,40 @@ mod tests {
         let of = Candidate::path("effect", [(0.0, 0.0), (1.0, 1.0), (1.5, 2.0), (3.0, 30.0)].map(node).to_vec());
         assert_eq!([of.range_near(1.0, 1), of.range_near(2.5, 1), of.range_near(2.5, 0), of.range_near(0.0, 1)], [1.0, 28.0, 0.0, 0.0]);
     }
+
+    /// A simulation of nothing, recorded with noise of 0.5: a gain of 0.8 lowers all bands by its logarithm, and a low-pass of 10 Hz the
+    /// band about 10 Hz by that of the square root of a half, as they do where there is a signal.
+    #[test]
+    fn operations_act_on_noise_as_on_all_else() {
+        use crate::diagnose::features::{ChannelFeatures, Layout};
+        use crate::diagnose::observe::Observed;
+        use crate::diagnose::recorded::as_recorded;
+        use crate::diagnose::settings::Settings;
+        use crate::effects::Channel;
+        use crate::simulate::Section;
+        use crate::source::Source;
+
+        let axis: Vec<f64> = (0..20000).map(|n| 0.1 * f64::from(n)).collect();
+        let channels = vec![Channel { name: "Y".into(), values: vec![0.0; axis.len()] }];
+        let silent = Signals { axis, over_time: false, rate: 200.0, channels };
+        let section = Section { start: 0.0, end: 2000.0, ..Section::nowhere() };
+        let observed =
+            Observed { section, simulated: silent.clone(), measured: silent, references: vec![None], scatter: Vec::new(), again: false };
+        let channel = ChannelFeatures { name: "Y".into(), group: 0, unit: Unit::one(), level: false, bands: 3, alike: false };
+        let layout = Layout { channels: vec![channel], edges: vec![1.0, 9.5, 10.5, 20.0], alike: (0.5, 8.0), furthest: 1.0 };
+        let (features, sections, noise) = (layout.features(), vec![observed], vec![0.5]);
+        let seen = Observations { layout, features, sections, noise, left_out: Vec::new(), faults: Vec::new() };
+        let (title, groups, units, effects) = (String::new(), Vec::new(), Vec::new(), Vec::new());
+        let catalogue = Catalogue { name: title.clone(), title, source: Source::new("", ""), groups, units, effects, diagnosis: None };
+        let recorded = as_recorded(&seen, None, &Settings::default(), &|_| None, &|_| None, &mut Runs::default());
+        let (neutral, trying) = (|_: &str| None, |_: &str| {});
+        let (base, simulated) = (Vec::new(), Vec::new());
+        let workshop =
+            Workshop { seen: &seen, catalogue: &catalogue, bench: None, base, simulated, recorded, neutral: &neutral, trying: &trying };
+        let operate = |operator, size| workshop.operate(operator, size, &["Y".to_string()]).expect("an operation");
+        let gain = operate(Operator::Gain, 0.8);
+        assert!(gain.iter().all(|change| (change - 0.8_f64.ln()).abs() < 1e-9), "{gain:?}");
+        let band = operate(Operator::LowPass, 10.0)[1];
+        assert!((band - 0.5_f64.sqrt().ln()).abs() < 0.02, "{band}");
+    }
 }

@@ -57,7 +57,8 @@ pub fn as_recorded(
     if bench.is_some() && !there.is_empty() {
         runs.made += 2 * made.len();
     }
-    runs.failed.extend(made.iter().find_map(|(_, failed)| failed.as_ref().map(|says| format!("what is expected of the tolerances: {says}"))));
+    runs.failed
+        .extend(made.iter().find_map(|(_, failed)| failed.as_ref().map(|says| format!("what is expected of the tolerances: {says}"))));
     let signals: Vec<Signals> = made.into_iter().map(|(signals, _)| signals).collect();
     // Their noise is in the signals already.
     let features = signals.par_iter().enumerate().flat_map_iter(|(at, signals)| seen.of(at, signals, false)).collect();

@@ -60,11 +60,7 @@ pub fn sensitivities(
 
 /// What is expected of the tolerances, as settings of the simulator. `value` is what a parameter has where nothing is set.
 #[must_use]
-pub fn expected(
-    settings: &Settings,
-    value: &dyn Fn(&str) -> Option<f64>,
-    declared: &dyn Fn(&str) -> Option<f64>,
-) -> Vec<(String, f64)> {
+pub fn expected(settings: &Settings, value: &dyn Fn(&str) -> Option<f64>, declared: &dyn Fn(&str) -> Option<f64>) -> Vec<(String, f64)> {
     let mut there = Vec::new();
     for tolerance in settings.tolerances.iter().filter(|tolerance| tolerance.expected != 0.0) {
         let by = tolerance.expected * declared(&tolerance.name).unwrap_or(tolerance.default);

@@ -10,7 +10,7 @@ mod external;
 mod section;
 mod write;
 
-pub use add::{incremented, Plan, Simulated, check_confined, simulate};
+pub use add::{Plan, Simulated, check_confined, incremented, simulate};
 pub use builtin::{Builtin, model_parameters, single};
 pub use campaign::{Units, in_units, read_signals, record_text, recorded};
 pub use compare::{Deviation, baseline_warning, deviations};
