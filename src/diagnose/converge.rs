@@ -166,7 +166,7 @@ impl Converging<'_> {
 /// Bars from what chance reaches.
 fn bars(chance: f64) -> Bars {
     let first = chance.max(FLOOR);
-    Bars { first, exact: chance.max(FLOOR_EXACT), next: 1.25 * first, confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.12, most: 3 }
+    Bars { first, exact: chance.max(FLOOR_EXACT), next: 1.25 * first, confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.08, most: 3 }
 }
 
 /// More evidence than the best candidate reaches by chance in any draw from the covariance.

@@ -287,10 +287,10 @@ pub fn deviations(candidate: &Candidate, size: f64, settings: &Settings, declare
     // Of what is declared for single sections, what all of them have in common is less.
     let sd = if tolerance.shared > 0.0 { sd * tolerance.shared } else { sd };
     let sd = if besides { sd.hypot(tolerance.besides) } else { sd };
-    // What is scaled is declared as a share of what the vehicle file has.
+    // What is scaled is declared as a factor to what the vehicle file has: twice as much is as far as half of it.
     let scaled = tolerance.scales.contains(&candidate.size) && neutral != 0.0;
-    let sd = if scaled { sd * neutral.abs() } else { sd };
-    if sd > 0.0 { (size - neutral).abs() / sd } else { f64::INFINITY }
+    let away = if scaled { (size / neutral).max(0.0).ln().abs() } else { (size - neutral).abs() };
+    if sd > 0.0 { away / sd } else { f64::INFINITY }
 }
 
 /// Whitened size of a change.
@@ -316,10 +316,11 @@ mod tests {
     use crate::diagnose::candidates::Node;
     use crate::diagnose::settings::Tolerance;
 
-    /// 0.7 times 1.2 is 0.14 off: 4 standard deviations of 5 % of 0.7 where the tolerance scales the parameter, 2.8 of 0.05 else; twice
-    /// as many where all sections have half of a standard deviation in common, as many where they have nothing in common.
+    /// 0.7 times e^0.2 is 4 standard deviations of a factor of 5 % off, and so is 0.7 over e^0.2, where the tolerance scales the
+    /// parameter; else 0.155 is 3.1 of 0.05. Twice as many where all sections have half of a standard deviation in common, as many where
+    /// they have nothing in common.
     #[test]
-    fn what_is_scaled_is_declared_as_a_share_of_what_the_vehicle_has() {
+    fn what_is_scaled_is_declared_as_a_factor_to_what_the_vehicle_has() {
         let deviations_of = |scales: &[&str], neutral: f64, shared: f64, besides: f64| {
             let tolerance = Tolerance {
                 name: "declared".into(),
@@ -338,15 +339,20 @@ mod tests {
             let settings = Settings { tolerances: vec![tolerance], ..Settings::default() };
             let nodes = vec![Node { size: neutral, change: Vec::new() }, Node { size: 2.0, change: vec![1.0] }];
             let candidate = Candidate { tolerance: Some("declared".into()), ..Candidate::path("effect", nodes) };
-            deviations(&candidate, neutral + 0.14, &settings, &Declared::default(), besides > 0.0)
+            move |size: f64| deviations(&candidate, size, &settings, &Declared::default(), besides > 0.0)
         };
-        assert!((deviations_of(&["size"], 0.7, 1.0, 0.0) - 4.0).abs() < 1e-9);
-        assert!((deviations_of(&["another"], 0.7, 1.0, 0.0) - 2.8).abs() < 1e-9);
-        assert!((deviations_of(&["another"], 0.7, 0.5, 0.0) - 5.6).abs() < 1e-9);
-        assert!((deviations_of(&["another"], 0.7, 0.0, 0.0) - 2.8).abs() < 1e-9);
+        let near = |found: f64, wanted: f64| assert!((found - wanted).abs() < 1e-9, "{found} for {wanted}");
+        let (more, less) = (0.7 * 0.2_f64.exp(), 0.7 * (-0.2_f64).exp());
+        let scaled = deviations_of(&["size"], 0.7, 1.0, 0.0);
+        near(scaled(more), 4.0);
+        near(scaled(less), 4.0);
+        assert_eq!(scaled(0.0), f64::INFINITY);
+        near(deviations_of(&["another"], 0.7, 1.0, 0.0)(0.855), 3.1);
+        near(deviations_of(&["another"], 0.7, 0.5, 0.0)(0.855), 6.2);
+        near(deviations_of(&["another"], 0.7, 0.0, 0.0)(0.855), 3.1);
         // 5 % and 12 % besides are 13 %.
-        assert!((deviations_of(&["size"], 0.7, 1.0, 0.12) - 0.14 / (0.7 * 0.13)).abs() < 1e-9);
-        // A share of nothing would be infinitely far: it is taken as it stands.
-        assert!((deviations_of(&["size"], 0.0, 1.0, 0.0) - 2.8).abs() < 1e-9);
+        near(deviations_of(&["size"], 0.7, 1.0, 0.12)(more), 0.2 / 0.13);
+        // There is no factor to nothing: it is taken as it stands.
+        near(deviations_of(&["size"], 0.0, 1.0, 0.0)(0.155), 3.1);
     }
 }

@@ -320,7 +320,7 @@ mod tests {
         };
         let whitener = covariance.whitener();
         let everywhere = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
-        let bars = Bars { first: 30.0, exact: 15.0, next: 37.5, confined: 15.0, tolerance_sd: 3.5, share: 0.12, most: 3 };
+        let bars = Bars { first: 30.0, exact: 15.0, next: 37.5, confined: 15.0, tolerance_sd: 3.5, share: 0.08, most: 3 };
         let z = per_section(30.0, 3.0);
         let named = |exact: bool| {
             let candidates = [path("large", per_section(100.0, 0.0), exact), path("small", per_section(0.0, 100.0), false)];
