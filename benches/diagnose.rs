@@ -14,6 +14,8 @@
 
 #[path = "../examples/blind_campaigns/cases.rs"]
 mod cases;
+#[path = "../examples/blind_campaigns/hidden.rs"]
+mod hidden;
 #[path = "../examples/blind_campaigns/line.rs"]
 mod line;
 #[path = "../examples/blind_campaigns/truth.rs"]

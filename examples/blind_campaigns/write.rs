@@ -4,14 +4,14 @@ use std::path::Path;
 
 use fishplate::data::table::Cell;
 use fishplate::data::write::Outputs;
-use fishplate::effects::{Applied, Catalogue, Channel, Gauss, Signals, choose, read as read_catalogue};
+use fishplate::effects::{Applied, Catalogue, Channel, Gauss, Signals};
 use fishplate::model::{CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window, simulate};
-use fishplate::problem::{Problem, Problems};
 use fishplate::simulate::{Fact, Plan, Section, record_text};
 use fishplate::source::Source;
 use fishplate::units::Unit;
 
 use crate::cases::{Case, Set};
+use crate::hidden::{catalogue, chosen, told};
 use crate::line::{Irregularities, Stretch, measured, stretches};
 use crate::truth::{DECLARED, Making, World, noise};
 use crate::vehicles::example;
@@ -83,14 +83,6 @@ fn make(out: &Path, set: &Set, case: &Case, draw: u64) -> Result<(), String> {
     outputs.commit().map_err(|problem| problem.says)
 }
 
-fn catalogue() -> Result<Catalogue, String> {
-    let known = &fishplate::library::CATALOGUES[0];
-    let find = |name: &str, _: &Source| Err(Box::new(Problem::error("unknown", name)));
-    let mut problems = Problems::default();
-    read_catalogue(&Source::new(known.name, known.text), &find, &fishplate::simulate::model_parameters(), &mut problems)
-        .ok_or_else(|| "the catalogue cannot be read".to_string())
-}
-
 /// Effects with their sizes drawn.
 fn drawn(catalogue: &Catalogue, case: &Case, random: &mut Gauss) -> Result<Vec<Applied>, String> {
     let mut texts = Vec::new();
@@ -103,7 +95,7 @@ fn drawn(catalogue: &Catalogue, case: &Case, random: &mut Gauss) -> Result<Vec<A
         let number: f64 = number.parse().map_err(|_| format!("`{number}` is no number"))?;
         texts.push(format!("{before}{:.5}{rest}", number * (0.85 + 0.3 * random.uniform())));
     }
-    choose(catalogue, &texts).map_err(|problems| problems.iter().map(|problem| problem.says.clone()).collect::<Vec<_>>().join("; "))
+    chosen(catalogue, &texts)
 }
 
 /// The section as the catalogue's confinements see it.
@@ -189,31 +181,8 @@ fn campaign_text(name: &str, vehicle: &Vehicle) -> String {
 }
 
 fn truth_text(case: &Case, effects: &[Applied]) -> String {
-    use serde_json::{Map, Value, json};
-    let one = |applied: &Applied| {
-        let mut parameters = Map::new();
-        if applied.effect == "channel_swap" {
-            parameters.insert("measurement.swap".into(), json!([applied.channels]));
-        }
-        for (name, value) in applied.values.iter().filter(|_| applied.effect != "channel_swap") {
-            if name.contains("<channel>") {
-                applied.channels.iter().for_each(|channel| drop(parameters.insert(name.replace("<channel>", channel), json!(value))));
-            } else {
-                parameters.insert(name.clone(), json!(value));
-            }
-        }
-        let mut effect = json!({"name": applied.effect, "parameters": parameters});
-        if let Some(confined) = &applied.confined {
-            let (key, value) = match confined.column.as_str() {
-                "zone" => ("zones", json!(confined.values.iter().filter_map(|value| value.parse::<i64>().ok()).collect::<Vec<_>>())),
-                "section" => ("sections", json!(confined.values)),
-                _ => ("direction", json!(confined.values[0])),
-            };
-            effect[key] = value;
-        }
-        effect
-    };
-    let mut list: Vec<Value> = effects.iter().map(one).collect();
+    use serde_json::{Value, json};
+    let mut list: Vec<Value> = effects.iter().map(told).collect();
     list.extend(case.outside.map(|outside| json!({"name": outside.name(), "parameters": {}})));
     let truth = json!({"kind": case.kind, "effects": list, "vehicle": case.design.name});
     serde_json::to_string_pretty(&truth).unwrap_or_default() + "\n"

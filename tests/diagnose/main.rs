@@ -14,6 +14,8 @@
 #[path = "../../examples/blind_campaigns/cases.rs"]
 #[allow(dead_code)]
 mod cases;
+#[path = "../../examples/blind_campaigns/hidden.rs"]
+mod hidden;
 #[path = "../../examples/blind_campaigns/line.rs"]
 mod line;
 #[path = "../../examples/blind_campaigns/truth.rs"]
@@ -26,6 +28,7 @@ mod write;
 mod blind;
 mod closed_form;
 mod metamorphic;
+mod turned;
 
 use std::fs;
 use std::path::{Path, PathBuf};
