@@ -13,21 +13,22 @@ use crate::simulate::Units;
 pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
     use rayon::prelude::*;
     let cells = map(settings, found);
-    let tested: Vec<(f64, f64, f64)> = cells.par_iter().map(|cell| test(found, cell)).collect();
-    let total: f64 = tested.iter().map(|(excess, ..)| excess.max(0.0)).sum::<f64>().max(1e-300);
-    let limit = significant_up_to(&tested.iter().map(|(_, p_value, _)| *p_value).collect::<Vec<f64>>());
-    let place = |(cell, (excess, p_value, mean)): (&Cell, &(f64, f64, f64))| Where {
+    let tested: Vec<Tested> = cells.par_iter().map(|cell| test(found, cell)).collect();
+    let total: f64 = tested.iter().map(|test| test.excess.max(0.0)).sum::<f64>().max(1e-300);
+    let limit = significant_up_to(&tested.iter().map(|test| test.p_value).collect::<Vec<f64>>());
+    let place = |(cell, test): (&Cell, &Tested)| Where {
         quantity: settings.groups[cell.group].says.clone(),
         says: says(settings, found, cell),
         signals: cell.signals(found),
         zones: vec![stratum(settings, found, cell).to_string()],
         sections: cell.sections.iter().map(|at| found.seen.sections[*at].section.name().to_string()).collect(),
         wavelength_or_band: cell.band(found),
-        difference: if cell.kind == Kind::Level { *mean } else { mean.exp() - 1.0 },
+        difference: test.mean,
+        difference_rms: test.rms,
         unit: cell.unit(found, units),
-        share_of_gap: excess.max(0.0) / total,
-        p_value: *p_value,
-        significant: *p_value <= limit,
+        share_of_gap: test.excess.max(0.0) / total,
+        p_value: test.p_value,
+        significant: test.p_value <= limit,
     };
     let mut places: Vec<Where> = cells.iter().zip(&tested).map(place).collect();
     places
@@ -65,17 +66,27 @@ fn says(settings: &Settings, found: &Found, cell: &Cell) -> String {
     format!("{group}, {}, {}, {column} {}", cell.position, cell.band(found), stratum(settings, found, cell))
 }
 
-/// Excess of chi-squared over what noise and tolerances give, its probability, and the mean difference.
-fn test(found: &Found, cell: &Cell) -> (f64, f64, f64) {
+struct Tested {
+    /// Of chi-squared over what noise and tolerances give.
+    excess: f64,
+    p_value: f64,
+    /// Of levels in their unit, of bands as a ratio less one.
+    mean: f64,
+    rms: f64,
+}
+
+fn test(found: &Found, cell: &Cell) -> Tested {
     let values: Vec<f64> = cell.members.iter().map(|(section, feature)| found.difference[found.seen.place(*section, *feature)]).collect();
     // Levels count towards the side of the simulated one, so that left and right curves do not cancel.
     let side = |(section, feature): &(usize, usize)| match cell.kind {
         Kind::Level => found.simulated[found.seen.place(*section, *feature)].signum(),
         _ => 1.0,
     };
-    let mean = cell.members.iter().zip(&values).map(|(member, value)| side(member) * value).sum::<f64>() / values.len() as f64;
-    let chi = found.covariance.among(&cell.members).chi_squared(&values);
     let freedom = values.len() as f64;
-    let p = statrs::distribution::ChiSquared::new(freedom).map_or(1.0, |law| statrs::distribution::ContinuousCDF::sf(&law, chi));
-    (chi - freedom, p, mean)
+    let mean = cell.members.iter().zip(&values).map(|(member, value)| side(member) * value).sum::<f64>() / freedom;
+    let rms = (values.iter().map(|value| value * value).sum::<f64>() / freedom).sqrt();
+    let [mean, rms] = [mean, rms].map(|value| if cell.kind == Kind::Level { value } else { value.exp() - 1.0 });
+    let chi = found.covariance.among(&cell.members).chi_squared(&values);
+    let p_value = statrs::distribution::ChiSquared::new(freedom).map_or(1.0, |law| statrs::distribution::ContinuousCDF::sf(&law, chi));
+    Tested { excess: chi - freedom, p_value, mean, rms }
 }

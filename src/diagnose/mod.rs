@@ -21,7 +21,7 @@ mod fold;
 pub mod guards;
 mod invariants;
 pub mod lack;
-mod locate;
+pub mod locate;
 mod masks;
 pub mod observe;
 mod pictures;

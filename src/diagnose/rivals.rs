@@ -1,5 +1,6 @@
 //! What else may be the cause, how probable each is, and what to measure where the data cannot tell.
 
+use super::apart::{Apart, apart};
 use super::causes::cause;
 use super::fit::Fitted;
 use super::run::{Found, Inputs, deviations};
@@ -92,15 +93,34 @@ pub fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verd
     (!measurements.is_empty()).then(|| measurements.join("; or "))
 }
 
-/// More sections of the kind that tells the answer from its nearest rival best.
-fn more_sections(inputs: &Inputs<'_>, found: &Found, causes: &[Cause]) -> Option<String> {
+/// Standard deviations from which on two causes cannot be taken for each other by chance.
+const TOLD_APART: f64 = 5.0;
+
+/// Causes of which neither can be the whole cause: the data that would tell them apart, were it one of them, are there.
+pub fn neither(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: &str) -> Option<String> {
+    let (names, apart) = nearest(found, causes).filter(|(_, apart)| verdict == "ambiguous" && apart.now >= TOLD_APART)?;
+    let [one, other] = names.map(|name| inputs.catalogue.effect(name).map_or(name, |effect| effect.title.as_str()));
+    Some(format!(
+        "{one} | {other}: what they change here is {:.1} standard deviations apart. Were one of them the whole cause, these data would say \
+         which: something else acts beside it.",
+        apart.now
+    ))
+}
+
+/// A member of the answer and the possible cause that is nearest to it, by name.
+fn nearest<'a>(found: &'a Found, causes: &[Cause]) -> Option<([&'a str; 2], Apart)> {
     let near =
         |name: &str| causes.iter().skip(1).any(|cause| cause.in_ambiguity_set && cause.effects.iter().any(|effect| effect.name == name));
-    let (at, rival, _) = found.rivals.iter().find(|(at, fit, _)| {
-        let effect = |fit: &Fitted| found.candidates[fit.candidate].effect.as_str();
-        near(effect(fit)) && effect(fit) != effect(&found.chosen.members[*at])
-    })?;
-    let apart = super::apart::apart(found, &found.chosen.members[*at], rival)?;
+    let effect = |fit: &Fitted| found.candidates[fit.candidate].effect.as_str();
+    let differs = |at: usize, fit: &Fitted| near(effect(fit)) && effect(fit) != effect(&found.chosen.members[at]);
+    let (at, rival, _) = found.rivals.iter().find(|(at, fit, _)| differs(*at, fit))?;
+    let member = &found.chosen.members[*at];
+    Some(([effect(member), effect(rival)], apart(found, member, rival)?))
+}
+
+/// More sections of the kind that tells the answer from its nearest rival best, where they are not far apart already.
+fn more_sections(inputs: &Inputs<'_>, found: &Found, causes: &[Cause]) -> Option<String> {
+    let (_, apart) = nearest(found, causes).filter(|(_, apart)| apart.now < TOLD_APART)?;
     let sections: Vec<&str> = apart.sections.iter().map(|at| found.seen.sections[*at].section.name()).collect();
     let stratum = inputs.settings.stratum.as_deref();
     let kind = apart.sections.first().zip(stratum).and_then(|(at, column)| found.seen.sections[*at].section.says(column));

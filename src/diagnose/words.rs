@@ -5,7 +5,7 @@ use super::detectable::detectable;
 use super::features::Kind;
 use super::fit::Fitted;
 use super::lack::{LACK, unexplained};
-use super::rivals::{ambiguity, discriminating, probabilities};
+use super::rivals::{ambiguity, discriminating, neither, probabilities};
 use super::run::{Found, Inputs, chi, deviations};
 use super::search::TOLERANCE_SD;
 use super::suspects::Suspect;
@@ -59,6 +59,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         says.extend(super::invariants::worst(&invariants));
         says.extend(super::shapes::worth_a_word(&shapes));
     }
+    says.extend(neither(inputs, found, &causes, verdict));
     let noted = found.runs.failed.iter().map(|failed| format!("a run failed and was left out: {failed}"));
     let left_out = found.seen.left_out.iter().map(|(section, reason)| format!("section {section} was left out: {reason}"));
     let again = found.seen.sections.iter().filter(|observed| observed.again).map(|observed| observed.section.name());

@@ -100,20 +100,21 @@ fn answer(found: &Diagnosis) -> Chapter {
 
 fn places(found: &Diagnosis) -> Chapter {
     let told = |(at, place): &(usize, &Where)| place.significant || *at < FIRST_CELLS && place.share_of_gap >= LEAST_SHARE;
+    let size = |place: &Where, value: f64| match place.unit.as_str() {
+        "-" => number::with_unit(&number::fixed(100.0 * value, 0), "%"),
+        unit => number::with_unit(&number::fixed(value, number::decimals_of([place.difference_rms], 3)), unit),
+    };
     let rows = found.r#where.iter().enumerate().filter(told).take(CELLS).map(|(_, place)| {
+        let p = if place.p_value < 1e-6 { "<\u{a0}0.000001".into() } else { number::significant(place.p_value, 2) };
         vec![
             place.quantity.clone(),
             place.says.split(", ").skip(1).take(2).filter(|part| *part != place.wavelength_or_band).collect::<Vec<_>>().join(", "),
             place.wavelength_or_band.clone(),
             place.zones.join(", "),
-            if place.unit == "-" {
-                number::with_unit(&number::fixed(100.0 * place.difference, 0), "%")
-            } else {
-                number::with_unit(&number::significant(place.difference, 3), &place.unit)
-            },
+            size(place, place.difference),
+            size(place, place.difference_rms),
             number::with_unit(&number::fixed(100.0 * place.share_of_gap, 1), "%"),
-            if place.p_value < 1e-6 { "<\u{a0}0.000001".into() } else { number::significant(place.p_value, 2) },
-            if place.significant { "yes".into() } else { "no".into() },
+            format!("{p}{}", if place.significant { " *" } else { "" }),
         ]
     });
     let head = vec![
@@ -121,14 +122,14 @@ fn places(found: &Diagnosis) -> Chapter {
         Head::text("Position"),
         Head::short("Band"),
         Head::short("Zone"),
-        Head::number("Difference"),
+        Head::number("Mean"),
+        Head::number("Rms"),
         Head::number("Share"),
         Head::number("p"),
-        Head::short("Significant"),
     ];
     let caption = "Cells by their share of the gap, tested against noise, declared tolerances and what a model may be wrong in; \
-                   significant at a false discovery rate of 5 %. Differences are measured - simulated. Quasi-static differences count \
-                   towards the simulated side; those of bands are relative";
+                   * significant at a false discovery rate of 5 %. Mean and rms are of the differences, measured - simulated, over the sections \
+                   and wheels of a cell: quasi-static ones towards the simulated side, those of bands relative";
     let table = Table { caption: caption.into(), head, rows: rows.collect() };
     let significant = found.r#where.iter().filter(|place| place.significant).count();
     let mut text = format!(
@@ -155,7 +156,8 @@ fn places(found: &Diagnosis) -> Chapter {
 /// Columns with the effects where there are any.
 fn invariants(all: &[Invariant], named: bool) -> Table {
     let rows = all.iter().map(|one| {
-        let number = |value: f64| number::with_unit(&number::significant(value, 3), &one.unit);
+        let decimals = number::decimals_of([one.before, one.after, one.allowed], 3);
+        let number = |value: f64| number::with_unit(&number::fixed(value, decimals), &one.unit);
         let off = |value: f64, allowed: f64| if allowed > 0.0 { number::fixed(value.abs() / allowed, 1) } else { number::NONE.to_owned() };
         let mut cells = vec![one.name.clone(), one.parity.to_owned(), number(one.before)];
         cells.extend(named.then(|| number(one.after)));
@@ -198,7 +200,8 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
     let listed: Vec<&Trend> = if significant.is_empty() { found.trends.iter().take(FEW).collect() } else { significant };
     let row = |trend: &&Trend| {
         let change = |slope: &Slope| {
-            let of = |value: f64| if trend.unit == "-" { number::fixed(100.0 * value, 0) } else { number::significant(value, 2) };
+            let decimals = number::decimals_of([slope.change, slope.low, slope.high], 2);
+            let of = |value: f64| if trend.unit == "-" { number::fixed(100.0 * value, 0) } else { number::fixed(value, decimals) };
             let unit = if trend.unit == "-" { "%" } else { &trend.unit };
             let mark = if slope.significant { " *" } else { "" };
             let between = format!("({} to {})", of(slope.low), of(slope.high));

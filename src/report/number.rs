@@ -30,6 +30,12 @@ pub fn decimals(unit: &str, values: impl IntoIterator<Item = f64>) -> usize {
     if needed > MOST_DECIMALS as f64 { usual } else { usual.max(needed as usize) }
 }
 
+/// Decimals that show so many digits of the largest of some values: for values that are read beside each other.
+pub fn decimals_of(values: impl IntoIterator<Item = f64>, digits: usize) -> usize {
+    let largest = values.into_iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    if largest == 0.0 { 0 } else { (digits as f64 - 1.0 - largest.log10().floor()).clamp(0.0, MOST_DECIMALS as f64) as usize }
+}
+
 /// A number with a fixed count of decimals and a true minus sign; never `−0.00`.
 ///
 /// Numbers too long or too small for fixed decimals come with a power of ten; what is not finite is [`NONE`].
@@ -195,6 +201,7 @@ mod tests {
 
     #[test]
     fn significant_digits_drop_empty_zeros_only() {
+        assert_eq!([0.004, -52.9, f64::NAN].map(|size| decimals_of([size, 0.0], 3)), [5, 1, 0]);
         assert_eq!(significant(3.333_333, 4), "3.333");
         assert_eq!(significant(10.0, 4), "10");
         assert_eq!(significant(1200.0, 2), "1200");

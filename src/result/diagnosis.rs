@@ -89,6 +89,8 @@ pub struct Where {
     /// Mean difference, measured - simulated: levels in the unit of the channel, towards the simulated side; bands as a ratio of rms
     /// less one.
     pub difference: f64,
+    /// Root mean square of the same differences: more than their mean where they are not alike in all its sections and wheels.
+    pub difference_rms: f64,
     pub unit: String,
     pub share_of_gap: f64,
     pub p_value: f64,

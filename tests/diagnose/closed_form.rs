@@ -302,6 +302,23 @@ fn a_parameter_that_no_effect_moves_is_a_suspect() {
     assert!(found(&effects, Truth { slack: 0.8, ..NOTHING }).suspect.is_none());
 }
 
+/// Two newtons in one section of eight, downwards: their mean over the cell, their root mean square, and their probability by the
+/// covariance of one column c and the variance v of a level: chi-squared is 4 (1 - c_5^2 / (v + c'c)) / v, with eight degrees of freedom.
+#[test]
+fn a_cell_tells_mean_and_root_mean_square_of_its_differences() {
+    use statrs::distribution::{ChiSquared, ContinuousCDF};
+    let (found, settings) = found_by(EFFECTS, Truth { jump: -2.0, ..NOTHING }, &[]);
+    let places = fishplate::diagnose::locate::locate(&settings, &found, &Vec::new());
+    let [place] = &places[..] else { panic!("{places:?}") };
+    assert!((place.difference + 2.0 / 8.0).abs() < 1e-9, "{}", place.difference);
+    assert!((place.difference_rms - 2.0 / 8.0_f64.sqrt()).abs() < 1e-9, "{}", place.difference_rms);
+    assert!((place.share_of_gap - 1.0).abs() < 1e-12);
+    let (column, v) = (&found.covariance.shared[0], LEVEL_SD * LEVEL_SD);
+    let chi = 4.0 * (1.0 - column[ALONE].powi(2) / (v + column.iter().map(|c| c * c).sum::<f64>())) / v;
+    let wanted = ChiSquared::new(8.0).unwrap().sf(chi);
+    assert!((place.p_value / wanted - 1.0).abs() < 1e-6 && place.significant, "{} for {wanted}", place.p_value);
+}
+
 /// A stiffness of 1.2 times what is assumed lifts the force by 0.2 (1 - slack) stiffness times the load: 1.26 N from the least load to
 /// the most, whatever the covariance, and as much from the first section to the last, loads being in order. Its error is that of
 /// generalised least squares with the covariance written out.

@@ -214,7 +214,7 @@ fn a_mirrored_campaign_gives_the_mirrored_answer() {
         let there = there.unwrap_or_else(|| panic!("{} is nowhere", place["says"]));
         assert_eq!(signals(there), expected);
         // Branches of contact differ a little between left and right; with two sections to a cell its share does more.
-        for (key, room) in [("difference", 0.06), ("share_of_gap", 0.15)] {
+        for (key, room) in [("difference", 0.06), ("difference_rms", 0.06), ("share_of_gap", 0.15)] {
             let (here, there) = (number(place, key), number(there, key));
             assert!((here - there).abs() < room + 0.01 * here.abs(), "{} of {}: {here} and {there}", key, place["says"]);
         }
@@ -231,4 +231,33 @@ fn an_irrelevant_effect_changes_nothing() {
     );
     let campaign = changed("slippery-more", |_, _| None);
     same(&answer(&campaign, &more), 1e-9);
+}
+
+/// A catalogue with the same effect under two names: no data can tell them apart, both are told as possible, and what would settle either of
+/// them. (One of them is simulated at its own size, the other interpolated: a little is between
+/// them.)
+#[test]
+fn one_effect_under_two_names_is_ambiguous() {
+    let twin = format!(
+        "{CATALOGUE}  greased_rail:\n    title: Grease on the rail\n    means: the same by another name\n    acts on: environment\n    \
+        tolerance: friction per section\n    settled by: a wipe of the rail head\n    parameters:\n      grease.friction:\n        \
+        unit: \"-\"\n        neutral: vehicle\n        default: 0.2\n        range: [0.05, 0.70]\n        \
+        trials: [0.10, 0.16, 0.22, 0.28, 0.32, 0.40, 0.48, 0.56, 0.65]\n        means: friction coefficient\n        model: friction\n"
+    );
+    let campaign = changed("slippery-twice", |_, _| None);
+    assert_eq!(answer(&campaign, &twin).verdict, "ambiguous");
+    let text = fs::read_to_string(campaign.with_extension("few").join("diagnosis.json")).unwrap();
+    let found: Value = serde_json::from_str(&text).unwrap();
+    let possible = || found["causes"].as_array().unwrap().iter().filter(|cause| cause["in_ambiguity_set"] == true);
+    let mut names: Vec<&str> = possible().map(|cause| cause["effects"][0]["name"].as_str().unwrap()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["friction", "greased_rail"]);
+    let chances: Vec<f64> = possible().map(|cause| cause["probability"].as_f64().unwrap()).collect();
+    assert!(chances.iter().all(|chance| *chance > 0.2) && chances.iter().sum::<f64>() > 0.9, "{chances:?}");
+    let measure = found["discriminating_measurement"].as_str().unwrap();
+    for settles in ["a tribometer on the rail head", "a wipe of the rail head", "standard deviations apart now"] {
+        assert!(measure.contains(settles), "{measure}");
+    }
+    // Neither is ruled out as the whole cause.
+    assert!(!found["says"].to_string().contains("something else acts beside it"));
 }
