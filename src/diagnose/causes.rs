@@ -44,22 +44,27 @@ pub fn short(value: f64) -> String {
 /// what has no size.
 #[must_use]
 pub fn interval(found: &Found, member: &Fitted) -> Option<(f64, f64)> {
+    around(found, member, stability_of(found, member).map(|stability| stability.sizes))
+}
+
+/// The error of the fit, and how far sizes that were drawn are from the one that was found.
+fn around(found: &Found, member: &Fitted, drawn: Option<(f64, f64)>) -> Option<(f64, f64)> {
     let of = &found.candidates[member.candidate];
     if of.discrete || !member.size.is_finite() {
         return None;
     }
     let error = if member.slope > 0.0 { 1.645 * (1.0 / member.slope).hypot(0.02 * member.size.abs().min(1e12)) } else { 0.0 };
-    let drawn = stability_of(found, member).map_or((member.size, member.size), |stability| (stability.low, stability.high));
+    let drawn = drawn.unwrap_or((member.size, member.size));
     let (below, above) = (error.hypot((member.size - drawn.0).max(0.0)), error.hypot((drawn.1 - member.size).max(0.0)));
     Some(((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)))
 }
 
 /// The member with least evidence of those whose interval holds the value that changes nothing, and why it is not named: however much
-/// the fit falls with it, other sections would have asked for the opposite.
+/// the fit falls with it, other sections would have asked for the opposite, or for another effect.
 #[must_use]
 pub fn of_either_sign(found: &Found) -> Option<(usize, String)> {
     let holds = |(at, member): (usize, &Fitted)| {
-        let (low, high) = interval(found, member)?;
+        let (low, high) = around(found, member, stability_of(found, member).map(|stability| stability.judged()))?;
         let nothing = found.candidates[member.candidate].neutral()?;
         let says = format!("the interval of its size, {} to {}, holds {}, which changes nothing", short(low), short(high), short(nothing));
         (low <= nothing && nothing <= high).then_some((at, says, member.evidence))

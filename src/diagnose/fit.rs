@@ -1,6 +1,7 @@
 //! Which candidates explain a difference: sizes, evidence, and the search for a set of them.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use super::candidates::Candidate;
 use super::whiten::{Whitener, dot};
@@ -118,13 +119,32 @@ impl BySection {
     /// Fall of chi-squared and size where each section counts so many times; nothing where no section that counts is changed.
     #[must_use]
     pub fn fit(&self, times: &[f64]) -> Option<(f64, f64)> {
+        self.fit_among(times, 0..self.sizes.len())
+    }
+
+    /// As [`Self::fit`], among sizes to the same side of what changes nothing as `size`.
+    #[must_use]
+    pub fn fit_beside(&self, times: &[f64], size: f64) -> Option<(f64, f64)> {
+        let nothing = self.lengths.iter().position(|sections| sections.iter().all(|length| *length == 0.0));
+        let nodes = match nothing {
+            Some(at) if size > self.sizes[at] => at..self.sizes.len(),
+            Some(at) if size < self.sizes[at] => 0..at + 1,
+            _ => 0..self.sizes.len(),
+        };
+        self.fit_among(times, nodes)
+    }
+
+    fn fit_among(&self, times: &[f64], nodes: Range<usize>) -> Option<(f64, f64)> {
         let sum = |parts: &Vec<f64>| dot(parts, times);
-        let [lengths, products, along] = [&self.lengths, &self.products, &self.along].map(|all| all.iter().map(sum).collect::<Vec<f64>>());
+        let segments = nodes.start..nodes.end.saturating_sub(1);
+        let [lengths, products, along] = [&self.lengths[nodes.clone()], &self.products[segments], &self.along[nodes.clone()]]
+            .map(|all| all.iter().map(sum).collect::<Vec<f64>>());
         if lengths.iter().all(|length| *length == 0.0) {
             return None;
         }
         let Closest { segment, share, fall, .. } = closest(&lengths, &products, &along, self.discrete)?;
-        Some((fall, between(self.sizes[segment], self.sizes[segment + 1], share)))
+        let sizes = &self.sizes[nodes];
+        Some((fall, between(sizes[segment], sizes[segment + 1], share)))
     }
 }
 

@@ -15,15 +15,18 @@ const NEAR: f64 = 0.3;
 
 /// A member that is first in fewer of the resamples is not told from others.
 const FIRST: f64 = 0.5;
+/// One that is first in so many is sure to be there, be it more or less of it.
+const SURE: f64 = 0.95;
 
 /// How a member fares over resamples of the sections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stability {
     /// Share of the resamples in which no other effect has more evidence.
     pub first: f64,
-    /// Sizes that 5 % and 95 % of the resamples stay below.
-    pub low: f64,
-    pub high: f64,
+    /// Sizes that 5 % and 95 % of the resamples stay below, each to the side of what changes nothing that has more evidence in it.
+    pub sizes: (f64, f64),
+    /// The same to whichever side fits best by the weighing of sizes.
+    pub either_side: (f64, f64),
     /// Candidates that are first in its place in some resamples, and in which share of them.
     pub instead: Vec<(usize, f64)>,
 }
@@ -33,6 +36,12 @@ impl Stability {
     #[must_use]
     pub fn fails(&self) -> bool {
         self.first < FIRST
+    }
+
+    /// The sizes by which it is judged whether there is an effect at all: where others are first now and then, to either side.
+    #[must_use]
+    pub fn judged(&self) -> (f64, f64) {
+        if self.first < SURE { self.either_side } else { self.sizes }
     }
 
     /// Share of the resamples in which a candidate is first in the place of the member.
@@ -77,15 +86,17 @@ pub fn stability(
         let own = fitter.by_section(&rest, member.candidate, member.mask);
         let own_size = sizes.by_section(&sized.left_by_others(sized_z, at), member.candidate, member.mask);
         let price = member.fall - member.evidence;
-        let drawn: Vec<(Option<usize>, Option<f64>)> = draws
+        let drawn: Vec<(Option<usize>, [Option<f64>; 2])> = draws
             .par_iter()
             .map(|times| {
                 // Where none of the sections that it shows in is drawn, it explains nothing, and has no size.
-                let fall = own.as_ref().and_then(|own| own.fit(times)).map_or(0.0, |(fall, _)| fall);
-                let size = own_size.as_ref().and_then(|own| own.fit(times)).map(|(_, size)| size);
+                let (fall, side) = own.as_ref().and_then(|own| own.fit(times)).unwrap_or((0.0, member.size));
+                // More of it or less is a matter of evidence, how much of its size.
+                let beside = own_size.as_ref().and_then(|own| own.fit_beside(times, side)).map(|(_, size)| size);
+                let freely = own_size.as_ref().and_then(|own| own.fit(times)).map(|(_, size)| size);
                 let others = rivals.iter().filter_map(|(rival, cost, candidate)| Some((rival.fit(times)?.0 - cost, *candidate)));
                 let beaten_by = others.filter(|(other, _)| *other > fall - price).max_by(|a, b| a.0.total_cmp(&b.0));
-                (beaten_by.map(|(_, candidate)| candidate), size)
+                (beaten_by.map(|(_, candidate)| candidate), [beside, freely])
             })
             .collect();
         let share = |of: Option<usize>| drawn.iter().filter(|(by, _)| *by == of).count() as f64 / drawn.len().max(1) as f64;
@@ -96,15 +107,13 @@ pub fn stability(
             }
         }
         instead.retain(|(_, share)| *share > 0.0);
-        let mut sizes: Vec<f64> = drawn.iter().filter_map(|(_, size)| *size).collect();
-        sizes.sort_by(f64::total_cmp);
-        let quantile = |share: f64| sizes.get(((sizes.len() as f64 * share) as usize).min(sizes.len().saturating_sub(1)));
-        Stability {
-            first: share(None),
-            low: quantile(0.05).copied().unwrap_or(member.size),
-            high: quantile(0.95).copied().unwrap_or(member.size),
-            instead,
-        }
+        let between = |way: usize| {
+            let mut sizes: Vec<f64> = drawn.iter().filter_map(|(_, sizes)| sizes[way]).collect();
+            sizes.sort_by(f64::total_cmp);
+            let quantile = |share: f64| sizes.get(((sizes.len() as f64 * share) as usize).min(sizes.len().saturating_sub(1))).copied();
+            (quantile(0.05).unwrap_or(member.size), quantile(0.95).unwrap_or(member.size))
+        };
+        Stability { first: share(None), sizes: between(0), either_side: between(1), instead }
     };
     (0..chosen.members.len()).map(one).collect()
 }
@@ -154,9 +163,39 @@ mod tests {
         let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member] };
         let found = stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), &[], &[(0..SECTIONS).collect()], 1).remove(0);
         assert_eq!(found.first, 1.0);
-        for (bound, away) in [(found.low, -1.645 * error), (found.high, 1.645 * error)] {
+        for (bound, away) in [(found.sizes.0, -1.645 * error), (found.sizes.1, 1.645 * error)] {
             assert!((bound - mean - away).abs() < 0.25 * away.abs(), "{bound} for {}", mean + away);
         }
+    }
+
+    /// More of an effect moves two features by (1, 0.6) a unit, less of it by (0.8, -0.6). By evidence they are off by (4, 2.4): four units
+    /// more in every resample. By the weighing of sizes they are off by (4, m), m alternating: less of it fits better where the mean of m
+    /// in the resample is below -0.207, from (4 + 0.6 m)^2 / 1.36 = (3.2 - 0.6 m)^2, which is so in four of ten.
+    #[test]
+    fn evidence_decides_whether_there_is_more_of_it_or_less() {
+        const SECTIONS: usize = 20;
+        let covariance = Covariance { diagonal: vec![1.0; 2 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 2 };
+        let whitener = covariance.whitener();
+        let all = |of: &dyn Fn(usize) -> [f64; 2]| (0..SECTIONS).flat_map(of).collect::<Vec<f64>>();
+        let nodes = vec![
+            Node { size: -10.0, change: all(&|_| [8.0, -6.0]) },
+            Node { size: 0.0, change: Vec::new() },
+            Node { size: 10.0, change: all(&|_| [10.0, 6.0]) },
+        ];
+        let candidates = [Candidate::path("either", nodes)];
+        let mask = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
+        let fitter = Fitter::new(&whitener, &candidates, vec![mask]);
+        let (z, sized) = (all(&|_| [4.0, 2.4]), all(&|at| [4.0, if at % 2 == 0 { 3.0 } else { -3.0 }]));
+        let chosen = |z: &[f64]| {
+            let member = fitter.fit(z, 0, 0).expect("a path");
+            Chosen { rest: less(z, &member.whitened), members: vec![member] }
+        };
+        let (by_evidence, by_size) = (chosen(&z), chosen(&sized));
+        let found = stability((&fitter, &z, &by_evidence), (&fitter, &sized, &by_size), &[], &[(0..SECTIONS).collect()], 1).remove(0);
+        assert!((by_evidence.members[0].size - 4.0).abs() < 1e-9 && found.first == 1.0);
+        assert!(found.sizes.0 > 0.0 && found.either_side.0 < 0.0 && found.either_side.1 > 0.0, "{found:?}");
+        assert_eq!(found.judged(), found.sizes);
+        assert_eq!(Stability { first: 0.9, ..found.clone() }.judged(), found.either_side);
     }
 
     /// All evidence for one effect is in one section, 25 each time that it is drawn; the other has 1.75 in each of the other 19. So the
