@@ -84,9 +84,10 @@ fn test(found: &Found, cell: &Cell) -> Tested {
     };
     let freedom = values.len() as f64;
     let mean = cell.members.iter().zip(&values).map(|(member, value)| side(member) * value).sum::<f64>() / freedom;
-    let rms = (values.iter().map(|value| value * value).sum::<f64>() / freedom).sqrt();
-    let [mean, rms] = [mean, rms].map(|value| if cell.kind == Kind::Level { value } else { value.exp() - 1.0 });
+    // Bands are logarithms of ratios.
+    let relative = |value: f64| if cell.kind == Kind::Level { value } else { value.exp() - 1.0 };
+    let rms = (values.iter().map(|value| relative(*value).powi(2)).sum::<f64>() / freedom).sqrt();
     let chi = found.covariance.among(&cell.members).chi_squared(&values);
     let p_value = statrs::distribution::ChiSquared::new(freedom).map_or(1.0, |law| statrs::distribution::ContinuousCDF::sf(&law, chi));
-    Tested { excess: chi - freedom, p_value, mean, rms }
+    Tested { excess: chi - freedom, p_value, mean: relative(mean), rms }
 }
