@@ -1,9 +1,11 @@
 //! The diagnosis of a campaign: find, add, run the protocol again, say.
 
+use super::fit::less;
 use super::observe::Observed;
 use super::run::{Found, Inputs, find};
 use super::settings::Settings;
 use super::shrink::{applied, compare, folds, improved, shares, trained};
+use super::whiten::dot;
 use crate::certify::{Compiled, certify};
 use crate::data::Campaign;
 use crate::effects::{Applied, Catalogue, Gauss, Signals};
@@ -56,7 +58,7 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     let mut records = Vec::new();
     let evaluate = |found: &Found, records: &[Signals]| evaluated(inputs.campaign, compiled, found, records, &units, settings);
     while !found.chosen.members.is_empty() {
-        if let Some((either, reason)) = super::causes::of_either_sign(&found) {
+        if let Some((either, reason)) = super::causes::nothing_out_of_the_ordinary(&found, inputs.settings) {
             found.refuse(either, reason, inputs.seed);
             continue;
         }
@@ -152,6 +154,8 @@ const STRONG: f64 = 4.0 / 3.0;
 pub struct Really {
     /// Whitened size, in standard deviations.
     pub detectability: f64,
+    /// Of several: the least that one of them adds which no size of the others would, in standard deviations.
+    pub weakest: Option<f64>,
     /// Share of the gap that they remove.
     pub removed: f64,
     /// Cells of the map that they move.
@@ -171,15 +175,32 @@ pub fn effect_of_truth(
     let model = crate::simulate::Builtin::new(campaign, &mut Problems::default());
     let simulator = model.as_ref().map(|model| model as &dyn Simulator);
     let records = improved(found, catalogue, simulator, &|_| effects.to_vec()).ok()?;
-    let features: Vec<f64> = records.iter().enumerate().flat_map(|(at, signals)| found.seen.of(at, signals, true)).collect();
-    let change = super::fit::less(&features, &found.simulated);
+    let changed = |records: &[Signals]| -> Vec<f64> {
+        let features: Vec<f64> = records.iter().enumerate().flat_map(|(at, signals)| found.seen.of(at, signals, true)).collect();
+        less(&features, &found.simulated)
+    };
+    let change = changed(&records);
+    let beside = |at: usize| {
+        let others: Vec<Applied> = effects.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, one)| one.clone()).collect();
+        let records = improved(found, catalogue, simulator, &|_| others.clone()).ok()?;
+        let others = changed(&records);
+        Some(across(&found.whitener.apply(&less(&change, &others)), &found.whitener.apply(&others)))
+    };
+    let several = if effects.len() > 1 { 0..effects.len() } else { 0..0 };
     let made = evaluated(campaign, compiled, found, &records, &outcome.units, RunSettings { traces: 0 }).ok()?;
     let settings = Settings::read(catalogue, &mut Problems::default())?;
     Some(Really {
         detectability: super::run::length(&found.whitener, &change),
+        weakest: several.filter_map(beside).reduce(f64::min),
         removed: compare(&outcome.before, &made, None, 1, Vec::new()).fraction_removed,
         cells: super::locate::moved(&settings, found, &change),
     })
+}
+
+/// Length of the part of a whitened change that is at right angles to another.
+fn across(change: &[f64], other: &[f64]) -> f64 {
+    let along = dot(change, other) / dot(other, other).max(f64::MIN_POSITIVE);
+    change.iter().zip(other).map(|(change, other)| (change - along * other).powi(2)).sum::<f64>().sqrt()
 }
 
 /// The protocol on a copy of the campaign with other simulated records.
@@ -219,4 +240,15 @@ pub fn write_improved(
         .map(|(observed, signals)| Ok((observed.section.name(), record_text(signals, &unit)?)))
         .collect();
     write_campaign(out, campaign, texts?.into_iter())
+}
+
+#[cfg(test)]
+mod tests {
+    /// 3 along another change and 4 across it; a change along it alone has nothing across.
+    #[test]
+    fn what_no_size_of_another_adds_is_across_it() {
+        assert!((super::across(&[3.0, 4.0, 0.0], &[2.0, 0.0, 0.0]) - 4.0).abs() < 1e-12);
+        assert!(super::across(&[1.0, 2.0], &[2.0, 4.0]) < 1e-12);
+        assert!((super::across(&[3.0, 4.0], &[0.0, 0.0]) - 5.0).abs() < 1e-12);
+    }
 }

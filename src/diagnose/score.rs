@@ -194,6 +194,7 @@ pub fn case(campaign: &str, diagnosis: &Diagnosis, truth: &Truth, really: Option
         named: first.map(names).unwrap_or_default(),
         ambiguity_set: set.iter().flat_map(|cause| names(cause)).collect(),
         detectability: really.map(|really| really.detectability),
+        weakest: really.and_then(|really| really.weakest),
         first_is_right: first.is_some_and(right),
         in_first_two: causes.iter().take(2).any(right),
         in_set: set.iter().any(|cause| right(cause)),
@@ -218,6 +219,8 @@ pub fn blind(cases: Vec<Case>) -> Blind {
     let of = |kind: &str| good.iter().copied().filter(|case| case.kind == kind).collect::<Vec<_>>();
     let seen = |case: &&Case| case.detectability.is_some_and(|d| d >= DETECTABLE);
     let singles: Vec<&Case> = of("single").into_iter().filter(seen).collect();
+    let apart = |case: &&Case| case.weakest.is_some_and(|d| d >= DETECTABLE);
+    let pairs: Vec<&Case> = of("pair").into_iter().filter(apart).collect();
     let portion = |name: &str, k: usize, n: usize| {
         let (value, interval) = (k as f64 / n as f64, wilson(k as u64, n as u64));
         let known = |value: f64| (n > 0).then_some(value);
@@ -253,6 +256,7 @@ pub fn blind(cases: Vec<Case>) -> Blind {
         share("outside the catalogue: said to be unexplained", &of("outside"), &|case| case.verdict == "unexplained"),
         share("traps avoided", &of("trap"), &|case| case.first_is_right || case.named.is_empty()),
         share("pairs: both found", &of("pair"), &|case| case.truth.iter().all(|name| case.named.contains(name))),
+        share("pairs, each d >= 5 beside the other: both found", &pairs, &|case| case.truth.iter().all(|name| case.named.contains(name))),
         share("pairs: at least one found", &of("pair"), &|case| case.truth.iter().any(|name| case.named.contains(name))),
         portion("cells of the map called significant: moved by the truth", cells.both, cells.told),
         portion("cells of the map moved by the truth: called significant", cells.both, cells.truly),
@@ -319,5 +323,22 @@ mod tests {
         assert_eq!(of("confined effects, sections named: true").value, Some(0.6));
         assert_eq!(of("confined effects, true sections: named").value, Some(0.75));
         assert_eq!(of("traps avoided").value, None);
+    }
+
+    /// Three pairs, both named in two of them; the weaker effect of one that is missed cannot be seen beside the other.
+    #[test]
+    fn pairs_that_can_be_told_apart_are_counted_by_themselves() {
+        let truth = vec!["a".to_string(), "b".to_string()];
+        let case = |named: &[&str], weakest| Case {
+            kind: "pair".into(),
+            truth: truth.clone(),
+            named: named.iter().map(|name| (*name).to_string()).collect(),
+            weakest: Some(weakest),
+            ..Case::default()
+        };
+        let scored = blind(vec![case(&["a", "b"], 6.0), case(&["b", "a"], 9.0), case(&["a"], 4.9)]);
+        let of = |name: &str| scored.scores.iter().find(|score| score.name == name).map(|score| (score.cases, score.value));
+        assert_eq!(of("pairs: both found"), Some((3, Some(2.0 / 3.0))));
+        assert_eq!(of("pairs, each d >= 5 beside the other: both found"), Some((2, Some(1.0))));
     }
 }

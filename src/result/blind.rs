@@ -48,6 +48,8 @@ pub struct Case {
     pub ambiguity_set: Vec<String>,
     /// Whitened size of the true effects.
     pub detectability: Option<f64>,
+    /// Of several true effects: the least that one adds which no size of the others would, in standard deviations.
+    pub weakest: Option<f64>,
     pub first_is_right: bool,
     pub in_first_two: bool,
     pub in_set: bool,
