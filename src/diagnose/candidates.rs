@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::bench::{Bench, Runs};
-use super::beside::Placed;
 use super::observe::Observations;
 use super::recorded::Recorded;
 use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Parameter, Signals};
@@ -35,8 +34,6 @@ pub struct Candidate {
     pub alternatives: usize,
     /// Sizes that are simulated only where the coarser ones say that it is worth it.
     pub pending: Vec<f64>,
-    /// What it was simulated beside, if it was.
-    pub beside: Option<Placed>,
 }
 
 impl Candidate {
@@ -57,7 +54,6 @@ impl Candidate {
             tolerance: effect.tolerance.clone(),
             alternatives: 1,
             pending: Vec::new(),
-            beside: None,
         }
     }
 
@@ -78,7 +74,6 @@ impl Candidate {
             tolerance: None,
             alternatives: 1,
             pending: Vec::new(),
-            beside: None,
         }
     }
 
@@ -206,13 +201,10 @@ impl Workshop<'_> {
 
     /// Simulates more sizes of a candidate.
     fn simulate(&self, bench: &Bench<'_>, effect: &Effect, candidate: &mut Candidate, sizes: &[f64], runs: &mut Runs) {
-        let beside = candidate.beside.as_ref().map(|placed| placed.there.clone());
-        let there = beside.as_ref().map(|there| there.on(bench));
-        let from = there.as_ref().zip(beside.as_ref()).map_or((bench, &self.base[..]), |(bench, there)| (bench, &there.base[..]));
         for size in sizes {
             let mut values = candidate.fixed.clone();
             values.push((candidate.size.clone(), *size));
-            match self.run(from, &applied(effect, values)) {
+            match self.run(bench, &applied(effect, values)) {
                 Ok(change) => candidate.nodes.push(Node { size: *size, change }),
                 Err(problem) => runs.failed.push(format!("{} = {size}: {}", candidate.size, problem.says)),
             }
@@ -247,15 +239,15 @@ impl Workshop<'_> {
         }
     }
 
-    /// How the features change with an effect on the simulator, from those without it.
+    /// How the features change with an effect on the simulator.
     ///
     /// # Errors
     /// A section fails, or the catalogue does not say how this simulator adds the effect.
-    fn run(&self, (bench, base): (&Bench<'_>, &[f64]), applied: &Applied) -> Result<Vec<f64>, Problem> {
+    pub fn run(&self, bench: &Bench<'_>, applied: &Applied) -> Result<Vec<f64>, Problem> {
         let effects = std::slice::from_ref(applied);
         let plan = crate::simulate::Plan::new(self.catalogue, effects, &self.seen.sections[0].section, bench.simulator.catalogue_name())?;
         let made = bench.features(&plan.settings)?;
-        Ok(made.iter().zip(base).map(|(made, base)| made - base).collect())
+        Ok(made.iter().zip(&self.base).map(|(made, base)| made - base).collect())
     }
 
     fn operated(&self, effect: &Effect, operator: Operator, channels: &[String]) -> Vec<Candidate> {

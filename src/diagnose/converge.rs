@@ -1,7 +1,6 @@
 //! The search, with what it asks for simulated: until neither the answer nor a veto rests on interpolation.
 
 use super::bench::Runs;
-use super::beside::alone_again;
 use super::candidates::{Candidate, Workshop};
 use super::fit::{Fitted, Fitter, Known, Mask};
 use super::guards::{View, carried, contradiction};
@@ -61,7 +60,7 @@ impl Converging<'_> {
             let bars = bars(*chance.get_or_insert_with(|| limit(&fitter, z.len(), self.seed)));
             refused.clear();
             let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
-            let found = search(&fitter, &z, (Chosen::none(&z), Vec::new()), &bars, self.far, &guard, &mut refused);
+            let found = search(&fitter, &z, &bars, self.far, &guard, &mut refused);
             let wanted = promising(&fitter, &z, &found);
             let more = if wanted.is_empty() { section_masks(&fitter, &z, &found, workshop.seen) } else { Vec::new() };
             known = fitter.whitened;
@@ -81,24 +80,17 @@ impl Converging<'_> {
             wanted.into_iter().for_each(|(at, size)| workshop.refine(&mut candidates[at], size, runs));
             (workshop.trying)("weighing");
         };
-        let now = self.simulated((candidates, masks), &z, Converged { chosen, refused, bars, known }, runs);
-        self.beside((candidates, masks), &z, now, runs)
+        self.simulated((candidates, masks), &z, Converged { chosen, refused, bars, known }, runs)
     }
 
     /// The members fitted again with the sizes that were found simulated; one that was above the bar by interpolation alone goes.
-    pub(super) fn simulated(
-        &self,
-        (candidates, masks): (&mut [Candidate], &[Mask]),
-        z: &[f64],
-        mut now: Converged,
-        runs: &mut Runs,
-    ) -> Converged {
+    fn simulated(&self, (candidates, masks): (&mut [Candidate], &[Mask]), z: &[f64], mut now: Converged, runs: &mut Runs) -> Converged {
         for _ in 0..ROUNDS {
             if !polish(self.workshop, candidates, &now.chosen.members, runs) {
                 break;
             }
             let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), now.known);
-            refit(&fitter, z, &mut now.chosen);
+            refit(&fitter, z, &mut now.chosen, 6);
             now.known = fitter.whitened;
         }
         let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), now.known);
@@ -116,14 +108,9 @@ impl Converging<'_> {
         while let Some((at, reason)) = first_fault(&now.chosen.members) {
             let fitted = now.chosen.members.remove(at);
             now.refused.push(Refused::new(fitted, reason));
-            refit(&fitter, z, &mut now.chosen);
+            refit(&fitter, z, &mut now.chosen, 6);
         }
         now.known = fitter.whitened;
-        if alone_again(candidates, &now.chosen.members) {
-            let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), now.known);
-            refit(&fitter, z, &mut now.chosen);
-            now.known = fitter.whitened;
-        }
         now
     }
 
@@ -132,7 +119,7 @@ impl Converging<'_> {
     pub fn exchange(&self, (candidates, masks): (&[Candidate], &[Mask]), now: &mut Chosen, refused: &[Refused], known: &mut Known) -> bool {
         let z = self.whitener.apply(self.difference);
         let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), std::mem::take(known));
-        refit(&fitter, &z, now);
+        refit(&fitter, &z, now, 6);
         let mut any = false;
         for at in 0..now.members.len() {
             let mut others = now.clone();
@@ -148,7 +135,7 @@ impl Converging<'_> {
             fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
             if let Some(better) = fits.into_iter().find(|fit| self.guard(&fitter, &others, fit) == Judged::Sound) {
                 now.members[at] = better;
-                refit(&fitter, &z, now);
+                refit(&fitter, &z, now, 6);
                 any = true;
             }
         }
@@ -157,7 +144,7 @@ impl Converging<'_> {
     }
 
     /// Refuses a member that views contradict, or that a single section carries.
-    pub(super) fn guard(&self, fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> Judged {
+    fn guard(&self, fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> Judged {
         let rest = left(fitter.candidates, &fitter.masks, self.difference, chosen);
         let fitted = (&fitter.candidates[fit.candidate], &fitter.masks[fit.mask], fit);
         let mut judged = Judged::Sound;

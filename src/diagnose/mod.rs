@@ -4,7 +4,6 @@
 
 mod apart;
 pub mod bench;
-mod beside;
 mod cache;
 mod campaign;
 pub mod candidates;

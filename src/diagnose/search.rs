@@ -89,12 +89,6 @@ impl Refused {
 }
 
 impl Chosen {
-    /// No member.
-    #[must_use]
-    pub fn none(z: &[f64]) -> Self {
-        Self { members: Vec::new(), rest: z.to_vec() }
-    }
-
     #[must_use]
     pub fn evidence(&self) -> f64 {
         self.members.iter().map(|member| member.evidence).sum()
@@ -108,25 +102,22 @@ impl Chosen {
     }
 }
 
-/// Searches for members beside those that are `chosen`, without the candidates that are `barred`. `z` is the whitened difference; `far`
-/// says how many declared standard deviations a size is from neutral.
+/// Searches. `z` is the whitened difference; `far` says how many declared standard deviations a size is from neutral.
 pub fn search(
     fitter: &Fitter<'_>,
     z: &[f64],
-    (mut chosen, mut barred): (Chosen, Vec<usize>),
     bars: &Bars,
     far: &(dyn Fn(&Candidate, f64) -> f64 + Sync),
     guard: Guard<'_>,
     refused: &mut Vec<Refused>,
 ) -> Chosen {
+    let mut chosen = Chosen { members: Vec::new(), rest: z.to_vec() };
+    let mut barred: Vec<usize> = Vec::new();
     while chosen.members.len() < bars.most {
         let alone = chosen.members.is_empty();
         let bar = |fit: &Fitted| if alone { bars.alone(&fitter.candidates[fit.candidate]) } else { bars.next };
         let mut fits = fitter.all(&chosen.rest);
         fits.iter_mut().for_each(|fit| unconfine(fitter, &chosen.rest, fit, bars));
-        if !alone {
-            fits = together(fitter, z, &chosen, fits);
-        }
         fits.retain(|fit| fit.evidence >= bar(fit) && !barred.contains(&fit.candidate) && !taken(fitter, &chosen, fit));
         fits.retain(|fit| far(&fitter.candidates[fit.candidate], fit.size) >= bars.tolerance_sd + fitter.masks[fit.mask].picked());
         fits.retain(|fit| plausible(&fitter.candidates[fit.candidate], fit.size));
@@ -138,10 +129,7 @@ pub fn search(
         fits.retain(|fit| fit.fall >= least);
         fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         let Some(mut best) = fits.into_iter().next() else { break };
-        let mut others = with(fitter, z, &chosen, best.clone());
-        others.rest = others.left_by_others(z, chosen.members.len());
-        others.members.pop();
-        match guard(&best, &others) {
+        match guard(&best, &chosen) {
             Judged::Sound => {}
             Judged::Doubtful => best.doubtful = true,
             judged @ (Judged::Refused(_) | Judged::Contradicted(_)) => {
@@ -151,13 +139,13 @@ pub fn search(
             }
         }
         chosen.members.push(best);
-        refit(fitter, z, &mut chosen);
+        refit(fitter, z, &mut chosen, 4);
         if let Some(other) = undone(&chosen) {
             let last = chosen.members.pop().expect("just pushed");
             barred.push(last.candidate);
             let reason = format!("it mostly undoes what {} does", fitter.candidates[chosen.members[other].candidate].effect);
             refused.push(Refused::new(last, reason));
-            refit(fitter, z, &mut chosen);
+            refit(fitter, z, &mut chosen, 4);
             continue;
         }
         // A member that the others have made needless goes.
@@ -168,39 +156,10 @@ pub fn search(
         if let Some(weak) = chosen.members.iter().position(|member| member.evidence < least(member)) {
             barred.push(chosen.members[weak].candidate);
             chosen.members.remove(weak);
-            refit(fitter, z, &mut chosen);
+            refit(fitter, z, &mut chosen, 4);
         }
     }
     chosen
-}
-
-/// How many candidates are fitted together with the members, from which evidence on beside the members as they are.
-const TOGETHER: usize = 12;
-const WORTH: f64 = 5.0;
-
-/// Candidates as further members, fitted together with the members: what is alike takes its part of what the other explains, and has
-/// little evidence left beside it, until both give way.
-#[must_use]
-pub fn together(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, mut fits: Vec<Fitted>) -> Vec<Fitted> {
-    fits.retain(|fit| fit.evidence >= WORTH && !taken(fitter, chosen, fit));
-    fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-    fits.truncate(TOGETHER);
-    let before = chi_squared(&chosen.rest);
-    let one = |fit: Fitted| {
-        let price = fit.fall - fit.evidence;
-        let Chosen { mut members, rest } = with(fitter, z, chosen, fit);
-        let fall = before - chi_squared(&rest);
-        Some(Fitted { fall, evidence: fall - price, ..members.pop()? })
-    };
-    fits.into_iter().filter_map(one).collect()
-}
-
-/// A set with one more member, all fitted again.
-fn with(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, fit: Fitted) -> Chosen {
-    let mut more = chosen.clone();
-    more.members.push(fit);
-    refit(fitter, z, &mut more);
-    more
 }
 
 /// Whether a size is within what the catalogue holds possible.
@@ -242,15 +201,9 @@ fn taken(fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> bool {
     })
 }
 
-/// Most turns in which members are fitted to what the others leave, and the share of chi-squared by which a turn that ends it falls:
-/// changes that are alike give way to each other slowly.
-const TURNS: usize = 100;
-const SETTLED: f64 = 1e-6;
-
-/// Fits every member to what the others leave, in turns, until nothing is gained.
-pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen) {
-    let mut before = f64::INFINITY;
-    for _ in 0..TURNS {
+/// Fits every member to what the others leave, in turns.
+pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen, sweeps: usize) {
+    for _ in 0..sweeps {
         for at in 0..chosen.members.len() {
             let rest = chosen.left_by_others(z, at);
             let (candidate, mask) = (chosen.members[at].candidate, chosen.members[at].mask);
@@ -258,12 +211,10 @@ pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen) {
                 chosen.members[at] = Fitted { doubtful: chosen.members[at].doubtful, ..fitted };
             }
         }
-        chosen.rest = chosen.members.iter().fold(z.to_vec(), |rest, member| less(&rest, &member.whitened));
-        let now = chi_squared(&chosen.rest);
-        if chosen.members.len() < 2 || before - now <= SETTLED * now {
-            break;
-        }
-        before = now;
+    }
+    chosen.rest = z.to_vec();
+    for member in &chosen.members {
+        chosen.rest = less(&chosen.rest, &member.whitened);
     }
 }
 
@@ -345,7 +296,7 @@ mod tests {
             let z = per_section(2.0, second);
             let fit = |candidate: usize| fitter.fit(&z, candidate, 0).expect("a path");
             let mut chosen = Chosen { members: vec![fit(0)], rest: z.clone() };
-            refit(&fitter, &z, &mut chosen);
+            refit(&fitter, &z, &mut chosen, 2);
             let refused = Refused { contradicted, ..Refused::new(fit(1), "views differ") };
             contradicting(&fitter, &chosen, &[refused]).map(|(_, evidence)| evidence)
         };
@@ -374,40 +325,10 @@ mod tests {
         let named = |exact: bool| {
             let candidates = [path("large", per_section(100.0, 0.0), exact), path("small", per_section(0.0, 100.0), false)];
             let fitter = Fitter::new(&whitener, &candidates, vec![everywhere.clone()]);
-            let found = search(&fitter, &z, (Chosen::none(&z), Vec::new()), &bars, &|_, _| 100.0, &|_, _| Judged::Sound, &mut Vec::new());
+            let found = search(&fitter, &z, &bars, &|_, _| 100.0, &|_, _| Judged::Sound, &mut Vec::new());
             found.members.iter().map(|member| (member.candidate, member.fall.round())).collect::<Vec<_>>()
         };
         assert_eq!(named(false), [(0, 9000.0)]);
         assert_eq!(named(true), [(0, 9000.0), (1, 90.0)]);
-    }
-
-    /// Ten sections of two features of unit variance. Two changes whose cosine is 0.9 are there with 0.3 each. Beside the first as it is
-    /// alone, the second would explain 1 - 0.9^2 of what the first leaves; together they explain all of it, with the sizes that they have.
-    #[test]
-    fn what_is_alike_is_weighed_together() {
-        const SECTIONS: usize = 10;
-        let per_section = |a: f64, b: f64| (0..SECTIONS).flat_map(|_| [a, b]).collect::<Vec<f64>>();
-        let side = 0.19_f64.sqrt();
-        let path = |effect: &str, change: Vec<f64>| {
-            Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 1.0, change }])
-        };
-        let candidates = [path("first", per_section(10.0, 0.0)), path("second", per_section(9.0, 10.0 * side))];
-        let covariance = Covariance { diagonal: vec![1.0; 2 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 2 };
-        let whitener = covariance.whitener();
-        let everywhere = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
-        let fitter = Fitter::new(&whitener, &candidates, vec![everywhere]);
-        let z = per_section(3.0 + 2.7, 3.0 * side);
-        let first = fitter.fit(&z, 0, 0).expect("a path");
-        let chosen = Chosen { rest: less(&z, &first.whitened), members: vec![first] };
-        let left = SECTIONS as f64 * 9.0 * 0.19;
-        assert!((chi_squared(&chosen.rest) - left).abs() < 1e-9);
-        let beside = fitter.fit(&chosen.rest, 1, 0).expect("a path");
-        assert!((beside.fall - 0.19 * left).abs() < 1e-9, "{}", beside.fall);
-        let second = Fitted { evidence: beside.evidence.max(WORTH), ..beside };
-        let price = second.fall - second.evidence;
-        let found = together(&fitter, &z, &chosen, vec![second]);
-        let [both] = &found[..] else { panic!("{} fits", found.len()) };
-        assert!((both.fall - left).abs() < 1e-3 && (both.size - 0.3).abs() < 1e-3, "{} {}", both.fall, both.size);
-        assert!((both.fall - both.evidence - price).abs() < 1e-9);
     }
 }
