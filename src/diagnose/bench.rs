@@ -96,7 +96,8 @@ impl Bench<'_> {
             return Ok(known);
         }
         let run = |at: usize| {
-            let task = Task { section: &self.seen.sections[at].section, settings: &each[at], shift: 0.0, inside_only: true };
+            let task =
+                Task { section: &self.seen.sections[at].section, settings: &each[at], shift: 0.0, inside_only: chains[at].shift() == 0.0 };
             let mut signals = self.simulator.run(&task)?;
             chains[at].operate(&mut signals, task.section)?;
             Ok(self.seen.of(at, &signals, true))

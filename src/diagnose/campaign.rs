@@ -58,7 +58,7 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     let mut records = Vec::new();
     let evaluate = |found: &Found, records: &[Signals]| evaluated(inputs.campaign, compiled, found, records, &units, settings);
     while !found.chosen.members.is_empty() {
-        if let Some((either, reason)) = super::causes::of_either_sign(&found) {
+        if let Some((either, reason)) = super::causes::nothing_out_of_the_ordinary(&found, inputs.settings) {
             found.refuse(either, reason, inputs.seed);
             continue;
         }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::bench::{Bench, Runs};
+use super::beside::Placed;
 use super::observe::Observations;
 use super::recorded::Recorded;
 use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Parameter, Signals};
@@ -34,6 +35,8 @@ pub struct Candidate {
     pub alternatives: usize,
     /// Sizes that are simulated only where the coarser ones say that it is worth it.
     pub pending: Vec<f64>,
+    /// What it was simulated beside, if it was.
+    pub beside: Option<Placed>,
 }
 
 impl Candidate {
@@ -54,6 +57,7 @@ impl Candidate {
             tolerance: effect.tolerance.clone(),
             alternatives: 1,
             pending: Vec::new(),
+            beside: None,
         }
     }
 
@@ -74,6 +78,7 @@ impl Candidate {
             tolerance: None,
             alternatives: 1,
             pending: Vec::new(),
+            beside: None,
         }
     }
 
@@ -201,10 +206,13 @@ impl Workshop<'_> {
 
     /// Simulates more sizes of a candidate.
     fn simulate(&self, bench: &Bench<'_>, effect: &Effect, candidate: &mut Candidate, sizes: &[f64], runs: &mut Runs) {
+        let beside = candidate.beside.as_ref().map(|placed| placed.there.clone());
+        let there = beside.as_ref().map(|there| there.on(bench));
+        let from = there.as_ref().zip(beside.as_ref()).map_or((bench, &self.base[..]), |(bench, there)| (bench, &there.base[..]));
         for size in sizes {
             let mut values = candidate.fixed.clone();
             values.push((candidate.size.clone(), *size));
-            match self.run(bench, &applied(effect, values)) {
+            match self.run(from, &applied(effect, values)) {
                 Ok(change) => candidate.nodes.push(Node { size: *size, change }),
                 Err(problem) => runs.failed.push(format!("{} = {size}: {}", candidate.size, problem.says)),
             }
@@ -213,14 +221,14 @@ impl Workshop<'_> {
         candidate.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
     }
 
-    /// Simulates the sizes of a candidate towards one that were left for later.
+    /// Adds the sizes of a candidate towards one that were left for later.
     pub fn refine(&self, candidate: &mut Candidate, towards: f64, runs: &mut Runs) {
         let (pending, left) = candidate.pending.iter().partition(|pending| candidate.same_side(**pending, towards));
         candidate.pending = left;
         let pending: Vec<f64> = pending;
-        if let (Some(bench), Some(effect)) = (self.bench, self.catalogue.effect(&candidate.effect)) {
+        if let Some(effect) = self.catalogue.effect(&candidate.effect) {
             (self.trying)(&effect.title);
-            self.simulate(bench, effect, candidate, &pending, runs);
+            pending.into_iter().for_each(|size| self.add_size(candidate, size, runs));
         }
     }
 
@@ -239,15 +247,15 @@ impl Workshop<'_> {
         }
     }
 
-    /// How the features change with an effect on the simulator.
+    /// How the features change with an effect on the simulator, from those without it.
     ///
     /// # Errors
     /// A section fails, or the catalogue does not say how this simulator adds the effect.
-    pub fn run(&self, bench: &Bench<'_>, applied: &Applied) -> Result<Vec<f64>, Problem> {
+    fn run(&self, (bench, base): (&Bench<'_>, &[f64]), applied: &Applied) -> Result<Vec<f64>, Problem> {
         let effects = std::slice::from_ref(applied);
         let plan = crate::simulate::Plan::new(self.catalogue, effects, &self.seen.sections[0].section, bench.simulator.catalogue_name())?;
         let made = bench.features(&plan.settings)?;
-        Ok(made.iter().zip(&self.base).map(|(made, base)| made - base).collect())
+        Ok(made.iter().zip(base).map(|(made, base)| made - base).collect())
     }
 
     fn operated(&self, effect: &Effect, operator: Operator, channels: &[String]) -> Vec<Candidate> {
@@ -288,6 +296,9 @@ impl Workshop<'_> {
                 if let Some(channel) = self.seen.layout.channels.iter().find(|channel| channel.name == made.channels[0]) {
                     made.unit = channel.unit.clone();
                 }
+            }
+            if let Some(neutral) = made.neutral().filter(|_| !discrete) {
+                made.pending = beyond(made.range, neutral);
             }
             Some(made)
         };
@@ -380,6 +391,20 @@ impl Workshop<'_> {
     }
 }
 
+/// How far beyond what is plausible an operation is applied, as a share of the way there.
+const BEYOND: f64 = 0.2;
+
+/// Sizes to either side that are not plausible any more: a difference that asks for one is told from one that asks for the last of those
+/// that are.
+fn beyond(range: (f64, f64), neutral: f64) -> Vec<f64> {
+    let further = |end: f64| {
+        let along = end + BEYOND * (end - neutral);
+        // What a size scales, or cuts off, has no size of the other sign.
+        if neutral.is_finite() && along * end > 0.0 { along } else { end / (1.0 + BEYOND) }
+    };
+    [range.0, range.1].into_iter().filter(|end| end.is_finite() && *end != neutral).map(further).collect()
+}
+
 /// Every other size, counted from none to either side; the nearer of two, since halfway to the farther one an effect that sets in at a
 /// threshold would not be there at all. And the others.
 fn coarse(sizes: &[f64], none: f64) -> (Vec<f64>, Vec<f64>) {
@@ -410,6 +435,19 @@ fn combinations(axes: &[(usize, Vec<f64>)]) -> Vec<Vec<(usize, f64)>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A fifth of the way on: a gain of 0.5 to 1.6, a shift of 50 m either way, and an edge that has no negative size.
+    #[test]
+    fn operations_are_tried_a_fifth_beyond_what_is_plausible() {
+        let near = |range: (f64, f64), neutral: f64, wanted: &[f64]| {
+            let found = beyond(range, neutral);
+            assert!(found.len() == wanted.len() && found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+        };
+        near((0.5, 1.6), 1.0, &[0.4, 1.72]);
+        near((-50.0, 50.0), 0.0, &[-60.0, 60.0]);
+        near((0.6, 80.0), 80.0, &[0.5]);
+        near((0.6, f64::INFINITY), f64::INFINITY, &[0.5]);
+    }
 
     /// A lag of 0, 1, 2 and then 30 along the sizes 0 to 3: around 1 it moves by no more than 1, around 2.5 it has jumped.
     #[test]

@@ -4,7 +4,8 @@ use indexmap::IndexMap;
 use serde_json::json;
 
 use super::fit::Fitted;
-use super::run::{Found, Inputs};
+use super::run::{Found, Inputs, deviations};
+use super::settings::Settings;
 use super::stability::Stability;
 use crate::effects::Action;
 use crate::result::diagnosis::{Cause, NamedEffect, Value};
@@ -59,15 +60,25 @@ fn around(found: &Found, member: &Fitted, drawn: Option<(f64, f64)>) -> Option<(
     Some(((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)))
 }
 
-/// The member with least evidence of those whose interval holds the value that changes nothing, and why it is not named: however much
-/// the fit falls with it, other sections would have asked for the opposite, or for another effect.
+/// Declared standard deviations within which nine tenths of all vehicles are.
+const ORDINARY: f64 = 1.645;
+
+/// The member with least evidence of those whose interval holds the value that changes nothing, or one that is ordinary by what is
+/// declared, and why it is not named: however much the fit falls with it, other sections would have asked for the opposite, for another
+/// effect, or for no more than was admitted.
 #[must_use]
-pub fn of_either_sign(found: &Found) -> Option<(usize, String)> {
+pub fn nothing_out_of_the_ordinary(found: &Found, settings: &Settings) -> Option<(usize, String)> {
     let holds = |(at, member): (usize, &Fitted)| {
+        let of = &found.candidates[member.candidate];
         let (low, high) = around(found, member, stability_of(found, member).map(|stability| stability.judged()))?;
-        let nothing = found.candidates[member.candidate].neutral()?;
-        let says = format!("the interval of its size, {} to {}, holds {}, which changes nothing", short(low), short(high), short(nothing));
-        (low <= nothing && nothing <= high).then_some((at, says, member.evidence))
+        let nothing = of.neutral()?;
+        let nearest = nothing.clamp(low, high);
+        let holds = match deviations(of, nearest, settings, &found.declared, true) {
+            _ if nearest == nothing => format!("{}, which changes nothing", short(nothing)),
+            away if away < ORDINARY => format!("{}, which is {away:.1} declared standard deviations off", short(nearest)),
+            _ => return None,
+        };
+        Some((at, format!("the interval of its size, {} to {}, holds {holds}", short(low), short(high)), member.evidence))
     };
     let found = found.chosen.members.iter().enumerate().filter_map(holds).min_by(|a, b| a.2.total_cmp(&b.2));
     found.map(|(at, says, _)| (at, says))

@@ -1,12 +1,13 @@
 //! The search, with what it asks for simulated: until neither the answer nor a veto rests on interpolation.
 
 use super::bench::Runs;
+use super::beside::alone_again;
 use super::candidates::{Candidate, Workshop};
 use super::fit::{Fitted, Fitter, Known, Mask};
 use super::guards::{View, carried, contradiction};
 use super::lack::left;
 use super::masks::section_masks;
-use super::search::{Bars, Chosen, Judged, Refused, TOLERANCE_SD, plausible, refit, search};
+use super::search::{Bars, Chosen, Judged, Refused, TOLERANCE_SD, plausible, refit, search, taken, unconfine};
 use super::settle::{ROUNDS, polish};
 use super::whiten::{Covariance, Whitener};
 use crate::effects::Gauss;
@@ -22,8 +23,8 @@ const FLOOR_EXACT: f64 = 15.0;
 pub const NEAR: f64 = 0.5;
 pub const WORTH: f64 = 10.0;
 
-/// With so much more evidence another takes the place of a member, where one beside it has gone.
-const BETTER: f64 = 8.0;
+/// With so much more evidence, the least that is called positive (Kass and Raftery 1995), another takes the place of a member.
+const BETTER: f64 = 2.0;
 
 /// What is searched, and by what it is weighed.
 pub struct Converging<'a> {
@@ -60,7 +61,7 @@ impl Converging<'_> {
             let bars = bars(*chance.get_or_insert_with(|| limit(&fitter, z.len(), self.seed)));
             refused.clear();
             let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
-            let found = search(&fitter, &z, &bars, self.far, &guard, &mut refused);
+            let found = search(&fitter, &z, (Chosen::none(&z), Vec::new()), (&bars, &self.channels()), self.far, &guard, &mut refused);
             let wanted = promising(&fitter, &z, &found);
             let more = if wanted.is_empty() { section_masks(&fitter, &z, &found, workshop.seen) } else { Vec::new() };
             known = fitter.whitened;
@@ -80,62 +81,89 @@ impl Converging<'_> {
             wanted.into_iter().for_each(|(at, size)| workshop.refine(&mut candidates[at], size, runs));
             (workshop.trying)("weighing");
         };
-        self.simulated((candidates, masks), &z, Converged { chosen, refused, bars, known }, runs)
+        let now = self.simulated((candidates, masks), &z, Converged { chosen, refused, bars, known }, runs);
+        let mut now = self.beside((candidates, masks), &z, now, runs);
+        if self.exchange((candidates, masks), &mut now.chosen, &now.bars, &now.refused, &mut now.known) {
+            alone_again(candidates, &now.chosen.members);
+            now = self.simulated((candidates, masks), &z, now, runs);
+        }
+        now
+    }
+
+    /// Of which channel each feature of a section is.
+    pub(super) fn channels(&self) -> Vec<usize> {
+        self.workshop.seen.features.iter().map(|feature| feature.channel).collect()
     }
 
     /// The members fitted again with the sizes that were found simulated; one that was above the bar by interpolation alone goes.
-    fn simulated(&self, (candidates, masks): (&mut [Candidate], &[Mask]), z: &[f64], mut now: Converged, runs: &mut Runs) -> Converged {
+    pub(super) fn simulated(
+        &self,
+        (candidates, masks): (&mut [Candidate], &[Mask]),
+        z: &[f64],
+        mut now: Converged,
+        runs: &mut Runs,
+    ) -> Converged {
         for _ in 0..ROUNDS {
             if !polish(self.workshop, candidates, &now.chosen.members, runs) {
                 break;
             }
             let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), now.known);
-            refit(&fitter, z, &mut now.chosen, 6);
+            refit(&fitter, z, &mut now.chosen);
             now.known = fitter.whitened;
         }
         let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), now.known);
-        let fault = |member: &Fitted, count: usize| {
-            if member.evidence < now.bars.least(&fitter.candidates[member.candidate], count) {
+        let fault = |member: &Fitted| {
+            if member.evidence < now.bars.least(&fitter.candidates[member.candidate]) {
                 return Some("simulated at the size that was found, it has too little evidence");
             }
             (!plausible(&fitter.candidates[member.candidate], member.size))
                 .then_some("beside the others it asks for a size that is not plausible")
         };
-        let first_fault = |members: &[Fitted]| {
-            let count = members.len();
-            members.iter().enumerate().find_map(|(at, member)| Some((at, fault(member, count)?)))
-        };
+        let first_fault = |members: &[Fitted]| members.iter().enumerate().find_map(|(at, member)| Some((at, fault(member)?)));
         while let Some((at, reason)) = first_fault(&now.chosen.members) {
             let fitted = now.chosen.members.remove(at);
             now.refused.push(Refused::new(fitted, reason));
-            refit(&fitter, z, &mut now.chosen, 6);
+            refit(&fitter, z, &mut now.chosen);
         }
         now.known = fitter.whitened;
+        if alone_again(candidates, &now.chosen.members) {
+            let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), now.known);
+            refit(&fitter, z, &mut now.chosen);
+            now.known = fitter.whitened;
+        }
         now
     }
 
-    /// Where a member that others were chosen beside has gone, one of them may have another in its place that has more evidence now.
-    /// Whether any was exchanged.
-    pub fn exchange(&self, (candidates, masks): (&[Candidate], &[Mask]), now: &mut Chosen, refused: &[Refused], known: &mut Known) -> bool {
+    /// Where others have come beside a member, or gone, another may have more evidence in its place than it has now. Whether any was
+    /// exchanged.
+    pub fn exchange(
+        &self,
+        (candidates, masks): (&[Candidate], &[Mask]),
+        now: &mut Chosen,
+        bars: &Bars,
+        refused: &[Refused],
+        known: &mut Known,
+    ) -> bool {
         let z = self.whitener.apply(self.difference);
         let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), std::mem::take(known));
-        refit(&fitter, &z, now, 6);
+        refit(&fitter, &z, now);
         let mut any = false;
         for at in 0..now.members.len() {
             let mut others = now.clone();
             let member = others.members.remove(at);
             others.rest = now.left_by_others(&z, at);
             let mut fits = fitter.all(&others.rest);
+            fits.iter_mut().for_each(|fit| unconfine(&fitter, &others.rest, fit, bars));
             fits.retain(|fit| {
                 let (of, mask) = (&candidates[fit.candidate], &masks[fit.mask]);
                 let free = refused.iter().all(|refused| !candidates[refused.fitted.candidate].is_like(of)) && mask.asked_by.is_none();
-                let more = fit.evidence > member.evidence + BETTER;
+                let more = fit.evidence > bars.least(of).max(member.evidence + BETTER) && !taken(&fitter, &others, fit);
                 free && more && plausible(of, fit.size) && (self.far)(of, fit.size) >= TOLERANCE_SD
             });
             fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
             if let Some(better) = fits.into_iter().find(|fit| self.guard(&fitter, &others, fit) == Judged::Sound) {
                 now.members[at] = better;
-                refit(&fitter, &z, now, 6);
+                refit(&fitter, &z, now);
                 any = true;
             }
         }
@@ -144,7 +172,7 @@ impl Converging<'_> {
     }
 
     /// Refuses a member that views contradict, or that a single section carries.
-    fn guard(&self, fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> Judged {
+    pub(super) fn guard(&self, fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> Judged {
         let rest = left(fitter.candidates, &fitter.masks, self.difference, chosen);
         let fitted = (&fitter.candidates[fit.candidate], &fitter.masks[fit.mask], fit);
         let mut judged = Judged::Sound;
@@ -166,7 +194,7 @@ impl Converging<'_> {
 /// Bars from what chance reaches.
 fn bars(chance: f64) -> Bars {
     let first = chance.max(FLOOR);
-    Bars { first, exact: chance.max(FLOOR_EXACT), next: 1.25 * first, confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.08, most: 3 }
+    Bars { first, exact: chance.max(FLOOR_EXACT), confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.08, most: 3 }
 }
 
 /// More evidence than the best candidate reaches by chance in any draw from the covariance.
@@ -257,15 +285,16 @@ mod tests {
             let fit = |candidate: usize| fitter.fit(&difference, candidate, 0).expect("a path");
             let mut now = Chosen { members: vec![fit(0)], rest: difference.clone() };
             let refused: Vec<Refused> = refused.iter().map(|at| Refused::new(fit(*at), "gone")).collect();
-            let any = converging.exchange((&candidates, &masks), &mut now, &refused, &mut Known::new());
+            let any = converging.exchange((&candidates, &masks), &mut now, &bars(0.0), &refused, &mut Known::new());
             let [member] = &now.members[..] else { panic!("{} members", now.members.len()) };
             (any, member.candidate, member.size, member.fall)
         };
         let (any, candidate, size, fall) = exchanged(3.0, &[1]);
         assert!(any && candidate == 2, "{candidate}");
         assert!((size - 3.0).abs() < 1e-9 && (fall - 90.0).abs() < 1e-9, "{size}, {fall}");
-        // What was refused takes no place; nor does what explains little more: 10 * 1.2^2 / 2 is less than 8.
+        // What was refused takes no place; nor does what has less than a first member must have: 10 * 1.8^2 is 32.4, less the price 28.
         assert_eq!(exchanged(3.0, &[1, 2]).1, 0);
-        assert_eq!(exchanged(1.2, &[1]).1, 0);
+        assert_eq!(exchanged(1.8, &[1]).1, 0);
+        assert_eq!(exchanged(2.0, &[1]).1, 2);
     }
 }

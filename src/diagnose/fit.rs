@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use super::beside::Placed;
 use super::candidates::Candidate;
 use super::whiten::{Whitener, dot};
 
@@ -53,6 +54,9 @@ pub type Known = HashMap<(usize, usize), Path>;
 /// A candidate under a mask: its whitened nodes, and what of a fit does not depend on the difference.
 #[derive(Debug)]
 pub struct Path {
+    /// Of which sizes, and beside what.
+    sizes: Vec<f64>,
+    beside: Option<Placed>,
     nodes: Vec<Vec<f64>>,
     /// Squared lengths of the nodes, and products of each with the next.
     lengths: Vec<f64>,
@@ -149,11 +153,20 @@ impl BySection {
 }
 
 impl Path {
-    fn new(nodes: Vec<Vec<f64>>) -> Self {
+    fn new(of: &Candidate, nodes: Vec<Vec<f64>>) -> Self {
         let product = |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
         let lengths = nodes.iter().map(|node| product(node, node)).collect();
         let products = nodes.windows(2).map(|pair| product(&pair[0], &pair[1])).collect();
-        Self { nodes, lengths, products }
+        Self { sizes: of.nodes.iter().map(|node| node.size).collect(), beside: of.beside.clone(), nodes, lengths, products }
+    }
+
+    /// Whether a candidate has not changed since.
+    fn is_of(&self, candidate: &Candidate) -> bool {
+        let beside = match (&self.beside, &candidate.beside) {
+            (Some(a), Some(b)) => a.same_place(b),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        beside && candidate.nodes.iter().map(|node| node.size).eq(self.sizes.iter().copied())
     }
 
     /// Length of the change per unit of the size, between nodes that are some way to either side of it: between two that nearly are one,
@@ -203,10 +216,11 @@ impl<'a> Fitter<'a> {
         mut keys: Vec<(usize, usize)>,
     ) -> Self {
         use rayon::prelude::*;
-        known.retain(|(candidate, _), path| path.nodes.len() == candidates[*candidate].nodes.len());
+        known.retain(|(candidate, _), path| path.is_of(&candidates[*candidate]));
         keys.retain(|key| !known.contains_key(key));
         let mut fitter = Self { whitener, candidates, masks, whitened: known };
-        let whitened: Vec<_> = keys.par_iter().map(|(at, mask)| ((*at, *mask), Path::new(fitter.nodes(*at, *mask)))).collect();
+        let whitened: Vec<_> =
+            keys.par_iter().map(|(at, mask)| ((*at, *mask), Path::new(&candidates[*at], fitter.nodes(*at, *mask)))).collect();
         fitter.whitened.extend(whitened);
         fitter
     }
@@ -415,7 +429,7 @@ mod tests {
         let nodes = [(0.0, 0.0), (1.0, 2.0), (1.001, 2.5), (2.0, 4.0)];
         let node = |(size, change): (f64, f64)| Node { size, change: if size == 0.0 { Vec::new() } else { vec![change] } };
         let of = Candidate::path("effect", nodes.map(node).to_vec());
-        let path = Path::new(of.nodes.iter().map(|node| node.change.clone()).collect());
+        let path = Path::new(&of, of.nodes.iter().map(|node| node.change.clone()).collect());
         assert!((path.slope(&of, 1, 1.0005) - 2.0).abs() < 1e-12);
         assert!((path.slope(&of, 0, 0.5) - 2.0).abs() < 1e-12);
     }

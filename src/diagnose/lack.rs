@@ -144,7 +144,7 @@ pub fn drop_what_harms(
         let Some(last) = chosen.members.len().checked_sub(1) else { return now };
         let mut without = chosen.clone();
         without.members.remove(last);
-        refit(fitter, z, &mut without, 4);
+        refit(fitter, z, &mut without);
         let then = if without.members.is_empty() { before.to_vec() } else { lack(&without) };
         if excess(&now) <= WORSE * excess(&then) + LITTLE {
             return now;

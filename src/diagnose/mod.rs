@@ -4,6 +4,7 @@
 
 mod apart;
 pub mod bench;
+mod beside;
 mod cache;
 mod campaign;
 pub mod candidates;

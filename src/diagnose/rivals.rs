@@ -37,8 +37,7 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
         if deviations(of, fit.size, inputs.settings, &found.declared, true) < TOLERANCE_SD {
             continue;
         }
-        let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(NEAREST)
-            && fit.evidence > if of.exact { found.bars.exact } else { found.bars.first }
+        let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(NEAREST) && fit.evidence > found.bars.least(of)
             || found.stability.get(*at).is_some_and(|stability| stability.as_well(fit.candidate));
         let drawn = found.stability.get(*at).map_or(0.0, |stability| stability.instead_of(fit.candidate));
         let mut members = found.chosen.members.clone();

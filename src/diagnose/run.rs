@@ -1,6 +1,7 @@
 //! The diagnosis from end to end: features, candidates, search, guards, verdict.
 
 use super::bench::{Bench, Runs};
+use super::beside::alone_again;
 use super::cache::Cache;
 use super::candidates::{Candidate, Trying, Workshop};
 use super::converge::{Converged, Converging};
@@ -191,13 +192,14 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let before = refused.len();
     let (mut beside, mut settled) = again.answer((&mut candidates, &masks), first.clone(), &lack_before, &bars, &mut refused, &mut runs);
     let mut left = settled.chosen.clone();
-    if refused.len() > before && converging.exchange((&candidates, &masks), &mut left, &refused, &mut known) {
+    if refused.len() > before && converging.exchange((&candidates, &masks), &mut left, &bars, &refused, &mut known) {
+        alone_again(&mut candidates, &left.members);
         let first = Weighed { chosen: left, ..first };
         (beside, settled) = again.answer((&mut candidates, &masks), first, &lack_before, &bars, &mut refused, &mut runs);
     }
     let Weighed { difference: difference_beside, covariance: settled, whitener: weighing, z: own, mut chosen } = settled;
     let fitter = Fitter::of(&weighing, &candidates, masks.clone(), &chosen.members);
-    refit(&fitter, &own, &mut chosen, 6);
+    refit(&fitter, &own, &mut chosen);
     let lack_after = drop_what_harms(&fitter, (&beside, &seen), (&difference_beside, &own), &mut chosen, &mut refused, &lack_before);
     drop(fitter);
     let suspect = suspect(&workshop, settings, (&whitener, &z), (&candidates, &masks, &chosen), &mut runs);
@@ -240,6 +242,7 @@ impl Found {
             self.suspect = None;
         }
         self.refused.push(Refused::new(self.chosen.members.remove(at), reason));
+        alone_again(&mut self.candidates, &self.chosen.members);
         self.fit_again();
         if unexplained(&self.lack_before, &self.lack_after).1 {
             self.beside = self.covariance.clone();
@@ -257,7 +260,7 @@ impl Found {
         let fitter = Fitter::knowing(&self.whitener, &self.candidates, self.masks.clone(), known);
         let z = self.whitener.apply(&self.difference);
         let mut first = self.chosen.clone();
-        refit(&fitter, &z, &mut first, 6);
+        refit(&fitter, &z, &mut first);
         self.rivals = rivals(&fitter, &z, &first);
         self.nearest = nearest(&fitter, &first, &self.refused);
         self.contradicting = contradicting(&fitter, &first, &self.refused);

@@ -10,12 +10,10 @@ pub const TOLERANCE_SD: f64 = 3.5;
 /// What a member must bring.
 #[derive(Clone, Copy, Debug)]
 pub struct Bars {
-    /// Least evidence of the first member.
+    /// Least evidence of a member.
     pub first: f64,
     /// The same for an operation on the signals: exact, whatever the model is wrong in.
     pub exact: f64,
-    /// Of every further one.
-    pub next: f64,
     /// Extra evidence that a confinement must bring over the whole campaign.
     pub confined: f64,
     /// A size that is a declared tolerance must be so many standard deviations from neutral.
@@ -26,16 +24,10 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// Least evidence of a candidate that is the only member.
+    /// Least evidence of a candidate.
     #[must_use]
-    pub fn alone(&self, candidate: &Candidate) -> f64 {
+    pub fn least(&self, candidate: &Candidate) -> f64 {
         if candidate.exact { self.exact } else { self.first }
-    }
-
-    /// Least evidence of one of so many members that were found; beside others, it has met a higher bar on its way in.
-    #[must_use]
-    pub fn least(&self, candidate: &Candidate, count: usize) -> f64 {
-        if count == 1 { self.alone(candidate) } else { self.first }
     }
 }
 
@@ -89,6 +81,12 @@ impl Refused {
 }
 
 impl Chosen {
+    /// No member.
+    #[must_use]
+    pub fn none(z: &[f64]) -> Self {
+        Self { members: Vec::new(), rest: z.to_vec() }
+    }
+
     #[must_use]
     pub fn evidence(&self) -> f64 {
         self.members.iter().map(|member| member.evidence).sum()
@@ -102,34 +100,41 @@ impl Chosen {
     }
 }
 
-/// Searches. `z` is the whitened difference; `far` says how many declared standard deviations a size is from neutral.
+/// Searches for members beside those that are `chosen`, without the candidates that are `barred`. `z` is the whitened difference; `far`
+/// says how many declared standard deviations a size is from neutral, `channels` of which channel each feature of a section is.
 pub fn search(
     fitter: &Fitter<'_>,
     z: &[f64],
-    bars: &Bars,
+    (mut chosen, mut barred): (Chosen, Vec<usize>),
+    (bars, channels): (&Bars, &[usize]),
     far: &(dyn Fn(&Candidate, f64) -> f64 + Sync),
     guard: Guard<'_>,
     refused: &mut Vec<Refused>,
 ) -> Chosen {
-    let mut chosen = Chosen { members: Vec::new(), rest: z.to_vec() };
-    let mut barred: Vec<usize> = Vec::new();
     while chosen.members.len() < bars.most {
         let alone = chosen.members.is_empty();
-        let bar = |fit: &Fitted| if alone { bars.alone(&fitter.candidates[fit.candidate]) } else { bars.next };
+        let bar = |fit: &Fitted| bars.least(&fitter.candidates[fit.candidate]);
         let mut fits = fitter.all(&chosen.rest);
         fits.iter_mut().for_each(|fit| unconfine(fitter, &chosen.rest, fit, bars));
+        if !alone {
+            fits = together(fitter, z, &chosen, fits);
+        }
         fits.retain(|fit| fit.evidence >= bar(fit) && !barred.contains(&fit.candidate) && !taken(fitter, &chosen, fit));
         fits.retain(|fit| far(&fitter.candidates[fit.candidate], fit.size) >= bars.tolerance_sd + fitter.masks[fit.mask].picked());
         fits.retain(|fit| plausible(&fitter.candidates[fit.candidate], fit.size));
         // Sections that the data chose themselves must say it twice as loud.
         fits.retain(|fit| fitter.masks[fit.mask].asked_by.is_none() || fit.evidence >= 2.0 * bar(fit));
-        // What a simulated change is wrong by looks like something else; an operation on the signals leaves nothing.
+        // What a simulated change is wrong by, in the channels that it changes, looks like something else; an operation on the signals
+        // leaves nothing.
         let simulated = chosen.members.iter().filter(|member| !fitter.candidates[member.candidate].exact);
-        let least = bars.share * simulated.map(|member| member.fall).fold(0.0, f64::max);
-        fits.retain(|fit| fit.fall >= least);
+        let wrong = |fit: &Fitted, member: &Fitted| bars.share * member.fall * in_common(channels, &fit.whitened, &member.whitened);
+        fits.retain(|fit| simulated.clone().all(|member| fit.fall >= wrong(fit, member)));
         fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         let Some(mut best) = fits.into_iter().next() else { break };
-        match guard(&best, &chosen) {
+        let mut others = with(fitter, z, &chosen, best.clone());
+        others.rest = others.left_by_others(z, chosen.members.len());
+        others.members.pop();
+        match guard(&best, &others) {
             Judged::Sound => {}
             Judged::Doubtful => best.doubtful = true,
             judged @ (Judged::Refused(_) | Judged::Contradicted(_)) => {
@@ -139,27 +144,52 @@ pub fn search(
             }
         }
         chosen.members.push(best);
-        refit(fitter, z, &mut chosen, 4);
+        refit(fitter, z, &mut chosen);
         if let Some(other) = undone(&chosen) {
             let last = chosen.members.pop().expect("just pushed");
             barred.push(last.candidate);
             let reason = format!("it mostly undoes what {} does", fitter.candidates[chosen.members[other].candidate].effect);
             refused.push(Refused::new(last, reason));
-            refit(fitter, z, &mut chosen, 4);
+            refit(fitter, z, &mut chosen);
             continue;
         }
         // A member that the others have made needless goes.
-        let least = |member: &Fitted| match chosen.members.len() {
-            1 => bars.alone(&fitter.candidates[member.candidate]),
-            _ => bars.first.min(bars.next),
-        };
-        if let Some(weak) = chosen.members.iter().position(|member| member.evidence < least(member)) {
+        if let Some(weak) = chosen.members.iter().position(|member| member.evidence < bar(member)) {
             barred.push(chosen.members[weak].candidate);
             chosen.members.remove(weak);
-            refit(fitter, z, &mut chosen, 4);
+            refit(fitter, z, &mut chosen);
         }
     }
     chosen
+}
+
+/// How many candidates are fitted together with the members, from which evidence on beside the members as they are.
+const TOGETHER: usize = 12;
+const WORTH: f64 = 5.0;
+
+/// Candidates as further members, fitted together with the members: what is alike takes its part of what the other explains, and has
+/// little evidence left beside it, until both give way.
+#[must_use]
+pub fn together(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, mut fits: Vec<Fitted>) -> Vec<Fitted> {
+    fits.retain(|fit| fit.evidence >= WORTH && !taken(fitter, chosen, fit));
+    fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    fits.truncate(TOGETHER);
+    let before = chi_squared(&chosen.rest);
+    let one = |fit: Fitted| {
+        let price = fit.fall - fit.evidence;
+        let Chosen { mut members, rest } = with(fitter, z, chosen, fit);
+        let fall = before - chi_squared(&rest);
+        Some(Fitted { fall, evidence: fall - price, ..members.pop()? })
+    };
+    fits.into_iter().filter_map(one).collect()
+}
+
+/// A set with one more member, all fitted again.
+fn with(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, fit: Fitted) -> Chosen {
+    let mut more = chosen.clone();
+    more.members.push(fit);
+    refit(fitter, z, &mut more);
+    more
 }
 
 /// Whether a size is within what the catalogue holds possible.
@@ -172,7 +202,7 @@ pub fn plausible(candidate: &Candidate, size: f64) -> bool {
 const CONFINED: f64 = 0.15;
 
 /// A confinement must earn what it costs over the same candidate everywhere.
-fn unconfine(fitter: &Fitter<'_>, rest: &[f64], fit: &mut Fitted, bars: &Bars) {
+pub fn unconfine(fitter: &Fitter<'_>, rest: &[f64], fit: &mut Fitted, bars: &Bars) {
     if fit.mask == 0 {
         return;
     }
@@ -192,18 +222,39 @@ fn undone(chosen: &Chosen) -> Option<usize> {
     others.iter().position(|other| dot(&other.whitened, &last.whitened) < UNDONE * length(other) * length(last))
 }
 
-/// Whether a like cause is a member already: another size of the same effect on the same channels.
-fn taken(fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> bool {
+/// How much of two whitened changes is in the same channels: 1 where their lengths are spread over them alike, 0 where they share none.
+fn in_common(channels: &[usize], a: &[f64], b: &[f64]) -> f64 {
+    let squares = |of: &[f64]| {
+        let mut sums = vec![0.0; channels.iter().max().map_or(0, |most| most + 1)];
+        of.iter().zip(channels.iter().cycle()).for_each(|(x, channel)| sums[*channel] += x * x);
+        sums
+    };
+    let (a, b) = (squares(a), squares(b));
+    let both: f64 = a.iter().zip(&b).map(|(a, b)| (a * b).sqrt()).sum();
+    let lengths = a.iter().sum::<f64>() * b.iter().sum::<f64>();
+    if lengths > 0.0 { both * both / lengths } else { 0.0 }
+}
+
+/// Whether a like cause is a member already: another size of the same effect on the same channels, or another size of what is turned round.
+#[must_use]
+pub fn taken(fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> bool {
     let of = &fitter.candidates[fit.candidate];
     chosen.members.iter().any(|member| {
         let known = &fitter.candidates[member.candidate];
-        known.effect == of.effect && (known.channels == of.channels || of.channels.is_empty())
+        let turned = known.exact && of.exact && (known.discrete || of.discrete) && known.channels == of.channels;
+        turned || known.effect == of.effect && (known.channels == of.channels || of.channels.is_empty())
     })
 }
 
-/// Fits every member to what the others leave, in turns.
-pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen, sweeps: usize) {
-    for _ in 0..sweeps {
+/// Most turns in which members are fitted to what the others leave, and the share of chi-squared by which a turn that ends it falls:
+/// changes that are alike give way to each other slowly.
+const TURNS: usize = 100;
+const SETTLED: f64 = 1e-6;
+
+/// Fits every member to what the others leave, in turns, until nothing is gained.
+pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen) {
+    let mut before = f64::INFINITY;
+    for _ in 0..TURNS {
         for at in 0..chosen.members.len() {
             let rest = chosen.left_by_others(z, at);
             let (candidate, mask) = (chosen.members[at].candidate, chosen.members[at].mask);
@@ -211,10 +262,12 @@ pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen, sweeps: usize)
                 chosen.members[at] = Fitted { doubtful: chosen.members[at].doubtful, ..fitted };
             }
         }
-    }
-    chosen.rest = z.to_vec();
-    for member in &chosen.members {
-        chosen.rest = less(&chosen.rest, &member.whitened);
+        chosen.rest = chosen.members.iter().fold(z.to_vec(), |rest, member| less(&rest, &member.whitened));
+        let now = chi_squared(&chosen.rest);
+        if chosen.members.len() < 2 || before - now <= SETTLED * now {
+            break;
+        }
+        before = now;
     }
 }
 
@@ -296,7 +349,7 @@ mod tests {
             let z = per_section(2.0, second);
             let fit = |candidate: usize| fitter.fit(&z, candidate, 0).expect("a path");
             let mut chosen = Chosen { members: vec![fit(0)], rest: z.clone() };
-            refit(&fitter, &z, &mut chosen, 2);
+            refit(&fitter, &z, &mut chosen);
             let refused = Refused { contradicted, ..Refused::new(fit(1), "views differ") };
             contradicting(&fitter, &chosen, &[refused]).map(|(_, evidence)| evidence)
         };
@@ -320,15 +373,56 @@ mod tests {
         };
         let whitener = covariance.whitener();
         let everywhere = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
-        let bars = Bars { first: 30.0, exact: 15.0, next: 37.5, confined: 15.0, tolerance_sd: 3.5, share: 0.08, most: 3 };
+        let bars = Bars { first: 30.0, exact: 15.0, confined: 15.0, tolerance_sd: 3.5, share: 0.08, most: 3 };
         let z = per_section(30.0, 3.0);
-        let named = |exact: bool| {
+        let named = |exact: bool, channels: &[usize]| {
             let candidates = [path("large", per_section(100.0, 0.0), exact), path("small", per_section(0.0, 100.0), false)];
             let fitter = Fitter::new(&whitener, &candidates, vec![everywhere.clone()]);
-            let found = search(&fitter, &z, &bars, &|_, _| 100.0, &|_, _| Judged::Sound, &mut Vec::new());
+            let found = search(
+                &fitter,
+                &z,
+                (Chosen::none(&z), Vec::new()),
+                (&bars, channels),
+                &|_, _| 100.0,
+                &|_, _| Judged::Sound,
+                &mut Vec::new(),
+            );
             found.members.iter().map(|member| (member.candidate, member.fall.round())).collect::<Vec<_>>()
         };
-        assert_eq!(named(false), [(0, 9000.0)]);
-        assert_eq!(named(true), [(0, 9000.0), (1, 90.0)]);
+        assert_eq!(named(false, &[0, 0]), [(0, 9000.0)]);
+        assert_eq!(named(true, &[0, 0]), [(0, 9000.0), (1, 90.0)]);
+        // It is wrong in nothing that it does not change.
+        assert_eq!(named(false, &[0, 1]), [(0, 9000.0), (1, 90.0)]);
+        assert!((in_common(&[0, 1], &[3.0, 4.0, 0.0, 0.0], &[4.0, 0.0, 0.0, 0.0]) - 9.0 / 25.0).abs() < 1e-12);
+    }
+
+    /// Ten sections of two features of unit variance. Two changes whose cosine is 0.9 are there with 0.3 each. Beside the first as it is
+    /// alone, the second would explain 1 - 0.9^2 of what the first leaves; together they explain all of it, with the sizes that they have.
+    #[test]
+    fn what_is_alike_is_weighed_together() {
+        const SECTIONS: usize = 10;
+        let per_section = |a: f64, b: f64| (0..SECTIONS).flat_map(|_| [a, b]).collect::<Vec<f64>>();
+        let side = 0.19_f64.sqrt();
+        let path = |effect: &str, change: Vec<f64>| {
+            Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 1.0, change }])
+        };
+        let candidates = [path("first", per_section(10.0, 0.0)), path("second", per_section(9.0, 10.0 * side))];
+        let covariance = Covariance { diagonal: vec![1.0; 2 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 2 };
+        let whitener = covariance.whitener();
+        let everywhere = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
+        let fitter = Fitter::new(&whitener, &candidates, vec![everywhere]);
+        let z = per_section(3.0 + 2.7, 3.0 * side);
+        let first = fitter.fit(&z, 0, 0).expect("a path");
+        let chosen = Chosen { rest: less(&z, &first.whitened), members: vec![first] };
+        let left = SECTIONS as f64 * 9.0 * 0.19;
+        assert!((chi_squared(&chosen.rest) - left).abs() < 1e-9);
+        let beside = fitter.fit(&chosen.rest, 1, 0).expect("a path");
+        assert!((beside.fall - 0.19 * left).abs() < 1e-9, "{}", beside.fall);
+        let second = Fitted { evidence: beside.evidence.max(WORTH), ..beside };
+        let price = second.fall - second.evidence;
+        let found = together(&fitter, &z, &chosen, vec![second]);
+        let [both] = &found[..] else { panic!("{} fits", found.len()) };
+        assert!((both.fall - left).abs() < 1e-3 && (both.size - 0.3).abs() < 1e-3, "{} {}", both.fall, both.size);
+        assert!((both.fall - both.evidence - price).abs() < 1e-9);
     }
 }

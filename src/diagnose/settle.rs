@@ -2,7 +2,8 @@
 //! notice before, and short waves matter less where others are added.
 
 use super::bench::{Bench, Runs, Set};
-use super::candidates::{Candidate, Workshop, applied};
+use super::beside::{alone_again, set};
+use super::candidates::{Candidate, Workshop};
 use super::covariance::{NOTHING, Sensitivity, covariance, expect};
 use super::features::Kind;
 use super::fit::{Fitted, Fitter, Mask};
@@ -12,8 +13,7 @@ use super::sensitivity::sensitivities;
 use super::settings::Settings;
 use super::standing::Standing;
 use super::whiten::{Covariance, Whitener, dot};
-use crate::effects::{Action, Applied, Effect};
-use crate::simulate::Plan;
+use crate::effects::Action;
 
 /// A tolerance that moves the features by less than so many standard deviations of everything else stays as it was: branches of contact
 /// alone move them by about one.
@@ -116,9 +116,10 @@ impl Settled<'_> {
                 now = now.by(covariance, difference);
             }
             self.refined((candidates, masks), &mut now, runs);
-            while now.chosen.members.get(count).is_some_and(|next| next.evidence < bars.next) {
+            while now.chosen.members.get(count).is_some_and(|next| next.evidence < bars.least(&candidates[next.candidate])) {
                 let reason = "with the tolerances as they act beside what was found before it, it has too little evidence";
                 refused.push(Refused::new(now.chosen.members.remove(count), reason));
+                alone_again(candidates, &now.chosen.members);
                 self.refined((candidates, masks), &mut now, runs);
             }
             let members = &now.chosen.members;
@@ -128,7 +129,7 @@ impl Settled<'_> {
                 let (away, needed) = ((self.far)(of, contrast), bars.tolerance_sd + masks[member.mask].picked());
                 let from = if masks[member.mask].asked_by.is_some() { " from that of the other sections" } else { "" };
                 let reason = match () {
-                    () if member.evidence < bars.least(of, members.len()) => "it has too little evidence".to_string(),
+                    () if member.evidence < bars.least(of) => "it has too little evidence".to_string(),
                     () if away < needed => format!("its size is {away:.1} declared standard deviations off{from}, not {needed:.1}"),
                     () => return None,
                 };
@@ -139,6 +140,7 @@ impl Settled<'_> {
                 continue;
             };
             refused.push(Refused::new(now.chosen.members.remove(weak), reason));
+            alone_again(candidates, &now.chosen.members);
             now = now.by(without.0.clone(), without.1.clone());
             self.refined((candidates, masks), &mut now, runs);
             count = 1;
@@ -182,7 +184,7 @@ impl Settled<'_> {
     fn refined(&self, (candidates, masks): (&mut [Candidate], &[Mask]), now: &mut Weighed, runs: &mut Runs) {
         for round in 0..=ROUNDS {
             let fitter = Fitter::of(&now.whitener, candidates, masks.to_vec(), &now.chosen.members);
-            refit(&fitter, &now.z, &mut now.chosen, 6);
+            refit(&fitter, &now.z, &mut now.chosen);
             if round == ROUNDS || !polish(self.workshop, candidates, &now.chosen.members, runs) {
                 break;
             }
@@ -193,7 +195,7 @@ impl Settled<'_> {
     /// or where one fails.
     fn beside(&self, (candidates, masks): (&[Candidate], &[Mask]), members: &[Fitted], runs: &mut Runs) -> Option<(Covariance, Vec<f64>)> {
         let bench = self.workshop.bench?;
-        let added: Vec<Set> = members.iter().filter_map(|member| self.set(bench, &candidates[member.candidate], masks, member)).collect();
+        let added: Vec<Set> = members.iter().filter_map(|member| self.set(&candidates[member.candidate], masks, member)).collect();
         if added.is_empty() {
             return None;
         }
@@ -231,17 +233,10 @@ impl Settled<'_> {
 
     /// What a member sets in the simulator, or exchanges or turns round of its signals: another wheel's guiding force differs by other
     /// tolerances. What else is done to signals leaves them as they are.
-    fn set(&self, bench: &Bench<'_>, candidate: &Candidate, masks: &[Mask], member: &Fitted) -> Option<Set> {
-        let effect: &Effect = self.workshop.catalogue.effect(&candidate.effect)?;
-        if !(matches!(effect.action, Action::Simulator) || candidate.discrete) || !member.size.is_finite() {
-            return None;
-        }
-        let mut values = candidate.fixed.clone();
-        values.push((candidate.size.clone(), member.size));
-        let effects = [Applied { channels: candidate.channels.clone(), ..applied(effect, values) }];
-        let section = &self.workshop.seen.sections[0].section;
-        let plan = Plan::new(self.workshop.catalogue, &effects, section, bench.simulator.catalogue_name()).ok()?;
-        Some(Set { plan, sections: (member.mask != 0).then(|| masks[member.mask].sections.clone()) })
+    fn set(&self, candidate: &Candidate, masks: &[Mask], member: &Fitted) -> Option<Set> {
+        let effect = self.workshop.catalogue.effect(&candidate.effect)?;
+        let moves = matches!(effect.action, Action::Simulator) || candidate.discrete;
+        if moves { set(self.workshop, candidate, masks, member) } else { None }
     }
 }
 

@@ -74,7 +74,7 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
         chosen.rest = super::fit::less(&chosen.rest, &fitted.whitened);
         chosen.members.push(Fitted { candidate: at, ..fitted });
     }
-    super::search::refit(&fitter, &z, &mut chosen, 4);
+    super::search::refit(&fitter, &z, &mut chosen);
     chosen
         .members
         .into_iter()

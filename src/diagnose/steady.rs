@@ -3,11 +3,13 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::causes::short;
+use super::features::Kind;
 use super::fit::Fitted;
 use super::lack::{left, with_room};
 use super::run::Found;
 use super::settings::Settings;
 use super::trends::{CERTAIN, Covariate, NINETY, covariates};
+use super::whiten::Covariance;
 use crate::effects::{CHANNEL, Catalogue};
 use crate::result::diagnosis::Drift;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -25,7 +27,7 @@ pub fn drifts(settings: &Settings, found: &Found) -> Vec<Drift> {
     if operations.is_empty() {
         return Vec::new();
     }
-    let whitener = with_room(&found.beside, &found.candidates, &found.masks, &found.chosen).whitener();
+    let whitener = with_room(&may_differ(found), &found.candidates, &found.masks, &found.chosen).whitener();
     let rest: DVector<f64> = whitener.apply(&left(&found.candidates, &found.masks, &found.difference_beside, &found.chosen)).into();
     let columns: Vec<DVector<f64>> =
         found.chosen.members.iter().map(|member| whitener.apply(&member.tangent(&found.candidates, &found.masks)).into()).collect();
@@ -60,6 +62,18 @@ pub fn drifts(settings: &Settings, found: &Found) -> Vec<Drift> {
         })
     };
     operations.iter().flat_map(|member| covariates.iter().filter_map(|covariate| of(member, covariate))).collect()
+}
+
+/// What may differ beside the answer, with room for what a simulated member has wrong as one; lags that jump with its size do not count.
+/// Sections that stand out alone do: what drifts stands out at its ends.
+fn may_differ(found: &Found) -> Covariance {
+    let mut covariance = found.settled.clone();
+    for (at, _) in found.seen.features.iter().enumerate().filter(|(_, feature)| feature.kind != Kind::Lag) {
+        for place in (0..found.seen.sections.len()).map(|section| found.seen.place(section, at)) {
+            covariance.diagonal[place] = found.beside.diagonal[place];
+        }
+    }
+    covariance
 }
 
 /// The drift that is least probable, if it is no chance among all that were looked at (Bonferroni).

@@ -86,7 +86,7 @@ pub fn suspect(
     let bench = workshop.bench?;
     let fitter = Fitter::of(whitener, candidates, masks.to_vec(), &chosen.members);
     let mut now = chosen.clone();
-    refit(&fitter, z, &mut now, 6);
+    refit(&fitter, z, &mut now);
     let first = &candidates[now.members.first()?.candidate];
     if first.exact && first.channels.len() < 2 {
         return None;
@@ -162,6 +162,7 @@ impl Candidate {
             tolerance: None,
             alternatives,
             pending: Vec::new(),
+            beside: None,
         }
     }
 }

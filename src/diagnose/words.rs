@@ -161,7 +161,7 @@ fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
 fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
     let one = |fit: &Fitted| {
         let of = &found.candidates[fit.candidate];
-        let bar = if found.chosen.members.is_empty() { found.bars.alone(of) } else { found.bars.next };
+        let bar = found.bars.least(of);
         let needed = if found.masks[fit.mask].asked_by.is_some() { 2.0 * bar } else { bar };
         let away = deviations(&found.candidates[fit.candidate], fit.size, inputs.settings, &found.declared, true);
         let wants = match () {

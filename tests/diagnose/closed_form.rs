@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use fishplate::data::Campaign;
-use fishplate::diagnose::causes::{interval, of_either_sign};
+use fishplate::diagnose::causes::{interval, nothing_out_of_the_ordinary};
 use fishplate::diagnose::run::{Found, Inputs, find};
 use fishplate::diagnose::settings::Settings;
 use fishplate::diagnose::standing::Reference;
@@ -218,14 +218,24 @@ fn tolerances_are_weighed_as_they_act_beside_what_is_found() {
 /// the range does.
 #[test]
 fn what_may_as_well_be_nothing_is_not_named() {
-    let mut found = found(EFFECTS, Truth { slack: 0.8, ..NOTHING });
+    let (mut found, settings) = found_by(EFFECTS, Truth { slack: 0.8, ..NOTHING }, &[]);
     assert!(interval(&found, &found.chosen.members[0]).is_some_and(|(low, high)| 0.5 < low && low < 0.8 && 0.8 < high && high < 1.1));
-    assert_eq!(of_either_sign(&found), None);
+    assert_eq!(nothing_out_of_the_ordinary(&found, &settings), None);
+    // Were slack declared with a standard deviation of 0.05, an interval from 0.15 on would hold nothing ordinary, one from 0.07 on would.
+    let (candidate, sizes) = (found.chosen.members[0].candidate, found.stability[0].sizes);
+    found.candidates[candidate].tolerance = Some("rise".into());
+    for (low, ordinary) in [(0.15, false), (0.07, true)] {
+        found.stability[0].sizes.0 = low;
+        let says = nothing_out_of_the_ordinary(&found, &settings).map(|(_, says)| says);
+        assert_eq!(says.is_some_and(|says| says.contains("declared standard deviations off")), ordinary, "{low}");
+    }
+    found.candidates[candidate].tolerance = None;
+    found.stability[0].sizes = sizes;
     // What is first in every draw is there; where another effect is first in some, a size to either side is as good.
     found.stability[0].either_side.0 = -0.2;
-    assert_eq!((found.stability[0].first, of_either_sign(&found)), (1.0, None));
+    assert_eq!((found.stability[0].first, nothing_out_of_the_ordinary(&found, &settings)), (1.0, None));
     found.stability[0].first = 0.9;
-    let (at, says) = of_either_sign(&found).expect("an interval from nothing on");
+    let (at, says) = nothing_out_of_the_ordinary(&found, &settings).expect("an interval from nothing on");
     assert!(at == 0 && says.contains("holds 0, which changes nothing"), "{says}");
     found.refuse(at, says, 1);
     assert!(found.chosen.members.is_empty() && found.refused.len() == 1);
@@ -404,17 +414,37 @@ fn a_gain_that_is_not_the_same_all_along_is_told_with_its_drift() {
     }
 }
 
-/// The same stiffness with an effect that moves it: what is named is that, and it is no suspect beside itself.
-#[test]
-fn a_parameter_that_an_effect_moves_is_no_suspect() {
+/// An effect that moves the stiffness, beside the slack.
+fn stiff(effects: &str) -> String {
     let stiff = "  stiff:
     title: Stiff
     means: it is stiffer
     acts on: vehicle
     parameters:
-      stiffness: {unit: '-', neutral: 2, default: 3, range: [0, 10], trials: [3, 4, 5], means: stiffness, simulators: {formula: stiffness}}
+      stiffness: {unit: '-', neutral: 2, default: 3, range: [0, 10], trials: [3, 4, 5, 7, 9], means: stiffness, simulators: {formula: stiffness}}
 ";
-    let effects = format!("{EFFECTS}{SUSPECT}").replacen("diagnosis:", &format!("{stiff}diagnosis:"), 1);
+    effects.replacen("diagnosis:", &format!("{stiff}diagnosis:"), 1)
+}
+
+/// What slack takes from the force grows with the stiffness k: the force is (0.9 - slack) k load + 3 (0.1 + slack) load^2, by 1.8 load more
+/// where k is 6 and the slack 0.3. Their changes alone, -0.6 load of the slack and 0.9 (k - 2) load of the stiffness, would ask for a k of
+/// 4.67. Simulated beside each other both come out as they are.
+#[test]
+fn a_further_effect_is_what_it_is_beside_the_first() {
+    let found = found(&stiff(EFFECTS), Truth { slack: 0.3, stiffness: 3.0, ..NOTHING });
+    let near = |effect: &str, truth: f64| {
+        let member = found.chosen.members.iter().find(|member| found.candidates[member.candidate].effect == effect);
+        let size = member.unwrap_or_else(|| panic!("no {effect}: {:?}", found.refused)).size;
+        assert!((size / truth - 1.0).abs() < 0.01, "{effect}: {size}");
+    };
+    near("slack", 0.3);
+    near("stiff", 6.0);
+}
+
+/// The same stiffness with an effect that moves it: what is named is that, and it is no suspect beside itself.
+#[test]
+fn a_parameter_that_an_effect_moves_is_no_suspect() {
+    let effects = stiff(&format!("{EFFECTS}{SUSPECT}"));
     let found = found(&effects, Truth { stiffness: 1.9, ..NOTHING });
     let [member] = &found.chosen.members[..] else { panic!("{} members", found.chosen.members.len()) };
     assert!(found.candidates[member.candidate].effect == "stiff" && (member.size - 1.9 * STIFFNESS).abs() < 1e-6, "{}", member.size);
