@@ -7,7 +7,9 @@ use super::bench::{Bench, Runs, Set};
 use super::candidates::{Candidate, Node, Workshop, applied};
 use super::converge::{Converged, Converging, WORTH};
 use super::fit::{Fitted, Fitter, Mask};
+use super::place::Place;
 use super::search::{Chosen, Refused, plausible, refit, search, together};
+use super::settle::refined;
 use crate::effects::{Action, Applied};
 use crate::simulate::Plan;
 
@@ -85,63 +87,97 @@ pub fn alone_again(candidates: &mut [Candidate], members: &[Fitted]) -> bool {
 }
 
 impl Converging<'_> {
-    /// Searches for further members again, one after the other, with those that come near simulated beside what was found before them.
-    pub(super) fn beside(
-        &self,
-        (candidates, masks): (&mut [Candidate], &[Mask]),
-        z: &[f64],
-        mut now: Converged,
-        runs: &mut Runs,
-    ) -> Converged {
+    /// Searches for further members again, one after the other: with the tolerances as they act beside what was found before them, and
+    /// with those that come near simulated beside it.
+    pub(super) fn beside(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Converged, runs: &mut Runs) -> Converged {
         for count in 1..now.bars.most {
-            let Some(found) = now.chosen.members.get(..count) else { break };
-            let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), std::mem::take(&mut now.known));
-            let mut first = now.chosen.clone();
-            first.members.truncate(count);
-            refit(&fitter, z, &mut first);
-            let mut near = together(&fitter, z, &first, fitter.all(&first.rest));
-            now.known = fitter.whitened;
-            near.retain(|fit| {
-                let of = &candidates[fit.candidate];
-                let far = (self.far)(of, fit.size) >= FAR * now.bars.tolerance_sd;
-                fit.evidence >= WORTH && far && self.is_simulated(of) && plausible(of, fit.size)
-            });
-            near.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-            near.truncate(TRIED);
-            if near.is_empty() {
+            if now.chosen.members.len() < count {
                 break;
             }
-            let Some(there) = self.there((candidates, masks), found, runs) else { break };
-            let tried: Vec<(usize, Candidate)> = near.iter().map(|fit| (fit.candidate, candidates[fit.candidate].clone())).collect();
-            near.iter().for_each(|fit| self.place(&mut candidates[fit.candidate], fit.size, &there, runs));
-            let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), std::mem::take(&mut now.known));
-            let tried_now = |refused: &Refused| tried.iter().any(|(at, _)| *at == refused.fitted.candidate);
-            let (again, refused) = now.refused.into_iter().partition::<Vec<_>, _>(tried_now);
-            now.refused = refused;
-            let barred = now.refused.iter().map(|refused| refused.fitted.candidate).collect();
-            let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
-            now.chosen = search(&fitter, z, (first, barred), (&now.bars, &self.channels()), self.far, &guard, &mut now.refused);
-            now.known = fitter.whitened;
-            // What was refused alone and is not named beside the first stays refused.
-            let known: Vec<usize> =
-                now.chosen.members.iter().chain(now.refused.iter().map(|refused| &refused.fitted)).map(|fit| fit.candidate).collect();
-            now.refused.extend(again.into_iter().filter(|refused| !known.contains(&refused.fitted.candidate)));
-            for (at, alone) in tried {
-                if now.chosen.members.iter().all(|member| member.candidate != at) {
-                    candidates[at] = alone;
+            let mut first = now.chosen.clone();
+            first.members.truncate(count);
+            match self.placed((candidates, masks), &mut first, runs) {
+                Some(place) => {
+                    let own = std::mem::take(&mut now.known);
+                    now = self.at(&place).further((candidates, masks), (now, first), runs);
+                    now.known = own;
                 }
+                None => now = self.further((candidates, masks), (now, first), runs),
             }
-            now = self.simulated((candidates, masks), z, now, runs);
-            now = self.settled((candidates, masks), z, (now, count), runs);
         }
         now
+    }
+
+    /// Members alone, with the tolerances as they act beside them, until neither moves the other; nothing where the tolerances do not
+    /// notice them.
+    fn placed(&self, (candidates, masks): (&mut [Candidate], &[Mask]), first: &mut Chosen, runs: &mut Runs) -> Option<Arc<Place>> {
+        let mut place: Option<Arc<Place>> = None;
+        for _ in 0..ROUNDS {
+            let next = self.tolerances?.beside((candidates, masks), &first.members, runs)?;
+            if place.as_ref().is_some_and(|known| Arc::ptr_eq(known, &next)) {
+                break;
+            }
+            refined(self.workshop, (candidates, masks), (&next, first), runs);
+            place = Some(next);
+        }
+        place
+    }
+
+    /// Searches for members beside the first.
+    fn further(
+        &self,
+        (candidates, masks): (&mut [Candidate], &[Mask]),
+        (mut now, mut first): (Converged, Chosen),
+        runs: &mut Runs,
+    ) -> Converged {
+        let Place { whitener, z, .. } = self.place;
+        let count = first.members.len();
+        let fitter = Fitter::knowing(whitener, candidates, masks.to_vec(), std::mem::take(&mut now.known));
+        refit(&fitter, z, &mut first);
+        let mut near = together(&fitter, z, &first, fitter.all(&first.rest));
+        now.known = fitter.whitened;
+        near.retain(|fit| {
+            let of = &candidates[fit.candidate];
+            let far = (self.far)(of, fit.size) >= FAR * now.bars.tolerance_sd;
+            fit.evidence >= WORTH && far && self.is_simulated(of) && plausible(of, fit.size)
+        });
+        near.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        near.truncate(TRIED);
+        // With the tolerances as they were nothing else would be found.
+        let anew = !self.place.is_alone();
+        if near.is_empty() && !anew {
+            return now;
+        }
+        let there = if near.is_empty() { None } else { self.there((candidates, masks), &first.members, runs) };
+        let tried: Vec<(usize, Candidate)> = near.iter().map(|fit| (fit.candidate, candidates[fit.candidate].clone())).collect();
+        if let Some(there) = there {
+            near.iter().for_each(|fit| self.place_beside(&mut candidates[fit.candidate], fit.size, &there, runs));
+        }
+        let fitter = Fitter::knowing(whitener, candidates, masks.to_vec(), std::mem::take(&mut now.known));
+        let tried_now = |refused: &Refused| anew || tried.iter().any(|(at, _)| *at == refused.fitted.candidate);
+        let (again, refused) = now.refused.into_iter().partition::<Vec<_>, _>(tried_now);
+        now.refused = refused;
+        let barred = now.refused.iter().map(|refused| refused.fitted.candidate).collect();
+        let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
+        now.chosen = search(&fitter, z, (first, barred), (&now.bars, &self.channels()), self.far, &guard, &mut now.refused);
+        now.known = fitter.whitened;
+        // What was refused alone and is not named beside the first stays refused.
+        let known: Vec<usize> =
+            now.chosen.members.iter().chain(now.refused.iter().map(|refused| &refused.fitted)).map(|fit| fit.candidate).collect();
+        now.refused.extend(again.into_iter().filter(|refused| !known.contains(&refused.fitted.candidate)));
+        for (at, alone) in tried {
+            if now.chosen.members.iter().all(|member| member.candidate != at) {
+                candidates[at] = alone;
+            }
+        }
+        now = self.simulated((candidates, masks), now, runs);
+        self.settled((candidates, masks), (now, count), runs)
     }
 
     /// The last member again, beside the others where they are by now, and with sizes to either side of its own.
     fn settled(
         &self,
         (candidates, masks): (&mut [Candidate], &[Mask]),
-        z: &[f64],
         (mut now, count): (Converged, usize),
         runs: &mut Runs,
     ) -> Converged {
@@ -157,11 +193,11 @@ impl Converging<'_> {
             }
             let (at, size) = (last.candidate, last.size);
             let Some(there) = self.there((candidates, masks), first, runs) else { break };
-            self.place(&mut candidates[at], size, &there, runs);
-            let fitter = Fitter::knowing(self.whitener, candidates, masks.to_vec(), std::mem::take(&mut now.known));
-            refit(&fitter, z, &mut now.chosen);
+            self.place_beside(&mut candidates[at], size, &there, runs);
+            let fitter = Fitter::knowing(&self.place.whitener, candidates, masks.to_vec(), std::mem::take(&mut now.known));
+            refit(&fitter, &self.place.z, &mut now.chosen);
             now.known = fitter.whitened;
-            now = self.simulated((candidates, masks), z, now, runs);
+            now = self.simulated((candidates, masks), now, runs);
         }
         now
     }
@@ -182,7 +218,7 @@ impl Converging<'_> {
     }
 
     /// Simulates a candidate beside what was found: at the size that it asks for, and at those to either side that it has alone.
-    fn place(&self, candidate: &mut Candidate, size: f64, there: &Arc<Beside>, runs: &mut Runs) {
+    fn place_beside(&self, candidate: &mut Candidate, size: f64, there: &Arc<Beside>, runs: &mut Runs) {
         let alone = match candidate.beside.take() {
             Some(placed) => placed.alone,
             None => Arc::new(candidate.nodes.clone()),

@@ -59,13 +59,13 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     let evaluate = |found: &Found, records: &[Signals]| evaluated(inputs.campaign, compiled, found, records, &units, settings);
     while !found.chosen.members.is_empty() {
         if let Some((either, reason)) = super::causes::nothing_out_of_the_ordinary(&found, inputs.settings) {
-            found.refuse(either, reason, inputs.seed);
+            found.refuse(either, reason, inputs);
             continue;
         }
         (inputs.trying)("the protocol with the effects");
         let made = evaluate(&found, &unseen(inputs, &found, None)?)?;
         if let Some((idle, reason)) = idle(inputs, &found, &before, &made, &evaluate)? {
-            found.refuse(idle, reason, inputs.seed);
+            found.refuse(idle, reason, inputs);
             continue;
         }
         let noise = noisy(&found, inputs.seed).map(|records| evaluate(&found, &records)).transpose()?;
@@ -177,20 +177,20 @@ pub fn effect_of_truth(
     let records = improved(found, catalogue, simulator, &|_| effects.to_vec()).ok()?;
     let changed = |records: &[Signals]| -> Vec<f64> {
         let features: Vec<f64> = records.iter().enumerate().flat_map(|(at, signals)| found.seen.of(at, signals, true)).collect();
-        less(&features, &found.simulated)
+        less(&features, &found.ground.simulated)
     };
     let change = changed(&records);
     let beside = |at: usize| {
         let others: Vec<Applied> = effects.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, one)| one.clone()).collect();
         let records = improved(found, catalogue, simulator, &|_| others.clone()).ok()?;
         let others = changed(&records);
-        Some(across(&found.whitener.apply(&less(&change, &others)), &found.whitener.apply(&others)))
+        Some(across(&found.alone.whitener.apply(&less(&change, &others)), &found.alone.whitener.apply(&others)))
     };
     let several = if effects.len() > 1 { 0..effects.len() } else { 0..0 };
     let made = evaluated(campaign, compiled, found, &records, &outcome.units, RunSettings { traces: 0 }).ok()?;
     let settings = Settings::read(catalogue, &mut Problems::default())?;
     Some(Really {
-        detectability: super::run::length(&found.whitener, &change),
+        detectability: super::run::length(&found.alone.whitener, &change),
         weakest: several.filter_map(beside).reduce(f64::min),
         removed: compare(&outcome.before, &made, None, 1, Vec::new()).fraction_removed,
         cells: super::locate::moved(&settings, found, &change),

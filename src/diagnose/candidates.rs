@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::bench::{Bench, Runs};
 use super::beside::Placed;
+use super::ground::Ground;
 use super::observe::Observations;
-use super::recorded::Recorded;
 use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Parameter, Signals};
 use crate::problem::Problem;
 use crate::units::Unit;
@@ -138,12 +138,7 @@ pub struct Workshop<'a> {
     pub seen: &'a Observations,
     pub catalogue: &'a Catalogue,
     pub bench: Option<&'a Bench<'a>>,
-    /// Features of the simulator without any effect.
-    pub base: Vec<f64>,
-    /// Features of the campaign's simulation.
-    pub simulated: Vec<f64>,
-    /// The same simulation as it would have been recorded: what operations of the measuring chain act on.
-    pub recorded: Recorded,
+    pub ground: &'a Ground,
     /// Neutral values of simulator parameters.
     pub neutral: &'a (dyn Fn(&str) -> Option<f64> + Sync),
     pub trying: Trying<'a>,
@@ -208,7 +203,7 @@ impl Workshop<'_> {
     fn simulate(&self, bench: &Bench<'_>, effect: &Effect, candidate: &mut Candidate, sizes: &[f64], runs: &mut Runs) {
         let beside = candidate.beside.as_ref().map(|placed| placed.there.clone());
         let there = beside.as_ref().map(|there| there.on(bench));
-        let from = there.as_ref().zip(beside.as_ref()).map_or((bench, &self.base[..]), |(bench, there)| (bench, &there.base[..]));
+        let from = there.as_ref().zip(beside.as_ref()).map_or((bench, &self.ground.base[..]), |(bench, there)| (bench, &there.base[..]));
         for size in sizes {
             let mut values = candidate.fixed.clone();
             values.push((candidate.size.clone(), *size));
@@ -332,12 +327,12 @@ impl Workshop<'_> {
         let effects = std::slice::from_ref(applied);
         let each = |at: usize| {
             let section = &self.seen.sections[at].section;
-            let mut signals = self.recorded.signals[at].clone();
+            let mut signals = self.ground.recorded.signals[at].clone();
             crate::simulate::Plan::new(self.catalogue, effects, section, None)?.operate(&mut signals, section)?;
             Ok(self.seen.of(at, &signals, false))
         };
-        let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.recorded.signals.len()).into_par_iter().map(each).collect();
-        Ok(parts?.concat().iter().zip(&self.recorded.features).map(|(made, without)| made - without).collect())
+        let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.ground.recorded.signals.len()).into_par_iter().map(each).collect();
+        Ok(parts?.concat().iter().zip(&self.ground.recorded.features).map(|(made, without)| made - without).collect())
     }
 
     /// Channels of one group that could be exchanged.
@@ -367,7 +362,7 @@ impl Workshop<'_> {
         let seen = self.seen;
         let touched = |name: &str| operator == Operator::Shift || channels.iter().any(|channel| channel == name);
         let mut change = Vec::with_capacity(seen.len());
-        for (at, recorded) in self.recorded.signals.iter().enumerate() {
+        for (at, recorded) in self.ground.recorded.signals.iter().enumerate() {
             let mut signals = Signals {
                 axis: recorded.axis.clone(),
                 over_time: recorded.over_time,
@@ -380,7 +375,7 @@ impl Workshop<'_> {
                 let wanted = seen.features.iter().filter(|feature| feature.channel == number).count();
                 if touched(&channel.name) {
                     seen.of_channel(at, &signals, number, false, &mut change);
-                    let without = &self.recorded.features[from..];
+                    let without = &self.ground.recorded.features[from..];
                     change[from..].iter_mut().zip(without).for_each(|(value, without)| *value -= without);
                 } else {
                     change.resize(from + wanted, 0.0);
@@ -483,9 +478,8 @@ mod tests {
         let catalogue = Catalogue { name: title.clone(), title, source: Source::new("", ""), groups, units, effects, diagnosis: None };
         let recorded = as_recorded(&seen, None, &Settings::default(), &|_| None, &|_| None, &mut Runs::default());
         let (neutral, trying) = (|_: &str| None, |_: &str| {});
-        let (base, simulated) = (Vec::new(), Vec::new());
-        let workshop =
-            Workshop { seen: &seen, catalogue: &catalogue, bench: None, base, simulated, recorded, neutral: &neutral, trying: &trying };
+        let ground = Ground { recorded, ..Ground::default() };
+        let workshop = Workshop { seen: &seen, catalogue: &catalogue, bench: None, ground: &ground, neutral: &neutral, trying: &trying };
         let operate = |operator, size| workshop.operate(operator, size, &["Y".to_string()]).expect("an operation");
         let gain = operate(Operator::Gain, 0.8);
         assert!(gain.iter().all(|change| (change - 0.8_f64.ln()).abs() < 1e-9), "{gain:?}");

@@ -27,8 +27,8 @@ impl Covariance {
 #[must_use]
 pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Invariant> {
     let seen = &found.seen;
-    let rest = left(&found.candidates, &found.masks, &found.difference_beside, &found.chosen);
-    let beside = with_room(&found.beside, &found.candidates, &found.masks, &found.chosen);
+    let rest = left(&found.candidates, &found.masks, &found.beside.difference, &found.chosen);
+    let beside = with_room(&found.beside.covariance, &found.candidates, &found.masks, &found.chosen);
     let sections = seen.first_runs();
     let side = |at: usize| settings.side(&seen.sections[at].section);
     let mut all = Vec::new();
@@ -58,9 +58,9 @@ pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Inva
                 name: name.clone(),
                 parity,
                 unit: unit.map_or_else(|| "-".into(), |(_, unit)| unit.text.clone()),
-                before: mean(&found.difference),
+                before: mean(&found.alone.difference),
                 after: mean(&rest),
-                allowed: found.covariance.variance(&weights).sqrt(),
+                allowed: found.alone.covariance.variance(&weights).sqrt(),
                 allowed_after: beside.variance(&weights).sqrt(),
             });
         }

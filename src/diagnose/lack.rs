@@ -5,6 +5,7 @@ use super::features::Kind;
 use super::fit::{Fitted, Fitter, Mask, less};
 use super::guards::{View, part};
 use super::observe::Observations;
+use super::place::Place;
 use super::search::{Chosen, Refused, refit};
 use super::whiten::Covariance;
 
@@ -132,14 +133,14 @@ pub fn unexplained(before: &[Lack], after: &[Lack]) -> (f64, bool) {
 /// A member that makes channels go further beyond what is allowed for is no cause. Gives what is left.
 pub fn drop_what_harms(
     fitter: &Fitter<'_>,
-    (covariance, seen): (&Covariance, &Observations),
-    (difference, z): (&[f64], &[f64]),
+    (place, seen): (&Place, &Observations),
+    z: &[f64],
     chosen: &mut Chosen,
     refused: &mut Vec<Refused>,
     before: &[Lack],
 ) -> Vec<Lack> {
     loop {
-        let lack = |chosen: &Chosen| lack_after(covariance, seen, (fitter.candidates, &fitter.masks), difference, chosen);
+        let lack = |chosen: &Chosen| lack_after(&place.covariance, seen, (fitter.candidates, &fitter.masks), &place.difference, chosen);
         let now = lack(chosen);
         let Some(last) = chosen.members.len().checked_sub(1) else { return now };
         let mut without = chosen.clone();

@@ -43,7 +43,7 @@ pub fn moved(settings: &Settings, found: &Found, change: &[f64]) -> Vec<String> 
     const MOVED: f64 = 3.0;
     let far = |cell: &Cell| {
         let values: Vec<f64> = cell.members.iter().map(|(section, feature)| change[found.seen.place(*section, *feature)]).collect();
-        found.covariance.among(&cell.members).chi_squared(&values) > MOVED * MOVED
+        found.alone.covariance.among(&cell.members).chi_squared(&values) > MOVED * MOVED
     };
     map(settings, found).into_iter().filter(far).map(|cell| says(settings, found, &cell)).collect()
 }
@@ -76,10 +76,11 @@ struct Tested {
 }
 
 fn test(found: &Found, cell: &Cell) -> Tested {
-    let values: Vec<f64> = cell.members.iter().map(|(section, feature)| found.difference[found.seen.place(*section, *feature)]).collect();
+    let values: Vec<f64> =
+        cell.members.iter().map(|(section, feature)| found.alone.difference[found.seen.place(*section, *feature)]).collect();
     // Levels count towards the side of the simulated one, so that left and right curves do not cancel.
     let side = |(section, feature): &(usize, usize)| match cell.kind {
-        Kind::Level => found.simulated[found.seen.place(*section, *feature)].signum(),
+        Kind::Level => found.ground.simulated[found.seen.place(*section, *feature)].signum(),
         _ => 1.0,
     };
     let freedom = values.len() as f64;
@@ -87,7 +88,7 @@ fn test(found: &Found, cell: &Cell) -> Tested {
     // Bands are logarithms of ratios.
     let relative = |value: f64| if cell.kind == Kind::Level { value } else { value.exp() - 1.0 };
     let rms = (values.iter().map(|value| relative(*value).powi(2)).sum::<f64>() / freedom).sqrt();
-    let chi = found.covariance.among(&cell.members).chi_squared(&values);
+    let chi = found.alone.covariance.among(&cell.members).chi_squared(&values);
     let p_value = statrs::distribution::ChiSquared::new(freedom).map_or(1.0, |law| statrs::distribution::ContinuousCDF::sf(&law, chi));
     Tested { excess: chi - freedom, p_value, mean: relative(mean), rms }
 }

@@ -30,7 +30,7 @@ pub fn pictures(settings: &Settings, found: &Found, improved: &[Signals], units:
                 let shared: f64 = found.tolerated.shared.iter().map(|column| column[place].powi(2)).sum();
                 let inside: f64 =
                     found.tolerated.inside.iter().filter(|(of, _)| *of == section).map(|(_, column)| column[at].powi(2)).sum();
-                found.difference[place].powi(2) / (found.tolerated.diagonal[place] + shared + inside)
+                found.alone.difference[place].powi(2) / (found.tolerated.diagonal[place] + shared + inside)
             })
             .sum::<f64>()
     };

@@ -1,24 +1,26 @@
 //! The diagnosis from end to end: features, candidates, search, guards, verdict.
 
-use super::bench::{Bench, Runs};
+use std::sync::Arc;
+
+use super::bench::Runs;
 use super::beside::alone_again;
 use super::cache::Cache;
-use super::candidates::{Candidate, Trying, Workshop};
+use super::candidates::{Candidate, Trying};
 use super::converge::{Converged, Converging};
-use super::covariance::{Sensitivity, covariance, discrepancies, expect, strata};
+use super::covariance::strata;
 use super::declared::Declared;
-use super::fit::{Fitted, Fitter, Known, Mask, less};
+use super::fit::{Fitted, Fitter, Known, Mask};
+use super::ground::Ground;
 use super::guards::families;
-use super::lack::{Lack, drop_what_harms, lack_after, lack_of_fit, left, unexplained};
+use super::lack::{Lack, drop_what_harms, lack_of_fit, left};
 use super::masks::masks;
 use super::observe::Observations;
-use super::recorded::as_recorded;
+use super::place::{Place, Places};
 use super::search::{Bars, Chosen, Refused, chi_squared, contradicting, nearest, refit, rivals};
-use super::sensitivity::sensitivities;
 use super::settings::Settings;
 use super::settle::{Settled, Weighed};
 use super::stability::{Stability, stability};
-use super::standing::{Reference, learnt};
+use super::standing::Reference;
 use super::suspects::{Suspect, suspect};
 use super::whiten::{Covariance, Whitener, dot};
 use crate::data::Campaign;
@@ -52,20 +54,17 @@ pub struct Found {
     pub seen: Observations,
     pub candidates: Vec<Candidate>,
     pub masks: Vec<Mask>,
-    pub covariance: Covariance,
-    /// With the tolerances as they act where the answer is: what is left is judged by it.
-    pub beside: Covariance,
-    /// The same without what stands out in a section alone, and its whitener: what the sizes are fitted by.
-    pub settled: Covariance,
-    pub weighing: Whitener,
+    /// Beside no effect.
+    pub alone: Arc<Place>,
+    /// Where the answer is: what is left is judged there.
+    pub beside: Arc<Place>,
+    /// The same without what stands out in a section alone: what the sizes are fitted by.
+    pub settled: Arc<Place>,
+    /// All that were looked at.
+    pub places: Places,
     /// Noise and tolerances alone.
     pub tolerated: Covariance,
-    pub whitener: Whitener,
-    /// Measured - simulated, without what is expected of the tolerances.
-    pub difference: Vec<f64>,
-    /// The same, without what is expected of the tolerances as they act beside the members.
-    pub difference_beside: Vec<f64>,
-    pub simulated: Vec<f64>,
+    pub ground: Ground,
     pub chosen: Chosen,
     pub refused: Vec<Refused>,
     /// Other candidates in the place of a member: member, fit, how much less evidence.
@@ -74,6 +73,8 @@ pub struct Found {
     pub nearest: Vec<Fitted>,
     /// What no effect of the catalogue moves, where it explains more than the answer.
     pub suspect: Option<Suspect>,
+    /// The first member when it was looked for.
+    suspected: Option<usize>,
     /// What views contradict and has more evidence than the answer, for what that leaves.
     pub contradicting: Option<(Refused, f64)>,
     /// By member: whether it stands when other sections are drawn.
@@ -117,166 +118,151 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     }
     check_tolerated(inputs, problems);
     let declared = |name: &str| admitted.get(name);
-    let value = |key: &str| value_of(inputs.campaign, key);
     let settings = inputs.settings;
     (inputs.trying)("reading records");
     let unit = |channel: &str| inputs.simulator?.unit(channel);
     let seen = Observations::read(inputs.campaign, sections, inputs.catalogue, settings, &declared, &unit, problems)?;
-    let simulated = seen.all(true, |observed| &observed.simulated);
-    let measured = seen.all(false, |observed| &observed.measured);
-    let mut difference = less(&measured, &simulated);
     let mut runs = Runs::default();
-    let standing = learnt(inputs, &mut runs, problems)?;
-    standing.take_off(&discrepancies(&seen, settings).0, &mut difference);
-    let bench = inputs.simulator.map(|simulator| Bench { seen: &seen, simulator, cache: inputs.cache.clone(), set: Vec::new() });
-    (inputs.trying)("simulation without effects");
-    let base = match bench.as_ref().map(|bench| bench.features(&[])).transpose() {
-        Ok(base) => base.unwrap_or_else(|| simulated.clone()),
-        Err(problem) => {
-            problems.push(problem);
-            return None;
-        }
-    };
-    (inputs.trying)("what the tolerances change");
-    let columns = match &bench {
-        Some(bench) => sensitivities(bench, settings, &base, &value, &declared, &|_| true, &mut runs),
-        None => Vec::new(),
-    };
-    let sensitivities: Vec<Sensitivity> = columns.iter().flatten().cloned().collect();
-    let whole_difference = difference.clone();
-    expect(&sensitivities, &mut difference);
-    let workshop = Workshop {
-        seen: &seen,
-        catalogue: inputs.catalogue,
-        bench: bench.as_ref(),
-        base,
-        simulated: simulated.clone(),
-        recorded: as_recorded(&seen, bench.as_ref(), settings, &value, &declared, &mut runs),
-        neutral: &value,
-        trying: inputs.trying,
-    };
-    let mut candidates = workshop.candidates(&mut runs);
-    (inputs.trying)("weighing");
-    let whole = covariance(&seen, settings, &simulated, &sensitivities, &declared, Some(&standing));
-    let tolerated = covariance(&seen, settings, &simulated, &sensitivities, &declared, None);
-    let whitener = whole.whitener();
-    let mut masks = masks(&seen, settings);
+    let ground = Ground::find(inputs, &seen, &admitted, &mut runs, problems)?;
+    let (alone, tolerated) = ground.alone(inputs, &seen, &admitted);
     let strata = strata(&seen, settings);
-    let families = families(&seen, &strata);
+    let lack_before = lack_of_fit(&alone.covariance, &seen, &alone.difference);
     let far = |candidate: &Candidate, size: f64| deviations(candidate, size, settings, &admitted, false);
-    // What lies between the two takes its part of the difference, so that nothing else does, and is not named.
-    let further = |candidate: &Candidate, size: f64| deviations(candidate, size, settings, &admitted, true);
-    let converging = Converging {
-        workshop: &workshop,
-        covariance: &whole,
-        whitener: &whitener,
-        difference: &difference,
-        families: &families,
-        far: &far,
-        seed: inputs.seed,
-    };
-    let Converged { chosen, mut refused, bars, mut known } = converging.search(&mut candidates, &mut masks, &mut runs);
-    let lack_before = lack_of_fit(&whole, &seen, &difference);
-    let z = whitener.apply(&difference);
-    let first = Weighed { difference: difference.clone(), covariance: whole.clone(), whitener: whitener.clone(), z: z.clone(), chosen };
-    let again = Settled {
-        workshop: &workshop,
-        settings,
-        columns: &columns,
-        standing: &standing,
-        value: &value,
-        declared: &declared,
-        whole: &whole_difference,
-        far: &further,
-    };
-    let before = refused.len();
-    let (mut beside, mut settled) = again.answer((&mut candidates, &masks), first.clone(), &lack_before, &bars, &mut refused, &mut runs);
-    let mut left = settled.chosen.clone();
-    if refused.len() > before && converging.exchange((&candidates, &masks), &mut left, &bars, &refused, &mut known) {
-        alone_again(&mut candidates, &left.members);
-        let first = Weighed { chosen: left, ..first };
-        (beside, settled) = again.answer((&mut candidates, &masks), first, &lack_before, &bars, &mut refused, &mut runs);
-    }
-    let Weighed { difference: difference_beside, covariance: settled, whitener: weighing, z: own, mut chosen } = settled;
-    let fitter = Fitter::of(&weighing, &candidates, masks.clone(), &chosen.members);
-    refit(&fitter, &own, &mut chosen);
-    let lack_after = drop_what_harms(&fitter, (&beside, &seen), (&difference_beside, &own), &mut chosen, &mut refused, &lack_before);
-    drop(fitter);
-    let suspect = suspect(&workshop, settings, (&whitener, &z), (&candidates, &masks, &chosen), &mut runs);
-    drop(bench);
+    let mut masks = masks(&seen, settings);
+    let families = families(&seen, &strata);
+    let (candidates, converged, places) = ground.work(inputs, &seen, &admitted, Places::default(), |tolerances| {
+        let workshop = tolerances.workshop;
+        let mut candidates = workshop.candidates(&mut runs);
+        (inputs.trying)("weighing");
+        let converging =
+            Converging { workshop, place: &alone, tolerances: Some(tolerances), families: &families, far: &far, seed: inputs.seed };
+        let converged = converging.search(&mut candidates, &mut masks, &mut runs);
+        let places = tolerances.looked_at().clone();
+        (candidates, converged, places)
+    });
+    let Converged { chosen, refused, bars, known } = converged;
+    let alone = Arc::new(alone);
     let mut found = Found {
         candidates,
         masks,
-        covariance: whole,
+        beside: alone.clone(),
+        settled: alone.clone(),
+        alone,
+        places,
         tolerated,
-        whitener,
-        beside,
-        settled,
-        weighing,
-        difference,
-        difference_beside,
-        simulated,
+        ground,
         chosen,
         refused,
         rivals: Vec::new(),
         nearest: Vec::new(),
-        suspect,
+        suspect: None,
+        suspected: None,
         contradicting: None,
         stability: Vec::new(),
+        lack_after: lack_before.clone(),
         lack_before,
-        lack_after,
         bars,
         runs,
         strata,
         seen,
         declared: admitted,
     };
-    found.weigh(known, inputs.seed);
+    found.settle(inputs, false, known);
     Some(found)
 }
 
 impl Found {
-    /// Without a member, the others fitted again.
-    pub fn refuse(&mut self, at: usize, reason: String, seed: u64) {
-        if at == 0 {
-            self.suspect = None;
-        }
+    /// Without a member, what is left settled again.
+    pub fn refuse(&mut self, at: usize, reason: String, inputs: &Inputs<'_>) {
         self.refused.push(Refused::new(self.chosen.members.remove(at), reason));
         alone_again(&mut self.candidates, &self.chosen.members);
-        self.fit_again();
-        if unexplained(&self.lack_before, &self.lack_after).1 {
-            self.beside = self.covariance.clone();
-            self.settled = self.covariance.clone();
-            self.difference_beside = self.difference.clone();
-            self.weighing = self.whitener.clone();
-            self.fit_again();
-        }
-        self.weigh(Known::new(), seed);
+        self.settle(inputs, true, Known::new());
     }
 
-    /// Evidence, rivals and stability of the answer. They are those of the covariance without effects: a tolerance that a member is the
-    /// blown form of is free there for its rivals as it is for the member, and so is what else might be in its place.
+    /// The answer where it puts the vehicle: sizes, what is left, and what else may be in its place. `gone` says that a member was refused,
+    /// which may let another in the place of one that was chosen beside it.
+    fn settle(&mut self, inputs: &Inputs<'_>, gone: bool, mut known: Known) {
+        let far = |candidate: &Candidate, size: f64| deviations(candidate, size, inputs.settings, &self.declared, false);
+        // What lies between the two takes its part of the difference, so that nothing else does, and is not named.
+        let further = |candidate: &Candidate, size: f64| deviations(candidate, size, inputs.settings, &self.declared, true);
+        let families = families(&self.seen, &self.strata);
+        let places = std::mem::take(&mut self.places);
+        let (masks, alone, bars) = (&self.masks, &self.alone, &self.bars);
+        let answered = self.ground.work(inputs, &self.seen, &self.declared, places, |tolerances| {
+            let workshop = tolerances.workshop;
+            let (candidates, refused, runs) = (&mut self.candidates, &mut self.refused, &mut self.runs);
+            let converging =
+                Converging { workshop, place: alone, tolerances: Some(tolerances), families: &families, far: &far, seed: inputs.seed };
+            let again = Settled { tolerances, far: &further };
+            let first = |chosen: Chosen| Weighed { place: alone.clone(), chosen };
+            let mut chosen = self.chosen.clone();
+            if gone && converging.exchange((candidates, masks), &mut chosen, bars, refused, &mut known) {
+                alone_again(candidates, &chosen.members);
+            }
+            let before = refused.len();
+            let (mut beside, mut now) = again.answer((candidates, masks), first(chosen), &self.lack_before, bars, refused, runs);
+            let mut left = now.chosen.clone();
+            if refused.len() > before && converging.exchange((candidates, masks), &mut left, bars, refused, &mut known) {
+                alone_again(candidates, &left.members);
+                (beside, now) = again.answer((candidates, masks), first(left), &self.lack_before, bars, refused, runs);
+            }
+            let Weighed { place: settled, mut chosen } = now;
+            let fitter = Fitter::of(&settled.whitener, candidates, masks.clone(), &chosen.members);
+            refit(&fitter, &settled.z, &mut chosen);
+            let lack_after = drop_what_harms(&fitter, (&beside, &self.seen), &settled.z, &mut chosen, refused, &self.lack_before);
+            drop(fitter);
+            let first_of = |chosen: &Chosen| chosen.members.first().map(|member| member.candidate);
+            // What may take the place of the first member depends on what that is.
+            if !gone || first_of(&chosen) != self.suspected {
+                self.suspected = first_of(&chosen);
+                self.suspect = suspect(workshop, inputs.settings, alone, (candidates, masks, &chosen), runs);
+            }
+            let places = tolerances.looked_at().clone();
+            (beside, settled, chosen, lack_after, places)
+        });
+        (self.beside, self.settled, self.chosen, self.lack_after, self.places) = answered;
+        self.weigh(known, inputs.seed);
+    }
+
+    /// Evidence, rivals and stability of the answer. A member is weighed with the tolerances as they act beside those before it: one that
+    /// it is the blown form of is free there for its rivals as it is for the member, and so is what else might be in its place.
     fn weigh(&mut self, known: Known, seed: u64) {
-        let fitter = Fitter::knowing(&self.whitener, &self.candidates, self.masks.clone(), known);
-        let z = self.whitener.apply(&self.difference);
-        let mut first = self.chosen.clone();
-        refit(&fitter, &z, &mut first);
-        self.rivals = rivals(&fitter, &z, &first);
-        self.nearest = nearest(&fitter, &first, &self.refused);
-        self.contradicting = contradicting(&fitter, &first, &self.refused);
-        let (own, sized) = (self.weighing.apply(&self.difference_beside), &self.chosen);
-        let sizes = Fitter::of(&self.weighing, &self.candidates, self.masks.clone(), &sized.members);
-        self.stability = stability((&fitter, &z, &first), (&sizes, &own, sized), &self.refused, &self.strata, seed);
-        for (member, first) in self.chosen.members.iter_mut().zip(first.members) {
-            (member.fall, member.evidence) = (first.fall, first.evidence);
+        let sizes = Fitter::of(&self.settled.whitener, &self.candidates, self.masks.clone(), &self.chosen.members);
+        let mut known = known;
+        let (mut found, mut stable, mut evidence) = (Vec::new(), Vec::new(), Vec::new());
+        let before = |at: usize| self.places.beside(&self.chosen.members[..at]).unwrap_or_else(|| self.alone.clone());
+        let places: Vec<Arc<Place>> = (0..self.chosen.members.len()).map(before).chain([self.beside.clone()]).collect();
+        let mut last: Option<(&Arc<Place>, Fitter<'_>, Chosen)> = None;
+        for (at, place) in places.iter().enumerate() {
+            if last.as_ref().is_none_or(|(known, ..)| !Arc::ptr_eq(known, place)) {
+                let known = if Arc::ptr_eq(place, &self.alone) { std::mem::take(&mut known) } else { Known::new() };
+                let fitter = Fitter::knowing(&place.whitener, &self.candidates, self.masks.clone(), known);
+                let mut here = self.chosen.clone();
+                refit(&fitter, &place.z, &mut here);
+                last = Some((place, fitter, here));
+            }
+            let Some((_, fitter, here)) = &last else { continue };
+            let Some(member) = here.members.get(at) else {
+                self.nearest = nearest(fitter, here, &self.refused);
+                self.contradicting = contradicting(fitter, here, &self.refused);
+                break;
+            };
+            found.extend(rivals(fitter, &place.z, here, at));
+            stable.push(stability(
+                (fitter, &place.z, here),
+                (&sizes, &self.settled.z, &self.chosen),
+                at,
+                &self.refused,
+                &self.strata,
+                seed,
+            ));
+            evidence.push((member.fall, member.evidence));
         }
-    }
-
-    fn fit_again(&mut self) {
-        self.chosen.members = super::shrink::trained(self, &[]);
-        self.chosen.rest =
-            self.chosen.members.iter().fold(self.weighing.apply(&self.difference_beside), |rest, member| less(&rest, &member.whitened));
-        self.lack_after = lack_after(&self.beside, &self.seen, (&self.candidates, &self.masks), &self.difference_beside, &self.chosen);
+        found.sort_by(|a, b| a.2.total_cmp(&b.2));
+        (self.rivals, self.stability) = (found, stable);
+        for (member, evidence) in self.chosen.members.iter_mut().zip(evidence) {
+            (member.fall, member.evidence) = evidence;
+        }
     }
 }
 
@@ -306,9 +292,9 @@ pub fn length(whitener: &Whitener, change: &[f64]) -> f64 {
 /// Chi-squared per feature before and after.
 #[must_use]
 pub fn chi(found: &Found) -> (f64, f64) {
-    let beside = found.beside.whitener();
-    let before = beside.apply(&found.difference);
-    let after = beside.apply(&left(&found.candidates, &found.masks, &found.difference_beside, &found.chosen));
+    let beside = &found.beside;
+    let before = beside.whitener.apply(&found.alone.difference);
+    let after = beside.whitener.apply(&left(&found.candidates, &found.masks, &beside.difference, &found.chosen));
     let n = before.len().max(1) as f64;
     (chi_squared(&before) / n, chi_squared(&after) / n)
 }

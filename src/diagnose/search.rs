@@ -271,18 +271,14 @@ pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen) {
     }
 }
 
-/// For every candidate, the best evidence of the set in which it takes the place of a member.
+/// For every candidate, the best evidence of the set in which it takes the place of a member: that member, the fit, how much less.
 #[must_use]
-pub fn rivals(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, Fitted, f64)> {
-    let mut found = Vec::new();
-    for at in 0..chosen.members.len() {
-        for fit in fitter.all(&chosen.left_by_others(z, at)) {
-            let fall = chosen.members[at].evidence - fit.evidence;
-            found.push((at, fit, fall));
-        }
-    }
-    found.sort_by(|a, b| a.2.total_cmp(&b.2));
-    found
+pub fn rivals(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, at: usize) -> Vec<(usize, Fitted, f64)> {
+    let less = |fit: Fitted| {
+        let less = chosen.members[at].evidence - fit.evidence;
+        (at, fit, less)
+    };
+    fitter.all(&chosen.left_by_others(z, at)).into_iter().map(less).collect()
 }
 
 /// How many candidates that are not named are told, and the evidence from which on.

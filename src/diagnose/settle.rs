@@ -1,23 +1,16 @@
-//! The tolerances again, as they act where the answer is: a body that sways hardly damped moves with a stiffness of which it took no
-//! notice before, and short waves matter less where others are added.
+//! The answer again, with the tolerances as they act where it is: what a member seemed to explain may be one that another has made matter.
 
-use super::bench::{Bench, Runs, Set};
-use super::beside::{alone_again, set};
+use std::sync::Arc;
+
+use super::bench::Runs;
+use super::beside::alone_again;
 use super::candidates::{Candidate, Workshop};
-use super::covariance::{NOTHING, Sensitivity, covariance, expect};
+use super::covariance::NOTHING;
 use super::features::Kind;
 use super::fit::{Fitted, Fitter, Mask};
 use super::lack::{Lack, lack_after, unexplained, wrong_as_one};
+use super::place::{Place, Tolerances};
 use super::search::{Bars, Chosen, Refused, refit};
-use super::sensitivity::sensitivities;
-use super::settings::Settings;
-use super::standing::Standing;
-use super::whiten::{Covariance, Whitener, dot};
-use crate::effects::Action;
-
-/// A tolerance that moves the features by less than so many standard deviations of everything else stays as it was: branches of contact
-/// alone move them by about one.
-const MATTERS: f64 = 1.5;
 
 /// A lag that moves by so many of its standard deviations between half an effect and as much again has jumped.
 const JUMP: f64 = 5.0;
@@ -26,22 +19,16 @@ const JUMP: f64 = 5.0;
 pub const ROUNDS: usize = 3;
 const ALIKE: f64 = 0.01;
 
-/// A set of effects, and how it is weighed.
+/// A set of effects, and where it is weighed.
 #[derive(Clone)]
 pub struct Weighed {
-    /// Measured - simulated, without what is expected of the tolerances as they act beside the set.
-    pub difference: Vec<f64>,
-    pub covariance: Covariance,
-    pub whitener: Whitener,
-    /// The whitened difference.
-    pub z: Vec<f64>,
+    pub place: Arc<Place>,
     pub chosen: Chosen,
 }
 
 impl Weighed {
-    fn by(self, covariance: Covariance, difference: Vec<f64>) -> Self {
-        let whitener = covariance.whitener();
-        Self { z: whitener.apply(&difference), difference, covariance, whitener, chosen: self.chosen }
+    fn at(self, place: Arc<Place>) -> Self {
+        Self { place, ..self }
     }
 
     /// A size in sections that the data chose, less what the other sections ask for to the same side: they are not chosen for what all
@@ -49,33 +36,23 @@ impl Weighed {
     fn beside_the_others(&self, of: &Candidate, mask: &Mask, size: f64) -> f64 {
         let Some(neutral) = of.neutral().filter(|_| mask.asked_by.is_some()) else { return size };
         let others = Mask { confined: None, sections: mask.sections.iter().map(|inside| !inside).collect(), asked_by: None };
-        let fitter = Fitter::new(&self.whitener, std::slice::from_ref(of), vec![others]);
+        let fitter = Fitter::new(&self.place.whitener, std::slice::from_ref(of), vec![others]);
         let elsewhere = fitter.fit(&self.chosen.rest, 0, 0).map_or(0.0, |fit| fit.size - neutral);
         let here = size - neutral;
         neutral + here.signum() * (here.abs() - (here.signum() * elsewhere).clamp(0.0, here.abs()))
     }
 }
 
-/// What the covariance without effects was made of.
+/// Where an answer is put, and how far off a size is.
 pub struct Settled<'a> {
-    pub workshop: &'a Workshop<'a>,
-    pub settings: &'a Settings,
-    /// Of the tolerances, without effects.
-    pub columns: &'a [Option<Sensitivity>],
-    /// What is known of the discrepancies.
-    pub standing: &'a Standing,
-    /// What a parameter has where nothing is set.
-    pub value: &'a (dyn Fn(&str) -> Option<f64> + Sync),
-    pub declared: &'a dyn Fn(&str) -> Option<f64>,
-    /// Measured - simulated, with what is expected of the tolerances.
-    pub whole: &'a [f64],
+    pub tolerances: &'a Tolerances<'a>,
     /// How many declared standard deviations a size is from neutral.
     pub far: &'a dyn Fn(&Candidate, f64) -> f64,
 }
 
 impl Settled<'_> {
-    /// The members as they are weighed where they put the vehicle: the covariance that what is left is judged by, and the weighing of
-    /// their sizes, in which what stands out in a section alone does not count.
+    /// The members as they are weighed where they put the vehicle: the place that what is left is judged at, and the weighing of their
+    /// sizes, in which what stands out in a section alone does not count.
     pub fn answer(
         &self,
         (candidates, masks): (&mut [Candidate], &[Mask]),
@@ -84,9 +61,9 @@ impl Settled<'_> {
         bars: &Bars,
         refused: &mut Vec<Refused>,
         runs: &mut Runs,
-    ) -> (Covariance, Weighed) {
+    ) -> (Arc<Place>, Weighed) {
         let lack = |candidates: &[Candidate], now: &Weighed| {
-            lack_after(&now.covariance, self.workshop.seen, (candidates, masks), &now.difference, &now.chosen)
+            lack_after(&now.place.covariance, self.tolerances.workshop.seen, (candidates, masks), &now.place.difference, &now.chosen)
         };
         let before = refused.len();
         let mut now = self.settle((candidates, masks), first.clone(), bars, refused, runs);
@@ -95,7 +72,7 @@ impl Settled<'_> {
             refused.truncate(before);
             now = first;
         }
-        let (beside, left) = (now.covariance.clone(), lack(candidates, &now));
+        let (beside, left) = (now.place.clone(), lack(candidates, &now));
         (beside, self.sized((candidates, masks), now, &left, runs))
     }
 
@@ -109,11 +86,11 @@ impl Settled<'_> {
         refused: &mut Vec<Refused>,
         runs: &mut Runs,
     ) -> Weighed {
-        let without = (now.covariance.clone(), now.difference.clone());
+        let without = now.place.clone();
         let mut count = 1;
         while count <= now.chosen.members.len() {
-            if let Some((covariance, difference)) = self.beside((candidates, masks), &now.chosen.members[..count], runs) {
-                now = now.by(covariance, difference);
+            if let Some(place) = self.tolerances.beside((candidates, masks), &now.chosen.members[..count], runs) {
+                now = now.at(place);
             }
             self.refined((candidates, masks), &mut now, runs);
             while now.chosen.members.get(count).is_some_and(|next| next.evidence < bars.least(&candidates[next.candidate])) {
@@ -141,7 +118,7 @@ impl Settled<'_> {
             };
             refused.push(Refused::new(now.chosen.members.remove(weak), reason));
             alone_again(candidates, &now.chosen.members);
-            now = now.by(without.0.clone(), without.1.clone());
+            now = now.at(without.clone());
             self.refined((candidates, masks), &mut now, runs);
             count = 1;
         }
@@ -152,8 +129,8 @@ impl Settled<'_> {
     /// it is off, without lags that jump to another period of a sway between sizes, and with the levels and all else of a simulated
     /// change as wrong, each as one, as a model may be.
     fn sized(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Weighed, lack: &[Lack], runs: &mut Runs) -> Weighed {
-        let seen = self.workshop.seen;
-        let mut covariance = now.covariance.clone();
+        let (seen, settings) = (self.tolerances.workshop.seen, self.tolerances.settings);
+        let mut covariance = now.place.covariance.clone();
         for one in lack {
             let level = one.kind == Kind::Level;
             for (at, feature) in seen.features.iter().enumerate() {
@@ -164,7 +141,7 @@ impl Settled<'_> {
         }
         for member in now.chosen.members.iter().filter(|member| !candidates[member.candidate].exact) {
             for (at, feature) in seen.features.iter().enumerate().filter(|(_, feature)| feature.kind == Kind::Lag) {
-                let sd = self.settings.groups[seen.layout.channels[feature.channel].group].lag_sd;
+                let sd = settings.groups[seen.layout.channels[feature.channel].group].lag_sd;
                 for place in (0..seen.sections.len()).map(|section| seen.place(section, at)) {
                     if candidates[member.candidate].range_near(member.size, place) > JUMP * sd {
                         covariance.diagonal[place] = NOTHING;
@@ -174,69 +151,29 @@ impl Settled<'_> {
         }
         let levels: Vec<bool> = seen.features.iter().map(|feature| feature.kind == Kind::Level).collect();
         covariance.shared.extend(wrong_as_one(&levels, candidates, masks, &now.chosen.members));
-        let difference = std::mem::take(&mut now.difference);
-        now = now.by(covariance, difference);
+        now.place = Arc::new(Place::new(covariance, now.place.difference.clone()));
         self.refined((candidates, masks), &mut now, runs);
         now
     }
 
-    /// Fits the members again, with the sizes that are found simulated; last comes a fit, so that no size is judged that is not the answer's.
-    fn refined(&self, (candidates, masks): (&mut [Candidate], &[Mask]), now: &mut Weighed, runs: &mut Runs) {
-        for round in 0..=ROUNDS {
-            let fitter = Fitter::of(&now.whitener, candidates, masks.to_vec(), &now.chosen.members);
-            refit(&fitter, &now.z, &mut now.chosen);
-            if round == ROUNDS || !polish(self.workshop, candidates, &now.chosen.members, runs) {
-                break;
-            }
+    fn refined(&self, of: (&mut [Candidate], &[Mask]), now: &mut Weighed, runs: &mut Runs) {
+        refined(self.tolerances.workshop, of, (&now.place, &mut now.chosen), runs);
+    }
+}
+
+/// Fits the members again, with the sizes that are found simulated; last comes a fit, so that no size is judged that is not the answer's.
+pub fn refined(
+    workshop: &Workshop<'_>,
+    (candidates, masks): (&mut [Candidate], &[Mask]),
+    (place, chosen): (&Place, &mut Chosen),
+    runs: &mut Runs,
+) {
+    for round in 0..=ROUNDS {
+        let fitter = Fitter::of(&place.whitener, candidates, masks.to_vec(), &chosen.members);
+        refit(&fitter, &place.z, chosen);
+        if round == ROUNDS || !polish(workshop, candidates, &chosen.members, runs) {
+            break;
         }
-    }
-
-    /// The covariance with the members in the simulation, and the difference without what is expected there; nothing where no member is,
-    /// or where one fails.
-    fn beside(&self, (candidates, masks): (&[Candidate], &[Mask]), members: &[Fitted], runs: &mut Runs) -> Option<(Covariance, Vec<f64>)> {
-        let bench = self.workshop.bench?;
-        let added: Vec<Set> = members.iter().filter_map(|member| self.set(&candidates[member.candidate], masks, member)).collect();
-        if added.is_empty() {
-            return None;
-        }
-        (self.workshop.trying)("what the tolerances change beside the effects");
-        let set = bench.set.iter().cloned().chain(added).collect();
-        let there = Bench { set, cache: bench.cache.clone(), ..*bench };
-        let base = there.features(&[]).ok()?;
-        let matters = self.matter();
-        let again = sensitivities(&there, self.settings, &base, self.value, self.declared, &|at| matters[at], runs);
-        let mut columns: Vec<Sensitivity> =
-            again.into_iter().zip(self.columns).filter_map(|(again, first)| again.or(first.clone())).collect();
-        // What a member gives the size of is not free any more, but for the scatter of single sections.
-        for member in members.iter().filter(|member| member.mask == 0) {
-            let given = candidates[member.candidate].tolerance.as_ref();
-            columns.iter_mut().filter(|column| Some(&column.tolerance) == given).for_each(|column| column.shared = 0.0);
-        }
-        let mut difference = self.whole.to_vec();
-        expect(&columns, &mut difference);
-        Some((self.of(&columns), difference))
-    }
-
-    fn of(&self, columns: &[Sensitivity]) -> Covariance {
-        covariance(self.workshop.seen, self.settings, &self.workshop.simulated, columns, self.declared, Some(self.standing))
-    }
-
-    /// Which columns matter.
-    fn matter(&self) -> Vec<bool> {
-        let others = self.of(&[]).whitener();
-        let long = |column: &Sensitivity| {
-            let z = others.apply(&column.column);
-            dot(&z, &z) >= MATTERS * MATTERS
-        };
-        self.columns.iter().map(|column| column.as_ref().is_some_and(long)).collect()
-    }
-
-    /// What a member sets in the simulator, or exchanges or turns round of its signals: another wheel's guiding force differs by other
-    /// tolerances. What else is done to signals leaves them as they are.
-    fn set(&self, candidate: &Candidate, masks: &[Mask], member: &Fitted) -> Option<Set> {
-        let effect = self.workshop.catalogue.effect(&candidate.effect)?;
-        let moves = matches!(effect.action, Action::Simulator) || candidate.discrete;
-        if moves { set(self.workshop, candidate, masks, member) } else { None }
     }
 }
 
@@ -259,6 +196,7 @@ mod tests {
     use super::*;
     use crate::diagnose::candidates::Node;
     use crate::diagnose::fit::less;
+    use crate::diagnose::whiten::Covariance;
 
     /// One feature in each of eight sections, of unit variance: three that the data chose ask for 5, the others for 2, or for -2.
     #[test]
@@ -272,8 +210,7 @@ mod tests {
             let whitener = covariance.whitener();
             let member = Fitter::new(&whitener, &candidates, vec![mask.clone()]).fit(&difference, 0, 0).expect("a path");
             let chosen = Chosen { rest: less(&difference, &member.whitened), members: vec![member.clone()] };
-            let z = difference.clone();
-            let weighed = Weighed { difference, covariance: covariance.clone(), whitener, z, chosen };
+            let weighed = Weighed { place: Arc::new(Place::new(covariance.clone(), difference)), chosen };
             weighed.beside_the_others(&candidates[0], &mask, member.size)
         };
         for (others, asked_by, wanted) in [(2.0, Some(0), 3.0), (-2.0, Some(0), 5.0), (6.0, Some(0), 0.0), (2.0, None, 5.0)] {

@@ -54,7 +54,7 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     let features: Vec<usize> = (0..found.seen.features.len()).collect();
     let view = View { says: String::new(), sections: kept.clone(), features: features.clone() };
     let size = found.seen.features.len();
-    let whitener = found.settled.part(&kept, &features).whitener();
+    let whitener = found.settled.covariance.part(&kept, &features).whitener();
     let part = |column: &[f64]| super::guards::part(column, size, &view);
     let mut candidates: Vec<super::candidates::Candidate> =
         found.chosen.members.iter().map(|member| found.candidates[member.candidate].clone()).collect();
@@ -67,7 +67,7 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
         asked_by: mask.asked_by.map(|by| found.chosen.members.iter().position(|member| member.candidate == by).unwrap_or(usize::MAX)),
     });
     let fitter = Fitter::new(&whitener, &candidates, masks.collect());
-    let z = whitener.apply(&part(&found.difference_beside));
+    let z = whitener.apply(&part(&found.beside.difference));
     let mut chosen = super::search::Chosen { members: Vec::new(), rest: z.clone() };
     for (at, member) in found.chosen.members.iter().enumerate() {
         let fitted = fitter.fit(&chosen.rest, at, member.mask).unwrap_or_else(|| member.clone());

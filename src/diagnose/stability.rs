@@ -62,60 +62,57 @@ impl Stability {
 /// A fitter, the difference whitened by it, and the members as it sees them.
 pub type Weighing<'a> = (&'a Fitter<'a>, &'a [f64], &'a Chosen);
 
-/// Every member of a set, the others as they are: against its rivals by one weighing, its size by another. What was refused is no rival.
+/// A member of a set, the others as they are: against its rivals by one weighing, its size by another. What was refused is no rival.
 #[must_use]
 pub fn stability(
     (fitter, z, chosen): Weighing<'_>,
     (sizes, sized_z, sized): Weighing<'_>,
+    at: usize,
     refused: &[Refused],
     strata: &[Vec<usize>],
     seed: u64,
-) -> Vec<Stability> {
+) -> Stability {
     let sections = fitter.masks[0].sections.len();
     let draws: Vec<Vec<f64>> = (0..DRAWS).map(|draw| resample(strata, sections, seed.wrapping_add(draw as u64))).collect();
-    let one = |at: usize| {
-        let member = &chosen.members[at];
-        let rest = chosen.left_by_others(z, at);
-        let effect = |candidate: usize| &fitter.candidates[candidate].effect;
-        let fits = fitter.all(&rest).into_iter();
-        let fits = fits.filter(|fit| refused.iter().all(|refused| refused.fitted.candidate != fit.candidate));
-        let near = fits.filter(|fit| fit.evidence >= NEAR * member.evidence && effect(fit.candidate) != effect(member.candidate));
-        let rivals: Vec<(BySection, f64, usize)> = near
-            .filter_map(|fit| Some((fitter.by_section(&rest, fit.candidate, fit.mask)?, fit.fall - fit.evidence, fit.candidate)))
-            .collect();
-        let own = fitter.by_section(&rest, member.candidate, member.mask);
-        let own_size = sizes.by_section(&sized.left_by_others(sized_z, at), member.candidate, member.mask);
-        let price = member.fall - member.evidence;
-        let drawn: Vec<(Option<usize>, [Option<f64>; 2])> = draws
-            .par_iter()
-            .map(|times| {
-                // Where none of the sections that it shows in is drawn, it explains nothing, and has no size.
-                let (fall, side) = own.as_ref().and_then(|own| own.fit(times)).unwrap_or((0.0, member.size));
-                // More of it or less is a matter of evidence, how much of its size.
-                let beside = own_size.as_ref().and_then(|own| own.fit_beside(times, side)).map(|(_, size)| size);
-                let freely = own_size.as_ref().and_then(|own| own.fit(times)).map(|(_, size)| size);
-                let others = rivals.iter().filter_map(|(rival, cost, candidate)| Some((rival.fit(times)?.0 - cost, *candidate)));
-                let beaten_by = others.filter(|(other, _)| *other > fall - price).max_by(|a, b| a.0.total_cmp(&b.0));
-                (beaten_by.map(|(_, candidate)| candidate), [beside, freely])
-            })
-            .collect();
-        let share = |of: Option<usize>| drawn.iter().filter(|(by, _)| *by == of).count() as f64 / drawn.len().max(1) as f64;
-        let mut instead: Vec<(usize, f64)> = Vec::new();
-        for (_, _, candidate) in &rivals {
-            if instead.iter().all(|(known, _)| known != candidate) {
-                instead.push((*candidate, share(Some(*candidate))));
-            }
+    let member = &chosen.members[at];
+    let rest = chosen.left_by_others(z, at);
+    let effect = |candidate: usize| &fitter.candidates[candidate].effect;
+    let fits = fitter.all(&rest).into_iter();
+    let fits = fits.filter(|fit| refused.iter().all(|refused| refused.fitted.candidate != fit.candidate));
+    let near = fits.filter(|fit| fit.evidence >= NEAR * member.evidence && effect(fit.candidate) != effect(member.candidate));
+    let rivals: Vec<(BySection, f64, usize)> =
+        near.filter_map(|fit| Some((fitter.by_section(&rest, fit.candidate, fit.mask)?, fit.fall - fit.evidence, fit.candidate))).collect();
+    let own = fitter.by_section(&rest, member.candidate, member.mask);
+    let own_size = sizes.by_section(&sized.left_by_others(sized_z, at), member.candidate, member.mask);
+    let price = member.fall - member.evidence;
+    let drawn: Vec<(Option<usize>, [Option<f64>; 2])> = draws
+        .par_iter()
+        .map(|times| {
+            // Where none of the sections that it shows in is drawn, it explains nothing, and has no size.
+            let (fall, side) = own.as_ref().and_then(|own| own.fit(times)).unwrap_or((0.0, member.size));
+            // More of it or less is a matter of evidence, how much of its size.
+            let beside = own_size.as_ref().and_then(|own| own.fit_beside(times, side)).map(|(_, size)| size);
+            let freely = own_size.as_ref().and_then(|own| own.fit(times)).map(|(_, size)| size);
+            let others = rivals.iter().filter_map(|(rival, cost, candidate)| Some((rival.fit(times)?.0 - cost, *candidate)));
+            let beaten_by = others.filter(|(other, _)| *other > fall - price).max_by(|a, b| a.0.total_cmp(&b.0));
+            (beaten_by.map(|(_, candidate)| candidate), [beside, freely])
+        })
+        .collect();
+    let share = |of: Option<usize>| drawn.iter().filter(|(by, _)| *by == of).count() as f64 / drawn.len().max(1) as f64;
+    let mut instead: Vec<(usize, f64)> = Vec::new();
+    for (_, _, candidate) in &rivals {
+        if instead.iter().all(|(known, _)| known != candidate) {
+            instead.push((*candidate, share(Some(*candidate))));
         }
-        instead.retain(|(_, share)| *share > 0.0);
-        let between = |way: usize| {
-            let mut sizes: Vec<f64> = drawn.iter().filter_map(|(_, sizes)| sizes[way]).collect();
-            sizes.sort_by(f64::total_cmp);
-            let quantile = |share: f64| sizes.get(((sizes.len() as f64 * share) as usize).min(sizes.len().saturating_sub(1))).copied();
-            (quantile(0.05).unwrap_or(member.size), quantile(0.95).unwrap_or(member.size))
-        };
-        Stability { first: share(None), sizes: between(0), either_side: between(1), instead }
+    }
+    instead.retain(|(_, share)| *share > 0.0);
+    let between = |way: usize| {
+        let mut sizes: Vec<f64> = drawn.iter().filter_map(|(_, sizes)| sizes[way]).collect();
+        sizes.sort_by(f64::total_cmp);
+        let quantile = |share: f64| sizes.get(((sizes.len() as f64 * share) as usize).min(sizes.len().saturating_sub(1))).copied();
+        (quantile(0.05).unwrap_or(member.size), quantile(0.95).unwrap_or(member.size))
     };
-    (0..chosen.members.len()).map(one).collect()
+    Stability { first: share(None), sizes: between(0), either_side: between(1), instead }
 }
 
 /// How often each section is drawn, as many of each stratum as it has.
@@ -161,7 +158,7 @@ mod tests {
         let member = fitter.fit(&z, 0, 0).expect("a path");
         assert!((member.size - mean).abs() < 1e-9, "{}", member.size);
         let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member] };
-        let found = stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), &[], &[(0..SECTIONS).collect()], 1).remove(0);
+        let found = stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), 0, &[], &[(0..SECTIONS).collect()], 1);
         assert_eq!(found.first, 1.0);
         for (bound, away) in [(found.sizes.0, -1.645 * error), (found.sizes.1, 1.645 * error)] {
             assert!((bound - mean - away).abs() < 0.25 * away.abs(), "{bound} for {}", mean + away);
@@ -191,7 +188,7 @@ mod tests {
             Chosen { rest: less(z, &member.whitened), members: vec![member] }
         };
         let (by_evidence, by_size) = (chosen(&z), chosen(&sized));
-        let found = stability((&fitter, &z, &by_evidence), (&fitter, &sized, &by_size), &[], &[(0..SECTIONS).collect()], 1).remove(0);
+        let found = stability((&fitter, &z, &by_evidence), (&fitter, &sized, &by_size), 0, &[], &[(0..SECTIONS).collect()], 1);
         assert!((by_evidence.members[0].size - 4.0).abs() < 1e-9 && found.first == 1.0);
         assert!(found.sizes.0 > 0.0 && found.either_side.0 < 0.0 && found.either_side.1 > 0.0, "{found:?}");
         assert_eq!(found.judged(), found.sizes);
@@ -214,7 +211,7 @@ mod tests {
         let of = |candidate: usize| {
             let member = fitter.fit(&z, candidate, 0).expect("a path");
             let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member] };
-            stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), &[], &[(0..SECTIONS).collect()], 1).remove(0)
+            stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), 0, &[], &[(0..SECTIONS).collect()], 1)
         };
         let (once, others) = (of(0), of(1));
         let (wanted, error) = (0.264, (0.264 * 0.736 / DRAWS as f64).sqrt());

@@ -28,7 +28,7 @@ pub fn drifts(settings: &Settings, found: &Found) -> Vec<Drift> {
         return Vec::new();
     }
     let whitener = with_room(&may_differ(found), &found.candidates, &found.masks, &found.chosen).whitener();
-    let rest: DVector<f64> = whitener.apply(&left(&found.candidates, &found.masks, &found.difference_beside, &found.chosen)).into();
+    let rest: DVector<f64> = whitener.apply(&left(&found.candidates, &found.masks, &found.beside.difference, &found.chosen)).into();
     let columns: Vec<DVector<f64>> =
         found.chosen.members.iter().map(|member| whitener.apply(&member.tangent(&found.candidates, &found.masks)).into()).collect();
     let sizes = DMatrix::from_columns(&columns).qr().q();
@@ -67,10 +67,10 @@ pub fn drifts(settings: &Settings, found: &Found) -> Vec<Drift> {
 /// What may differ beside the answer, with room for what a simulated member has wrong as one; lags that jump with its size do not count.
 /// Sections that stand out alone do: what drifts stands out at its ends.
 fn may_differ(found: &Found) -> Covariance {
-    let mut covariance = found.settled.clone();
+    let mut covariance = found.settled.covariance.clone();
     for (at, _) in found.seen.features.iter().enumerate().filter(|(_, feature)| feature.kind != Kind::Lag) {
         for place in (0..found.seen.sections.len()).map(|section| found.seen.place(section, at)) {
-            covariance.diagonal[place] = found.beside.diagonal[place];
+            covariance.diagonal[place] = found.beside.covariance.diagonal[place];
         }
     }
     covariance

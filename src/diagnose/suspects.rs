@@ -5,9 +5,10 @@
 use super::bench::Runs;
 use super::candidates::{Candidate, Node, Workshop};
 use super::fit::{Fitted, Fitter, Mask, less};
+use super::place::Place as Weighing;
 use super::search::{Chosen, refit};
 use super::settings::Settings;
-use super::whiten::{Whitener, dot};
+use super::whiten::dot;
 use crate::units::Unit;
 
 /// Factors that every suspect is simulated with, 1 being none; and those that are left for the ones that come near.
@@ -74,12 +75,12 @@ impl Place {
 }
 
 /// Looks for one in the place of the strongest member, unless that is an operation on the signals of one channel alone, and in the place of
-/// all. `z` is the difference whitened by the covariance without effects.
+/// all. The weighing is that without effects.
 #[must_use]
 pub fn suspect(
     workshop: &Workshop<'_>,
     settings: &Settings,
-    (whitener, z): (&Whitener, &[f64]),
+    Weighing { whitener, z, .. }: &Weighing,
     (candidates, masks, chosen): (&[Candidate], &[Mask], &Chosen),
     runs: &mut Runs,
 ) -> Option<Suspect> {
@@ -104,7 +105,7 @@ pub fn suspect(
             runs.made += workshop.seen.sections.len();
             // A vehicle that cannot run so is no suspect with that factor.
             if let Ok(made) = bench.features(&[(key.clone(), factor * value)]) {
-                path.nodes.push(Node { size: *factor, change: less(&made, &workshop.base) });
+                path.nodes.push(Node { size: *factor, change: less(&made, &workshop.ground.base) });
             }
         }
         path.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));

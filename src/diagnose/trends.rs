@@ -43,16 +43,16 @@ pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>,
         cells(settings, found, kind, position, &sections).into_iter().map(|cell| (cell, *turns)).collect::<Vec<(Cell, bool)>>()
     };
     let cells: Vec<(Cell, bool)> = kinds(found).flat_map(|kind| places.iter().flat_map(move |place| of_place(kind, place))).collect();
-    let wider = with_room(&found.beside, &found.candidates, &found.masks, &found.chosen);
-    let rest = left(&found.candidates, &found.masks, &found.difference_beside, &found.chosen);
-    let fold = Fold::new(settings, &found.seen, &found.simulated);
+    let wider = with_room(&found.beside.covariance, &found.candidates, &found.masks, &found.chosen);
+    let rest = left(&found.candidates, &found.masks, &found.beside.difference, &found.chosen);
+    let fold = Fold::new(settings, &found.seen, &found.ground.simulated);
     let of_cell = |(cell, turns): &(Cell, bool)| {
         let sign = |(section, feature): &(usize, usize)| match turns {
             true => fold.sign(*section, found.seen.features[*feature].channel, cell.kind),
             false => 1.0,
         };
         let sides: Vec<f64> = cell.members.iter().map(sign).collect();
-        let before = slopes(found, cell, &sides, &covariates, (&found.covariance, &found.difference));
+        let before = slopes(found, cell, &sides, &covariates, (&found.alone.covariance, &found.alone.difference));
         let after = slopes(found, cell, &sides, &covariates, (&wider, &rest));
         let trend = |((covariate, before), after): ((&Covariate, Option<Slope>), Option<Slope>)| {
             let [from, to] = covariate.ends.clone();
