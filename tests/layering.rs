@@ -38,22 +38,22 @@ fn code(path: &Path) -> String {
     code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
 }
 
-/// Modules named after `crate::`, in single and grouped imports.
-fn imports(code: &str) -> BTreeSet<String> {
-    code.split("crate::")
+/// Modules named after a path such as `crate::`, in single and grouped imports.
+fn imports(code: &str, after: &str) -> BTreeSet<String> {
+    code.split(after)
         .skip(1)
         .map(|rest| rest.chars().take_while(|c| c.is_ascii_lowercase() || *c == '_').collect::<String>())
         .filter(|name| !name.is_empty())
         .collect()
 }
 
-/// The table of `docs/architecture.md`, in the order of its rows.
-fn table() -> Vec<(String, BTreeSet<String>)> {
+/// A table of `docs/architecture.md`, in the order of its rows.
+fn table(header: &str) -> Vec<(String, BTreeSet<String>)> {
     let text = fs::read_to_string(root().join("docs/architecture.md")).expect("the page");
-    let rows = text.lines().skip_while(|line| *line != "| module | imports |").skip(2).take_while(|line| line.starts_with('|'));
+    let rows = text.lines().skip_while(|line| *line != header).skip(2).take_while(|line| line.starts_with('|'));
     rows.map(|row| {
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-        let imports = cells[2].split(',').map(|name| name.trim().to_string()).filter(|name| !name.is_empty());
+        let imports = cells[cells.len() - 2].split(',').map(|name| name.trim().to_string()).filter(|name| !name.is_empty());
         (cells[1].to_string(), imports.collect())
     })
     .collect()
@@ -64,7 +64,7 @@ fn modules_import_what_the_table_says() {
     let mut found: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for (module, path) in sources() {
         let uses = found.entry(module.clone()).or_default();
-        uses.extend(imports(&code(&path)).into_iter().filter(|name| *name != module));
+        uses.extend(imports(&code(&path), "crate::").into_iter().filter(|name| *name != module));
         // The program is a crate of its own and names the library by its name.
         if module == "main" {
             uses.extend(
@@ -75,21 +75,50 @@ fn modules_import_what_the_table_says() {
             );
         }
     }
-    let said: BTreeMap<String, BTreeSet<String>> = table().into_iter().collect();
-    assert!(said.len() > 10, "the table was not found");
+    compare(&found, MODULES);
+}
+
+/// Files and folders of the diagnosis, from what is observed to what is said of it.
+#[test]
+fn the_diagnosis_goes_one_way() {
+    let mut found: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for (_, path) in sources().into_iter().filter(|(module, _)| module == "diagnose") {
+        let inside = path.strip_prefix(root().join("src/diagnose")).expect("below it");
+        let parts: Vec<String> = inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        let part = parts[0].trim_end_matches(".rs").to_string();
+        if part == "mod" {
+            continue;
+        }
+        let uses = found.entry(part.clone()).or_default();
+        uses.extend(imports(&code(&path), "crate::diagnose::").into_iter().filter(|name| *name != part));
+        if parts.len() == 1 {
+            uses.extend(imports(&code(&path), "super::"));
+        }
+    }
+    compare(&found, PARTS);
+}
+
+const MODULES: &str = "| module | imports |";
+const PARTS: &str = "| part | what it is | imports |";
+
+fn compare(found: &BTreeMap<String, BTreeSet<String>>, header: &str) {
+    let said: BTreeMap<String, BTreeSet<String>> = table(header).into_iter().collect();
+    assert!(said.len() > 5, "the table was not found");
     assert_eq!(found.keys().collect::<Vec<_>>(), said.keys().collect::<Vec<_>>(), "modules");
-    for (module, uses) in &found {
+    for (module, uses) in found {
         assert_eq!(uses, &said[module], "imports of `{module}` (found, then said)");
     }
 }
 
 #[test]
 fn imports_go_one_way() {
-    let rows = table();
-    let place = |name: &str| rows.iter().position(|(module, _)| module == name);
-    for (module, uses) in &rows {
-        for used in uses {
-            assert!(place(used) < place(module), "`{module}` imports `{used}`, which stands below it");
+    for header in [MODULES, PARTS] {
+        let rows = table(header);
+        let place = |name: &str| rows.iter().position(|(module, _)| module == name);
+        for (module, uses) in &rows {
+            for used in uses {
+                assert!(place(used) < place(module), "`{module}` imports `{used}`, which stands below it");
+            }
         }
     }
 }

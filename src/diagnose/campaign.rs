@@ -1,11 +1,11 @@
 //! The diagnosis of a campaign: find, add, run the protocol again, say.
 
-use super::fit::less;
-use super::observe::Observed;
-use super::run::{Found, Inputs, find};
+use super::allowed::whiten::{dot, less};
+use super::answer::shrink::{applied, compare, folds, improved, shares, trained};
+use super::inputs::Inputs;
+use super::observe::observations::Observed;
+use super::run::{Found, find};
 use super::settings::Settings;
-use super::shrink::{applied, compare, folds, improved, shares, trained};
-use super::whiten::dot;
 use crate::certify::{Compiled, certify};
 use crate::data::Campaign;
 use crate::effects::{Applied, Catalogue, Gauss, Signals};
@@ -39,7 +39,7 @@ pub struct Outcome {
 /// The campaign cannot be compared or evaluated; a simulation fails.
 pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Section>) -> Result<Outcome, Problems> {
     let mut problems = Problems::default();
-    super::columns::in_words_of(compiled, inputs.settings, inputs.campaign, &mut sections, &mut problems);
+    super::observe::columns::in_words_of(compiled, inputs.settings, inputs.campaign, &mut sections, &mut problems);
     let (_, mut units, _) = match sections.first() {
         Some(first) => recorded(inputs.campaign, crate::data::RecordKind::Simulation, first).map_err(Problems)?,
         None => return Err(Problems(vec![Problem::error("no-sections", "the campaign has no sections")])),
@@ -58,7 +58,7 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     let mut records = Vec::new();
     let evaluate = |found: &Found, records: &[Signals]| evaluated(inputs.campaign, compiled, found, records, &units, settings);
     while !found.chosen.members.is_empty() {
-        if let Some((either, reason)) = super::causes::nothing_out_of_the_ordinary(&found, inputs.settings) {
+        if let Some((either, reason)) = super::answer::causes::nothing_out_of_the_ordinary(&found, inputs.settings) {
             found.refuse(either, reason, inputs);
             continue;
         }
@@ -75,8 +75,8 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
         records = improved(&found, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
         break;
     }
-    let mut diagnosis = super::words::diagnosis(inputs, &found, &units, shrink);
-    diagnosis.pictures = super::pictures::pictures(inputs.settings, &found, &records, &units);
+    let mut diagnosis = super::answer::words::diagnosis(inputs, &found, &units, shrink);
+    diagnosis.pictures = super::answer::pictures::pictures(inputs.settings, &found, &records, &units);
     Ok(Outcome { diagnosis, found, before, after, improved: records, units, warnings: problems })
 }
 
@@ -193,7 +193,7 @@ pub fn effect_of_truth(
         detectability: super::run::length(&found.alone.whitener, &change),
         weakest: several.filter_map(beside).reduce(f64::min),
         removed: compare(&outcome.before, &made, None, 1, Vec::new()).fraction_removed,
-        cells: super::locate::moved(&settings, found, &change),
+        cells: super::gap::locate::moved(&settings, found, &change),
     })
 }
 

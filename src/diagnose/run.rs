@@ -2,51 +2,29 @@
 
 use std::sync::Arc;
 
-use super::bench::Runs;
-use super::beside::alone_again;
-use super::cache::Cache;
-use super::candidates::{Candidate, Trying};
-use super::converge::{Converged, Converging};
-use super::covariance::strata;
-use super::declared::Declared;
-use super::fit::{Fitted, Fitter, Known, Mask};
-use super::ground::Ground;
-use super::guards::families;
-use super::lack::{Lack, drop_what_harms, lack_of_fit, left};
-use super::masks::masks;
-use super::observe::Observations;
-use super::place::{Place, Places};
-use super::search::{Bars, Chosen, Refused, chi_squared, contradicting, nearest, refit, rivals};
+use super::allowed::covariance::strata;
+use super::allowed::declared::Declared;
+use super::allowed::whiten::{Covariance, Whitener, dot};
+use super::inputs::{Inputs, value_of};
+use super::observe::bench::Runs;
+use super::observe::observations::Observations;
+use super::search::beside::alone_again;
+use super::search::candidates::Candidate;
+use super::search::choose::{Bars, Chosen, Refused, chi_squared, contradicting, nearest, refit, rivals};
+use super::search::converge::{Converged, Converging};
+use super::search::fit::{Fitted, Fitter, Known, Mask};
+use super::search::ground::Ground;
+use super::search::guards::families;
+use super::search::lack::{Lack, drop_what_harms, lack_of_fit, left};
+use super::search::masks::masks;
+use super::search::place::{Place, Places};
+use super::search::settle::{Settled, Weighed};
+use super::search::stability::{Stability, stability};
+use super::search::suspects::{Suspect, suspect};
 use super::settings::Settings;
-use super::settle::{Settled, Weighed};
-use super::stability::{Stability, stability};
-use super::standing::Reference;
-use super::suspects::{Suspect, suspect};
-use super::whiten::{Covariance, Whitener, dot};
-use crate::data::Campaign;
-use crate::effects::Catalogue;
 use crate::model::parameter;
 use crate::problem::{Problem, Problems};
-use crate::simulate::{Section, Simulator};
-
-/// What a diagnosis is made of.
-pub struct Inputs<'a> {
-    pub campaign: &'a Campaign,
-    pub catalogue: &'a Catalogue,
-    pub settings: &'a Settings,
-    pub simulator: Option<&'a dyn Simulator>,
-    pub cache: Option<Cache>,
-    /// Campaigns whose state is known.
-    pub references: &'a [Reference<'a>],
-    pub seed: u64,
-    pub trying: Trying<'a>,
-}
-
-impl std::fmt::Debug for Inputs<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Inputs").field("campaign", &self.campaign.name).finish_non_exhaustive()
-    }
-}
+use crate::simulate::Section;
 
 /// What was found, before it is put in words.
 #[derive(Debug)]
@@ -86,12 +64,6 @@ pub struct Found {
     pub runs: Runs,
     pub strata: Vec<Vec<usize>>,
     pub declared: Declared,
-}
-
-/// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
-#[must_use]
-pub fn value_of(campaign: &Campaign, key: &str) -> Option<f64> {
-    campaign.vehicle.lookup(key).and_then(crate::yaml::Node::number).or_else(|| parameter(key)?.neutral)
 }
 
 /// Tolerances that name a parameter which neither the vehicle file nor the model has cannot be sent through the simulator.
@@ -302,7 +274,7 @@ pub fn chi(found: &Found) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::candidates::Node;
+    use crate::diagnose::search::candidates::Node;
     use crate::diagnose::settings::Tolerance;
 
     /// 0.7 times e^0.2 is 4 standard deviations of a factor of 5 % off, and so is 0.7 over e^0.2, where the tolerance scales the

@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 use serde_json::Value;
 
 use super::campaign::Really;
-use super::observe::Observed;
+use super::observe::observations::Observed;
 use crate::effects::{Action, Applied, CHANNEL, Catalogue, Confined};
 use crate::metrics::interval::wilson;
 use crate::result::blind::{Blind, BySize, Calibration, Case, Places, Score};

@@ -1,0 +1,242 @@
+//! What may differ without any effect: noise, declared tolerances, and what the simulation is allowed to be wrong in.
+
+use super::standing::Standing;
+use super::whiten::Covariance;
+use crate::diagnose::observe::features::Kind;
+use crate::diagnose::observe::observations::Observations;
+use crate::diagnose::settings::{Discrepancy, FeatureKind, Moves, Over, Settings, Times};
+
+/// Variance of what tells nothing.
+pub const NOTHING: f64 = 1e12;
+
+/// How the simulated features change with a tolerated parameter, per standard deviation.
+#[derive(Clone, Debug)]
+pub struct Sensitivity {
+    pub tolerance: String,
+    pub column: Vec<f64>,
+    /// How much of it is expected to be there.
+    pub expected: f64,
+    pub per_section: bool,
+    /// How much of a standard deviation all sections have in common.
+    pub shared: f64,
+}
+
+/// A column that sections share, by what it stands for.
+#[derive(Clone, Debug)]
+pub struct Keyed {
+    pub key: String,
+    pub values: Vec<f64>,
+}
+
+/// Takes what is expected of the tolerances off a difference.
+pub fn expect(sensitivities: &[Sensitivity], difference: &mut [f64]) {
+    for sensitivity in sensitivities.iter().filter(|sensitivity| sensitivity.expected != 0.0) {
+        difference.iter_mut().zip(&sensitivity.column).for_each(|(difference, column)| *difference -= sensitivity.expected * column);
+    }
+}
+
+/// The covariance of `measured - simulated` without any effect. `simulated` are the features of the campaign's simulation; without
+/// `standing`, noise and tolerances alone.
+#[must_use]
+pub fn covariance(
+    seen: &Observations,
+    settings: &Settings,
+    simulated: &[f64],
+    sensitivities: &[Sensitivity],
+    declared: &dyn Fn(&str) -> Option<f64>,
+    standing: Option<&Standing>,
+) -> Covariance {
+    let size = seen.features.len();
+    let mut covariance = Covariance { diagonal: diagonal(seen, settings), inside: Vec::new(), shared: Vec::new(), size };
+    for sensitivity in sensitivities {
+        if sensitivity.shared > 0.0 {
+            covariance.shared.push(sensitivity.column.iter().map(|x| sensitivity.shared * x).collect());
+        }
+        if sensitivity.per_section {
+            for section in 0..seen.sections.len() {
+                covariance.inside.push((section, sensitivity.column[section * size..(section + 1) * size].to_vec()));
+            }
+        }
+    }
+    for channel in 0..seen.layout.channels.len() {
+        covariance.shared.extend(calibration(seen, settings, simulated, channel, declared));
+    }
+    if let Some(standing) = standing {
+        let (columns, inside) = discrepancies(seen, settings);
+        covariance.shared.extend(standing.weighed(columns));
+        covariance.inside.extend(inside);
+    }
+    covariance.shared.retain(|column| column.iter().any(|x| *x != 0.0));
+    covariance.inside.retain(|(_, column)| column.iter().any(|x| *x != 0.0));
+    covariance
+}
+
+/// A section, and a column of its features.
+type Inside = (usize, Vec<f64>);
+
+/// Columns of all discrepancies: those that sections share, and those inside one.
+#[must_use]
+pub fn discrepancies(seen: &Observations, settings: &Settings) -> (Vec<Keyed>, Vec<Inside>) {
+    let (mut shared, mut inside) = (Vec::new(), Vec::new());
+    for (number, discrepancy) in settings.discrepancies.iter().enumerate() {
+        discrepant(seen, settings, (number, discrepancy), &mut shared, &mut inside);
+    }
+    (shared, inside)
+}
+
+/// Gain and offset of a channel, as declared.
+fn calibration(
+    seen: &Observations,
+    settings: &Settings,
+    simulated: &[f64],
+    channel: usize,
+    declared: &dyn Fn(&str) -> Option<f64>,
+) -> Vec<Vec<f64>> {
+    let group = &settings.groups[seen.layout.channels[channel].group];
+    let size = seen.features.len();
+    let mut columns = Vec::new();
+    let mut push = |of: &dyn Fn(usize, Kind) -> f64| {
+        let mut column = vec![0.0; seen.len()];
+        for section in 0..seen.sections.len() {
+            for (at, feature) in seen.features.iter().enumerate().filter(|(_, feature)| feature.channel == channel) {
+                column[section * size + at] = of(section * size + at, feature.kind);
+            }
+        }
+        columns.push(column);
+    };
+    if let Some(sd) = group.gain.as_deref().and_then(declared).or(group.gain.as_ref().map(|_| 0.02)) {
+        push(&|at, kind| match kind {
+            Kind::Level => sd * simulated[at],
+            Kind::Band(_) | Kind::Gain => sd,
+            Kind::Lag => 0.0,
+        });
+    }
+    if let Some(sd) = group.offset.as_deref().and_then(declared) {
+        push(&|_, kind| if kind == Kind::Level { sd } else { 0.0 });
+    }
+    columns
+}
+
+/// Scatter of single features.
+fn diagonal(seen: &Observations, settings: &Settings) -> Vec<f64> {
+    let mut variances = Vec::with_capacity(seen.len());
+    for (at, observed) in seen.sections.iter().enumerate() {
+        let (_, length) = seen.extent(at);
+        if observed.again {
+            variances.extend(seen.features.iter().map(|_| NOTHING));
+            continue;
+        }
+        for feature in &seen.features {
+            let group = &settings.groups[seen.layout.channels[feature.channel].group];
+            let scatter = &observed.scatter[feature.channel];
+            variances.push(match feature.kind {
+                Kind::Level => scatter.level + group.level_sd * group.level_sd,
+                Kind::Band(band) => {
+                    // Of the logarithm of an rms over a band of width B in a time T: 1 / (4 B T) for each of two records, half of it common.
+                    let width = seen.layout.edges[band + 1] - seen.layout.edges[band];
+                    0.25 / (width * length).max(0.5) + group.band_sd * group.band_sd
+                }
+                Kind::Gain => group.gain_sd * group.gain_sd + 0.1 / length.max(1.0),
+                Kind::Lag if scatter.has_lag => group.lag_sd * group.lag_sd,
+                Kind::Lag => NOTHING,
+            });
+        }
+    }
+    variances
+}
+
+/// Columns of a discrepancy.
+fn discrepant(
+    seen: &Observations,
+    settings: &Settings,
+    (number, discrepancy): (usize, &Discrepancy),
+    shared: &mut Vec<Keyed>,
+    inside: &mut Vec<Inside>,
+) {
+    let size = seen.features.len();
+    let bands = seen.layout.edges.len().saturating_sub(1);
+    // Kinds that move together.
+    let kinds: Vec<Vec<Kind>> = match discrepancy.feature {
+        FeatureKind::Level => vec![vec![Kind::Level]],
+        FeatureKind::Bands => (0..bands).map(|band| vec![Kind::Band(band)]).collect(),
+        FeatureKind::Amplitude => vec![(0..bands).map(Kind::Band).collect()],
+        FeatureKind::Gain => vec![vec![Kind::Gain]],
+        FeatureKind::Lag => vec![vec![Kind::Lag]],
+    };
+    let sd = |at: usize| discrepancy.sd.get(at).or(discrepancy.sd.last()).copied().unwrap_or(0.0);
+    for (at, kinds) in kinds.iter().enumerate() {
+        for members in members(seen, discrepancy) {
+            let value = |section: usize| {
+                let mut values = vec![0.0; size];
+                let times = times(seen, settings, discrepancy.times, section);
+                for (channel, weight) in &members {
+                    for feature in kinds.iter().filter_map(|kind| seen.find(*channel, *kind)) {
+                        values[feature] = weight * sd(at) * times;
+                    }
+                }
+                values
+            };
+            let names: Vec<&str> = members.iter().map(|(channel, _)| seen.layout.channels[*channel].name.as_str()).collect();
+            let key = format!("{number} {at} {}", names.join(" "));
+            match discrepancy.over {
+                Over::Sections => inside.extend((0..seen.sections.len()).map(|section| (section, value(section)))),
+                Over::All => shared.push(Keyed { key, values: (0..seen.sections.len()).flat_map(value).collect() }),
+                Over::Strata => {
+                    for stratum in strata(seen, settings) {
+                        let mut values = vec![0.0; seen.len()];
+                        for section in &stratum {
+                            values[section * size..(section + 1) * size].copy_from_slice(&value(*section));
+                        }
+                        shared.push(Keyed { key: format!("{key} in {}", stratum_of(seen, settings, stratum[0])), values });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The stratum of a section.
+fn stratum_of<'a>(seen: &'a Observations, settings: &Settings, section: usize) -> &'a str {
+    settings.stratum.as_deref().and_then(|column| seen.sections[section].section.fact(column)).unwrap_or("")
+}
+
+/// Sections by stratum, in the order in which strata first appear.
+#[must_use]
+pub fn strata(seen: &Observations, settings: &Settings) -> Vec<Vec<usize>> {
+    let mut found: Vec<(String, Vec<usize>)> = Vec::new();
+    for at in seen.first_runs() {
+        let value = stratum_of(seen, settings, at).to_string();
+        match found.iter_mut().find(|(known, _)| *known == value) {
+            Some((_, sections)) => sections.push(at),
+            None => found.push((value, vec![at])),
+        }
+    }
+    found.into_iter().map(|(_, sections)| sections).collect()
+}
+
+/// Channels that move together, with their weights.
+fn members(seen: &Observations, discrepancy: &Discrepancy) -> Vec<Vec<(usize, f64)>> {
+    let number = |name: &str| seen.layout.channels.iter().position(|channel| channel.name == name);
+    let all: Vec<(usize, f64)> = discrepancy.channels.iter().filter_map(|(name, weight)| Some((number(name)?, *weight))).collect();
+    match discrepancy.moves {
+        Moves::All => vec![all],
+        Moves::Channel => all.into_iter().map(|one| vec![one]).collect(),
+        Moves::Group => {
+            let mut groups: Vec<usize> = all.iter().map(|(channel, _)| seen.layout.channels[*channel].group).collect();
+            groups.dedup();
+            let of = |group: usize| all.iter().copied().filter(|(channel, _)| seen.layout.channels[*channel].group == group).collect();
+            groups.into_iter().map(of).collect()
+        }
+    }
+}
+
+fn times(seen: &Observations, settings: &Settings, times: Times, section: usize) -> f64 {
+    let section = &seen.sections[section].section;
+    let over = |number: f64| section.number("radius").filter(|radius| *radius > 0.0).map_or(0.0, |radius| (number / radius).min(2.0));
+    match times {
+        Times::One => 1.0,
+        Times::Side => settings.side(section),
+        Times::Over(number) => settings.side(section) * over(number),
+        Times::Unsigned(number) => over(number),
+    }
+}

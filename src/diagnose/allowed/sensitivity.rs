@@ -1,0 +1,89 @@
+//! How much the simulated features change with what the test engineer admits not to know.
+
+use super::covariance::Sensitivity;
+use crate::diagnose::observe::bench::{Bench, Runs};
+use crate::diagnose::settings::Settings;
+
+/// Finite differences are taken over so many standard deviations: beyond the noise of branches, within what is linear.
+const STEP: f64 = 1.5;
+
+/// A column per tolerated parameter: the change of all features with one standard deviation of it, `base` being those of the bench as it
+/// is set. `value` is what a parameter has where nothing is set; `wanted` picks columns by their number.
+#[must_use]
+pub fn sensitivities(
+    bench: &Bench<'_>,
+    settings: &Settings,
+    base: &[f64],
+    value: &(dyn Fn(&str) -> Option<f64> + Sync),
+    declared: &dyn Fn(&str) -> Option<f64>,
+    wanted: &dyn Fn(usize) -> bool,
+    runs: &mut Runs,
+) -> Vec<Option<Sensitivity>> {
+    let mut columns = Vec::new();
+    let now = |section: usize, key: &str| bench.value(section, key).or_else(|| value(key));
+    for tolerance in &settings.tolerances {
+        let sd = declared(&tolerance.name).unwrap_or(tolerance.default);
+        // What is moved, and how many standard deviations that is.
+        let mut tried: Vec<(Vec<(String, Move)>, f64)> = Vec::new();
+        tried.extend(tolerance.scales.iter().map(|key| (vec![(key.clone(), Move::Times(1.0 + STEP * sd))], STEP)));
+        tried.extend(tolerance.adds.iter().map(|(key, factor)| (vec![(key.clone(), Move::Plus(STEP * factor * sd))], STEP)));
+        if !tolerance.sets.is_empty() && sd > 0.0 {
+            tried.push((tolerance.sets.iter().map(|(key, to)| (key.clone(), Move::To(*to))).collect(), 1.0 / sd));
+        }
+        for (moves, deviations) in tried {
+            let moved = |section: usize| -> Vec<(String, f64)> {
+                moves.iter().filter_map(|(key, by)| Some((key.clone(), by.from(now(section, key))?))).collect()
+            };
+            let some = |section: usize| moved(section).iter().any(|(key, to)| now(section, key) != Some(*to));
+            if !(0..bench.seen.sections.len()).any(some) || !wanted(columns.len()) {
+                columns.push(None);
+                continue;
+            }
+            runs.made += bench.seen.sections.len();
+            columns.push(match bench.moved(&moved) {
+                Ok(made) => Some(Sensitivity {
+                    tolerance: tolerance.name.clone(),
+                    column: made.iter().zip(base).map(|(made, base)| (made - base) / deviations).collect(),
+                    expected: tolerance.expected,
+                    per_section: tolerance.per_section,
+                    shared: tolerance.shared,
+                }),
+                Err(problem) => {
+                    runs.failed.push(format!("{}: {}", tolerance.name, problem.says));
+                    None
+                }
+            });
+        }
+    }
+    columns
+}
+
+/// What is expected of the tolerances, as settings of the simulator. `value` is what a parameter has where nothing is set.
+#[must_use]
+pub fn expected(settings: &Settings, value: &dyn Fn(&str) -> Option<f64>, declared: &dyn Fn(&str) -> Option<f64>) -> Vec<(String, f64)> {
+    let mut there = Vec::new();
+    for tolerance in settings.tolerances.iter().filter(|tolerance| tolerance.expected != 0.0) {
+        let by = tolerance.expected * declared(&tolerance.name).unwrap_or(tolerance.default);
+        let scaled = tolerance.scales.iter().map(|key| (key, Move::Times(1.0 + by)));
+        let added = tolerance.adds.iter().map(|(key, factor)| (key, Move::Plus(factor * by)));
+        there.extend(scaled.chain(added).filter_map(|(key, by)| Some((key.clone(), by.from(value(key))?))));
+    }
+    there
+}
+
+/// How a parameter is moved.
+enum Move {
+    Times(f64),
+    Plus(f64),
+    To(f64),
+}
+
+impl Move {
+    fn from(&self, now: Option<f64>) -> Option<f64> {
+        match self {
+            Self::Times(factor) => now.map(|now| now * factor),
+            Self::Plus(by) => now.map(|now| now + by),
+            Self::To(to) => Some(*to),
+        }
+    }
+}

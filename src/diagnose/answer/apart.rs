@@ -1,0 +1,63 @@
+//! Which sections, measured again, would tell two causes apart best: the design that keeps rivals furthest from each other (Atkinson and
+//! Fedorov 1975, T-optimality), among more sections like those of each stratum.
+
+use crate::diagnose::allowed::whiten::{Covariance, dot};
+use crate::diagnose::run::Found;
+use crate::diagnose::search::candidates::Candidate;
+use crate::diagnose::search::fit::{Fitted, Mask};
+use crate::diagnose::search::guards::{View, in_view};
+
+/// How far two causes are from each other, in standard deviations of what is allowed for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Apart {
+    pub now: f64,
+    /// With as many sections again like these, which help most.
+    pub then: f64,
+    pub sections: Vec<usize>,
+}
+
+/// A member of the answer and its rival.
+#[must_use]
+pub fn apart(found: &Found, member: &Fitted, rival: &Fitted) -> Option<Apart> {
+    let change = member.change(&found.candidates, &found.masks);
+    let of = (&found.candidates[rival.candidate], &found.masks[rival.mask]);
+    best(&found.alone.covariance, &found.seen.first_runs(), &found.strata, &change, of)
+}
+
+fn best(covariance: &Covariance, all: &[usize], strata: &[Vec<usize>], change: &[f64], rival: (&Candidate, &Mask)) -> Option<Apart> {
+    let distance = |more: &[usize]| {
+        let sections = [all, more].concat();
+        let view = View { says: String::new(), sections, features: (0..covariance.size).collect() };
+        let seen = in_view(covariance, &view, rival, change)?;
+        Some((dot(&seen.z, &seen.z) - seen.fitted.fall).max(0.0).sqrt())
+    };
+    let now = distance(&[])?;
+    let more = strata.iter().filter_map(|sections| Some((distance(sections)?, sections)));
+    let (then, sections) = more.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(Apart { now, then, sections: sections.clone() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::search::candidates::Node;
+
+    /// Two features in each of four sections, unit noise: an effect that moves both alike, and a rival that moves both alike in the
+    /// first two sections and against each other in the last two. What the rival cannot follow is there alone.
+    #[test]
+    fn the_sections_in_which_rivals_differ_are_chosen() {
+        let covariance = Covariance { diagonal: vec![1.0; 8], inside: Vec::new(), shared: Vec::new(), size: 2 };
+        let change = vec![2.0; 8];
+        let nodes = vec![
+            Node { size: 0.0, change: Vec::new() },
+            Node { size: 10.0, change: vec![20.0, 20.0, 20.0, 20.0, 20.0, -20.0, 20.0, -20.0] },
+        ];
+        let rival = Candidate::path("rival", nodes);
+        let everywhere = Mask { confined: None, sections: vec![true; 4], asked_by: None };
+        let found = best(&covariance, &[0, 1, 2, 3], &[vec![0, 1], vec![2, 3]], &change, (&rival, &everywhere)).expect("both change");
+        // |a|^2 - (a'b)^2 / |b|^2 by hand, with b the rival at size 1.
+        assert_eq!(found.sections, [2, 3]);
+        assert!((found.now - (32.0_f64 - 16.0 * 16.0 / 32.0).sqrt()).abs() < 1e-9, "{}", found.now);
+        assert!((found.then - (48.0_f64 - 16.0 * 16.0 / 48.0).sqrt()).abs() < 1e-9, "{}", found.then);
+    }
+}

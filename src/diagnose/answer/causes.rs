@@ -1,0 +1,149 @@
+//! A set of effects as a cause: names, sizes with their intervals, and where it is.
+
+use indexmap::IndexMap;
+use serde_json::json;
+
+use crate::diagnose::inputs::Inputs;
+use crate::diagnose::run::{Found, deviations};
+use crate::diagnose::search::fit::Fitted;
+use crate::diagnose::search::stability::Stability;
+use crate::diagnose::settings::Settings;
+use crate::effects::Action;
+use crate::result::diagnosis::{Cause, NamedEffect, Value};
+
+/// A set of effects as a cause.
+#[must_use]
+pub fn cause(inputs: &Inputs<'_>, found: &Found, members: &[Fitted], rank: usize) -> Cause {
+    let effects: Vec<NamedEffect> = members.iter().map(|member| named(inputs, found, member)).collect();
+    let says = effects.iter().map(in_words).collect::<Vec<_>>().join("; and ");
+    Cause { rank, effects, probability: 0.0, in_ambiguity_set: true, evidence: members.iter().map(|member| member.evidence).sum(), says }
+}
+
+fn in_words(effect: &NamedEffect) -> String {
+    let values = effect.told().into_iter().map(|told| {
+        let (parameter, value) = (&told.parameter, told.value);
+        let interval = match (value.low, value.high) {
+            (Some(low), Some(high)) => format!(" ({} to {})", short(low), short(high)),
+            _ => String::new(),
+        };
+        let number = value.value.as_f64().map_or_else(|| value.text(), short);
+        let unit = if value.unit == "-" { String::new() } else { format!(" {}", value.unit) };
+        format!("{parameter} {number}{unit}{interval}{}", told.on())
+    });
+    format!("{}: {}{}", effect.title, values.collect::<Vec<_>>().join(", "), effect.only_in())
+}
+
+/// Four significant digits.
+pub fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 9) as usize;
+    format!("{value:.digits$}")
+}
+
+/// The 90 % interval of a size: uncertainty of the fit, of what lies between the nodes, and of which sections there are. Nothing for
+/// what has no size.
+#[must_use]
+pub fn interval(found: &Found, member: &Fitted) -> Option<(f64, f64)> {
+    around(found, member, stability_of(found, member).map(|stability| stability.sizes))
+}
+
+/// The error of the fit, and how far sizes that were drawn are from the one that was found.
+fn around(found: &Found, member: &Fitted, drawn: Option<(f64, f64)>) -> Option<(f64, f64)> {
+    let of = &found.candidates[member.candidate];
+    if of.discrete || !member.size.is_finite() {
+        return None;
+    }
+    let error = if member.slope > 0.0 { 1.645 * (1.0 / member.slope).hypot(0.02 * member.size.abs().min(1e12)) } else { 0.0 };
+    let drawn = drawn.unwrap_or((member.size, member.size));
+    let (below, above) = (error.hypot((member.size - drawn.0).max(0.0)), error.hypot((drawn.1 - member.size).max(0.0)));
+    Some(((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)))
+}
+
+/// Declared standard deviations within which nine tenths of all vehicles are.
+const ORDINARY: f64 = 1.645;
+
+/// The member with least evidence of those whose interval holds the value that changes nothing, or one that is ordinary by what is
+/// declared, and why it is not named: however much the fit falls with it, other sections would have asked for the opposite, for another
+/// effect, or for no more than was admitted.
+#[must_use]
+pub fn nothing_out_of_the_ordinary(found: &Found, settings: &Settings) -> Option<(usize, String)> {
+    let holds = |(at, member): (usize, &Fitted)| {
+        let of = &found.candidates[member.candidate];
+        let (low, high) = around(found, member, stability_of(found, member).map(|stability| stability.judged()))?;
+        let nothing = of.neutral()?;
+        let nearest = nothing.clamp(low, high);
+        let holds = match deviations(of, nearest, settings, &found.declared, true) {
+            _ if nearest == nothing => format!("{}, which changes nothing", short(nothing)),
+            away if away < ORDINARY => format!("{}, which is {away:.1} declared standard deviations off", short(nearest)),
+            _ => return None,
+        };
+        Some((at, format!("the interval of its size, {} to {}, holds {holds}", short(low), short(high)), member.evidence))
+    };
+    let found = found.chosen.members.iter().enumerate().filter_map(holds).min_by(|a, b| a.2.total_cmp(&b.2));
+    found.map(|(at, says, _)| (at, says))
+}
+
+fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
+    let of = &found.candidates[member.candidate];
+    let effect = inputs.catalogue.effect(&of.effect);
+    let mut parameters = IndexMap::new();
+    let unit = |name: &str| {
+        let known = effect.and_then(|effect| effect.parameters.iter().find(|parameter| parameter.name == name));
+        known.map_or("-".to_string(), |parameter| parameter.unit.text.clone())
+    };
+    let interval = interval(found, member);
+    let mut push = |name: String, value: serde_json::Value, interval: Option<(f64, f64)>| {
+        let unit = of.unit.text.clone();
+        parameters.insert(name, Value { value, unit, low: interval.map(|(low, _)| low), high: interval.map(|(_, high)| high) });
+    };
+    if of.effect_is_swap() {
+        push(of.size.clone(), json!([of.channels]), None);
+    } else if of.size.contains(crate::effects::CHANNEL) {
+        for channel in &of.channels {
+            push(of.size.replace(crate::effects::CHANNEL, channel), json!(member.size), interval);
+        }
+    } else {
+        push(of.size.clone(), json!(member.size), interval);
+        let every = effect.is_some_and(|effect| matches!(&effect.action, Action::Signals(_, all) if all.len() > of.channels.len()));
+        if every {
+            parameters
+                .insert(format!("{}_channels", of.size), Value { value: json!(of.channels), unit: "-".into(), low: None, high: None });
+        }
+    }
+    for (name, value) in &of.fixed {
+        parameters.insert(name.clone(), Value { value: json!(value), unit: unit(name), low: None, high: None });
+    }
+    NamedEffect {
+        name: of.effect.clone(),
+        title: effect.map_or_else(|| of.effect.clone(), |effect| effect.title.clone()),
+        parameters,
+        channels: of.channels.clone(),
+        confined_to: found.masks[member.mask].confined.as_ref().map(|(column, values)| confined(column, values)),
+        stability: stability_of(found, member).map(|stability| stability.first),
+        added_by: match effect.map(|effect| &effect.action) {
+            Some(Action::Signals(operator, _)) => format!("an operation on the signals: {}", operator.name()),
+            Some(Action::Formulas(_)) => "expressions on the signals".into(),
+            _ => inputs.simulator.map_or(String::new(), |simulator| format!("increments of the {}", simulator.name())),
+        },
+    }
+}
+
+/// Of a member of the answer; a rival has none.
+fn stability_of(found: &Found, member: &Fitted) -> Option<Stability> {
+    let own = |known: &Fitted| known.candidate == member.candidate && known.mask == member.mask;
+    found.chosen.members.iter().position(own).and_then(|at| found.stability.get(at).cloned())
+}
+
+/// `zones` and `sections` are lists, a direction is one word.
+fn confined(column: &str, values: &[String]) -> IndexMap<String, serde_json::Value> {
+    let numbers: Option<Vec<i64>> = values.iter().map(|value| value.parse().ok()).collect();
+    let list = numbers.map_or_else(|| json!(values), |numbers| json!(numbers));
+    IndexMap::from([match column {
+        "zone" => ("zones".to_string(), list),
+        "section" => ("sections".to_string(), list),
+        other if values.len() == 1 => (other.to_string(), json!(values[0])),
+        other => (other.to_string(), list),
+    }])
+}

@@ -1,0 +1,72 @@
+//! From which sizes on an effect would have been seen.
+
+use crate::diagnose::run::{Found, length};
+use crate::result::diagnosis::Detectable;
+
+/// Whitened length of a change that can be identified.
+const SEEN: f64 = 5.0;
+
+/// Per effect and parameter, the smallest sizes that this campaign can show, to either side of neutral.
+pub fn detectable(found: &Found) -> Vec<Detectable> {
+    let mut list: Vec<Detectable> = Vec::new();
+    for candidate in found.candidates.iter().filter(|candidate| !candidate.discrete && candidate.fixed.is_empty()) {
+        let Some(neutral) = candidate.neutral().filter(|neutral| neutral.is_finite()) else { continue };
+        let mut nodes: Vec<(f64, f64)> = candidate
+            .nodes
+            .iter()
+            .filter(|node| !node.change.is_empty())
+            .map(|node| (node.size - neutral, length(&found.alone.whitener, &node.change)))
+            .collect();
+        nodes.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+        let below = nodes.iter().copied().filter(|(away, _)| *away < 0.0);
+        let above = nodes.iter().copied().filter(|(away, _)| *away > 0.0);
+        let (below, above) = (long_enough(below), long_enough(above));
+        let nearer = |a: f64, b: f64| if a.abs() <= b.abs() { a } else { b };
+        let made = Detectable {
+            effect: candidate.effect.clone(),
+            parameter: candidate.size.clone(),
+            unit: candidate.unit.text.clone(),
+            neutral,
+            smallest: below.zip(above).map(|(a, b)| nearer(a, b)).or(below).or(above),
+            below,
+            above,
+        };
+        let alike = |known: &&mut Detectable| known.effect == made.effect && known.parameter == made.parameter && known.unit == made.unit;
+        match list.iter_mut().find(alike) {
+            Some(_) if candidate.channels.is_empty() => {}
+            Some(known) => {
+                let farther = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| if a.abs() >= b.abs() { a } else { b });
+                known.smallest = farther(known.smallest, made.smallest);
+                (known.below, known.above) = (farther(known.below, made.below), farther(known.above, made.above));
+            }
+            None => list.push(made),
+        }
+    }
+    list
+}
+
+/// Where the whitened change on one side of neutral grows to what can be seen: `nodes` are distances and lengths, in order, linear in
+/// between. Nothing if it does not.
+fn long_enough(nodes: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let mut before = (0.0, 0.0);
+    for (away, long) in nodes {
+        if long >= SEEN {
+            return Some(before.0 + (away - before.0) * (SEEN - before.1) / (long - before.1));
+        }
+        before = (away, long);
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lengths 2 at 1 and 6 at 3: five at 1 + 2 * 3 / 4.
+    #[test]
+    fn what_can_be_seen_lies_between_the_sizes_that_were_tried() {
+        assert_eq!(long_enough([(1.0, 2.0), (3.0, 6.0)].into_iter()), Some(2.5));
+        assert_eq!(long_enough([(-2.0, 10.0)].into_iter()), Some(-1.0));
+        assert_eq!(long_enough([(1.0, 2.0), (3.0, 4.0)].into_iter()), None);
+    }
+}

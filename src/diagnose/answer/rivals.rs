@@ -1,0 +1,134 @@
+//! What else may be the cause, how probable each is, and what to measure where the data cannot tell.
+
+use super::apart::{Apart, apart};
+use super::causes::cause;
+use crate::diagnose::inputs::Inputs;
+use crate::diagnose::run::{Found, deviations};
+use crate::diagnose::search::choose::{TOLERANCE_SD, plausible};
+use crate::diagnose::search::fit::Fitted;
+use crate::effects::Effect;
+use crate::result::diagnosis::Cause;
+
+/// Rivals with so much less evidence cannot be told from the answer.
+const NEAREST: f64 = 8.0;
+/// Evidence is divided by this before it becomes a probability: real discrepancies are not those of the covariance.
+const TEMPERATURE: f64 = 4.0;
+
+/// Sets in which another effect takes the place of a member, and whether the data can tell them from the answer.
+pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
+    let best = found.chosen.evidence();
+    let mut causes: Vec<Cause> = Vec::new();
+    let own = |at: usize| &found.candidates[found.chosen.members[at].candidate];
+    for (at, fit, fall) in &found.rivals {
+        let of = &found.candidates[fit.candidate];
+        // The same on another channel is another cause, where the data cannot tell which channel it is.
+        let elsewhere = of.effect == own(*at).effect && of.channels != own(*at).channels && !of.channels.is_empty() && *fall <= NEAREST;
+        let named = found.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect);
+        if named && !elsewhere {
+            continue;
+        }
+        if causes.len() >= 5 || causes.iter().any(|cause| cause.effects.iter().any(|effect| effect.name == of.effect)) {
+            continue;
+        }
+        // What a guard refused is told as such; it is no rival.
+        if found.refused.iter().any(|refused| found.candidates[refused.fitted.candidate].is_like(of)) || !plausible(of, fit.size) {
+            continue;
+        }
+        // What is within a declared tolerance is allowed for already.
+        if deviations(of, fit.size, inputs.settings, &found.declared, true) < TOLERANCE_SD {
+            continue;
+        }
+        let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(NEAREST) && fit.evidence > found.bars.least(of)
+            || found.stability.get(*at).is_some_and(|stability| stability.as_well(fit.candidate));
+        let drawn = found.stability.get(*at).map_or(0.0, |stability| stability.instead_of(fit.candidate));
+        let mut members = found.chosen.members.clone();
+        members[*at] = fit.clone();
+        let mut cause = cause(inputs, found, &members, causes.len() + 2);
+        (cause.in_ambiguity_set, cause.probability) = (near, drawn);
+        cause.evidence = best - fall;
+        causes.push(cause);
+    }
+    causes
+}
+
+/// How probable each cause is. `failing` is the least share of the resamples in which a member is first, where that is too few: then
+/// causes are as probable as they are often first, which they have as `probability` before.
+pub fn probabilities(causes: &mut [Cause], verdict: &str, suspected: bool, failing: Option<f64>) {
+    // A rival may have more evidence than an answer that was chosen with the tolerances as they act beside it: then it is as probable.
+    let best = causes.first().map_or(0.0, |answer| answer.evidence);
+    let by_evidence = |cause: &Cause| ((cause.evidence - best).min(0.0) / (2.0 * TEMPERATURE)).exp();
+    let weights: Vec<f64> = match failing {
+        Some(first) => causes.iter().map(|cause| if cause.rank == 1 { first } else { cause.probability }).collect(),
+        None => causes.iter().map(by_evidence).collect(),
+    };
+    // Something outside the catalogue is possible as well; more so where something is left.
+    let outside = match verdict {
+        "unexplained" => 4.0,
+        _ if suspected => 1.0,
+        _ => 0.05,
+    };
+    let all = weights.iter().sum::<f64>() + outside;
+    causes.iter_mut().zip(weights).for_each(|(cause, weight)| cause.probability = weight / all);
+    if verdict == "unexplained" {
+        causes.iter_mut().for_each(|cause| cause.in_ambiguity_set = false);
+    }
+}
+
+pub fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: &str) -> Option<String> {
+    if verdict != "ambiguous" {
+        return None;
+    }
+    let effects = causes.iter().filter(|cause| cause.in_ambiguity_set).flat_map(|cause| &cause.effects);
+    let mut measurements: Vec<String> = Vec::new();
+    for effect in effects {
+        let known: Option<&Effect> = inputs.catalogue.effect(&effect.name);
+        if let Some(settled) = known.and_then(|known| known.settled_by.clone())
+            && !measurements.contains(&settled)
+        {
+            measurements.push(settled);
+        }
+    }
+    measurements.extend(found.suspect.as_ref().map(|suspect| format!("`{}` itself, measured", suspect.key)));
+    measurements.extend(more_sections(inputs, found, causes));
+    (!measurements.is_empty()).then(|| measurements.join("; or "))
+}
+
+/// Standard deviations from which on two causes cannot be taken for each other by chance.
+const TOLD_APART: f64 = 5.0;
+
+/// Causes of which neither can be the whole cause: the data that would tell them apart, were it one of them, are there.
+pub fn neither(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: &str) -> Option<String> {
+    let (names, apart) = nearest(found, causes).filter(|(_, apart)| verdict == "ambiguous" && apart.now >= TOLD_APART)?;
+    let [one, other] = names.map(|name| inputs.catalogue.effect(name).map_or(name, |effect| effect.title.as_str()));
+    Some(format!(
+        "{one} | {other}: what they change here is {:.1} standard deviations apart. Were one of them the whole cause, these data would say \
+         which: something else acts beside it.",
+        apart.now
+    ))
+}
+
+/// A member of the answer and the possible cause that is nearest to it, by name.
+fn nearest<'a>(found: &'a Found, causes: &[Cause]) -> Option<([&'a str; 2], Apart)> {
+    let near =
+        |name: &str| causes.iter().skip(1).any(|cause| cause.in_ambiguity_set && cause.effects.iter().any(|effect| effect.name == name));
+    let effect = |fit: &Fitted| found.candidates[fit.candidate].effect.as_str();
+    let differs = |at: usize, fit: &Fitted| near(effect(fit)) && effect(fit) != effect(&found.chosen.members[at]);
+    let (at, rival, _) = found.rivals.iter().find(|(at, fit, _)| differs(*at, fit))?;
+    let member = &found.chosen.members[*at];
+    Some(([effect(member), effect(rival)], apart(found, member, rival)?))
+}
+
+/// More sections of the kind that tells the answer from its nearest rival best, where they are not far apart already.
+fn more_sections(inputs: &Inputs<'_>, found: &Found, causes: &[Cause]) -> Option<String> {
+    let (_, apart) = nearest(found, causes).filter(|(_, apart)| apart.now < TOLD_APART)?;
+    let sections: Vec<&str> = apart.sections.iter().map(|at| found.seen.sections[*at].section.name()).collect();
+    let stratum = inputs.settings.stratum.as_deref();
+    let kind = apart.sections.first().zip(stratum).and_then(|(at, column)| found.seen.sections[*at].section.says(column));
+    Some(format!(
+        "as many sections again like {} ({}): the two nearest causes, {:.1} standard deviations apart now, would be {:.1}",
+        sections.join(", "),
+        kind.unwrap_or_else(|| "the kind that helps most".into()),
+        apart.now,
+        apart.then
+    ))
+}

@@ -1,0 +1,270 @@
+//! The answer in words and numbers.
+
+use super::causes::cause;
+use super::detectable::detectable;
+use super::rivals::{ambiguity, discriminating, neither, probabilities};
+use crate::diagnose::inputs::Inputs;
+use crate::diagnose::observe::features::Kind;
+use crate::diagnose::run::{Found, chi, deviations};
+use crate::diagnose::search::choose::TOLERANCE_SD;
+use crate::diagnose::search::fit::Fitted;
+use crate::diagnose::search::lack::{LACK, unexplained};
+use crate::diagnose::search::suspects::Suspect;
+use crate::result::diagnosis::{Cause, Diagnosis, Fault, How, Nearest, Shrink, Vetoed};
+use crate::simulate::Units;
+
+/// Trends that are less probable than this are told, be they significant among all or not.
+const TOLD: f64 = 0.05;
+
+/// Puts what was found into an answer.
+#[must_use]
+pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Option<Shrink>) -> Diagnosis {
+    let (before, after) = chi(found);
+    let (unexplained_share, too_much) = unexplained(&found.lack_before, &found.lack_after);
+    // What stands out in a section or two alone makes no answer wrong, but is no agreement either.
+    let lacking = found.lack_after.iter().any(|lack| lack.sigma_with_them > LACK);
+    let ambiguous = ambiguity(inputs, found);
+    let named = !found.chosen.members.is_empty();
+    let invariants = crate::diagnose::gap::invariants::invariants(inputs.settings, found, units);
+    let (mut trends, together) = crate::diagnose::gap::trends::trends(inputs.settings, found, units);
+    let drifts = super::steady::drifts(inputs.settings, found);
+    // No chance, whatever share of the gap it is.
+    let left = crate::diagnose::gap::trends::certain(&trends) || super::steady::certain(&drifts).is_some();
+    // The least share of the resamples in which a member is first, where that is too few.
+    let least = found.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
+    let verdict = match () {
+        () if !named && !lacking && !left && found.seen.faults.is_empty() => "no significant gap",
+        () if !named || left => "unexplained",
+        () if too_much || found.suspect.as_ref().is_some_and(Suspect::beats) || found.contradicting.is_some() => "unexplained",
+        () if found.suspect.is_some() || least.is_some() || ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
+        () => "explained",
+    };
+    let mut causes = vec![];
+    if named {
+        causes.push(cause(inputs, found, &found.chosen.members, 1));
+        // Where the gap stays, what would have more evidence than the answer was refused: it is told there, and is no rival.
+        let best = causes[0].evidence;
+        causes.extend(ambiguous.into_iter().filter(|rival| verdict != "unexplained" || rival.evidence <= best));
+        causes.iter_mut().enumerate().for_each(|(at, cause)| cause.rank = at + 1);
+    }
+    probabilities(&mut causes, verdict, found.suspect.is_some(), least);
+    let discriminating_measurement = discriminating(inputs, found, &causes, verdict);
+    let radius = |key: &str| crate::diagnose::inputs::value_of(inputs.campaign, key);
+    let shapes = crate::diagnose::gap::shapes::shapes(inputs.settings, &found.seen, &radius, inputs.seed);
+    let mut says = says(inputs, found, (verdict, left), &causes, shrink.as_ref(), unexplained_share);
+    let trends_tested = trends.len();
+    trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
+    if verdict == "unexplained" {
+        says.extend(super::steady::worth_a_word(inputs.catalogue, &drifts));
+        says.extend(crate::diagnose::gap::trends::worth_a_word(&trends));
+        says.extend(crate::diagnose::gap::invariants::worst(&invariants));
+        says.extend(crate::diagnose::gap::shapes::worth_a_word(&shapes));
+    }
+    says.extend(neither(inputs, found, &causes, verdict));
+    let noted = found.runs.failed.iter().map(|failed| format!("a run failed and was left out: {failed}"));
+    let left_out = found.seen.left_out.iter().map(|(section, reason)| format!("section {section} was left out: {reason}"));
+    let again = found.seen.sections.iter().filter(|observed| observed.again).map(|observed| observed.section.name());
+    let again = again.map(|name| format!("section {name} is another one measured again: it does not count twice"));
+    let mut notes: Vec<String> = noted.chain(left_out).chain(again).collect();
+    let unknown = found.declared.unknown.iter();
+    notes.extend(
+        unknown.map(|name| format!("the catalogue knows no tolerance `{name}`: what the campaign declares there is not allowed for")),
+    );
+    let tolerances = if found.declared.any {
+        "declared by the campaign"
+    } else {
+        notes.push("the campaign declares no tolerances: documented defaults were taken, and the verdict is the weaker for it".into());
+        "documented defaults"
+    };
+    notes.extend(alone(found));
+    if !inputs.references.is_empty() {
+        let names: Vec<&str> = inputs.references.iter().map(|reference| reference.campaign.name.as_str()).collect();
+        notes.push(format!("what the simulation is wrong in anyway was learnt from: {}", names.join(", ")));
+    }
+    if inputs.simulator.is_none() {
+        notes.push("no simulator could be run: only effects of the measuring chain were tried".into());
+    }
+    Diagnosis {
+        fishplate: env!("CARGO_PKG_VERSION"),
+        campaign: inputs.campaign.name.clone(),
+        verdict,
+        says,
+        faults: found.seen.faults.clone(),
+        r#where: crate::diagnose::gap::locate::locate(inputs.settings, found, units),
+        invariants,
+        trends,
+        trends_tested,
+        together,
+        drifts,
+        shapes,
+        causes,
+        vetoed: vetoed(inputs, found),
+        shrink,
+        unexplained_share,
+        discriminating_measurement,
+        detectable: detectable(found),
+        nearest: nearest(inputs, found),
+        how: How {
+            catalogue: inputs.catalogue.name.clone(),
+            simulator: inputs.simulator.map_or("none".into(), |simulator| simulator.name().to_string()),
+            mode: "increments on the recorded simulation".into(),
+            tolerances: tolerances.into(),
+            sections: found.seen.sections.len(),
+            features: found.seen.len(),
+            seed: inputs.seed,
+            threshold: found.bars.first,
+            chi_squared_before: before,
+            chi_squared_after: after,
+        },
+        notes,
+        simulations_run: found.runs.made,
+        seconds: simulated_time(found),
+        pictures: Vec::new(),
+    }
+}
+
+/// Simulated time in s: what a clock shows would make every answer another text.
+fn simulated_time(found: &Found) -> f64 {
+    let all: f64 = (0..found.seen.sections.len()).map(|at| found.seen.extent(at).1).sum();
+    all * found.runs.made as f64 / found.seen.sections.len().max(1) as f64
+}
+
+/// Sections that stand out alone beside an answer, with the channels that they do so in.
+fn alone(found: &Found) -> Option<String> {
+    let one = |at: usize| {
+        let mut channels: Vec<&str> =
+            found.lack_after.iter().filter(|lack| lack.alone.contains(&at)).map(|lack| lack.channel.as_str()).collect();
+        channels.dedup();
+        (!channels.is_empty()).then(|| format!("{} in {}", found.seen.sections[at].section.name(), channels.join(", ")))
+    };
+    let all: Vec<String> = (0..found.seen.sections.len()).filter_map(one).collect();
+    let told = !all.is_empty() && !found.chosen.members.is_empty();
+    told.then(|| format!("sections that stand out alone, and do not decide whether the gap is explained: {}", all.join("; ")))
+}
+
+fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
+    let one = |refused: &crate::diagnose::search::choose::Refused| {
+        let of = &found.candidates[refused.fitted.candidate];
+        let title = inputs.catalogue.effect(&of.effect).map_or(of.effect.as_str(), |effect| effect.title.as_str());
+        let on = if of.channels.is_empty() || of.channels.len() > 2 { String::new() } else { format!(" ({})", of.channels.join(", ")) };
+        Vetoed {
+            name: of.effect.clone(),
+            size: refused.fitted.size,
+            parameter: of.size.clone(),
+            evidence: refused.fitted.evidence,
+            says: format!("{title}{on} improves the fit as a whole, but: {}", refused.reason),
+        }
+    };
+    found.refused.iter().map(one).collect()
+}
+
+/// What would have been named next, and what it wants for that.
+fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
+    let one = |fit: &Fitted| {
+        let of = &found.candidates[fit.candidate];
+        let bar = found.bars.least(of);
+        let needed = if found.masks[fit.mask].asked_by.is_some() { 2.0 * bar } else { bar };
+        let away = deviations(&found.candidates[fit.candidate], fit.size, inputs.settings, &found.declared, true);
+        let wants = match () {
+            () if fit.evidence < needed => format!("evidence of {needed:.1}"),
+            () if away < TOLERANCE_SD => {
+                format!("a size further from what is declared: {away:.1} of {TOLERANCE_SD:.1} standard deviations")
+            }
+            // One at a time is looked at: what explains most.
+            () if found.chosen.members.is_empty() => "more evidence than what was refused in its place".into(),
+            () => "a larger share of what is named".into(),
+        };
+        Nearest { effect: of.effect.clone(), says: cause(inputs, found, std::slice::from_ref(fit), 0).says, evidence: fit.evidence, wants }
+    };
+    found.nearest.iter().map(one).collect()
+}
+
+fn says(
+    inputs: &Inputs<'_>,
+    found: &Found,
+    (verdict, left): (&str, bool),
+    causes: &[Cause],
+    shrink: Option<&Shrink>,
+    unexplained: f64,
+) -> Vec<String> {
+    let faulty = |fault: &Fault| format!("Fault of the recording: {} (sections {}).", fault.says, fault.sections.join(", "));
+    let mut lines: Vec<String> = found.seen.faults.iter().map(faulty).collect();
+    match verdict {
+        "no significant gap" => {
+            lines.push("What differs is within noise, declared tolerances and what a model of this kind is allowed to be wrong in.".into())
+        }
+        "explained" => lines.push(format!("{}.", causes[0].says)),
+        "ambiguous" => {
+            let mut set: Vec<String> = causes.iter().filter(|cause| cause.in_ambiguity_set).map(|cause| cause.says.clone()).collect();
+            set.extend(
+                found
+                    .suspect
+                    .as_ref()
+                    .map(|suspect| format!("`{}` times {:.2}, which no effect of the catalogue moves", suspect.key, suspect.factor)),
+            );
+            lines.push(match &set[..] {
+                [alone] => format!("{alone}; the data cannot tell it from all else."),
+                all => format!("The data cannot tell apart: {}.", all.join(" | ")),
+            });
+            let failing = found.chosen.members.iter().zip(&found.stability).filter(|(_, stability)| stability.fails());
+            lines.extend(failing.map(|(member, stability)| {
+                let effect = &found.candidates[member.candidate].effect;
+                let title = inputs.catalogue.effect(effect).map_or(effect, |effect| &effect.title);
+                let beaten = 100.0 * (1.0 - stability.first);
+                format!("{title}: where the sections are drawn anew, another effect has more evidence in {beaten:.0} % of the draws.")
+            }));
+        }
+        _ => {
+            let mut worst: Vec<_> = found.lack_after.iter().filter(|lack| lack.sigma_with_them > LACK).collect();
+            worst.sort_by(|a, b| b.sigma_with_them.total_cmp(&a.sigma_with_them));
+            let named: Vec<String> = worst
+                .iter()
+                .take(4)
+                .map(|lack| format!("{} ({})", lack.channel, if lack.kind == Kind::Level { "quasi-static" } else { "dynamic" }))
+                .collect();
+            let catalogue = &inputs.catalogue.name;
+            if let Some(suspect) = &found.suspect {
+                lines.push(format!(
+                    "Outside the catalogue: `{}` times {:.2} explains more than {} (evidence {:.0} against {:.0}).",
+                    suspect.key,
+                    suspect.factor,
+                    if suspect.of_all { "all effects together" } else { "any effect does" },
+                    suspect.evidence,
+                    suspect.answer
+                ));
+            }
+            if let Some((refused, evidence)) = &found.contradicting {
+                let looks = cause(inputs, found, std::slice::from_ref(&refused.fitted), 0).says;
+                let reason = &refused.reason;
+                lines.push(format!(
+                    "What is left looks in part like another effect, with more evidence ({evidence:.0}) than any that is named, and contradicts it: {looks}, but {reason}."
+                ));
+            }
+            lines.push(match named.is_empty() {
+                true if found.suspect.is_some() || found.contradicting.is_some() => {
+                    "Beside the effects that come nearest, nothing is left that is more than is allowed for.".into()
+                }
+                true if left => format!("No effect of the catalogue `{catalogue}` explains the gap: what is left is no chance."),
+                true => format!("Beside that, nothing is left that an effect of the catalogue `{catalogue}` should explain."),
+                false => format!("No effect of the catalogue `{catalogue}` explains the gap. It is left in {}.", named.join(", ")),
+            });
+            if let Some(first) = causes.first() {
+                lines.push(format!("Explained in part: {}; {:.0} % of the excess is left.", first.says, 100.0 * unexplained));
+            }
+        }
+    }
+    if let Some(shrink) = shrink {
+        let (before, after, low, high) = (shrink.before, shrink.after, 100.0 * shrink.low, 100.0 * shrink.high);
+        let removed = 100.0 * shrink.fraction_removed;
+        lines.push(match removed < 0.0 {
+            false => format!(
+                "On sections kept out of the fit the gap falls from {before:.3} to {after:.3}: {removed:.0} % is removed ({low:.0} to {high:.0} %)."
+            ),
+            true => format!(
+                "On sections kept out of the fit the gap grows from {before:.3} to {after:.3}: by {:.0} % ({:.0} to {:.0} %).",
+                -removed, -high, -low
+            ),
+        });
+    }
+    lines
+}

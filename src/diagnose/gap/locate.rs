@@ -1,0 +1,94 @@
+//! Where the gap lies: cells of quantity, position, stratum and band, tested against noise, declared tolerances and what a model of
+//! this kind is allowed to be wrong in.
+
+use super::cells::{Cell, cells, kinds, positions, significant_up_to};
+use crate::diagnose::observe::features::Kind;
+use crate::diagnose::run::Found;
+use crate::diagnose::settings::Settings;
+use crate::result::diagnosis::Where;
+use crate::simulate::Units;
+
+/// All cells, the largest share of the gap first.
+#[must_use]
+pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
+    use rayon::prelude::*;
+    let cells = map(settings, found);
+    let tested: Vec<Tested> = cells.par_iter().map(|cell| test(found, cell)).collect();
+    let total: f64 = tested.iter().map(|test| test.excess.max(0.0)).sum::<f64>().max(1e-300);
+    let limit = significant_up_to(&tested.iter().map(|test| test.p_value).collect::<Vec<f64>>());
+    let place = |(cell, test): (&Cell, &Tested)| Where {
+        quantity: settings.groups[cell.group].says.clone(),
+        says: says(settings, found, cell),
+        signals: cell.signals(found),
+        zones: vec![stratum(settings, found, cell).to_string()],
+        sections: cell.sections.iter().map(|at| found.seen.sections[*at].section.name().to_string()).collect(),
+        wavelength_or_band: cell.band(found),
+        difference: test.mean,
+        difference_rms: test.rms,
+        unit: cell.unit(found, units),
+        share_of_gap: test.excess.max(0.0) / total,
+        p_value: test.p_value,
+        significant: test.p_value <= limit,
+    };
+    let mut places: Vec<Where> = cells.iter().zip(&tested).map(place).collect();
+    places
+        .sort_by(|a, b| (b.significant, b.share_of_gap).partial_cmp(&(a.significant, a.share_of_gap)).unwrap_or(std::cmp::Ordering::Equal));
+    places
+}
+
+/// The cells that a change of the features moves by more than three standard deviations of all that is allowed for, in the words of the
+/// map: what a diagnosis could have told of its places.
+#[must_use]
+pub fn moved(settings: &Settings, found: &Found, change: &[f64]) -> Vec<String> {
+    const MOVED: f64 = 3.0;
+    let far = |cell: &Cell| {
+        let values: Vec<f64> = cell.members.iter().map(|(section, feature)| change[found.seen.place(*section, *feature)]).collect();
+        found.alone.covariance.among(&cell.members).chi_squared(&values) > MOVED * MOVED
+    };
+    map(settings, found).into_iter().filter(far).map(|cell| says(settings, found, &cell)).collect()
+}
+
+/// Every cell.
+fn map(settings: &Settings, found: &Found) -> Vec<Cell> {
+    let positions = positions(settings);
+    let of_kind = |kind: Kind| positions.iter().flat_map(move |position| cells(settings, found, kind, position, &found.strata));
+    kinds(found).flat_map(of_kind).collect()
+}
+
+/// What the sections of a cell have in common.
+fn stratum<'a>(settings: &Settings, found: &'a Found, cell: &Cell) -> &'a str {
+    let of = |(column, at): (&str, &usize)| found.seen.sections[*at].section.fact(column);
+    settings.stratum.as_deref().zip(cell.sections.first()).and_then(of).unwrap_or("")
+}
+
+fn says(settings: &Settings, found: &Found, cell: &Cell) -> String {
+    let (group, column) = (&settings.groups[cell.group].says, settings.stratum.as_deref().unwrap_or("all"));
+    format!("{group}, {}, {}, {column} {}", cell.position, cell.band(found), stratum(settings, found, cell))
+}
+
+struct Tested {
+    /// Of chi-squared over what noise and tolerances give.
+    excess: f64,
+    p_value: f64,
+    /// Of levels in their unit, of bands as a ratio less one.
+    mean: f64,
+    rms: f64,
+}
+
+fn test(found: &Found, cell: &Cell) -> Tested {
+    let values: Vec<f64> =
+        cell.members.iter().map(|(section, feature)| found.alone.difference[found.seen.place(*section, *feature)]).collect();
+    // Levels count towards the side of the simulated one, so that left and right curves do not cancel.
+    let side = |(section, feature): &(usize, usize)| match cell.kind {
+        Kind::Level => found.ground.simulated[found.seen.place(*section, *feature)].signum(),
+        _ => 1.0,
+    };
+    let freedom = values.len() as f64;
+    let mean = cell.members.iter().zip(&values).map(|(member, value)| side(member) * value).sum::<f64>() / freedom;
+    // Bands are logarithms of ratios.
+    let relative = |value: f64| if cell.kind == Kind::Level { value } else { value.exp() - 1.0 };
+    let rms = (values.iter().map(|value| relative(*value).powi(2)).sum::<f64>() / freedom).sqrt();
+    let chi = found.alone.covariance.among(&cell.members).chi_squared(&values);
+    let p_value = statrs::distribution::ChiSquared::new(freedom).map_or(1.0, |law| statrs::distribution::ContinuousCDF::sf(&law, chi));
+    Tested { excess: chi - freedom, p_value, mean: relative(mean), rms }
+}

@@ -1,0 +1,49 @@
+//! What a diagnosis is made of.
+
+use super::observe::cache::Cache;
+use super::settings::Settings;
+use crate::data::Campaign;
+use crate::effects::Catalogue;
+use crate::model::parameter;
+use crate::simulate::Simulator;
+
+/// Called with what is being tried.
+pub type Trying<'a> = &'a (dyn Fn(&str) + Sync);
+
+/// A campaign whose state is known, and what simulates it.
+pub struct Reference<'a> {
+    pub campaign: &'a Campaign,
+    pub simulator: Option<&'a dyn Simulator>,
+    pub cache: Option<Cache>,
+}
+
+impl std::fmt::Debug for Reference<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Reference").field("campaign", &self.campaign.name).finish_non_exhaustive()
+    }
+}
+
+/// What a diagnosis is made of.
+pub struct Inputs<'a> {
+    pub campaign: &'a Campaign,
+    pub catalogue: &'a Catalogue,
+    pub settings: &'a Settings,
+    pub simulator: Option<&'a dyn Simulator>,
+    pub cache: Option<Cache>,
+    /// Campaigns whose state is known.
+    pub references: &'a [Reference<'a>],
+    pub seed: u64,
+    pub trying: Trying<'a>,
+}
+
+impl std::fmt::Debug for Inputs<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Inputs").field("campaign", &self.campaign.name).finish_non_exhaustive()
+    }
+}
+
+/// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
+#[must_use]
+pub fn value_of(campaign: &Campaign, key: &str) -> Option<f64> {
+    campaign.vehicle.lookup(key).and_then(crate::yaml::Node::number).or_else(|| parameter(key)?.neutral)
+}

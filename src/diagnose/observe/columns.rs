@@ -1,0 +1,40 @@
+//! Columns of the section table that the catalogue names, in the words of the protocol.
+
+use crate::certify::Compiled;
+use crate::data::Campaign;
+use crate::diagnose::settings::Settings;
+use crate::problem::{Problem, Problems};
+use crate::simulate::Section;
+
+/// Columns by which sections are told apart have the words that the protocol declares for them: a zone `1.0` is zone 1.
+///
+/// Problems, all of them warnings: `unknown-column` for a column that the table does not have, `section-data` for a word that the
+/// protocol does not know.
+pub fn in_words_of(compiled: &Compiled, settings: &Settings, campaign: &Campaign, sections: &mut [Section], problems: &mut Problems) {
+    let Some(table) = &campaign.sections else { return };
+    let mut done: Vec<&str> = Vec::new();
+    for (column, named) in &settings.columns {
+        if column == "section" || done.contains(&column.as_str()) {
+            continue;
+        }
+        done.push(column);
+        let Some(at) = table.column(column) else {
+            let says = format!("the section table has no column `{column}`: sections are not told apart by it");
+            let known = table.columns.iter().map(|heading| heading.name.as_str());
+            problems.push(Problem::warning("unknown-column", says).at(named).suggest(column, known));
+            continue;
+        };
+        for section in sections.iter_mut() {
+            let cell = table.row_named(section.name()).and_then(|row| table.cell(row, at));
+            let (Some(cell), Some(fact)) = (cell, section.facts.get_mut(at)) else { continue };
+            match compiled.word(column, &fact.text) {
+                None => {}
+                Some(Ok(word)) => fact.text = word,
+                Some(Err(says)) => {
+                    let problem = Problem::warning("section-data", format!("`{column}`: {says}")).at(&cell.span);
+                    problems.push(problem.help("the protocol does not use this section; the diagnosis takes it for one of its own kind"));
+                }
+            }
+        }
+    }
+}

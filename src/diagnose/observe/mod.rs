@@ -1,0 +1,9 @@
+//! What was measured and what was simulated, as features.
+
+pub mod bench;
+pub mod cache;
+pub(super) mod columns;
+pub(super) mod faults;
+pub mod features;
+pub mod observations;
+pub mod scatter;

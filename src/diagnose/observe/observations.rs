@@ -1,0 +1,224 @@
+//! A campaign as features: what was measured, what was simulated, section by section.
+
+use rayon::prelude::*;
+
+use super::faults::faults;
+use super::features::{ChannelFeatures, Feature, Kind, Layout, Piece, Spectrum, of_channel};
+use super::scatter::{Scatter, scatter};
+use crate::data::{Campaign, RecordKind};
+use crate::diagnose::settings::{GroupFeatures, Settings};
+use crate::effects::{Catalogue, Signals};
+use crate::problem::{Problem, Problems};
+use crate::result::diagnosis::Fault;
+use crate::simulate::{Section, in_units, recorded};
+use crate::units::Unit;
+
+/// One section with its records.
+#[derive(Debug)]
+pub struct Observed {
+    pub section: Section,
+    /// The campaign's simulation, and what was measured.
+    pub simulated: Signals,
+    pub measured: Signals,
+    /// Spectra of the simulated channels of the layout.
+    pub references: Vec<Option<Spectrum>>,
+    /// How much the channels of the layout scatter.
+    pub scatter: Vec<Scatter>,
+    /// Whether it is an earlier section measured again: it says nothing new about the simulation.
+    pub again: bool,
+}
+
+/// All sections of a campaign that have both records.
+#[derive(Debug)]
+pub struct Observations {
+    pub layout: Layout,
+    pub features: Vec<Feature>,
+    pub sections: Vec<Observed>,
+    /// Standard deviation of white noise per sample, by channel of the layout.
+    pub noise: Vec<f64>,
+    /// Sections that could not be used, with the reason.
+    pub left_out: Vec<(String, String)>,
+    /// Channels that cannot be used.
+    pub faults: Vec<Fault>,
+}
+
+impl Observations {
+    /// Reads the records of a campaign, in the units that `unit` gives or else the simulation's own, and finds which channels both
+    /// sides have.
+    ///
+    /// Problems: no section can be read; no channel of the catalogue is in the records.
+    pub fn read(
+        campaign: &Campaign,
+        sections: Vec<Section>,
+        catalogue: &Catalogue,
+        settings: &Settings,
+        declared: &dyn Fn(&str) -> Option<f64>,
+        unit: &(dyn Fn(&str) -> Option<Unit> + Sync),
+        problems: &mut Problems,
+    ) -> Option<Self> {
+        type Both = (Section, Result<(Signals, Signals), String>);
+        let read: Vec<Both> = sections
+            .into_par_iter()
+            .map(|section| {
+                let both = both_sides(campaign, &section, unit);
+                (section, both)
+            })
+            .collect();
+        let mut left_out = Vec::new();
+        let mut good = Vec::new();
+        for (section, both) in read {
+            match both {
+                Ok((simulated, measured)) => good.push((section, simulated, measured)),
+                Err(reason) => left_out.push((section.name().to_string(), reason)),
+            }
+        }
+        if good.is_empty() {
+            let reason = left_out.first().map_or(String::new(), |(section, reason)| format!("; section `{section}`: {reason}"));
+            problems.push(Problem::error("no-sections", format!("no section of the campaign can be compared{reason}")));
+            return None;
+        }
+        let mut sections: Vec<Observed> = Vec::new();
+        for (section, simulated, measured) in good {
+            let again = section.fact("repeat of").is_some_and(|of| sections.iter().any(|known| known.section.name() == of))
+                || sections.iter().any(|known| known.measured.channels == measured.channels);
+            sections.push(Observed { section, simulated, measured, references: Vec::new(), scatter: Vec::new(), again });
+        }
+        let mut layout = Layout { channels: Vec::new(), edges: settings.edges.clone(), alike: settings.alike, furthest: settings.furthest };
+        let everywhere = |name: &String| {
+            sections.iter().all(|observed| observed.simulated.channel(name).is_some() && observed.measured.channel(name).is_some())
+        };
+        let channels = |group: &GroupFeatures| catalogue.channels(&group.name).unwrap_or_default().into_iter().filter(everywhere);
+        let all: Vec<String> = settings.groups.iter().flat_map(&channels).collect();
+        let faults = faults(&sections, &all);
+        let mut noise = Vec::new();
+        for (at, group) in settings.groups.iter().enumerate() {
+            for name in channels(group).filter(|name| faults.iter().all(|fault| fault.channel != *name)) {
+                noise.push(group.noise.as_deref().and_then(declared).unwrap_or(0.0));
+                let bands = group.bands.min(settings.edges.len().saturating_sub(1));
+                layout.channels.push(ChannelFeatures {
+                    name,
+                    group: at,
+                    unit: group.unit.clone(),
+                    level: group.level,
+                    bands,
+                    alike: group.alike,
+                });
+            }
+        }
+        if layout.channels.is_empty() {
+            let known: Vec<String> = catalogue.groups.iter().flat_map(|group| group.channels.clone()).collect();
+            let says = format!("no channel of the catalogue `{}` is in both records of every section", catalogue.name);
+            problems.push(Problem::error("no-channels", says).help(format!("it knows {}", known.join(", "))));
+            return None;
+        }
+        let features = layout.features();
+        sections.par_iter_mut().enumerate().for_each(|(at, observed)| {
+            let of = |signals: &Signals, of: &ChannelFeatures| piece(signals, &of.name, &observed.section);
+            let spectrum = |channel: &ChannelFeatures| of(&observed.simulated, channel).map(|piece| Spectrum::new(&piece));
+            observed.references = layout.channels.iter().map(spectrum).collect();
+            let scatter = |(channel, reference): (&ChannelFeatures, &Option<Spectrum>)| {
+                let (measured, simulated) = of(&observed.measured, channel).zip(of(&observed.simulated, channel))?;
+                Some(scatter(&layout, &measured, &simulated, reference.as_ref()?, at as u64))
+            };
+            let both = layout.channels.iter().zip(&observed.references);
+            observed.scatter = both.map(|both| scatter(both).unwrap_or(Scatter { level: 0.0, has_lag: false })).collect();
+        });
+        Some(Self { layout, features, sections, noise, left_out, faults })
+    }
+
+    /// Sections that say something of their own.
+    #[must_use]
+    pub fn first_runs(&self) -> Vec<usize> {
+        (0..self.sections.len()).filter(|at| !self.sections[*at].again).collect()
+    }
+
+    /// Number of features of all sections.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.sections.len() * self.features.len()
+    }
+
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Features of signals of a section; `noisy` adds the power of the declared noise, which a simulation has not.
+    #[must_use]
+    pub fn of(&self, at: usize, signals: &Signals, noisy: bool) -> Vec<f64> {
+        let mut out = Vec::with_capacity(self.features.len());
+        for channel in 0..self.layout.channels.len() {
+            self.of_channel(at, signals, channel, noisy, &mut out);
+        }
+        out
+    }
+
+    /// Features of one channel of a section.
+    pub fn of_channel(&self, at: usize, signals: &Signals, channel: usize, noisy: bool, out: &mut Vec<f64>) {
+        let observed = &self.sections[at];
+        let of = &self.layout.channels[channel];
+        let before = out.len();
+        if let Some(piece) = piece(signals, &of.name, &observed.section) {
+            let noise = if noisy { self.noise[channel] } else { 0.0 };
+            of_channel(&self.layout, of, &piece, observed.references[channel].as_ref(), noise, out);
+        }
+        let wanted = self.features.iter().filter(|feature| feature.channel == channel).count();
+        out.resize(before + wanted, 0.0);
+    }
+
+    /// Features of every section, one after the other.
+    #[must_use]
+    pub fn all(&self, noisy: bool, signals: impl Fn(&Observed) -> &Signals + Sync) -> Vec<f64> {
+        let each = |at: usize| self.of(at, signals(&self.sections[at]), noisy);
+        (0..self.sections.len()).into_par_iter().flat_map_iter(each).collect()
+    }
+
+    /// Place of a feature of a section in the list of all.
+    #[must_use]
+    pub fn place(&self, section: usize, feature: usize) -> usize {
+        section * self.features.len() + feature
+    }
+
+    /// Samples per s and length in s of a section.
+    #[must_use]
+    pub fn extent(&self, at: usize) -> (f64, f64) {
+        let observed = &self.sections[at];
+        let inside = observed.measured.axis.iter().filter(|x| **x >= observed.section.start && **x <= observed.section.end).count();
+        (observed.measured.rate, inside as f64 / observed.measured.rate)
+    }
+
+    /// The channel's features by kind.
+    #[must_use]
+    pub fn find(&self, channel: usize, kind: Kind) -> Option<usize> {
+        self.features.iter().position(|feature| *feature == Feature { channel, kind })
+    }
+}
+
+/// The part of a channel inside its section.
+#[must_use]
+pub fn piece(signals: &Signals, name: &str, section: &Section) -> Option<Piece> {
+    let channel = signals.channel(name)?;
+    let from = signals.axis.partition_point(|x| *x < section.start);
+    let to = signals.axis.partition_point(|x| *x <= section.end);
+    if to < from + 16 {
+        return None;
+    }
+    let step = (signals.axis[to - 1] - signals.axis[from]) / (to - from - 1) as f64;
+    Some(Piece { values: channel.values[from..to].to_vec(), rate: signals.rate, step })
+}
+
+/// Simulated and measured in the same units: those of `unit`, else of the simulation.
+fn both_sides(campaign: &Campaign, section: &Section, unit: &dyn Fn(&str) -> Option<Unit>) -> Result<(Signals, Signals), String> {
+    let side = |kind| recorded(campaign, kind, section).map(|(signals, units, _)| (signals, units)).map_err(|problems| first(&problems));
+    let (mut simulated, units) = side(RecordKind::Simulation)?;
+    let (mut measured, others) = side(RecordKind::Measurement)?;
+    let to = |name: &str| unit(name).or_else(|| units.iter().find(|(known, _)| known == name).map(|(_, unit)| unit.clone()));
+    let says = |problem: Problem| problem.says;
+    in_units(&mut simulated, &units, &to).map_err(says)?;
+    in_units(&mut measured, &others, &to).map_err(says)?;
+    Ok((simulated, measured))
+}
+
+fn first(problems: &[Problem]) -> String {
+    problems.first().map_or(String::new(), |problem| problem.says.clone())
+}

@@ -1,0 +1,264 @@
+//! Further members, each simulated beside what was found before it: what an effect changes where a wind blows, or on records that lie
+//! elsewhere, is not what it changes alone.
+
+use std::sync::Arc;
+
+use super::candidates::{Candidate, Node, Workshop, applied};
+use super::choose::{Chosen, Refused, plausible, refit, search, together};
+use super::converge::{Converged, Converging, WORTH};
+use super::fit::{Fitted, Fitter, Mask};
+use super::place::Place;
+use super::settle::refined;
+use crate::diagnose::observe::bench::{Bench, Runs, Set};
+use crate::effects::{Action, Applied};
+use crate::simulate::Plan;
+
+/// How many candidates are simulated beside what was found, and the share of the way out of its tolerance that each must be alone.
+const TRIED: usize = 3;
+const FAR: f64 = 0.5;
+/// How often one that was chosen is simulated again beside sizes that have moved by so much of themselves since.
+const ROUNDS: usize = 3;
+const MOVED: f64 = 0.02;
+/// How far from a size, as a share of what it is from neutral, others are that are simulated with it.
+const APART: f64 = 0.15;
+
+/// What was found first, as a simulation has it.
+#[derive(Debug)]
+pub struct Beside {
+    set: Vec<Set>,
+    /// Its features.
+    pub base: Vec<f64>,
+    /// The candidates that it is, and their sizes.
+    members: Vec<usize>,
+    sizes: Vec<f64>,
+}
+
+impl Beside {
+    /// A bench with it.
+    #[must_use]
+    pub fn on<'a>(&self, bench: &Bench<'a>) -> Bench<'a> {
+        Bench { set: bench.set.iter().chain(&self.set).cloned().collect(), cache: bench.cache.clone(), ..*bench }
+    }
+}
+
+/// A candidate beside what was found first.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    pub there: Arc<Beside>,
+    /// Its nodes where it is alone.
+    alone: Arc<Vec<Node>>,
+}
+
+impl Placed {
+    /// Whether both are beside the same.
+    #[must_use]
+    pub fn same_place(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.there, &other.there)
+    }
+}
+
+/// A member as what is set in every run: parameters of the simulator, or operations on its signals.
+#[must_use]
+pub fn set(workshop: &Workshop<'_>, candidate: &Candidate, masks: &[Mask], member: &Fitted) -> Option<Set> {
+    let effect = workshop.catalogue.effect(&candidate.effect).filter(|effect| !matches!(effect.action, Action::Formulas(_)))?;
+    if !member.size.is_finite() {
+        return None;
+    }
+    let mut values = candidate.fixed.clone();
+    values.push((candidate.size.clone(), member.size));
+    let effects = [Applied { channels: candidate.channels.clone(), ..applied(effect, values) }];
+    let simulator = workshop.bench?.simulator.catalogue_name();
+    let plan = Plan::new(workshop.catalogue, &effects, &workshop.seen.sections[0].section, simulator).ok()?;
+    Some(Set { plan, sections: (member.mask != 0).then(|| masks[member.mask].sections.clone()) })
+}
+
+/// Members that were simulated beside one that has gone are what they are alone, and must be fitted again; whether there are any.
+pub fn alone_again(candidates: &mut [Candidate], members: &[Fitted]) -> bool {
+    let mut any = false;
+    for member in members {
+        let candidate = &mut candidates[member.candidate];
+        let gone = |at: &usize| members.iter().all(|member| member.candidate != *at);
+        if let Some(placed) = candidate.beside.take_if(|placed| placed.there.members.iter().any(gone)) {
+            candidate.nodes = placed.alone.to_vec();
+            any = true;
+        }
+    }
+    any
+}
+
+impl Converging<'_> {
+    /// Searches for further members again, one after the other: with the tolerances as they act beside what was found before them, and
+    /// with those that come near simulated beside it.
+    pub(super) fn beside(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Converged, runs: &mut Runs) -> Converged {
+        for count in 1..now.bars.most {
+            if now.chosen.members.len() < count {
+                break;
+            }
+            let mut first = now.chosen.clone();
+            first.members.truncate(count);
+            match self.placed((candidates, masks), &mut first, runs) {
+                Some(place) => {
+                    let own = std::mem::take(&mut now.known);
+                    now = self.at(&place).further((candidates, masks), (now, first), runs);
+                    now.known = own;
+                }
+                None => now = self.further((candidates, masks), (now, first), runs),
+            }
+        }
+        now
+    }
+
+    /// Members alone, with the tolerances as they act beside them, until neither moves the other; nothing where the tolerances do not
+    /// notice them.
+    fn placed(&self, (candidates, masks): (&mut [Candidate], &[Mask]), first: &mut Chosen, runs: &mut Runs) -> Option<Arc<Place>> {
+        let mut place: Option<Arc<Place>> = None;
+        for _ in 0..ROUNDS {
+            let next = self.tolerances?.beside((candidates, masks), &first.members, runs)?;
+            if place.as_ref().is_some_and(|known| Arc::ptr_eq(known, &next)) {
+                break;
+            }
+            refined(self.workshop, (candidates, masks), (&next, first), runs);
+            place = Some(next);
+        }
+        place
+    }
+
+    /// Searches for members beside the first.
+    fn further(
+        &self,
+        (candidates, masks): (&mut [Candidate], &[Mask]),
+        (mut now, mut first): (Converged, Chosen),
+        runs: &mut Runs,
+    ) -> Converged {
+        let Place { whitener, z, .. } = self.place;
+        let count = first.members.len();
+        let fitter = Fitter::knowing(whitener, candidates, masks.to_vec(), std::mem::take(&mut now.known));
+        refit(&fitter, z, &mut first);
+        let mut near = together(&fitter, z, &first, fitter.all(&first.rest));
+        now.known = fitter.whitened;
+        near.retain(|fit| {
+            let of = &candidates[fit.candidate];
+            let far = (self.far)(of, fit.size) >= FAR * now.bars.tolerance_sd;
+            fit.evidence >= WORTH && far && self.is_simulated(of) && plausible(of, fit.size)
+        });
+        near.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        near.truncate(TRIED);
+        // With the tolerances as they were nothing else would be found.
+        let anew = !self.place.is_alone();
+        if near.is_empty() && !anew {
+            return now;
+        }
+        let there = if near.is_empty() { None } else { self.there((candidates, masks), &first.members, runs) };
+        let tried: Vec<(usize, Candidate)> = near.iter().map(|fit| (fit.candidate, candidates[fit.candidate].clone())).collect();
+        if let Some(there) = there {
+            near.iter().for_each(|fit| self.place_beside(&mut candidates[fit.candidate], fit.size, &there, runs));
+        }
+        let fitter = Fitter::knowing(whitener, candidates, masks.to_vec(), std::mem::take(&mut now.known));
+        let tried_now = |refused: &Refused| anew || tried.iter().any(|(at, _)| *at == refused.fitted.candidate);
+        let (again, refused) = now.refused.into_iter().partition::<Vec<_>, _>(tried_now);
+        now.refused = refused;
+        let barred = now.refused.iter().map(|refused| refused.fitted.candidate).collect();
+        let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
+        now.chosen = search(&fitter, z, (first, barred), (&now.bars, &self.channels()), self.far, &guard, &mut now.refused);
+        now.known = fitter.whitened;
+        // What was refused alone and is not named beside the first stays refused.
+        let known: Vec<usize> =
+            now.chosen.members.iter().chain(now.refused.iter().map(|refused| &refused.fitted)).map(|fit| fit.candidate).collect();
+        now.refused.extend(again.into_iter().filter(|refused| !known.contains(&refused.fitted.candidate)));
+        for (at, alone) in tried {
+            if now.chosen.members.iter().all(|member| member.candidate != at) {
+                candidates[at] = alone;
+            }
+        }
+        now = self.simulated((candidates, masks), now, runs);
+        self.settled((candidates, masks), (now, count), runs)
+    }
+
+    /// The last member again, beside the others where they are by now, and with sizes to either side of its own.
+    fn settled(
+        &self,
+        (candidates, masks): (&mut [Candidate], &[Mask]),
+        (mut now, count): (Converged, usize),
+        runs: &mut Runs,
+    ) -> Converged {
+        for _ in 0..ROUNDS {
+            let Some(last) = now.chosen.members.get(count) else { break };
+            let (first, candidate) = (&now.chosen.members[..count], &candidates[last.candidate]);
+            let Some(placed) = &candidate.beside else { break };
+            let moved = first.iter().zip(&placed.there.sizes).any(|(member, from)| (member.size - from).abs() > MOVED * from.abs());
+            let ends = [candidate.nodes.first(), candidate.nodes.last()].into_iter().flatten().any(|node| node.size == last.size);
+            let beyond = ends && around(&placed.alone, last.size).iter().any(|size| candidate.nodes.iter().all(|node| node.size != *size));
+            if !(moved || beyond) {
+                break;
+            }
+            let (at, size) = (last.candidate, last.size);
+            let Some(there) = self.there((candidates, masks), first, runs) else { break };
+            self.place_beside(&mut candidates[at], size, &there, runs);
+            let fitter = Fitter::knowing(&self.place.whitener, candidates, masks.to_vec(), std::mem::take(&mut now.known));
+            refit(&fitter, &self.place.z, &mut now.chosen);
+            now.known = fitter.whitened;
+            now = self.simulated((candidates, masks), now, runs);
+        }
+        now
+    }
+
+    fn is_simulated(&self, candidate: &Candidate) -> bool {
+        self.workshop.catalogue.effect(&candidate.effect).is_some_and(|effect| matches!(effect.action, Action::Simulator))
+    }
+
+    /// The simulation with members; nothing where one of them cannot be set, or where it fails.
+    fn there(&self, (candidates, masks): (&[Candidate], &[Mask]), members: &[Fitted], runs: &mut Runs) -> Option<Arc<Beside>> {
+        let bench = self.workshop.bench?;
+        let set = members.iter().map(|member| set(self.workshop, &candidates[member.candidate], masks, member)).collect::<Option<_>>()?;
+        let (candidates, sizes) = members.iter().map(|member| (member.candidate, member.size)).unzip();
+        let mut there = Beside { set, base: Vec::new(), members: candidates, sizes };
+        runs.made += self.workshop.seen.sections.len();
+        there.base = there.on(bench).features(&[]).ok()?;
+        Some(Arc::new(there))
+    }
+
+    /// Simulates a candidate beside what was found: at the size that it asks for, and at those to either side that it has alone.
+    fn place_beside(&self, candidate: &mut Candidate, size: f64, there: &Arc<Beside>, runs: &mut Runs) {
+        let alone = match candidate.beside.take() {
+            Some(placed) => placed.alone,
+            None => Arc::new(candidate.nodes.clone()),
+        };
+        let sizes = around(&alone, size);
+        candidate.nodes.retain(|node| node.change.is_empty());
+        candidate.beside = Some(Placed { there: there.clone(), alone });
+        sizes.into_iter().for_each(|size| self.workshop.add_size(candidate, size, runs));
+    }
+}
+
+/// A size, and of those that a candidate has on the same side of neutral the nearest that are some way below and above it, or the last.
+fn around(nodes: &[Node], size: f64) -> Vec<f64> {
+    let neutral = nodes.iter().find(|node| node.change.is_empty()).map_or(0.0, |node| node.size);
+    let reach = APART * if neutral.is_finite() { (size - neutral).abs() } else { size.abs() };
+    let alike = |node: &&Node| node.size.is_finite() && node.size != neutral && (neutral < node.size) == (neutral < size);
+    let sizes: Vec<f64> = nodes.iter().filter(alike).map(|node| node.size).collect();
+    let below = sizes.iter().rev().find(|other| **other < size - reach).or(sizes.first().filter(|first| **first < size));
+    let above = sizes.iter().find(|other| **other > size + reach).or(sizes.last().filter(|last| **last > size));
+    below.into_iter().chain([&size]).chain(above).copied().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sizes(of: &[f64], neutral: f64, size: f64) -> Vec<f64> {
+        let node = |size: &f64| Node { size: *size, change: if *size == neutral { Vec::new() } else { vec![1.0] } };
+        around(&of.iter().map(node).collect::<Vec<_>>(), size)
+    }
+
+    #[test]
+    fn sizes_to_either_side_are_some_way_off() {
+        // 0.15 of 0.3 is 0.045: 0.52 is too near, and so is 0.48; 0.1 is on the other side of 0.2.
+        let friction = [0.1, 0.2, 0.3, 0.4, 0.48, 0.5, 0.52, 0.6];
+        assert_eq!(sizes(&friction, 0.2, 0.5), [0.4, 0.5, 0.6]);
+        assert_eq!(sizes(&friction, 0.2, 0.59), [0.52, 0.59, 0.6]);
+        assert_eq!(sizes(&friction, 0.2, 0.6), [0.52, 0.6]);
+        assert_eq!(sizes(&friction, 0.2, 0.15), [0.1, 0.15]);
+        // A low-pass that changes nothing where it is infinite.
+        assert_eq!(sizes(&[4.0, 8.0, f64::INFINITY], f64::INFINITY, 7.5), [4.0, 7.5, 8.0]);
+    }
+}

@@ -1,0 +1,487 @@
+//! What may have caused a gap: for every effect of the catalogue, how the features change with its size.
+
+use rayon::prelude::*;
+
+use super::beside::Placed;
+use super::ground::Ground;
+use crate::diagnose::inputs::Trying;
+use crate::diagnose::observe::bench::{Bench, Runs};
+use crate::diagnose::observe::observations::Observations;
+use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Parameter, Signals};
+use crate::problem::Problem;
+use crate::units::Unit;
+
+/// A path of changes with the size of an effect: from none through the sizes that were simulated.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    pub effect: String,
+    /// What it acts on, if it is an operator.
+    pub channels: Vec<String>,
+    /// The parameter that is its size, and the range that is plausible.
+    pub size: String,
+    pub unit: Unit,
+    pub range: (f64, f64),
+    /// Other parameters, fixed.
+    pub fixed: Vec<(String, f64)>,
+    /// In increasing order of the size; where nothing changes, `change` is empty.
+    pub nodes: Vec<Node>,
+    /// There or not: nothing between nodes.
+    pub discrete: bool,
+    /// An operation on the recorded signals: what the model is wrong in does not enter its change.
+    pub exact: bool,
+    pub confinable: bool,
+    /// The declared tolerance that it is the blown form of.
+    pub tolerance: Option<String>,
+    /// How many candidates of the effect there are: what looking at all of them costs.
+    pub alternatives: usize,
+    /// Sizes that are simulated only where the coarser ones say that it is worth it.
+    pub pending: Vec<f64>,
+    /// What it was simulated beside, if it was.
+    pub beside: Option<Placed>,
+}
+
+impl Candidate {
+    /// An effect by one of its parameters, everywhere and on no channels of its own.
+    fn new(effect: &Effect, parameter: &Parameter, mut nodes: Vec<Node>) -> Self {
+        nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+        Self {
+            effect: effect.name.clone(),
+            channels: Vec::new(),
+            size: parameter.name.clone(),
+            unit: parameter.unit.clone(),
+            range: (parameter.low, parameter.high),
+            fixed: Vec::new(),
+            nodes,
+            discrete: false,
+            exact: matches!(effect.action, Action::Signals(..)),
+            confinable: effect.confinable,
+            tolerance: effect.tolerance.clone(),
+            alternatives: 1,
+            pending: Vec::new(),
+            beside: None,
+        }
+    }
+
+    /// By a path alone, for tests.
+    #[cfg(test)]
+    pub fn path(effect: &str, nodes: Vec<Node>) -> Self {
+        Self {
+            effect: effect.into(),
+            channels: Vec::new(),
+            size: "size".into(),
+            unit: Unit::one(),
+            range: (0.0, 10.0),
+            fixed: Vec::new(),
+            nodes,
+            discrete: false,
+            exact: false,
+            confinable: true,
+            tolerance: None,
+            alternatives: 1,
+            pending: Vec::new(),
+            beside: None,
+        }
+    }
+
+    /// How far apart the changes of a feature are, between half of an effect of this size and half as much again.
+    #[must_use]
+    pub fn range_near(&self, size: f64, place: usize) -> f64 {
+        let reach = 0.5 * (size - self.neutral().unwrap_or(0.0)).abs();
+        let near = self.nodes.iter().filter(|node| (node.size - size).abs() <= reach);
+        let changes = near.map(|node| node.change.get(place).copied().unwrap_or(0.0));
+        let (low, high) = changes.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), change| (low.min(change), high.max(change)));
+        (high - low).max(0.0)
+    }
+
+    /// Where nothing changes.
+    #[must_use]
+    pub fn neutral(&self) -> Option<f64> {
+        self.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size)
+    }
+
+    /// Whether it is the same cause, be it by another parameter.
+    #[must_use]
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.effect == other.effect && self.channels == other.channels
+    }
+
+    /// Whether a size lies on the same side of neutral as another.
+    fn same_side(&self, size: f64, other: f64) -> bool {
+        self.neutral().is_none_or(|neutral| (size < neutral) == (other < neutral))
+    }
+
+    /// Whether sizes towards another are left to be simulated.
+    #[must_use]
+    pub fn pending_towards(&self, size: f64) -> bool {
+        self.pending.iter().any(|pending| self.same_side(*pending, size))
+    }
+
+    /// Whether it exchanges two channels.
+    #[must_use]
+    pub fn effect_is_swap(&self) -> bool {
+        self.discrete && self.channels.len() == 2 && self.nodes.len() == 2 && !self.size.contains(crate::effects::CHANNEL)
+    }
+}
+
+/// A size and what it changes.
+#[derive(Clone, Debug)]
+pub struct Node {
+    pub size: f64,
+    /// Change of all features; empty where nothing changes.
+    pub change: Vec<f64>,
+}
+
+/// Everything that the candidates are made with.
+pub struct Workshop<'a> {
+    pub seen: &'a Observations,
+    pub catalogue: &'a Catalogue,
+    pub bench: Option<&'a Bench<'a>>,
+    pub ground: &'a Ground,
+    /// Neutral values of simulator parameters.
+    pub neutral: &'a (dyn Fn(&str) -> Option<f64> + Sync),
+    pub trying: Trying<'a>,
+}
+
+impl std::fmt::Debug for Workshop<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Workshop").field("sections", &self.seen.sections.len()).finish_non_exhaustive()
+    }
+}
+
+impl Workshop<'_> {
+    /// All candidates of the catalogue.
+    #[must_use]
+    pub fn candidates(&self, runs: &mut Runs) -> Vec<Candidate> {
+        let mut all = Vec::new();
+        for effect in self.catalogue.effects.iter().filter(|effect| effect.candidate) {
+            (self.trying)(&effect.title);
+            let mut found = match &effect.action {
+                Action::Simulator => self.simulated(effect, runs),
+                Action::Signals(operator, channels) => self.operated(effect, *operator, channels),
+                Action::Formulas(_) => self.expressed(effect),
+            };
+            let alternatives = found.len();
+            found.iter_mut().for_each(|candidate| candidate.alternatives = alternatives);
+            all.extend(found);
+        }
+        all
+    }
+
+    fn simulated(&self, effect: &Effect, runs: &mut Runs) -> Vec<Candidate> {
+        let Some(bench) = self.bench else { return Vec::new() };
+        let mut found = Vec::new();
+        for fit in &effect.fits {
+            let Some(((size, sizes), others)) = fit.axes.split_first() else { continue };
+            let parameter = &effect.parameters[*size];
+            let moved = match bench.simulator.catalogue_name() {
+                Some(name) => parameter.simulators.iter().find(|(known, ..)| known == name).map(|(_, key, factor)| (key, factor)),
+                None => parameter.model.as_ref().map(|(key, factor)| (key, factor)),
+            };
+            // A program may know by another name what the vehicle file has as a parameter of the model.
+            let of_model = || parameter.model.as_ref().and_then(|(key, factor)| Some((self.neutral)(key)? / factor));
+            let neutral =
+                parameter.neutral.or_else(|| moved.and_then(|(key, factor)| Some((self.neutral)(key)? / factor))).or_else(of_model);
+            for fixed in combinations(others) {
+                let fixed: Vec<(String, f64)> = fixed.into_iter().map(|(at, value)| (effect.parameters[at].name.clone(), value)).collect();
+                let none = match parameter.vanishes_high {
+                    true => f64::INFINITY,
+                    false => neutral.unwrap_or(0.0),
+                };
+                let (coarse, pending) = coarse(sizes, none);
+                let mut made =
+                    Candidate { fixed, pending, ..Candidate::new(effect, parameter, vec![Node { size: none, change: Vec::new() }]) };
+                self.simulate(bench, effect, &mut made, &coarse, runs);
+                found.push(made);
+            }
+        }
+        found
+    }
+
+    /// Simulates more sizes of a candidate.
+    fn simulate(&self, bench: &Bench<'_>, effect: &Effect, candidate: &mut Candidate, sizes: &[f64], runs: &mut Runs) {
+        let beside = candidate.beside.as_ref().map(|placed| placed.there.clone());
+        let there = beside.as_ref().map(|there| there.on(bench));
+        let from = there.as_ref().zip(beside.as_ref()).map_or((bench, &self.ground.base[..]), |(bench, there)| (bench, &there.base[..]));
+        for size in sizes {
+            let mut values = candidate.fixed.clone();
+            values.push((candidate.size.clone(), *size));
+            match self.run(from, &applied(effect, values)) {
+                Ok(change) => candidate.nodes.push(Node { size: *size, change }),
+                Err(problem) => runs.failed.push(format!("{} = {size}: {}", candidate.size, problem.says)),
+            }
+            runs.made += self.seen.sections.len();
+        }
+        candidate.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+    }
+
+    /// Adds the sizes of a candidate towards one that were left for later.
+    pub fn refine(&self, candidate: &mut Candidate, towards: f64, runs: &mut Runs) {
+        let (pending, left) = candidate.pending.iter().partition(|pending| candidate.same_side(**pending, towards));
+        candidate.pending = left;
+        let pending: Vec<f64> = pending;
+        if let Some(effect) = self.catalogue.effect(&candidate.effect) {
+            (self.trying)(&effect.title);
+            pending.into_iter().for_each(|size| self.add_size(candidate, size, runs));
+        }
+    }
+
+    /// Adds one more size of a candidate: simulated, or applied to the signals.
+    pub fn add_size(&self, candidate: &mut Candidate, size: f64, runs: &mut Runs) {
+        let Some(effect) = self.catalogue.effect(&candidate.effect) else { return };
+        match (&effect.action, self.bench) {
+            (Action::Simulator, Some(bench)) => self.simulate(bench, effect, candidate, &[size], runs),
+            (Action::Signals(operator, _), _) => {
+                if let Some(change) = self.operate(*operator, size, &candidate.channels) {
+                    candidate.nodes.push(Node { size, change });
+                    candidate.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// How the features change with an effect on the simulator, from those without it.
+    ///
+    /// # Errors
+    /// A section fails, or the catalogue does not say how this simulator adds the effect.
+    fn run(&self, (bench, base): (&Bench<'_>, &[f64]), applied: &Applied) -> Result<Vec<f64>, Problem> {
+        let effects = std::slice::from_ref(applied);
+        let plan = crate::simulate::Plan::new(self.catalogue, effects, &self.seen.sections[0].section, bench.simulator.catalogue_name())?;
+        let made = bench.features(&plan.settings)?;
+        Ok(made.iter().zip(base).map(|(made, base)| made - base).collect())
+    }
+
+    fn operated(&self, effect: &Effect, operator: Operator, channels: &[String]) -> Vec<Candidate> {
+        let present = |name: &String| self.seen.layout.channels.iter().any(|channel| channel.name == *name);
+        let lists: Vec<Vec<String>> = if operator == Operator::Swap {
+            self.pairs(channels)
+        } else {
+            effect.fits.iter().flat_map(|fit| fit.channels.clone()).collect()
+        };
+        let parameter = &effect.parameters[0];
+        let trials: Vec<f64> = if operator == Operator::Swap {
+            vec![1.0]
+        } else {
+            effect.fits.first().and_then(|fit| fit.axes.first()).map_or(Vec::new(), |(_, trials)| trials.clone())
+        };
+        let discrete = matches!(operator, Operator::Swap | Operator::Polarity);
+        let make = |list: Vec<String>| {
+            let list: Vec<String> = if operator == Operator::Crosstalk { list } else { list.into_iter().filter(present).collect() };
+            if list.is_empty() {
+                return None;
+            }
+            let mut sizes = trials.clone();
+            if operator == Operator::Offset {
+                // In the unit of the channel, which the catalogue does not know: up to what the channel reaches.
+                let reach = self.reach(&list);
+                sizes.retain(|size| size.abs() < reach);
+                sizes.extend([-reach, reach]);
+            }
+            let mut nodes = vec![Node { size: parameter.neutral.unwrap_or(0.0), change: Vec::new() }];
+            for size in sizes {
+                if let Some(change) = self.operate(operator, size, &list) {
+                    nodes.push(Node { size, change });
+                }
+            }
+            let mut made = Candidate { channels: list, discrete, ..Candidate::new(effect, parameter, nodes) };
+            if let (Operator::Offset, Some(first), Some(last)) = (operator, made.nodes.first(), made.nodes.last()) {
+                made.range = (first.size, last.size);
+                if let Some(channel) = self.seen.layout.channels.iter().find(|channel| channel.name == made.channels[0]) {
+                    made.unit = channel.unit.clone();
+                }
+            }
+            if let Some(neutral) = made.neutral().filter(|_| !discrete) {
+                made.pending = beyond(made.range, neutral);
+            }
+            Some(made)
+        };
+        lists.into_par_iter().filter_map(make).collect()
+    }
+
+    /// Effects by expressions on the signals: each set of sizes is applied to what would have been recorded.
+    fn expressed(&self, effect: &Effect) -> Vec<Candidate> {
+        let mut found = Vec::new();
+        for fit in &effect.fits {
+            let Some(((size, sizes), others)) = fit.axes.split_first() else { continue };
+            let parameter = &effect.parameters[*size];
+            let neutral = parameter.neutral.unwrap_or(0.0);
+            for fixed in combinations(others) {
+                let fixed: Vec<(String, f64)> = fixed.into_iter().map(|(at, value)| (effect.parameters[at].name.clone(), value)).collect();
+                let mut nodes = vec![Node { size: neutral, change: Vec::new() }];
+                for size in sizes.iter().filter(|size| **size != neutral) {
+                    let mut values = fixed.clone();
+                    values.push((parameter.name.clone(), *size));
+                    if let Ok(change) = self.expression(&applied(effect, values)) {
+                        nodes.push(Node { size: *size, change });
+                    }
+                }
+                found.push(Candidate { fixed, ..Candidate::new(effect, parameter, nodes) });
+            }
+        }
+        found
+    }
+
+    fn expression(&self, applied: &Applied) -> Result<Vec<f64>, Problem> {
+        let effects = std::slice::from_ref(applied);
+        let each = |at: usize| {
+            let section = &self.seen.sections[at].section;
+            let mut signals = self.ground.recorded.signals[at].clone();
+            crate::simulate::Plan::new(self.catalogue, effects, section, None)?.operate(&mut signals, section)?;
+            Ok(self.seen.of(at, &signals, false))
+        };
+        let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.ground.recorded.signals.len()).into_par_iter().map(each).collect();
+        Ok(parts?.concat().iter().zip(&self.ground.recorded.features).map(|(made, without)| made - without).collect())
+    }
+
+    /// Channels of one group that could be exchanged.
+    fn pairs(&self, channels: &[String]) -> Vec<Vec<String>> {
+        let of = &self.seen.layout.channels;
+        let mut pairs = Vec::new();
+        for (i, a) in of.iter().enumerate() {
+            for b in &of[i + 1..] {
+                if a.group == b.group && channels.contains(&a.name) && channels.contains(&b.name) {
+                    pairs.push(vec![a.name.clone(), b.name.clone()]);
+                }
+            }
+        }
+        pairs
+    }
+
+    /// The largest magnitude that channels reach, simulated or measured: no offset is larger.
+    fn reach(&self, channels: &[String]) -> f64 {
+        let sides = self.seen.sections.iter().flat_map(|observed| [&observed.simulated, &observed.measured]);
+        let all = sides.flat_map(|signals| channels.iter().filter_map(|name| signals.channel(name)));
+        all.flat_map(|channel| channel.values.iter()).fold(0.0, |most, value| value.abs().max(most))
+    }
+
+    /// How the features change with an operator on what would have been recorded; nothing where it cannot be applied.
+    #[must_use]
+    pub fn operate(&self, operator: Operator, size: f64, channels: &[String]) -> Option<Vec<f64>> {
+        let seen = self.seen;
+        let touched = |name: &str| operator == Operator::Shift || channels.iter().any(|channel| channel == name);
+        let mut change = Vec::with_capacity(seen.len());
+        for (at, recorded) in self.ground.recorded.signals.iter().enumerate() {
+            let mut signals = Signals {
+                axis: recorded.axis.clone(),
+                over_time: recorded.over_time,
+                rate: recorded.rate,
+                channels: recorded.channels.iter().filter(|channel| touched(&channel.name)).cloned().collect(),
+            };
+            signals.apply(operator, size, channels, 0).ok()?;
+            for (number, channel) in seen.layout.channels.iter().enumerate() {
+                let from = change.len();
+                let wanted = seen.features.iter().filter(|feature| feature.channel == number).count();
+                if touched(&channel.name) {
+                    seen.of_channel(at, &signals, number, false, &mut change);
+                    let without = &self.ground.recorded.features[from..];
+                    change[from..].iter_mut().zip(without).for_each(|(value, without)| *value -= without);
+                } else {
+                    change.resize(from + wanted, 0.0);
+                }
+            }
+        }
+        Some(change)
+    }
+}
+
+/// How far beyond what is plausible an operation is applied, as a share of the way there.
+const BEYOND: f64 = 0.2;
+
+/// Sizes to either side that are not plausible any more: a difference that asks for one is told from one that asks for the last of those
+/// that are.
+fn beyond(range: (f64, f64), neutral: f64) -> Vec<f64> {
+    let further = |end: f64| {
+        let along = end + BEYOND * (end - neutral);
+        // What a size scales, or cuts off, has no size of the other sign.
+        if neutral.is_finite() && along * end > 0.0 { along } else { end / (1.0 + BEYOND) }
+    };
+    [range.0, range.1].into_iter().filter(|end| end.is_finite() && *end != neutral).map(further).collect()
+}
+
+/// Every other size, counted from none to either side; the nearer of two, since halfway to the farther one an effect that sets in at a
+/// threshold would not be there at all. And the others.
+fn coarse(sizes: &[f64], none: f64) -> (Vec<f64>, Vec<f64>) {
+    let (mut first, mut later) = (Vec::new(), Vec::new());
+    let below = sizes.iter().rev().filter(|size| **size < none).copied().collect::<Vec<_>>();
+    let above = sizes.iter().filter(|size| **size > none).copied().collect::<Vec<_>>();
+    for side in [below, above] {
+        for (at, size) in side.iter().enumerate() {
+            let chosen = if side.len() <= 2 { at == 0 } else { at % 2 == 1 };
+            if chosen { first.push(*size) } else { later.push(*size) }
+        }
+    }
+    (first, later)
+}
+
+/// An effect with values, everywhere.
+#[must_use]
+pub fn applied(effect: &Effect, values: Vec<(String, f64)>) -> Applied {
+    Applied { effect: effect.name.clone(), values, channels: Vec::new(), confined: None }
+}
+
+fn combinations(axes: &[(usize, Vec<f64>)]) -> Vec<Vec<(usize, f64)>> {
+    axes.iter().fold(vec![Vec::new()], |known, (at, values)| {
+        known.iter().flat_map(|one| values.iter().map(move |value| [one.clone(), vec![(*at, *value)]].concat())).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A fifth of the way on: a gain of 0.5 to 1.6, a shift of 50 m either way, and an edge that has no negative size.
+    #[test]
+    fn operations_are_tried_a_fifth_beyond_what_is_plausible() {
+        let near = |range: (f64, f64), neutral: f64, wanted: &[f64]| {
+            let found = beyond(range, neutral);
+            assert!(found.len() == wanted.len() && found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+        };
+        near((0.5, 1.6), 1.0, &[0.4, 1.72]);
+        near((-50.0, 50.0), 0.0, &[-60.0, 60.0]);
+        near((0.6, 80.0), 80.0, &[0.5]);
+        near((0.6, f64::INFINITY), f64::INFINITY, &[0.5]);
+    }
+
+    /// A lag of 0, 1, 2 and then 30 along the sizes 0 to 3: around 1 it moves by no more than 1, around 2.5 it has jumped.
+    #[test]
+    fn what_jumps_between_sizes_is_seen_near_them() {
+        let node = |(size, lag): (f64, f64)| Node { size, change: if size == 0.0 { Vec::new() } else { vec![5.0, lag] } };
+        let of = Candidate::path("effect", [(0.0, 0.0), (1.0, 1.0), (1.5, 2.0), (3.0, 30.0)].map(node).to_vec());
+        assert_eq!([of.range_near(1.0, 1), of.range_near(2.5, 1), of.range_near(2.5, 0), of.range_near(0.0, 1)], [1.0, 28.0, 0.0, 0.0]);
+    }
+
+    /// A simulation of nothing, recorded with noise of 0.5: a gain of 0.8 lowers all bands by its logarithm, and a low-pass of 10 Hz the
+    /// band about 10 Hz by that of the square root of a half, as they do where there is a signal.
+    #[test]
+    fn operations_act_on_noise_as_on_all_else() {
+        use crate::diagnose::allowed::recorded::as_recorded;
+        use crate::diagnose::observe::features::{ChannelFeatures, Layout};
+        use crate::diagnose::observe::observations::Observed;
+        use crate::diagnose::settings::Settings;
+        use crate::effects::Channel;
+        use crate::simulate::Section;
+        use crate::source::Source;
+
+        let axis: Vec<f64> = (0..20000).map(|n| 0.1 * f64::from(n)).collect();
+        let channels = vec![Channel { name: "Y".into(), values: vec![0.0; axis.len()] }];
+        let silent = Signals { axis, over_time: false, rate: 200.0, channels };
+        let section = Section { start: 0.0, end: 2000.0, ..Section::nowhere() };
+        let observed =
+            Observed { section, simulated: silent.clone(), measured: silent, references: vec![None], scatter: Vec::new(), again: false };
+        let channel = ChannelFeatures { name: "Y".into(), group: 0, unit: Unit::one(), level: false, bands: 3, alike: false };
+        let layout = Layout { channels: vec![channel], edges: vec![1.0, 9.5, 10.5, 20.0], alike: (0.5, 8.0), furthest: 1.0 };
+        let (features, sections, noise) = (layout.features(), vec![observed], vec![0.5]);
+        let seen = Observations { layout, features, sections, noise, left_out: Vec::new(), faults: Vec::new() };
+        let (title, groups, units, effects) = (String::new(), Vec::new(), Vec::new(), Vec::new());
+        let catalogue = Catalogue { name: title.clone(), title, source: Source::new("", ""), groups, units, effects, diagnosis: None };
+        let recorded = as_recorded(&seen, None, &Settings::default(), &|_| None, &|_| None, &mut Runs::default());
+        let (neutral, trying) = (|_: &str| None, |_: &str| {});
+        let ground = Ground { recorded, ..Ground::default() };
+        let workshop = Workshop { seen: &seen, catalogue: &catalogue, bench: None, ground: &ground, neutral: &neutral, trying: &trying };
+        let operate = |operator, size| workshop.operate(operator, size, &["Y".to_string()]).expect("an operation");
+        let gain = operate(Operator::Gain, 0.8);
+        assert!(gain.iter().all(|change| (change - 0.8_f64.ln()).abs() < 1e-9), "{gain:?}");
+        let band = operate(Operator::LowPass, 10.0)[1];
+        assert!((band - 0.5_f64.sqrt().ln()).abs() < 0.02, "{band}");
+    }
+}

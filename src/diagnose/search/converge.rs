@@ -1,0 +1,341 @@
+//! The search, with what it asks for simulated: until neither the answer nor a veto rests on interpolation.
+
+use super::beside::alone_again;
+use super::candidates::{Candidate, Workshop};
+use super::choose::{Bars, Chosen, Judged, Refused, TOLERANCE_SD, plausible, refit, search, taken, unconfine};
+use super::fit::{Fitted, Fitter, Known, Mask};
+use super::guards::{View, carried, contradiction};
+use super::lack::{left, with_room};
+use super::masks::section_masks;
+use super::place::{Place, Tolerances};
+use super::settle::{ROUNDS, polish};
+use crate::diagnose::observe::bench::Runs;
+use crate::effects::Gauss;
+
+/// Draws for the threshold.
+const DRAWS: usize = 60;
+/// Evidence below which no cause is named: real discrepancies are not those of the covariance.
+const FLOOR: f64 = 30.0;
+/// The same for an operation on the signals, which no such discrepancy enters: half as much, where 10 is called very strong (Kass and
+/// Raftery 1995).
+const FLOOR_EXACT: f64 = 15.0;
+/// A candidate is simulated at all its sizes from this share of the best evidence on, and from this evidence on.
+pub const NEAR: f64 = 0.5;
+pub const WORTH: f64 = 10.0;
+
+/// With so much more evidence, the least that is called positive (Kass and Raftery 1995), another takes the place of a member.
+const BETTER: f64 = 2.0;
+
+/// What is searched, and by what it is weighed.
+pub struct Converging<'a> {
+    pub workshop: &'a Workshop<'a>,
+    pub place: &'a Place,
+    /// How other places are found, if they are.
+    pub tolerances: Option<&'a Tolerances<'a>>,
+    pub families: &'a [Vec<View>],
+    /// How many declared standard deviations a size is from neutral.
+    pub far: &'a (dyn Fn(&Candidate, f64) -> f64 + Sync),
+    pub seed: u64,
+}
+
+/// What was found.
+pub struct Converged {
+    pub chosen: Chosen,
+    pub refused: Vec<Refused>,
+    pub bars: Bars,
+    pub known: Known,
+}
+
+impl Converging<'_> {
+    /// Searches until no candidate that matters has sizes left to be simulated.
+    pub fn search(&self, candidates: &mut [Candidate], masks: &mut Vec<Mask>, runs: &mut Runs) -> Converged {
+        let (workshop, Place { whitener, z, .. }) = (self.workshop, self.place);
+        let mut refused = Vec::new();
+        let mut known = Known::new();
+        let mut chance = None;
+        let mut reconsidered: Vec<usize> = Vec::new();
+        let (chosen, bars) = loop {
+            let fitter = Fitter::knowing(whitener, candidates, masks.clone(), std::mem::take(&mut known));
+            let bars = bars(*chance.get_or_insert_with(|| limit(&fitter, z.len(), self.seed)));
+            refused.clear();
+            let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
+            let found = search(&fitter, z, (Chosen::none(z), Vec::new()), (&bars, &self.channels()), self.far, &guard, &mut refused);
+            let wanted = promising(&fitter, z, &found);
+            let more = if wanted.is_empty() { section_masks(&fitter, z, &found, workshop.seen) } else { Vec::new() };
+            known = fitter.whitened;
+            if wanted.is_empty() && more.is_empty() {
+                // Nor may a veto: what was refused is looked at again with the size that was found.
+                let again: Vec<Fitted> = refused
+                    .iter()
+                    .map(|refused: &Refused| refused.fitted.clone())
+                    .filter(|fit| fit.evidence >= NEAR * found.evidence() && !reconsidered.contains(&fit.candidate))
+                    .collect();
+                reconsidered.extend(again.iter().map(|fit| fit.candidate));
+                if !polish(workshop, candidates, &again, runs) {
+                    break (found, bars);
+                }
+            }
+            masks.extend(more);
+            wanted.into_iter().for_each(|(at, size)| workshop.refine(&mut candidates[at], size, runs));
+            (workshop.trying)("weighing");
+        };
+        let now = self.simulated((candidates, masks), Converged { chosen, refused, bars, known }, runs);
+        let mut now = self.beside((candidates, masks), now, runs);
+        if self.exchange((candidates, masks), &mut now.chosen, &now.bars, &now.refused, &mut now.known) {
+            alone_again(candidates, &now.chosen.members);
+            now = self.simulated((candidates, masks), now, runs);
+        }
+        now
+    }
+
+    /// The same at another place.
+    pub(super) fn at<'b>(&'b self, place: &'b Place) -> Converging<'b> {
+        Converging { place, ..*self }
+    }
+
+    /// Of which channel each feature of a section is.
+    pub(super) fn channels(&self) -> Vec<usize> {
+        self.workshop.seen.features.iter().map(|feature| feature.channel).collect()
+    }
+
+    /// The members fitted again with the sizes that were found simulated; one that was above the bar by interpolation alone goes.
+    pub(super) fn simulated(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Converged, runs: &mut Runs) -> Converged {
+        let Place { whitener, z, .. } = self.place;
+        for _ in 0..ROUNDS {
+            if !polish(self.workshop, candidates, &now.chosen.members, runs) {
+                break;
+            }
+            let fitter = Fitter::knowing(whitener, candidates, masks.to_vec(), now.known);
+            refit(&fitter, z, &mut now.chosen);
+            now.known = fitter.whitened;
+        }
+        let fitter = Fitter::knowing(whitener, candidates, masks.to_vec(), now.known);
+        let fault = |member: &Fitted| {
+            if member.evidence < now.bars.least(&fitter.candidates[member.candidate]) {
+                return Some("simulated at the size that was found, it has too little evidence");
+            }
+            (!plausible(&fitter.candidates[member.candidate], member.size))
+                .then_some("beside the others it asks for a size that is not plausible")
+        };
+        let first_fault = |members: &[Fitted]| members.iter().enumerate().find_map(|(at, member)| Some((at, fault(member)?)));
+        while let Some((at, reason)) = first_fault(&now.chosen.members) {
+            let fitted = now.chosen.members.remove(at);
+            now.refused.push(Refused::new(fitted, reason));
+            refit(&fitter, z, &mut now.chosen);
+        }
+        now.known = fitter.whitened;
+        if alone_again(candidates, &now.chosen.members) {
+            let fitter = Fitter::knowing(whitener, candidates, masks.to_vec(), now.known);
+            refit(&fitter, z, &mut now.chosen);
+            now.known = fitter.whitened;
+        }
+        now
+    }
+
+    /// Where others have come beside a member, or gone, another may have more evidence in its place than it has now: with the tolerances
+    /// as they act beside the members before it, if that was looked at. Whether any was exchanged; then all must be fitted again.
+    pub fn exchange(&self, of: (&[Candidate], &[Mask]), now: &mut Chosen, bars: &Bars, refused: &[Refused], known: &mut Known) -> bool {
+        let mut any = false;
+        for at in 0..now.members.len() {
+            let place = self.tolerances.and_then(|tolerances| tolerances.looked_at().beside(&now.members[..at]));
+            let better = match place {
+                Some(place) => self.at(&place).better(of, (now, at), bars, refused, &mut Known::new()),
+                None => self.better(of, (now, at), bars, refused, known),
+            };
+            if let Some(better) = better {
+                now.members[at] = better;
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// What has more evidence in the place of a member.
+    fn better(
+        &self,
+        (candidates, masks): (&[Candidate], &[Mask]),
+        (now, at): (&Chosen, usize),
+        bars: &Bars,
+        refused: &[Refused],
+        known: &mut Known,
+    ) -> Option<Fitted> {
+        let Place { whitener, z, .. } = self.place;
+        let fitter = Fitter::knowing(whitener, candidates, masks.to_vec(), std::mem::take(known));
+        let mut others = now.clone();
+        refit(&fitter, z, &mut others);
+        others.rest = others.left_by_others(z, at);
+        let member = others.members.remove(at);
+        let mut fits = fitter.all(&others.rest);
+        fits.iter_mut().for_each(|fit| unconfine(&fitter, &others.rest, fit, bars));
+        fits.retain(|fit| {
+            let (of, mask) = (&candidates[fit.candidate], &masks[fit.mask]);
+            let free = refused.iter().all(|refused| !candidates[refused.fitted.candidate].is_like(of)) && mask.asked_by.is_none();
+            let more = fit.evidence > bars.least(of).max(member.evidence + BETTER) && !taken(&fitter, &others, fit);
+            free && more && plausible(of, fit.size) && (self.far)(of, fit.size) >= TOLERANCE_SD
+        });
+        fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        let better = fits.into_iter().find(|fit| self.guard(&fitter, &others, fit) == Judged::Sound);
+        *known = fitter.whitened;
+        better
+    }
+
+    /// Refuses a member that views contradict, or that a single section carries.
+    pub(super) fn guard(&self, fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> Judged {
+        let rest = left(fitter.candidates, &fitter.masks, &self.place.difference, chosen);
+        let fitted = (&fitter.candidates[fit.candidate], &fitter.masks[fit.mask], fit);
+        let mut judged = Judged::Sound;
+        // What a simulated change of the others is wrong by is no word against this one.
+        let beside = with_room(&self.place.covariance, fitter.candidates, &fitter.masks, chosen);
+        for family in self.families {
+            match contradiction(&beside, family, fitted, &rest) {
+                Judged::Sound => {}
+                Judged::Doubtful => judged = Judged::Doubtful,
+                refused @ (Judged::Refused(_) | Judged::Contradicted(_)) => return refused,
+            }
+        }
+        let change = fit.change(fitter.candidates, &fitter.masks);
+        carried(&self.place.covariance, &fitter.masks[fit.mask], &change, &rest).map_or(judged, |(at, share)| {
+            let section = self.workshop.seen.sections[at].section.name();
+            Judged::Refused(format!("without section {section} only {:.0} % of the evidence is left", 100.0 * share))
+        })
+    }
+}
+
+/// Bars from what chance reaches.
+fn bars(chance: f64) -> Bars {
+    let first = chance.max(FLOOR);
+    Bars { first, exact: chance.max(FLOOR_EXACT), confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.08, most: 3 }
+}
+
+/// More evidence than the best candidate reaches by chance in any draw from the covariance.
+fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
+    use rayon::prelude::*;
+    let mut most: Vec<f64> = (0..DRAWS)
+        .into_par_iter()
+        .map(|draw| {
+            let mut random = Gauss::new(seed ^ (draw as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+            let z: Vec<f64> = (0..features).map(|_| random.next()).collect();
+            fitter.most(&z)
+        })
+        .collect();
+    most.sort_by(f64::total_cmp);
+    most.last().copied().unwrap_or(0.0) + 3.0
+}
+
+/// Candidates that are worth their other sizes, and towards which: those within reach of the best for the whole difference, for what a first set of
+/// causes leaves, or for what it leaves without one of them; and the members of that set.
+fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, f64)> {
+    let pending = |fit: &&Fitted| fitter.candidates[fit.candidate].pending_towards(fit.size);
+    let towards = |fit: &Fitted| (fit.candidate, fit.size);
+    let mut found: Vec<(usize, f64)> = chosen.members.iter().filter(pending).map(towards).collect();
+    let without = |member: &Fitted| chosen.rest.iter().zip(&member.whitened).map(|(rest, own)| rest + own).collect();
+    let mut rests: Vec<Vec<f64>> = vec![z.to_vec(), chosen.rest.clone()];
+    if chosen.members.len() > 1 {
+        rests.extend(chosen.members.iter().map(without));
+    }
+    for rest in rests {
+        let fits = fitter.all(&rest);
+        let best = fits.iter().map(|fit| fit.evidence).fold(0.0, f64::max);
+        let near = |fit: &&Fitted| fit.evidence >= (NEAR * best).max(WORTH) && pending(fit);
+        found.extend(fits.iter().filter(near).map(towards));
+    }
+    // One after the other in the order of the catalogue; a second one on the same side finds nothing left.
+    found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::allowed::whiten::Covariance;
+    use crate::diagnose::observe::features::Layout;
+    use crate::diagnose::observe::observations::Observations;
+    use crate::diagnose::search::candidates::Node;
+    use crate::diagnose::search::ground::Ground;
+    use crate::effects::Catalogue;
+    use crate::source::Source;
+
+    const SECTIONS: usize = 10;
+
+    /// With a search at a place, among these views.
+    fn at_place<R>(place: &Place, families: &[Vec<View>], work: impl FnOnce(&Converging<'_>) -> R) -> R {
+        let layout = Layout { channels: Vec::new(), edges: Vec::new(), alike: (0.0, 1.0), furthest: 1.0 };
+        let (noise, left_out, faults) = (Vec::new(), Vec::new(), Vec::new());
+        let seen = Observations { layout, features: Vec::new(), sections: Vec::new(), noise, left_out, faults };
+        let (groups, units, effects) = (Vec::new(), Vec::new(), Vec::new());
+        let source = Source::new("", "");
+        let catalogue = Catalogue { name: String::new(), title: String::new(), source, groups, units, effects, diagnosis: None };
+        let (ground, trying, neutral) = (Ground::default(), |_: &str| {}, |_: &str| None);
+        let workshop = Workshop { seen: &seen, catalogue: &catalogue, bench: None, ground: &ground, neutral: &neutral, trying: &trying };
+        work(&Converging { workshop: &workshop, place, tolerances: None, families, far: &|_, _| 100.0, seed: 1 })
+    }
+
+    fn per_section(of: &[f64]) -> Vec<f64> {
+        (0..SECTIONS).flat_map(|_| of.to_vec()).collect()
+    }
+
+    /// A path from nothing at 0 to a change of each section at 10.
+    fn path(effect: &str, change: &[f64]) -> Candidate {
+        Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change: per_section(change) }])
+    }
+
+    fn of_unit_variance(features: usize) -> Covariance {
+        Covariance { diagonal: vec![1.0; features * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: features }
+    }
+
+    fn everywhere() -> [Mask; 1] {
+        [Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None }]
+    }
+
+    /// Ten sections of three features of unit variance, the second of which is off by 3. A member that moves the first as well was
+    /// chosen beside one that moved the first back: alone it explains 10 * 3^2 / 2. Another moves the second alone and explains all of
+    /// 10 * 3^2. Both pay the same for their paths.
+    #[test]
+    fn where_a_member_has_gone_another_takes_the_place_of_what_was_chosen_beside_it() {
+        let side = 10.0 / 2_f64.sqrt();
+        let candidates = [path("both", &[side, side, 0.0]), path("gone", &[-10.0, 0.0, 0.0]), path("second", &[0.0, 10.0, 0.0])];
+        let masks = everywhere();
+        let exchanged = |second: f64, refused: &[usize]| {
+            let difference = per_section(&[0.0, second, 0.0]);
+            let place = Place::new(of_unit_variance(3), difference.clone());
+            let fitter = Fitter::new(&place.whitener, &candidates, masks.to_vec());
+            let fit = |candidate: usize| fitter.fit(&difference, candidate, 0).expect("a path");
+            let mut now = Chosen { members: vec![fit(0)], rest: difference.clone() };
+            let refused: Vec<Refused> = refused.iter().map(|at| Refused::new(fit(*at), "gone")).collect();
+            let exchange =
+                |search: &Converging<'_>| search.exchange((&candidates, &masks), &mut now, &bars(0.0), &refused, &mut Known::new());
+            let any = at_place(&place, &[], exchange);
+            let [member] = &now.members[..] else { panic!("{} members", now.members.len()) };
+            (any, member.candidate, member.size, member.fall)
+        };
+        let (any, candidate, size, fall) = exchanged(3.0, &[1]);
+        assert!(any && candidate == 2, "{candidate}");
+        assert!((size - 3.0).abs() < 1e-9 && (fall - 90.0).abs() < 1e-9, "{size}, {fall}");
+        // What was refused takes no place; nor does what has less than a first member must have: 10 * 1.8^2 is 32.4, less the price 28.
+        assert_eq!(exchanged(3.0, &[1, 2]).1, 0);
+        assert_eq!(exchanged(1.8, &[1]).1, 0);
+        assert_eq!(exchanged(2.0, &[1]).1, 2);
+    }
+
+    /// Two features of unit variance, each a view of its own. A first member moves the second feature by 60; what is simulated of that may
+    /// be wrong by a fifth, 12. A further one moves both by 6, and the second shows nothing of it: with an error of
+    /// (1 + 12^2)^1/2 / (6 * 10^1/2) = 0.63 of it that says nothing, with one of 1 / (6 * 10^1/2) = 0.05 it contradicts.
+    #[test]
+    fn what_a_member_is_wrong_by_contradicts_no_other() {
+        let mut candidates = [path("first", &[0.0, 100.0]), path("further", &[10.0, 10.0])];
+        let masks = everywhere();
+        let place = Place::new(of_unit_variance(2), per_section(&[6.0, 60.0]));
+        let view = |feature: usize| View { says: format!("view {feature}"), sections: (0..SECTIONS).collect(), features: vec![feature] };
+        let families = [vec![view(0), view(1)]];
+        let mut judged = |exact: bool| {
+            candidates[0].exact = exact;
+            let fitter = Fitter::new(&place.whitener, &candidates, masks.to_vec());
+            let first = fitter.fit(&per_section(&[0.0, 60.0]), 0, 0).expect("a path");
+            let others = Chosen { rest: crate::diagnose::allowed::whiten::less(&place.z, &first.whitened), members: vec![first] };
+            let further = fitter.fit(&per_section(&[6.0, 6.0]), 1, 0).expect("a path");
+            at_place(&place, &families, |search| search.guard(&fitter, &others, &further))
+        };
+        assert!(matches!(judged(true), Judged::Contradicted(_)));
+        assert_eq!(judged(false), Judged::Sound);
+    }
+}

@@ -1,0 +1,221 @@
+//! The answer again, with the tolerances as they act where it is: what a member seemed to explain may be one that another has made matter.
+
+use std::sync::Arc;
+
+use super::beside::alone_again;
+use super::candidates::{Candidate, Workshop};
+use super::choose::{Bars, Chosen, Refused, refit};
+use super::fit::{Fitted, Fitter, Mask};
+use super::lack::{Lack, lack_after, unexplained, wrong_as_one};
+use super::place::{Place, Tolerances};
+use crate::diagnose::allowed::covariance::NOTHING;
+use crate::diagnose::observe::bench::Runs;
+use crate::diagnose::observe::features::Kind;
+
+/// A lag that moves by so many of its standard deviations between half an effect and as much again has jumped.
+const JUMP: f64 = 5.0;
+
+/// How often the sizes that were found are added and fitted again, and what share of a size is no difference.
+pub const ROUNDS: usize = 3;
+const ALIKE: f64 = 0.01;
+
+/// A set of effects, and where it is weighed.
+#[derive(Clone)]
+pub struct Weighed {
+    pub place: Arc<Place>,
+    pub chosen: Chosen,
+}
+
+impl Weighed {
+    fn at(self, place: Arc<Place>) -> Self {
+        Self { place, ..self }
+    }
+
+    /// A size in sections that the data chose, less what the other sections ask for to the same side: they are not chosen for what all
+    /// have. The size itself where nothing was chosen.
+    fn beside_the_others(&self, of: &Candidate, mask: &Mask, size: f64) -> f64 {
+        let Some(neutral) = of.neutral().filter(|_| mask.asked_by.is_some()) else { return size };
+        let others = Mask { confined: None, sections: mask.sections.iter().map(|inside| !inside).collect(), asked_by: None };
+        let fitter = Fitter::new(&self.place.whitener, std::slice::from_ref(of), vec![others]);
+        let elsewhere = fitter.fit(&self.chosen.rest, 0, 0).map_or(0.0, |fit| fit.size - neutral);
+        let here = size - neutral;
+        neutral + here.signum() * (here.abs() - (here.signum() * elsewhere).clamp(0.0, here.abs()))
+    }
+}
+
+/// Where an answer is put, and how far off a size is.
+pub struct Settled<'a> {
+    pub tolerances: &'a Tolerances<'a>,
+    /// How many declared standard deviations a size is from neutral.
+    pub far: &'a dyn Fn(&Candidate, f64) -> f64,
+}
+
+impl Settled<'_> {
+    /// The members as they are weighed where they put the vehicle: the place that what is left is judged at, and the weighing of their
+    /// sizes, in which what stands out in a section alone does not count.
+    pub fn answer(
+        &self,
+        (candidates, masks): (&mut [Candidate], &[Mask]),
+        first: Weighed,
+        lack_before: &[Lack],
+        bars: &Bars,
+        refused: &mut Vec<Refused>,
+        runs: &mut Runs,
+    ) -> (Arc<Place>, Weighed) {
+        let lack = |candidates: &[Candidate], now: &Weighed| {
+            lack_after(&now.place.covariance, self.tolerances.workshop.seen, (candidates, masks), &now.place.difference, &now.chosen)
+        };
+        let before = refused.len();
+        let mut now = self.settle((candidates, masks), first.clone(), bars, refused, runs);
+        // A set that leaves most of the gap is no place to take anything at.
+        if unexplained(lack_before, &lack(candidates, &now)).1 {
+            refused.truncate(before);
+            now = first;
+        }
+        let (beside, left) = (now.place.clone(), lack(candidates, &now));
+        (beside, self.sized((candidates, masks), now, &left, runs))
+    }
+
+    /// Weighs with the tolerances as they act beside the first member, then beside the first two, and so on: what one seemed to
+    /// explain may be a tolerance that it or another has made matter.
+    fn settle(
+        &self,
+        (candidates, masks): (&mut [Candidate], &[Mask]),
+        mut now: Weighed,
+        bars: &Bars,
+        refused: &mut Vec<Refused>,
+        runs: &mut Runs,
+    ) -> Weighed {
+        let without = now.place.clone();
+        let mut count = 1;
+        while count <= now.chosen.members.len() {
+            if let Some(place) = self.tolerances.beside((candidates, masks), &now.chosen.members[..count], runs) {
+                now = now.at(place);
+            }
+            self.refined((candidates, masks), &mut now, runs);
+            while now.chosen.members.get(count).is_some_and(|next| next.evidence < bars.least(&candidates[next.candidate])) {
+                let reason = "with the tolerances as they act beside what was found before it, it has too little evidence";
+                refused.push(Refused::new(now.chosen.members.remove(count), reason));
+                alone_again(candidates, &now.chosen.members);
+                self.refined((candidates, masks), &mut now, runs);
+            }
+            let members = &now.chosen.members;
+            let weak = |at: usize| {
+                let (member, of) = (&members[at], &candidates[members[at].candidate]);
+                let contrast = now.beside_the_others(of, &masks[member.mask], member.size);
+                let (away, needed) = ((self.far)(of, contrast), bars.tolerance_sd + masks[member.mask].picked());
+                let from = if masks[member.mask].asked_by.is_some() { " from that of the other sections" } else { "" };
+                let reason = match () {
+                    () if member.evidence < bars.least(of) => "it has too little evidence".to_string(),
+                    () if away < needed => format!("its size is {away:.1} declared standard deviations off{from}, not {needed:.1}"),
+                    () => return None,
+                };
+                Some((at, format!("with the tolerances as they act beside it, {reason}")))
+            };
+            let Some((weak, reason)) = (0..count).find_map(weak) else {
+                count += 1;
+                continue;
+            };
+            refused.push(Refused::new(now.chosen.members.remove(weak), reason));
+            alone_again(candidates, &now.chosen.members);
+            now = now.at(without.clone());
+            self.refined((candidates, masks), &mut now, runs);
+            count = 1;
+        }
+        now
+    }
+
+    /// Fits the members again by what their sizes follow from: without what stands out in a section alone, which would pull with all that
+    /// it is off, without lags that jump to another period of a sway between sizes, and with the levels and all else of a simulated
+    /// change as wrong, each as one, as a model may be.
+    fn sized(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Weighed, lack: &[Lack], runs: &mut Runs) -> Weighed {
+        let (seen, settings) = (self.tolerances.workshop.seen, self.tolerances.settings);
+        let mut covariance = now.place.covariance.clone();
+        for one in lack {
+            let level = one.kind == Kind::Level;
+            for (at, feature) in seen.features.iter().enumerate() {
+                if seen.layout.channels[feature.channel].name == one.channel && (feature.kind == Kind::Level) == level {
+                    one.alone.iter().for_each(|section| covariance.diagonal[seen.place(*section, at)] = NOTHING);
+                }
+            }
+        }
+        for member in now.chosen.members.iter().filter(|member| !candidates[member.candidate].exact) {
+            for (at, feature) in seen.features.iter().enumerate().filter(|(_, feature)| feature.kind == Kind::Lag) {
+                let sd = settings.groups[seen.layout.channels[feature.channel].group].lag_sd;
+                for place in (0..seen.sections.len()).map(|section| seen.place(section, at)) {
+                    if candidates[member.candidate].range_near(member.size, place) > JUMP * sd {
+                        covariance.diagonal[place] = NOTHING;
+                    }
+                }
+            }
+        }
+        let levels: Vec<bool> = seen.features.iter().map(|feature| feature.kind == Kind::Level).collect();
+        covariance.shared.extend(wrong_as_one(&levels, candidates, masks, &now.chosen.members));
+        now.place = Arc::new(Place::new(covariance, now.place.difference.clone()));
+        self.refined((candidates, masks), &mut now, runs);
+        now
+    }
+
+    fn refined(&self, of: (&mut [Candidate], &[Mask]), now: &mut Weighed, runs: &mut Runs) {
+        refined(self.tolerances.workshop, of, (&now.place, &mut now.chosen), runs);
+    }
+}
+
+/// Fits the members again, with the sizes that are found simulated; last comes a fit, so that no size is judged that is not the answer's.
+pub fn refined(
+    workshop: &Workshop<'_>,
+    (candidates, masks): (&mut [Candidate], &[Mask]),
+    (place, chosen): (&Place, &mut Chosen),
+    runs: &mut Runs,
+) {
+    for round in 0..=ROUNDS {
+        let fitter = Fitter::of(&place.whitener, candidates, masks.to_vec(), &chosen.members);
+        refit(&fitter, &place.z, chosen);
+        if round == ROUNDS || !polish(workshop, candidates, &chosen.members, runs) {
+            break;
+        }
+    }
+}
+
+/// Adds the sizes that were found, where no size as near was tried; whether there was any to add.
+pub fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], fits: &[Fitted], runs: &mut Runs) -> bool {
+    let mut added = false;
+    for member in fits {
+        let candidate = &mut candidates[member.candidate];
+        let known = candidate.nodes.iter().any(|node| (node.size - member.size).abs() <= ALIKE * member.size.abs());
+        if !candidate.discrete && member.size.is_finite() && !known {
+            workshop.add_size(candidate, member.size, runs);
+            added = true;
+        }
+    }
+    added
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::allowed::whiten::Covariance;
+    use crate::diagnose::allowed::whiten::less;
+    use crate::diagnose::search::candidates::Node;
+
+    /// One feature in each of eight sections, of unit variance: three that the data chose ask for 5, the others for 2, or for -2.
+    #[test]
+    fn what_all_sections_have_is_no_reason_to_choose_some() {
+        let covariance = Covariance { diagonal: vec![1.0; 8], inside: Vec::new(), shared: Vec::new(), size: 1 };
+        let nodes = [-10.0, 0.0, 10.0].map(|size| Node { size, change: if size == 0.0 { Vec::new() } else { vec![size; 8] } });
+        let candidates = [Candidate::path("effect", nodes.to_vec())];
+        let size = |others: f64, asked_by: Option<usize>| {
+            let difference: Vec<f64> = (0..8).map(|at| if at < 3 { 5.0 } else { others }).collect();
+            let mask = Mask { confined: None, sections: (0..8).map(|at| at < 3).collect(), asked_by };
+            let whitener = covariance.whitener();
+            let member = Fitter::new(&whitener, &candidates, vec![mask.clone()]).fit(&difference, 0, 0).expect("a path");
+            let chosen = Chosen { rest: less(&difference, &member.whitened), members: vec![member.clone()] };
+            let weighed = Weighed { place: Arc::new(Place::new(covariance.clone(), difference)), chosen };
+            weighed.beside_the_others(&candidates[0], &mask, member.size)
+        };
+        for (others, asked_by, wanted) in [(2.0, Some(0), 3.0), (-2.0, Some(0), 5.0), (6.0, Some(0), 0.0), (2.0, None, 5.0)] {
+            let found = size(others, asked_by);
+            assert!((found - wanted).abs() < 1e-9, "{found} for {wanted}");
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! What no effect of the catalogue moves: parameters of the vehicle that the test engineer admits not to know exactly, each alone and
+//! by far more than is declared. Where one of them explains a gap much better than the answer does, the cause is outside the catalogue;
+//! where it does so by little, the data cannot tell.
+
+use super::candidates::{Candidate, Node, Workshop};
+use super::choose::{Chosen, refit};
+use super::fit::{Fitted, Fitter, Mask};
+use super::place::Place as Weighing;
+use crate::diagnose::allowed::whiten::{dot, less};
+use crate::diagnose::observe::bench::Runs;
+use crate::diagnose::settings::Settings;
+use crate::units::Unit;
+
+/// Factors that every suspect is simulated with, 1 being none; and those that are left for the ones that come near.
+const COARSE: [f64; 2] = [0.45, 1.8];
+const FINE: [f64; 5] = [0.25, 0.35, 0.7, 1.3, 2.5];
+/// How many are simulated finely at most, and from which share of the evidence of the answer on.
+const MOST: usize = 2;
+const NEAR: f64 = 0.15;
+/// How often the factor that was found is simulated itself, and what is no other factor.
+const ROUNDS: usize = 2;
+const ALIKE: f64 = 0.02;
+/// So much more evidence than the answer's, what a cause needs by itself, makes the answer one of two; so large a share of it more makes it
+/// wrong.
+const BETTER: f64 = 30.0;
+const BETTER_SHARE: f64 = 0.5;
+
+/// What moves the features in the same direction, by this cosine, is the same cause by another name.
+const SAME: f64 = 0.8;
+
+/// A parameter that explains more than the answer.
+#[derive(Clone, Debug)]
+pub struct Suspect {
+    pub key: String,
+    pub factor: f64,
+    pub evidence: f64,
+    /// Of what it would take the place of.
+    pub answer: f64,
+    /// Whether that is all of several members.
+    pub of_all: bool,
+}
+
+impl Suspect {
+    /// Whether it leaves nothing of the answer, and is not only as likely.
+    #[must_use]
+    pub fn beats(&self) -> bool {
+        // One cause instead of several need not be half as good again.
+        self.evidence > self.answer + if self.of_all { BETTER } else { BETTER.max(BETTER_SHARE * self.answer) }
+    }
+}
+
+/// What a suspect may take the place of.
+struct Place {
+    /// What is left of the whitened difference without it, what its first member explains, and its evidence.
+    rest: Vec<f64>,
+    whitened: Vec<f64>,
+    answer: f64,
+    of_all: bool,
+}
+
+impl Place {
+    /// The strongest member, and all together where there are several.
+    fn of(chosen: &Chosen, z: &[f64]) -> Vec<Self> {
+        let Some(first) = chosen.members.first() else { return Vec::new() };
+        let strongest = Self { rest: chosen.left_by_others(z, 0), whitened: first.whitened.clone(), answer: first.evidence, of_all: false };
+        let all = Self { rest: z.to_vec(), whitened: first.whitened.clone(), answer: chosen.evidence(), of_all: true };
+        if chosen.members.len() > 1 { vec![strongest, all] } else { vec![strongest] }
+    }
+
+    /// Whether a suspect is the same cause by another name. One in the place of several is none of them.
+    fn is(&self, fit: &Fitted) -> bool {
+        let length = |of: &[f64]| dot(of, of).sqrt();
+        !self.of_all && dot(&fit.whitened, &self.whitened).abs() > SAME * length(&fit.whitened) * length(&self.whitened)
+    }
+}
+
+/// Looks for one in the place of the strongest member, unless that is an operation on the signals of one channel alone, and in the place of
+/// all. The weighing is that without effects.
+#[must_use]
+pub fn suspect(
+    workshop: &Workshop<'_>,
+    settings: &Settings,
+    Weighing { whitener, z, .. }: &Weighing,
+    (candidates, masks, chosen): (&[Candidate], &[Mask], &Chosen),
+    runs: &mut Runs,
+) -> Option<Suspect> {
+    let bench = workshop.bench?;
+    let fitter = Fitter::of(whitener, candidates, masks.to_vec(), &chosen.members);
+    let mut now = chosen.clone();
+    refit(&fitter, z, &mut now);
+    let first = &candidates[now.members.first()?.candidate];
+    if first.exact && first.channels.len() < 2 {
+        return None;
+    }
+    let of = settings.tolerances.iter().filter(|tolerance| tolerance.suspects);
+    let there = |key: &&String| (workshop.neutral)(key).is_some_and(|value| value != 0.0);
+    let keys: Vec<&String> = of.flat_map(|tolerance| &tolerance.scales).filter(there).collect();
+    let everywhere = masks.first()?.clone();
+    let fitted = |path: &Candidate, place: &Place| {
+        Fitter::new(whitener, std::slice::from_ref(path), vec![everywhere.clone()]).fit(&place.rest, 0, 0)
+    };
+    let simulate = |path: &mut Candidate, factors: &[f64], runs: &mut Runs| {
+        let (key, value) = (path.size.clone(), (workshop.neutral)(&path.size).unwrap_or(0.0));
+        for factor in factors {
+            runs.made += workshop.seen.sections.len();
+            // A vehicle that cannot run so is no suspect with that factor.
+            if let Ok(made) = bench.features(&[(key.clone(), factor * value)]) {
+                path.nodes.push(Node { size: *factor, change: less(&made, &workshop.ground.base) });
+            }
+        }
+        path.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
+    };
+    (workshop.trying)("what no effect of the catalogue moves");
+    let mut coarse: Vec<Candidate> = keys.iter().map(|key| Candidate::of_path(key, keys.len())).collect();
+    coarse.iter_mut().for_each(|path| simulate(path, &COARSE, runs));
+    let mut best: Option<Suspect> = None;
+    for place in Place::of(&now, z) {
+        let mut paths: Vec<(Candidate, Fitted)> =
+            coarse.iter().filter_map(|path| fitted(path, &place).map(|fit| (path.clone(), fit))).collect();
+        paths.retain(|(_, fit)| fit.evidence >= NEAR * place.answer);
+        paths.sort_by(|a, b| b.1.evidence.total_cmp(&a.1.evidence));
+        paths.truncate(MOST);
+        for (path, fit) in &mut paths {
+            simulate(path, &FINE, runs);
+            for _ in 0..=ROUNDS {
+                *fit = fitted(path, &place)?;
+                if path.nodes.iter().any(|node| (node.size - fit.size).abs() <= ALIKE * fit.size) {
+                    break;
+                }
+                simulate(path, &[fit.size], runs);
+            }
+        }
+        for (path, fit) in paths.into_iter().filter(|(_, fit)| !place.is(fit)) {
+            let suspect = Suspect { key: path.size, factor: fit.size, evidence: fit.evidence, answer: place.answer, of_all: place.of_all };
+            // An operation on the signals that comes as near is the simpler cause; of one and several, the one.
+            let near = match place.of_all {
+                true => suspect.evidence > suspect.answer,
+                false => !first.exact && suspect.evidence > suspect.answer + BETTER,
+            };
+            let share = |of: &Suspect| of.evidence / of.answer;
+            if (suspect.beats() || near) && best.as_ref().is_none_or(|best| share(&suspect) > share(best)) {
+                best = Some(suspect);
+            }
+        }
+    }
+    best
+}
+
+impl Candidate {
+    /// A parameter of the simulator that no effect of the catalogue moves, by its path alone.
+    fn of_path(key: &str, alternatives: usize) -> Self {
+        Self {
+            effect: key.to_string(),
+            channels: Vec::new(),
+            size: key.to_string(),
+            unit: Unit::one(),
+            range: (0.0, f64::INFINITY),
+            fixed: Vec::new(),
+            nodes: vec![Node { size: 1.0, change: Vec::new() }],
+            discrete: false,
+            exact: false,
+            confinable: false,
+            tolerance: None,
+            alternatives,
+            pending: Vec::new(),
+            beside: None,
+        }
+    }
+}
