@@ -14,8 +14,8 @@ pub struct Set {
 
 pub const SETS: [Set; 4] = [
     Set { name: "derive", seed: 4_100_000, cases: derive },
-    Set { name: "score", seed: 61_700_000, cases: score },
-    Set { name: "doubt", seed: 37_100_000, cases: doubt },
+    Set { name: "score", seed: 73_100_000, cases: score },
+    Set { name: "doubt", seed: 43_300_000, cases: doubt },
     Set { name: "test", seed: 9_700_000, cases: test },
 ];
 

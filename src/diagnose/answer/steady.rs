@@ -7,18 +7,22 @@ use crate::diagnose::allowed::whiten::Covariance;
 use crate::diagnose::gap::trends::{CERTAIN, Covariate, NINETY, covariates};
 use crate::diagnose::observe::features::Kind;
 use crate::diagnose::run::Found;
+use crate::diagnose::search::candidates::Candidate;
 use crate::diagnose::search::fit::Fitted;
 use crate::diagnose::search::lack::{left, with_room};
 use crate::diagnose::settings::Settings;
 use crate::effects::{CHANNEL, Catalogue};
 use crate::result::diagnosis::Drift;
-use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 /// Of a squared length, what rounding leaves of it.
 const NOTHING: f64 = 1e-9;
 
-/// How the size of each operation on the signals changes with what the sections differ in: by least squares beside the sizes of all
-/// members, whitened by what may differ beside the answer. What is simulated is not looked at: what the model is wrong in may itself grow
+/// What a size follows that differs from section to section in no order.
+const SECTION: &str = "the section alone";
+
+/// How the size of each operation on the signals changes with what the sections differ in, and from section to section: by least squares
+/// beside the sizes of all members, whitened by what may differ beside the answer. What is simulated is not looked at: what the model is wrong in may itself grow
 /// with the curvature. Sizes between which nothing lies, as of a polarity, are the same everywhere or confined.
 #[must_use]
 pub fn drifts(settings: &Settings, found: &Found) -> Vec<Drift> {
@@ -44,24 +48,82 @@ pub fn drifts(settings: &Settings, found: &Found) -> Vec<Drift> {
         if length <= NOTHING * growing.norm_squared() {
             return None;
         }
-        let candidate = &found.candidates[member.candidate];
         let (change, error) = (own.dot(&rest) / length, 1.0 / length.sqrt());
         let [from, to] = covariate.ends.clone();
-        Some(Drift {
-            effect: candidate.effect.clone(),
-            signals: candidate.channels.clone(),
-            parameter: candidate.size.replace(&format!(".{CHANNEL}"), ""),
-            unit: candidate.unit.to_string(),
-            covariate: covariate.name.clone(),
-            from,
-            to,
-            change,
-            low: change - NINETY * error,
-            high: change + NINETY * error,
-            p_value: 2.0 * Normal::standard().sf((change / error).abs()),
-        })
+        let p_value = 2.0 * Normal::standard().sf((change / error).abs());
+        Some(drift(&found.candidates[member.candidate], (covariate.name.clone(), from, to), (change, error), p_value))
     };
-    operations.iter().flat_map(|member| covariates.iter().filter_map(|covariate| of(member, covariate))).collect()
+    let apart = |member: &Fitted| {
+        let tangent = member.tangent(&found.candidates, &found.masks);
+        let features = found.seen.features.len();
+        let alone = |at: usize| {
+            let mut alone = vec![0.0; tangent.len()];
+            alone[at * features..][..features].copy_from_slice(&tangent[at * features..][..features]);
+            DVector::from(whitener.apply(&alone))
+        };
+        let (sections, columns): (Vec<usize>, Vec<DVector<f64>>) =
+            (0..found.seen.sections.len()).map(|at| (at, alone(at))).filter(|(_, column)| column.norm_squared() > 0.0).unzip();
+        let apart = Apart::fit(&columns, &sizes, &rest)?;
+        let name = |at: usize| found.seen.sections[sections[at]].section.name().to_string();
+        let names = (SECTION.into(), name(apart.from), name(apart.to));
+        Some(drift(&found.candidates[member.candidate], names, (apart.change, apart.error), apart.p_value))
+    };
+    let all =
+        |member: &&Fitted| -> Vec<Drift> { covariates.iter().filter_map(|covariate| of(member, covariate)).chain(apart(member)).collect() };
+    operations.iter().flat_map(all).collect()
+}
+
+fn drift(candidate: &Candidate, (covariate, from, to): (String, String, String), (change, error): (f64, f64), p_value: f64) -> Drift {
+    Drift {
+        effect: candidate.effect.clone(),
+        signals: candidate.channels.clone(),
+        parameter: candidate.size.replace(&format!(".{CHANNEL}"), ""),
+        unit: candidate.unit.to_string(),
+        covariate,
+        from,
+        to,
+        change,
+        low: change - NINETY * error,
+        high: change + NINETY * error,
+        p_value,
+    }
+}
+
+/// How a size differs from section to section, whatever they differ in: by least squares with a size for each section beside what is the
+/// same everywhere (Cochran's test of homogeneity, with errors that are correlated).
+struct Apart {
+    /// The sections with the least and the largest size, as far as they can be told from the size of all; how far those are apart.
+    from: usize,
+    to: usize,
+    change: f64,
+    error: f64,
+    /// That all are the same.
+    p_value: f64,
+}
+
+impl Apart {
+    /// `columns` are what sections change by, each alone; `sizes` an orthonormal base of what is the same everywhere.
+    fn fit(columns: &[DVector<f64>], sizes: &DMatrix<f64>, rest: &DVector<f64>) -> Option<Self> {
+        if columns.len() < 2 {
+            return None;
+        }
+        let columns = DMatrix::from_columns(columns);
+        let own = &columns - sizes * sizes.tr_mul(&columns);
+        let squares = own.tr_mul(&own).symmetric_eigen();
+        let least = NOTHING * squares.eigenvalues.max();
+        let told: Vec<usize> = (0..columns.ncols()).filter(|at| squares.eigenvalues[*at] > least).collect();
+        let mut covariance = DMatrix::zeros(columns.ncols(), columns.ncols());
+        for at in &told {
+            let vector = squares.eigenvectors.column(*at);
+            covariance += vector * vector.transpose() / squares.eigenvalues[*at];
+        }
+        let along = own.tr_mul(rest);
+        let differ = &covariance * &along;
+        let (from, to) = (differ.argmin().0, differ.argmax().0);
+        let variance = covariance[(from, from)] + covariance[(to, to)] - 2.0 * covariance[(from, to)];
+        let fall = ChiSquared::new(told.len() as f64).ok()?;
+        Some(Self { from, to, change: differ[to] - differ[from], error: variance.max(0.0).sqrt(), p_value: fall.sf(along.dot(&differ)) })
+    }
 }
 
 /// What may differ beside the answer, with room for what a simulated member has wrong as one; lags that jump with its size do not count.
@@ -100,4 +162,25 @@ pub fn worth_a_word(catalogue: &Catalogue, drifts: &[Drift]) -> Option<String> {
         drift.from,
         drift.to
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Four sections of one feature each, of unit variance, that change by 5 per unit of the size: with sizes of 0.1, 0.5, 0.3, 0.3 the
+    /// mean is 0.3, chi-squared 5^2 * (0.2^2 + 0.2^2) = 2 with three degrees of freedom, and the difference of two sizes has an error of
+    /// 2^1/2 / 5. The chance is erfc((x / 2)^1/2) + (2 x / pi)^1/2 e^(-x / 2) = 0.1573 + 0.4151 for x = 2.
+    #[test]
+    fn sizes_that_differ_from_section_to_section_are_told() {
+        let columns: Vec<DVector<f64>> = (0..4).map(|at| DVector::from_fn(5, |row, _| if row == at { 5.0 } else { 0.0 })).collect();
+        let sizes = DMatrix::from_column_slice(5, 1, &[0.5, 0.5, 0.5, 0.5, 0.0]);
+        // The last feature is none that the size changes.
+        let rest = DVector::from_column_slice(&[0.5, 2.5, 1.5, 1.5, 7.0]);
+        let apart = Apart::fit(&columns, &sizes, &rest).expect("four sections");
+        assert_eq!((apart.from, apart.to), (0, 1));
+        assert!((apart.change - 0.4).abs() < 1e-12 && (apart.error - 2_f64.sqrt() / 5.0).abs() < 1e-12);
+        assert!((apart.p_value - 0.572_407).abs() < 1e-6, "{}", apart.p_value);
+        assert!(Apart::fit(&columns[..1], &sizes, &rest).is_none());
+    }
 }

@@ -29,7 +29,9 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let (mut trends, together) = crate::diagnose::gap::trends::trends(inputs.settings, found, units);
     let drifts = super::steady::drifts(inputs.settings, found);
     // No chance, whatever share of the gap it is.
-    let left = crate::diagnose::gap::trends::certain(&trends) || super::steady::certain(&drifts).is_some();
+    let left = crate::diagnose::gap::trends::certain(&trends)
+        || super::steady::certain(&drifts).is_some()
+        || crate::diagnose::gap::invariants::stays(&invariants).is_some();
     // The least share of the resamples in which a member is first, where that is too few.
     let least = found.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
     let verdict = match () {

@@ -8,6 +8,7 @@ use crate::diagnose::search::lack::{left, with_room};
 use crate::diagnose::settings::Settings;
 use crate::result::diagnosis::Invariant;
 use crate::simulate::Units;
+use statrs::distribution::{ContinuousCDF, Normal};
 
 /// To which side an invariant is off: to the same in all sections, or turning with the curve; and whether it is the latter.
 const PARITIES: [(&str, bool); 2] = [("alike in all sections", false), ("turns with the curve", true)];
@@ -68,6 +69,22 @@ pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Inva
     all
 }
 
+/// Chance of an invariant that is off as far or further among all that were looked at (Bonferroni), below which it is none: what is allowed
+/// for in sums of forces is small and well known.
+const CHANCE: f64 = 0.01;
+/// Of what it is off by, a cause takes more than this share.
+const TAKES: f64 = 0.5;
+
+/// The invariant that is off by no chance, and of which the causes take less than half: whatever else they explain, they are not the cause
+/// of that.
+#[must_use]
+pub fn stays(all: &[Invariant]) -> Option<&Invariant> {
+    let tested = all.iter().filter(|one| one.allowed_after > 0.0).count() as f64;
+    let chance = |one: &Invariant| tested * 2.0 * Normal::standard().sf(off(one));
+    let stays = |one: &&Invariant| one.after.abs() > TAKES * one.before.abs() && chance(one) < CHANCE;
+    all.iter().filter(stays).max_by(|a, b| off(a).total_cmp(&off(b)))
+}
+
 /// What is off by more than this many standard deviations is worth a word.
 const WORTH: f64 = 3.0;
 
@@ -97,5 +114,28 @@ mod tests {
     fn variance_of_a_sum() {
         let covariance = Covariance { diagonal: vec![1.0, 2.0], inside: vec![(0, vec![2.0, 1.0])], shared: vec![vec![0.0, 3.0]], size: 2 };
         assert!((covariance.variance(&[1.0, -1.0]) - (5.0 - 2.0 * 2.0 + 12.0)).abs() < 1e-12);
+    }
+
+    /// Of four invariants one is off by 3.02 standard deviations or more with a chance of 4 * 0.0025 = 0.01.
+    #[test]
+    fn what_the_causes_take_less_than_half_of_stays() {
+        let one = |before: f64, after: f64| Invariant {
+            name: "sum".into(),
+            parity: PARITIES[0].0,
+            unit: "kN".into(),
+            before,
+            after,
+            allowed: 2.0,
+            allowed_after: 2.0,
+        };
+        let all = |before: f64, after: f64| [one(1.0, 1.0), one(before, after), one(4.0, 0.0), one(-3.0, -3.0)];
+        assert_eq!(stays(&all(6.1, 6.1)).map(|one| one.after), Some(6.1));
+        assert_eq!(stays(&all(-6.1, -6.1)).map(|one| one.after), Some(-6.1));
+        assert!(stays(&all(6.0, 6.0)).is_none());
+        // Half of it is taken, or more.
+        assert!(stays(&all(12.3, 6.1)).is_none() && stays(&all(12.1, 6.1)).is_some());
+        // The causes put it off.
+        assert!(stays(&all(0.0, 6.1)).is_some());
+        assert!(stays(&[]).is_none());
     }
 }
