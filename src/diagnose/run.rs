@@ -184,8 +184,8 @@ impl Found {
             let lack_after = drop_what_harms(&fitter, (&beside, &self.seen), &settled.z, &mut chosen, refused, &self.lack_before);
             drop(fitter);
             let first_of = |chosen: &Chosen| chosen.members.first().map(|member| member.candidate);
-            // What may take the place of the first member depends on what that is.
-            if !gone || first_of(&chosen) != self.suspected {
+            // What may take the place of the first member depends on what that is, and what may take that of all on them.
+            if !gone || first_of(&chosen) != self.suspected || self.suspect.as_ref().is_some_and(|suspect| suspect.of_all) {
                 self.suspected = first_of(&chosen);
                 self.suspect = suspect(workshop, inputs.settings, alone, (candidates, masks, &chosen), runs);
             }
