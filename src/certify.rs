@@ -60,6 +60,7 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
         zones: outcome.zones,
         domain: outcome.domain,
         traces: outcome.traces,
+        findings: outcome.findings,
         notes: outcome.notes,
     })
 }

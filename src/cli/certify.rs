@@ -10,7 +10,7 @@ use super::output::{Console, Exit};
 use crate::certify::certify;
 use crate::data::write::Outputs;
 use crate::problem::{Problem, Problems};
-use crate::report::{figure, html, json, number, tables, typst, view};
+use crate::report::{figure, findings, html, json, number, tables, typst, view};
 use crate::result::{Certification, Verdict};
 use crate::run::Settings;
 
@@ -165,6 +165,9 @@ fn summary(found: &Certification, color: bool) -> String {
     out += &format!("{used} of {} sections used\n", found.sections.len());
     for section in found.sections.iter().filter(|section| !section.used) {
         out += &format!("  {} not used: {}\n", section.section, section.reason.clone().unwrap_or_default());
+    }
+    for row in findings::rows(&found.findings) {
+        out += &format!("finding: {}\n", findings::line(&row));
     }
     for note in &found.notes {
         out += &format!("note: {note}\n");

@@ -27,6 +27,7 @@ pub fn results(found: &Certification) -> String {
     root.insert("sections".into(), Value::Array(found.sections.iter().map(|section| zone_as_number(json!(section))).collect()));
     root.insert("zones".into(), Value::Array(found.zones.iter().map(|zone| zone_as_number(json!(zone))).collect()));
     root.insert("domain".into(), json!(found.domain));
+    root.insert("findings".into(), json!(found.findings));
     root.insert("notes".into(), json!(found.notes));
     // A tree of plain values always serialises.
     serde_json::to_string_pretty(&Value::Object(root)).unwrap_or_default() + "\n"

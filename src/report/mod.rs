@@ -5,6 +5,7 @@
 pub mod blind;
 pub mod diagnosis;
 pub mod figure;
+pub mod findings;
 pub mod html;
 pub mod json;
 pub mod number;

@@ -82,6 +82,25 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
         })
     });
     add("checks", &["section", "requirement", "holds", "found"], checks.collect())?;
+    let findings = found.findings.iter().map(|finding| {
+        vec![
+            finding.code.clone(),
+            finding.section.clone().unwrap_or_default(),
+            finding.record.clone().unwrap_or_default(),
+            finding.channel.clone().unwrap_or_default(),
+            number(finding.value),
+            number(finding.expected),
+            finding.unit.clone().unwrap_or_default(),
+            finding.says.clone(),
+            finding.cause.clone().unwrap_or_default(),
+            finding.consequence.in_words().into(),
+        ]
+    });
+    add(
+        "findings",
+        &["rule", "section", "record", "channel", "value", "expected", "unit", "finding", "likely cause", "consequence"],
+        findings.collect(),
+    )?;
     let zones = found.zones.iter().map(|z| {
         vec![
             z.zone.clone(),

@@ -4,9 +4,12 @@
 
 pub mod blind;
 pub mod diagnosis;
+pub mod finding;
 pub mod study;
 
 use serde::Serialize;
+
+pub use finding::{Consequence, Finding};
 
 /// Everything a report prints, in the order of the protocol and of the campaign.
 #[derive(Clone, Debug, Serialize)]
@@ -24,6 +27,8 @@ pub struct Certification {
     pub domain: Vec<DomainRange>,
     /// Distance or time plots of the sections that matter most.
     pub traces: Vec<Trace>,
+    /// What is not plausible in the data, in the order of the protocol's rules and of the sections.
+    pub findings: Vec<Finding>,
     /// Remarks that do not change the verdict (a short filter margin, a unit converted).
     pub notes: Vec<String>,
 }

@@ -20,7 +20,7 @@ use crate::check::plan::{OnFault, Plan};
 use crate::data::Campaign;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
-use crate::result::{DataItem, FileHash, QuantityResult, SectionResult, Trace, Verdict, ZoneResult};
+use crate::result::{DataItem, FileHash, Finding, QuantityResult, SectionResult, Trace, Verdict, ZoneResult};
 
 pub use facts::{Facts, scalar};
 pub use judge::Judged;
@@ -41,6 +41,7 @@ pub struct Outcome {
     pub traces: Vec<Trace>,
     /// The vehicle data that the protocol reads.
     pub vehicle: Vec<DataItem>,
+    pub findings: Vec<Finding>,
     pub notes: Vec<String>,
     /// Records in the order of the sections.
     pub files: Vec<FileHash>,
@@ -86,6 +87,7 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
         domain,
         traces,
         vehicle: evaluated.vehicle(plan),
+        findings: Vec::new(),
         notes: notes.clone(),
         files: files.clone(),
         sections: sections::results(plan, evaluated.units),

@@ -86,6 +86,7 @@ pub fn certification() -> Certification {
         domain: domain(),
         sections,
         traces,
+        findings: Vec::new(),
         notes: vec![
             "Section S07: 3.1 s of record before the section; the band-pass needs 5 s to settle.".into(),
             format!("Column `{HOSTILE}` of sections.csv is not used."),
@@ -120,6 +121,7 @@ pub fn empty() -> Certification {
         zones: Vec::new(),
         domain: Vec::new(),
         traces: Vec::new(),
+        findings: Vec::new(),
         notes: Vec::new(),
     }
 }

@@ -10,7 +10,7 @@ mod summary;
 
 use serde::Serialize;
 
-use crate::report::number;
+use crate::report::{findings, number};
 use crate::result::{CampaignInfo, Certification, DataItem, Verdict};
 
 pub use protocol::{ProtocolView, SourceFile, view as protocol_view};
@@ -54,6 +54,8 @@ pub struct ReportData {
     pub traces: Vec<TraceView>,
     pub domain: Vec<DomainView>,
     pub domain_figure: Option<FigureView>,
+    /// What is not plausible in the data.
+    pub findings: Vec<findings::Row>,
     /// Remarks that do not change the verdict.
     pub notes: Vec<String>,
 }
@@ -178,6 +180,7 @@ pub fn view(found: &Certification) -> ReportData {
                 found.domain.len()
             ),
         }),
+        findings: findings::rows(&found.findings),
         notes: found.notes.clone(),
     }
 }
