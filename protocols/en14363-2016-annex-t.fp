@@ -149,6 +149,19 @@ channel curvature "Curvature of the track"
   in      1/m
   record  track
 
+channel track_cant "Cant of the track"
+  in      mm
+  column  "cant"
+  record  track
+
+channel running_distance "Distance along the track"
+  in      m
+  column  "distance"
+
+channel clock "Time of the samples"
+  in      s
+  column  "time"
+
 signal YQ "Ratio Y/Q"
   is     (Y through LP20) / (Q through LP20) when ratio_from is lowpassed, otherwise Y / Q
   at     each wheelset and side
@@ -161,6 +174,23 @@ signal SigmaY "Sum of guiding forces"
   at     each wheelset
   in     kN
   named  "SigmaY_{wheelset}"
+
+signal SigmaQ "Sum of the vertical wheel forces of a wheelset"
+  is     Q at side R + Q at side L
+  at     each wheelset
+  in     kN
+  named  "SigmaQ_{wheelset}"
+
+signal DeltaQ "Left less right vertical wheel force of a wheelset"
+  is     Q at side L - Q at side R
+  at     each wheelset
+  in     kN
+  named  "DeltaQ_{wheelset}"
+
+signal TotalY "Sum of all guiding forces"
+  is     SigmaY at wheelset 1 + SigmaY at wheelset 2 + SigmaY at wheelset 3 + SigmaY at wheelset 4
+  in     kN
+  named  "TotalY"
 
 filter LP20 "Low-pass filter 20 Hz"
   step    low-pass lowpass_frequency, order lowpass_order, filter_phase, filter_edge
@@ -198,6 +228,13 @@ define lighter_requirements "Vehicles whose acceleration limits are doubled"
           or not vehicle.secondary_suspension
   source  "Table 1, footnote **"
 
+define turn "1 in right-hand curves, -1 in left-hand curves"
+  is  1 when direction is right, -1 when direction is left, otherwise 0
+
+define unbalanced_acceleration "Lateral acceleration in the plane of the track, positive to the right"
+  is    turn * (speed^2 / radius - 9.80665 m/s^2 * cant / 1500 mm)
+  note  "1500 mm: distance of the contact points."
+
 zone 1 "Straight track and very large radius curves"
   where             direction is straight or (radius > 600 m and cant_deficiency <= 40 mm)
   minimum sections  sections_per_zone
@@ -229,6 +266,187 @@ check full_curve "Section lies in full curve or on straight track"
   require  range of curvature <= 2 % * |mean of curvature| + 0.00001 1/m
   source   "Section 3.2"
   note     "Needs the track file; the tolerance is this protocol's own."
+
+plausibility static_load "Vertical wheel force against the static load"
+  of         SigmaQ at each wheelset
+  require    median near 2 * Q0 within a factor of 1.4
+  otherwise  not used
+  cause      "the load of an axle, of a bogie or of the vehicle in place of that of a wheel; the load of"
+             "another state"
+  note       "A payload adds up to a third; the nearest likely slip, the load of an axle, is a factor of 2."
+
+plausibility load_transfer "Load transfer to the outer wheels"
+  of         DeltaQ at each wheelset
+  require    turn * median > 0 kN
+  unless     direction is straight or cant_deficiency < 60 mm
+  otherwise  not used
+  cause      "left and right wheel exchanged, or the direction of the curve"
+  note       "With 60 mm of cant deficiency the outer wheel carries about 5 % more."
+
+plausibility guiding_sign "Guiding force of the outer leading wheel"
+  of         Y at wheelset 1 and side outer
+  require    -turn * median > 0.08 * Q0
+  unless     direction is straight or radius > 600 m
+  otherwise  not used
+  cause      "the sign of the guiding forces, their unit, or the direction of the curve"
+  note       "In small curves the outer wheel of the leading wheelset guides: a quarter of the wheel load and"
+             "more is usual."
+
+plausibility guiding_balance "Sum of the guiding forces against the unbalanced acceleration"
+  of       TotalY
+  require  median near -(8 * Q0 / 9.80665 m/s^2) * unbalanced_acceleration within 12 kN + 0.05 * 8 * Q0
+  unless   direction is straight
+  cause    "the sign or the unit of the guiding forces; a lateral load such as wind"
+  note     "The sum of all lateral forces carries the vehicle round the curve. The tolerance is some 1 m/s^2"
+           "of acceleration less than what a turned sign makes at 100 mm of cant deficiency."
+
+plausibility wheel_climb "Ratio Y/Q within what a wheel can stand"
+  of         YQ at each wheelset and side
+  require    |median| <= 1.2
+  otherwise  not used
+  cause      "the unit of the guiding or of the vertical forces"
+  note       "Flange climbing begins at about 1.2 for a flange angle of 70 degrees (Nadal's limit); no steady"
+             "value comes near it."
+
+plausibility lateral_acceleration "Lateral acceleration against the unbalanced acceleration"
+  of         ay at each running_gear
+  require    median near 1.2 * unbalanced_acceleration within 0.2 m/s^2 + 0.4 * 1.2 * |unbalanced_acceleration|
+  unless     direction is straight
+  otherwise  not used
+  cause      "the sign or the unit of the acceleration; cant, radius or speed of the section"
+  note       "A body-fixed sensor reads the unbalanced acceleration and the share of gravity that the roll of"
+             "the body adds, a fifth to a third of it."
+
+plausibility acceleration_level "Level of the car body accelerations"
+  of         ay at each running_gear
+  of         az at each running_gear
+  filter     BP
+  require    0.02 m/s^2 <= rms and rms <= 2 m/s^2
+  otherwise  not used
+  cause      "the unit of the acceleration, g in place of m/s^2; a sensor without a signal"
+  note       "The bounds are this protocol's own: a quarter of what a coach on good track shows, and twice"
+             "what a locomotive on poor track shows."
+
+plausibility running_speed "Speed from distance and time against the table of sections"
+  require    range of running_distance / range of clock near speed within 5 %
+  otherwise  not used
+  cause      "the clock, the scale of the distance, or the speed of the table"
+  note       "A section is run at a steady speed."
+
+plausibility table_of_curves "Cant deficiency against speed, radius and cant"
+  require    |cant_deficiency| near |1500 mm * (speed^2 / radius / 9.80665 m/s^2) - cant| within 15 mm
+  unless     direction is straight
+  otherwise  not used
+  cause      "radius, speed, cant or cant deficiency of the table of sections"
+
+plausibility track_curvature "Curvature of the track file against radius and direction"
+  require    mean of curvature near turn / radius within 5 %
+  unless     direction is straight
+  otherwise  not used
+  cause      "radius, direction or place of the section, or the track file of another section"
+
+plausibility track_straight "Straight sections against the track file"
+  require    |mean of curvature| <= 0.0002 1/m
+  unless     direction is not straight
+  otherwise  not used
+  cause      "direction or place of the section, or the track file of another section"
+
+plausibility track_cant "Cant of the track file against the table"
+  require    mean of track_cant near turn * cant within 15 mm
+  unless     direction is straight
+  otherwise  not used
+  cause      "cant or direction of the section, or the track file of another section"
+
+plausibility live "Channel that stands still"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  require    held <= 5 %
+  otherwise  not used
+  cause      "a channel without a signal, or one that was interrupted"
+  note       "The longest run of equal samples of a live channel takes up to 2 % of a section."
+
+plausibility saturated "Channel at the end of its range"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  require    at_extreme <= 2 %
+  otherwise  not used
+  cause      "a recorder or sensor at the end of its range"
+  note       "A live channel is at its largest or smallest value in less than 1 % of the samples."
+
+plausibility coarse "Channel with coarse steps"
+  of       Y
+  of       Q
+  of       ay
+  of       az
+  require  resolution <= 0.15 * std
+  cause    "too few bits or decimals"
+  note     "Steps of 15 % of the standard deviation raise it by 0.1 % and blur percentiles."
+
+plausibility same_sign "Simulation and measurement of the same sign"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  require    correlation >= -0.3
+  otherwise  not used
+  cause      "a sign that is turned on one side"
+  note       "Sections of 100 m have some 10 independent waves or more: unrelated signals seldom correlate"
+             "below -0.3, related ones never."
+
+plausibility same_size "Scatter of simulation and measurement"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  require    measured(std) near simulated(std) within a factor of 6
+  otherwise  not used
+  cause      "the unit of one side"
+
+plausibility mirrored "Records in the same direction"
+  of         az
+  filter     BP
+  require    mirrored_correlation <= larger of 0.6, correlation
+  otherwise  not used
+  cause      "a record that runs the other way"
+
+plausibility aligned "Records at the same place"
+  of       az
+  filter   BP
+  require  |shift| <= 2 m
+  cause    "the distance of one side is shifted or scaled"
+  note     "A shift moves the section; up to 2 m are within what the synchronisation of records leaves."
+
+plausibility drift "Measurement that drifts"
+  of       Y
+  of       Q
+  of       ay
+  of       az
+  require  |drift| <= 1.5 * measured(std)
+  cause    "a measuring channel that drifts"
+
+plausibility copies "Copies"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  distinct   channels, sections, sides
+  otherwise  not used
+  cause      "a record or channel that was written twice"
+
+plausibility freight_suspension "Category and suspension"
+  require  not (vehicle.category is freight and vehicle.secondary_suspension)
+  cause    "the category of the vehicle file: limits of acceleration are doubled for freight wagons"
+  note     "Freight wagons seldom have a secondary suspension."
+
+plausibility single_axles "Running gear and wheelsets"
+  of         SigmaY at wheelset 3
+  require    not (vehicle.running_gear_type is single_axles)
+  otherwise  not assessable
+  cause      "the running gear of the vehicle file: a vehicle with single axles has two wheelsets"
 
 sections
   use          sections

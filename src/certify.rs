@@ -21,6 +21,12 @@ pub struct Compiled {
 }
 
 impl Compiled {
+    /// The same protocol, with findings that are told and change nothing: a diagnosis asks what is wrong, in every section.
+    #[must_use]
+    pub fn only_telling(&self) -> Self {
+        Self { family: self.family.clone(), plan: self.plan.only_telling(), graph: self.graph.clone() }
+    }
+
     /// The text of a section column as one of the words that the protocol declares for it, or why it is none; `None` where it declares
     /// no words.
     #[must_use]

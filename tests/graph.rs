@@ -59,6 +59,8 @@ fn every_node_is_used() {
         used.insert(graph.verdict);
         // Checks on sections end by themselves; so does a signal before its cut where a metric cuts for itself.
         used.extend(graph.checks.iter().flatten().map(|input| input.node));
+        let positions = || graph.plausibility.iter().flat_map(|rule| &rule.positions);
+        used.extend(positions().flat_map(|position| position.own.into_iter().chain(position.inputs.iter().map(|input| input.node))));
         used.extend(graph.quantities.iter().flat_map(|quantity| quantity.signals.iter().map(|signal| signal.filtered)));
         let idle: Vec<&str> = (0..graph.nodes.len()).filter(|id| !used.contains(id)).map(|id| graph.nodes[id].label.as_str()).collect();
         assert!(idle.is_empty(), "{name}: {idle:?}");
@@ -91,8 +93,9 @@ fn a_filter_runs_once_for_each_channel() {
     assert_eq!(filters("low-pass"), 4 + 4 + 4 + 2);
     assert_eq!(filters("band-pass"), 2 + 2);
     let reads = graph.nodes.iter().filter(|node| matches!(node.operation, Operation::Read { .. })).count();
-    // Y and Q of four wheels, two accelerations at two places, the curvature.
-    assert_eq!(reads, 8 + 4 + 1);
+    // Y and Q of eight wheels (plausibility looks at all of them), two accelerations at two places, curvature and cant of the track,
+    // distance and time.
+    assert_eq!(reads, 16 + 4 + 2 + 2);
 }
 
 #[test]

@@ -50,14 +50,19 @@ pub fn entries() -> Vec<Entry> {
     }
     all.push(Entry::new("reducer", "p<number>", "signal<D> -> D", "The value below which so many per cent of the samples lie."));
     for entry in REDUCERS {
-        let probe = (entry.gives)(Dimension::ONE, Dimension::TIME);
-        let signature = if probe == Dimension::ONE { "signal<D> -> D" } else { "signal<D> -> D per axis" };
+        let signature = match (entry.gives)(Dimension::LENGTH, Dimension::TIME) {
+            Dimension::LENGTH => "signal<D> -> D",
+            Dimension::ONE => "signal<D> -> plain number",
+            _ => "signal<D> -> D per axis",
+        };
         all.push(Entry::new("reducer", entry.name, signature, entry.about));
     }
     for entry in METRICS {
-        let probe = Dimension::TIME;
-        let signature =
-            if (entry.gives)(probe) == probe { "(signal<D>, signal<D>) -> D" } else { "(signal<D>, signal<D>) -> plain number" };
+        let signature = match (entry.gives)(Dimension::TIME, Dimension::LENGTH) {
+            Dimension::TIME => "(signal<D>, signal<D>) -> D",
+            Dimension::LENGTH => "(signal<D>, signal<D>) -> axis",
+            _ => "(signal<D>, signal<D>) -> plain number",
+        };
         all.push(Entry { source: Some(entry.source), ..Entry::new("metric", entry.form.in_words(), signature, entry.about) });
     }
     for (name, expression) in DIFFERENCES {

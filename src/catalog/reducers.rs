@@ -2,6 +2,7 @@
 
 use crate::metrics::interval::{mean_interval, standard_deviation_interval};
 use crate::metrics::percentile::{Method, percentile};
+use crate::metrics::sampling;
 use crate::metrics::statistics::{self, Divisor};
 use crate::units::Dimension;
 
@@ -35,6 +36,12 @@ const fn same(name: &'static str, about: &'static str, run: fn(&[f64], &[f64]) -
     ReducerEntry { name, about, gives: |signal, _| signal, run }
 }
 
+macro_rules! share {
+    ($name:literal, $about:literal, $run:path) => {
+        ReducerEntry { name: $name, about: $about, gives: |_, _| Dimension::ONE, run: |_, x| $run(x) }
+    };
+}
+
 /// Reducers by name; percentiles are written `p99.85` besides.
 pub const REDUCERS: &[ReducerEntry] = &[
     same("median", "The 50 % value.", |_, x| statistics::median(x)),
@@ -45,6 +52,11 @@ pub const REDUCERS: &[ReducerEntry] = &[
     same("maximum", "Largest sample.", |_, x| statistics::maximum(x)),
     same("peak", "Largest magnitude.", |_, x| statistics::peak_magnitude(x)),
     same("range", "Largest less smallest sample.", |_, x| statistics::range(x)),
+    share!("held", "Share of the section in which the longest run of equal samples stands.", sampling::longest_held_share),
+    share!("at_extreme", "Share of the samples at the largest or at the smallest value, whichever are more.", sampling::share_at_extreme),
+    same("resolution", "Smallest change from one sample to the next: the step of quantisation of a live signal.", |_, x| {
+        sampling::resolution(x)
+    }),
     same("first", "First sample of the section.", |_, x| x.first().copied()),
     same("last", "Last sample of the section.", |_, x| x.last().copied()),
     ReducerEntry {

@@ -7,6 +7,8 @@ use crate::units::Dimension;
 /// The two signals, cut to the section and on common points unless the metric says otherwise; SI.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<'a> {
+    /// Where both have a sample, along the axis: only of metrics on common points.
+    pub axis: &'a [f64],
     pub simulated: &'a [f64],
     pub measured: &'a [f64],
     /// The signal that the metric runs over, where its wording names one: simulated, measured.
@@ -15,6 +17,17 @@ pub struct Pair<'a> {
 
 #[derive(Clone, Copy, Debug)]
 pub struct Metric(pub &'static MetricEntry);
+
+impl Metric {
+    /// A metric whose wording is one word, so that expressions can use it as a name.
+    pub fn named(word: &str) -> Option<Self> {
+        METRICS.iter().find(|entry| matches!(entry.form.head, [Part::Word(only)] if *only == word)).map(Self)
+    }
+
+    pub fn of_one_word() -> impl Iterator<Item = &'static str> {
+        METRICS.iter().filter_map(|entry| if let [Part::Word(only)] = entry.form.head { Some(*only) } else { None })
+    }
+}
 
 impl PartialEq for Metric {
     fn eq(&self, other: &Self) -> bool {
@@ -25,8 +38,8 @@ impl PartialEq for Metric {
 #[derive(Debug)]
 pub struct MetricEntry {
     pub form: Form,
-    /// Dimension of the result from that of the signals.
-    pub gives: fn(Dimension) -> Dimension,
+    /// Dimension of the result from that of the signals and of the axis.
+    pub gives: fn(Dimension, Dimension) -> Dimension,
     /// Whether the simulated signal is brought onto the points of the measured one before.
     pub common_points: bool,
     pub about: &'static str,
@@ -43,7 +56,7 @@ macro_rules! ratio {
     ($head:expr, $about:expr, $source:expr, $run:path) => {
         MetricEntry {
             form: form($head),
-            gives: |_| Dimension::ONE,
+            gives: |_, _| Dimension::ONE,
             common_points: true,
             about: $about,
             source: $source,
@@ -54,7 +67,7 @@ macro_rules! ratio {
 
 macro_rules! of_signal {
     ($head:expr, $common:expr, $about:expr, $source:expr, $run:path) => {
-        MetricEntry { gives: |signal| signal, common_points: $common, ..ratio!($head, $about, $source, $run) }
+        MetricEntry { gives: |signal, _| signal, common_points: $common, ..ratio!($head, $about, $source, $run) }
     };
 }
 
@@ -97,6 +110,28 @@ pub const METRICS: &[MetricEntry] = &[
     ),
     ratio!(&[Part::Word("correlation")], "Pearson correlation of the samples.", "Pearson 1895", pair::correlation),
     ratio!(
+        &[Part::Word("mirrored_correlation")],
+        "Pearson correlation with the simulated samples read from the end: near 1 where a record is mirrored.",
+        "definition",
+        pair::mirrored_correlation
+    ),
+    MetricEntry {
+        form: form(&[Part::Word("shift")]),
+        gives: |_, axis| axis,
+        common_points: true,
+        about: "What is to be added to the measured axis for the best correlation, up to a quarter of the section.",
+        source: "definition",
+        run: |p| pair::shift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
+    },
+    MetricEntry {
+        form: form(&[Part::Word("drift")]),
+        gives: |signal, _| signal,
+        common_points: true,
+        about: "Rise of the regression line of measured less simulated samples over the section.",
+        source: "definition",
+        run: |p| pair::drift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
+    },
+    ratio!(
         &[Part::Word("misfit")],
         "Sum of the squared differences over the smaller of the sums of squares.",
         "Kraft et al. 2013, as described by Goetz & Polach",
@@ -124,7 +159,7 @@ pub const METRICS: &[MetricEntry] = &[
     ),
     MetricEntry {
         form: form(&[Part::Word("hysteresis"), Part::Word("maximum"), Part::Word("over"), Part::Signal("axis")]),
-        gives: |signal| signal,
+        gives: |signal, _| signal,
         common_points: false,
         about: "Largest matching error of the loop the signal draws over another: simulated against measured on the same branch.",
         source: "EN 15273-2, stationary sway test",
@@ -132,7 +167,7 @@ pub const METRICS: &[MetricEntry] = &[
     },
     MetricEntry {
         form: form(&[Part::Word("hysteresis"), Part::Word("mean"), Part::Word("over"), Part::Signal("axis")]),
-        gives: |signal| signal,
+        gives: |signal, _| signal,
         common_points: false,
         about: "Mean matching error of the loop the signal draws over another: simulated against measured on the same branch.",
         source: "EN 15273-2, stationary sway test",

@@ -70,6 +70,7 @@ impl Checker<'_> {
             },
             Node::PlaceOf(..) | Node::Through(..) => Meaning::Signal,
             Node::Binary(_, left, right) => of(left).with(of(right)),
+            Node::Near { value, target, tolerance, .. } => of(value).with(of(target)).with(of(tolerance)),
             Node::Negative(inner) | Node::Not(inner) | Node::Magnitude(inner) | Node::Power(inner, _) => of(inner),
             Node::Call(name, _) if matches!(name.node.as_str(), "simulated" | "measured") => Meaning::Open,
             Node::Call(_, arguments) => arguments.iter().map(&mut of).fold(Meaning::Closed, Meaning::with),

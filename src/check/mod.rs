@@ -10,9 +10,11 @@ pub mod evaluate;
 pub mod family;
 mod limits;
 mod names;
+mod near;
 mod overlap;
 mod parameters;
 pub mod plan;
+mod plausibility;
 mod positions;
 mod quantities;
 mod rules;
@@ -139,6 +141,7 @@ fn in_reading_order(problems: &mut Problems, from: usize) {
 fn written_rules(block: &Block) -> usize {
     match block.kind.text.as_str() {
         "zone" | "check" | "filter" => 1,
+        "plausibility" => block.fields_named("of").count().max(1),
         "quantity" => 1 + block.fields_named("limit").count(),
         _ => 0,
     }
@@ -150,7 +153,11 @@ fn rule_count(plan: &Plan) -> usize {
         written.dedup();
         written.len()
     };
-    plan.zones.len() + plan.checks.len() + plan.filters.len() + plan.quantities.iter().map(|quantity| 1 + limits(quantity)).sum::<usize>()
+    plan.zones.len()
+        + plan.checks.len()
+        + plan.plausibility.len()
+        + plan.filters.len()
+        + plan.quantities.iter().map(|quantity| 1 + limits(quantity)).sum::<usize>()
 }
 
 impl Checker<'_> {
@@ -240,6 +247,7 @@ impl Checker<'_> {
         }
         let zones = of("zone").filter_map(|block| self.zone(block)).collect();
         let checks = of("check").filter_map(|block| self.section_check(block)).collect();
+        let plausibility = of("plausibility").filter_map(|block| self.plausibility(block)).flatten().collect();
         let filters = of("filter").filter_map(|block| self.named_filter(block)).collect();
         let quantities: Vec<plan::Quantity> = of("quantity").filter_map(|block| self.quantity(block)).collect();
         if of("quantity").next().is_none() {
@@ -277,6 +285,7 @@ impl Checker<'_> {
             filters,
             zones,
             checks,
+            plausibility,
             sections,
             quantities,
             verdict,

@@ -26,9 +26,20 @@ pub struct Plan {
     pub filters: Vec<NamedFilter>,
     pub zones: Vec<Zone>,
     pub checks: Vec<Check>,
+    pub plausibility: Vec<Plausibility>,
     pub sections: SectionRules,
     pub quantities: Vec<Quantity>,
     pub verdict: VerdictRule,
+}
+
+impl Plan {
+    /// The same rules, with findings that are told and change nothing: for who asks what is wrong, and not whether it may be used.
+    #[must_use]
+    pub fn only_telling(&self) -> Self {
+        let mut plan = self.clone();
+        plan.plausibility.iter_mut().for_each(|rule| rule.otherwise = OnFault::Note);
+        plan
+    }
 }
 
 /// A column that records run along.
@@ -225,6 +236,65 @@ pub enum OnFault {
     NotUsed,
     Note,
     Stop,
+    /// The campaign is not assessable. Only of a plausibility rule.
+    NotAssessable,
+}
+
+/// What sound data satisfy, looked at in every section and at every position. What does not is told as a finding.
+///
+/// A block with several fields `of` is one rule for each of them.
+#[derive(Clone, Debug)]
+pub struct Plausibility {
+    pub name: String,
+    pub title: String,
+    /// Each position with the name of its signal; empty where the rule is about data or named signals alone.
+    pub signals: Vec<(String, Signal)>,
+    pub chain: Vec<Step>,
+    pub test: Test,
+    pub unless: Option<Expr>,
+    pub otherwise: OnFault,
+    pub cause: Option<String>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub enum Test {
+    Require(Box<Requirement>),
+    Distinct(Distinct),
+}
+
+/// A condition on data and reduced signals.
+#[derive(Clone, Debug)]
+pub struct Requirement {
+    pub holds: Expr,
+    pub inputs: Vec<Input>,
+    pub of: Looks,
+    /// Where the condition is one comparison: what is compared with what, and the unit both are printed in.
+    pub compared: Option<(Expr, Expr, Unit)>,
+    pub words: String,
+}
+
+/// Which record a requirement looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Looks {
+    /// Section and vehicle data alone.
+    Data,
+    Track,
+    /// Simulation and measurement, each by itself.
+    EachSide,
+    /// Both at once: metrics, `simulated(...)`, `measured(...)`.
+    BothSides,
+}
+
+/// Among what no two signals may be the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Distinct {
+    /// Channels of one record.
+    pub channels: bool,
+    /// One channel in several sections.
+    pub sections: bool,
+    /// Simulation and measurement.
+    pub sides: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -239,14 +309,31 @@ pub struct SectionRules {
     pub percentiles: Method,
 }
 
-/// A reducer of a signal that an expression uses.
+/// A number taken from signals that an expression uses.
 #[derive(Clone, Debug)]
 pub struct Input {
-    pub reducer: Reducer,
+    pub taken: Taken,
     /// `None`: the quantity's own processed signal.
     pub signal: Option<Signal>,
     pub side: InputSide,
     pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Taken {
+    /// From the signal of one side.
+    Reduced(Reducer),
+    /// From the simulated and the measured signal.
+    Compared(Metric),
+}
+
+impl Taken {
+    pub fn gives(self, signal: Dimension, axis: Dimension) -> Dimension {
+        match self {
+            Self::Reduced(reducer) => reducer.gives(signal, axis),
+            Self::Compared(metric) => (metric.0.gives)(signal, axis),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use super::Checker;
 use super::evaluate::words;
 use super::names::{Assignment, bare_word, normalised};
-use super::plan::{Axis, Evaluation, Expr, Input, InputSide, Quantity, QuantityWords, Signal, Step};
+use super::plan::{Axis, DatumKind, Evaluation, Expr, Input, InputSide, Kind, Quantity, QuantityWords, Signal, Step};
 use super::scalars::Scope;
 use crate::catalog::DIFFERENCES;
 use crate::problem::Problem;
@@ -125,7 +125,7 @@ impl Checker<'_> {
         let (_, first, _) = signals.first()?;
         Some(Compared {
             evaluation: Evaluation::Metric { metric, over, over_axis },
-            dimension: (metric.0.gives)(first.dimension),
+            dimension: (metric.0.gives)(first.dimension, self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension)),
             processing: words.clone(),
             comparison: words,
             from: Some(field.value.span.clone()),
@@ -133,7 +133,7 @@ impl Checker<'_> {
     }
 
     /// Every position with its name, its signal and its assignment.
-    fn signals_of(&mut self, of: &Text) -> Option<Vec<(String, Signal, Assignment)>> {
+    pub(super) fn signals_of(&mut self, of: &Text) -> Option<Vec<(String, Signal, Assignment)>> {
         let written = from_pest::of_places(of, self.problems)?;
         let positions = self.positions(&written.signal, &written.picks, of)?;
         let name = &written.signal.node;
@@ -234,8 +234,24 @@ impl Checker<'_> {
         Some(self.own_unit(&signal, dimension))
     }
 
+    /// The unit that a column of sections or a vehicle datum is declared in, of the first in an expression that has a dimension.
+    pub(super) fn datum_unit(&self, expr: &Expr, dimension: Dimension) -> Option<Unit> {
+        let datum = match &expr.kind {
+            Kind::Column(index) => self.names.columns.get(*index)?,
+            Kind::Vehicle(index) => self.names.vehicle.get(*index)?,
+            Kind::Negative(inner) | Kind::Power(inner, _) => return self.datum_unit(inner, dimension),
+            Kind::Binary(_, left, right) => return self.datum_unit(left, dimension).or_else(|| self.datum_unit(right, dimension)),
+            Kind::Call(_, arguments) => return arguments.iter().find_map(|argument| self.datum_unit(argument, dimension)),
+            _ => return None,
+        };
+        match &datum.kind {
+            DatumKind::Number(unit) if unit.dimension == dimension => Some(unit.clone()),
+            _ => None,
+        }
+    }
+
     /// The unit of a channel or signal if it suits, else that of SI.
-    fn own_unit(&self, name: &str, dimension: Dimension) -> Unit {
+    pub(super) fn own_unit(&self, name: &str, dimension: Dimension) -> Unit {
         let channel = self.names.channels.get(name).map(|channel| channel.unit.clone());
         let own = channel.or_else(|| self.names.signals.get(name).and_then(|signal| signal.unit.clone()));
         match own {

@@ -79,7 +79,7 @@ impl Checker<'_> {
             Some(field) => Some(self.section_condition(field)?),
             None => None,
         };
-        let otherwise = self.on_fault(block, "otherwise")?;
+        let otherwise = self.on_fault(block, "otherwise", &["not used", "stop", "note"])?;
         Some(Check {
             name: block.name_text().to_string(),
             title: block.title.as_ref().map_or_else(|| block.name_text().replace('_', " "), |title| title.text.clone()),
@@ -93,7 +93,7 @@ impl Checker<'_> {
     }
 
     /// The track record is read for its own: a check cannot weigh it against simulation or measurement.
-    fn inputs_of_one_record(&mut self, inputs: &[Input]) -> Option<()> {
+    pub(super) fn inputs_of_one_record(&mut self, inputs: &[Input]) -> Option<()> {
         let track = |input: &Input| input.signal.as_ref().is_some_and(|signal| signal.track);
         let Some(first) = inputs.first() else { return Some(()) };
         let Some(other) = inputs.iter().find(|input| track(input) != track(first)) else { return Some(()) };
@@ -106,21 +106,23 @@ impl Checker<'_> {
         None
     }
 
-    fn on_fault(&mut self, block: &Block, key: &str) -> Option<OnFault> {
+    /// What is done with a fault, of the treatments that a field may name; by default the section is not used.
+    pub(super) fn on_fault(&mut self, block: &Block, key: &str, treatments: &[&str]) -> Option<OnFault> {
         let Some(field) = block.field(key) else { return Some(OnFault::NotUsed) };
-        match normalised(&field.value.text).as_str() {
-            "not used" => Some(OnFault::NotUsed),
-            "stop" => Some(OnFault::Stop),
-            "note" => Some(OnFault::Note),
-            other => {
-                self.problems.push(
-                    Problem::error("unknown-choice", format!("`{other}` is no treatment"))
-                        .at(&field.value.span)
-                        .suggest(other, ["not used", "stop", "note"]),
-                );
-                None
-            }
+        let word = normalised(&field.value.text);
+        match word.as_str() {
+            word if !treatments.contains(&word) => {}
+            "not used" => return Some(OnFault::NotUsed),
+            "note" => return Some(OnFault::Note),
+            "not assessable" => return Some(OnFault::NotAssessable),
+            _ => return Some(OnFault::Stop),
         }
+        self.problems.push(
+            Problem::error("unknown-choice", format!("`{word}` is no treatment"))
+                .at(&field.value.span)
+                .suggest(&word, treatments.iter().copied()),
+        );
+        None
     }
 
     pub(super) fn section_rules(&mut self, block: Option<&Block>) -> SectionRules {
@@ -157,7 +159,7 @@ impl Checker<'_> {
             rules.only = self.section_condition(field);
             rules.only_words = normalised(&field.value.text);
         }
-        if let Some(faulty) = self.on_fault(block, "faulty") {
+        if let Some(faulty) = self.on_fault(block, "faulty", &["not used", "stop", "note"]) {
             rules.faulty = faulty;
         }
         if let Some(minimum) = self.count(block, "minimum", 1) {

@@ -2,9 +2,9 @@
 
 use super::Checker;
 use super::names::{Assignment, bare_word};
-use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Type};
+use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Taken, Type};
 use super::scalars::{Reduce, Scope};
-use crate::catalog::{REDUCERS, Reducer, Statistic};
+use crate::catalog::{Metric, REDUCERS, Reducer, Statistic};
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::Text;
@@ -15,14 +15,14 @@ impl Checker<'_> {
     /// A value taken from the quantity's own signal.
     pub(super) fn own_reducer(&mut self, reducer: Reducer, span: Origin, scope: &mut Scope) -> Option<Expr> {
         self.percentile_range(reducer, &span)?;
-        let Some(Reduce { own: Some(dimension), axis, side }) = scope.reduce else {
+        let Some(Reduce { own: Some(dimension), axis, side, .. }) = scope.reduce else {
             let what = reducer.in_words();
             let problem = Problem::error("no-signal", format!("`{what}` is taken from a signal, and there is none here")).at(&span);
             self.problems.push(if scope.reduce.is_some() { problem.help(format!("name the signal: `{what} of ...`")) } else { problem });
             return None;
         };
         let ty = Type::Number(reducer.gives(dimension, axis));
-        let kind = Kind::Input(add_input(scope, Input { reducer, signal: None, side, span: span.span.clone() }));
+        let kind = Kind::Input(add_input(scope, Input { taken: Taken::Reduced(reducer), signal: None, side, span: span.span.clone() }));
         Some(Expr { kind, ty, span })
     }
 
@@ -73,7 +73,8 @@ impl Checker<'_> {
         };
         let signal = self.signal(signal, text, &Assignment::new())?;
         let ty = Type::Number(found.gives(signal.dimension, axis));
-        let kind = Kind::Input(add_input(scope, Input { reducer: found, signal: Some(signal), side, span: span.span.clone() }));
+        let kind =
+            Kind::Input(add_input(scope, Input { taken: Taken::Reduced(found), signal: Some(signal), side, span: span.span.clone() }));
         Some(Expr { kind, ty, span: span.clone() })
     }
 
@@ -119,6 +120,13 @@ impl Checker<'_> {
         }
         if let Some(reducer) = Reducer::named(path) {
             return self.own_reducer(reducer, span.clone(), scope);
+        }
+        if let Some(Reduce { own: Some(dimension), axis, metrics: true, .. }) = scope.reduce
+            && let Some(metric) = Metric::named(path)
+        {
+            let taken = Taken::Compared(metric);
+            let input = Input { taken, signal: None, side: InputSide::Own, span: span.span.clone() };
+            return expr(Kind::Input(add_input(scope, input)), Type::Number(taken.gives(dimension, axis)));
         }
         if self.names.parameter_blocks.contains_key(path) {
             let parameter = self.parameter(path, span)?;
@@ -257,6 +265,9 @@ impl Checker<'_> {
         }
         if scope.reduce.is_some_and(|reduce| reduce.own.is_some()) {
             known.extend(REDUCERS.iter().map(|entry| entry.name.to_string()));
+        }
+        if scope.reduce.is_some_and(|reduce| reduce.metrics) {
+            known.extend(Metric::of_one_word().map(str::to_string));
         }
         if scope.section {
             known.extend(self.names.columns.iter().map(|datum| datum.name.clone()));

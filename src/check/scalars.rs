@@ -33,6 +33,8 @@ pub(super) struct Reduce {
     pub own: Option<Dimension>,
     pub axis: Dimension,
     pub side: InputSide,
+    /// Whether metrics of the own signal may be used by name.
+    pub metrics: bool,
 }
 
 impl Scope {
@@ -54,7 +56,12 @@ impl Scope {
     }
 
     pub fn reducing(own: Option<Dimension>, axis: Dimension) -> Self {
-        Self { reduce: Some(Reduce { own, axis, side: InputSide::Own }), ..Self::new(true, true) }
+        Self { reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: false }), ..Self::new(true, true) }
+    }
+
+    /// As [`Self::reducing`], with metrics of both sides' own signal.
+    pub fn comparing(own: Option<Dimension>, axis: Dimension) -> Self {
+        Self { reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: own.is_some() }), ..Self::new(true, true) }
     }
 
     pub fn pair(dimension: Dimension) -> Self {
@@ -115,6 +122,7 @@ impl Checker<'_> {
                 }
                 return Some(found);
             }
+            Node::Near { .. } => return self.near(phrase, text, scope).map(|near| near.holds),
             Node::Call(name, arguments) if matches!(name.node.as_str(), "measured" | "simulated") => {
                 return self.on_side(name, arguments, text, &span, scope);
             }

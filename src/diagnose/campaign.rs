@@ -38,6 +38,7 @@ pub struct Outcome {
 /// # Errors
 /// The campaign cannot be compared or evaluated; a simulation fails.
 pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Section>) -> Result<Outcome, Problems> {
+    let compiled = &compiled.only_telling();
     let mut problems = Problems::default();
     super::observe::columns::in_words_of(compiled, inputs.settings, inputs.campaign, &mut sections, &mut problems);
     let (_, mut units, _) = match sections.first() {
@@ -187,7 +188,7 @@ pub fn effect_of_truth(
         Some(across(&found.alone.whitener.apply(&less(&change, &others)), &found.alone.whitener.apply(&others)))
     };
     let several = if effects.len() > 1 { 0..effects.len() } else { 0..0 };
-    let made = evaluated(campaign, compiled, found, &records, &outcome.units, RunSettings { traces: 0 }).ok()?;
+    let made = evaluated(campaign, &compiled.only_telling(), found, &records, &outcome.units, RunSettings { traces: 0 }).ok()?;
     let settings = Settings::read(catalogue, &mut Problems::default())?;
     Some(Really {
         detectability: super::run::length(&found.alone.whitener, &change),

@@ -2,16 +2,19 @@
 
 use indexmap::IndexMap;
 
-use super::{Graph, InputNode, Node, NodeId, Operation, QuantityNodes, SignalNodes};
+use super::{Graph, InputNode, Node, NodeId, Operation, PlausibilityNodes, PositionNodes, QuantityNodes, SignalNodes};
 use crate::catalog::Metric;
 use crate::check::evaluate::{shape, words};
-use crate::check::plan::{Evaluation, Expr, Input, Kind, Operator, Plan, Quantity, Scope, Signal, SignalKind, Step, StepSpec};
+use crate::check::plan::{
+    Evaluation, Expr, Input, Kind, Operator, Plan, Plausibility, Quantity, Scope, Signal, SignalKind, Step, StepSpec, Taken, Test,
+};
 use crate::source::Span;
 use crate::units::Dimension;
 
 pub fn from_plan(plan: &Plan) -> Graph {
     let mut builder = Builder { axis: plan.axis.unit.dimension, ..Builder::default() };
     let checks = plan.checks.iter().map(|check| check.inputs.iter().map(|input| builder.input(input, None)).collect()).collect();
+    let plausibility = plan.plausibility.iter().map(|rule| builder.plausibility(rule)).collect();
     let quantities: Vec<QuantityNodes> =
         plan.quantities.iter().enumerate().map(|(index, quantity)| builder.quantity(index, quantity)).collect();
     let mut limits = Vec::new();
@@ -27,7 +30,7 @@ pub fn from_plan(plan: &Plan) -> Graph {
         }
     }
     let verdict = builder.add(Operation::Verdict, limits, Dimension::ONE, &plan.verdict.span, plan.verdict.words.clone(), "verdict".into());
-    Graph { nodes: builder.nodes, quantities, checks, verdict }
+    Graph { nodes: builder.nodes, quantities, checks, plausibility, verdict }
 }
 
 struct Builder {
@@ -188,18 +191,46 @@ impl Builder {
         (filtered, node)
     }
 
-    fn input(&mut self, input: &Input, own: Option<NodeId>) -> InputNode {
-        let signal = match (&input.signal, own) {
-            (Some(signal), _) => self.processed(signal, &[], &input.span).1,
+    /// A number taken from a named signal, or from the own one: filtered over the record, and processed in the section.
+    fn input(&mut self, input: &Input, own: Option<(NodeId, NodeId)>) -> InputNode {
+        let (filtered, processed) = match (&input.signal, own) {
+            (Some(signal), _) => self.processed(signal, &[], &input.span),
             (None, Some(own)) => own,
             // Never reached: the checker gives an input without signal only where there is an own one.
-            (None, None) => self.add(Operation::Cut, Vec::new(), Dimension::ONE, &input.span, String::new(), "nothing".into()),
+            (None, None) => {
+                let nothing = self.add(Operation::Cut, Vec::new(), Dimension::ONE, &input.span, String::new(), "nothing".into());
+                (nothing, nothing)
+            }
         };
-        let dimension = input.reducer.gives(self.nodes[signal].dimension, self.axis);
-        let label = input.reducer.in_words();
-        let kind = format!("reduce {label}");
-        let node = self.add(Operation::Reduce(input.reducer), vec![signal], dimension, &input.span, label, kind);
-        InputNode { node, side: input.side }
+        match input.taken {
+            Taken::Reduced(reducer) => {
+                let dimension = reducer.gives(self.nodes[processed].dimension, self.axis);
+                let label = reducer.in_words();
+                let kind = format!("reduce {label}");
+                let node = self.add(Operation::Reduce(reducer), vec![processed], dimension, &input.span, label, kind);
+                InputNode { node, side: input.side, metric: None }
+            }
+            Taken::Compared(metric) => {
+                let node = if metric.0.common_points { filtered } else { processed };
+                InputNode { node, side: input.side, metric: Some(metric) }
+            }
+        }
+    }
+
+    fn plausibility(&mut self, rule: &Plausibility) -> PlausibilityNodes {
+        let own: Vec<Option<(NodeId, NodeId)>> = if rule.signals.is_empty() {
+            vec![None]
+        } else {
+            rule.signals.iter().map(|(_, signal)| Some(self.processed(signal, &rule.chain, &rule.span))).collect()
+        };
+        let position = |builder: &mut Self, own: Option<(NodeId, NodeId)>| {
+            let inputs = match &rule.test {
+                Test::Require(requirement) => requirement.inputs.iter().map(|input| builder.input(input, own)).collect(),
+                Test::Distinct(_) => Vec::new(),
+            };
+            PositionNodes { own: own.map(|(_, processed)| processed), inputs }
+        };
+        PlausibilityNodes { positions: own.into_iter().map(|own| position(self, own)).collect() }
     }
 
     fn quantity(&mut self, index: usize, quantity: &Quantity) -> QuantityNodes {
@@ -209,7 +240,7 @@ impl Builder {
             let (filtered, processed) = self.processed(signal, &quantity.chain, &quantity.span);
             let (inputs, over, before, metric) = match &quantity.evaluation {
                 Evaluation::Sides { value, inputs, .. } => {
-                    let inputs: Vec<InputNode> = inputs.iter().map(|input| self.input(input, Some(processed))).collect();
+                    let inputs: Vec<InputNode> = inputs.iter().map(|input| self.input(input, Some((filtered, processed)))).collect();
                     let of: Vec<NodeId> = inputs.iter().map(|input| input.node).collect();
                     // A value that is one reduced signal needs no node of its own.
                     if matches!(value.kind, Kind::Input(0)) {

@@ -25,6 +25,8 @@ pub struct Graph {
     pub quantities: Vec<QuantityNodes>,
     /// One per section check of the plan.
     pub checks: Vec<Vec<InputNode>>,
+    /// One per plausibility rule of the plan.
+    pub plausibility: Vec<PlausibilityNodes>,
     pub verdict: NodeId,
 }
 
@@ -156,8 +158,24 @@ pub struct SignalNodes {
     pub compare: NodeId,
 }
 
+/// Where the numbers of one plausibility rule come from.
+#[derive(Clone, Debug)]
+pub struct PlausibilityNodes {
+    /// One per signal of the rule; a single one where it has none.
+    pub positions: Vec<PositionNodes>,
+}
+
+#[derive(Clone, Debug)]
+pub struct PositionNodes {
+    /// The rule's own signal, processed, where it has one.
+    pub own: Option<NodeId>,
+    pub inputs: Vec<InputNode>,
+}
+
 #[derive(Clone, Copy, Debug)]
 pub struct InputNode {
+    /// A number, or the signal of which a metric takes one.
     pub node: NodeId,
     pub side: InputSide,
+    pub metric: Option<Metric>,
 }

@@ -11,6 +11,7 @@
 //! | [`resample`] | signal over an axis | the signal at other points |
 //! | [`percentile`] | values | order statistics, interpolated |
 //! | [`statistics`], [`interval`] | values | mean, scatter, extremes, regression; confidence intervals |
+//! | [`sampling`] | values | how they were recorded: held, saturated, quantised |
 //! | [`pair`] | simulated and measured signal | how well they agree |
 //! | [`random_effects`] | estimates with variances | by how much they scatter beyond these |
 //! | [`synchronise`] | signals of two records | by how much one lies ahead of the other |
@@ -24,6 +25,7 @@ pub mod pair;
 pub mod percentile;
 pub mod random_effects;
 pub mod resample;
+pub mod sampling;
 pub mod statistics;
 mod sum;
 pub mod synchronise;

@@ -5,7 +5,7 @@ use super::limits::{self, Member};
 use super::pairs::SectionValues;
 use super::sections::Unit;
 use crate::check::plan::{Evaluation, Plan, Quantity, Rule, Zone};
-use crate::result::{PairValue, QuantityResult, Verdict, ZoneResult};
+use crate::result::{Consequence, Finding, PairValue, QuantityResult, Verdict, ZoneResult};
 
 #[derive(Debug)]
 pub struct Judged {
@@ -15,7 +15,7 @@ pub struct Judged {
     pub zones: Vec<ZoneResult>,
 }
 
-pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]) -> Judged {
+pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues], findings: &[Finding]) -> Judged {
     let used: Vec<(&Unit, &SectionValues)> = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
     let mut missing = Vec::new();
     let zones: Vec<ZoneResult> = plan.zones.iter().map(|zone| zone_result(zone, units)).collect();
@@ -25,6 +25,7 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
     if used.len() < plan.sections.minimum {
         missing.push(format!("{}, at least {} needed", count(used.len(), "usable section"), plan.sections.minimum));
     }
+    missing.extend(not_plausible(plan, findings, missing.is_empty()));
     let mut quantities = Vec::new();
     let mut reasons = Vec::new();
     for (index, quantity) in plan.quantities.iter().enumerate() {
@@ -56,6 +57,34 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
         Rule::AtLeastLimits(needed) => reasons.insert(0, format!("{} hold, at least {needed} needed", count(limits_holding, "limit"))),
     }
     Judged { verdict: Verdict::NotValidated, reasons, quantities, zones }
+}
+
+/// One reason for each plausibility rule that makes the campaign not assessable; where sections are missing, also for each that took
+/// sections away.
+fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<String> {
+    let mut reasons: Vec<String> = Vec::new();
+    for rule in &plan.plausibility {
+        let sections = |consequence: Consequence| {
+            let mut names: Vec<&str> = Vec::new();
+            for finding in findings.iter().filter(|finding| finding.code == rule.name && finding.consequence == consequence) {
+                let name = finding.section.as_deref().unwrap_or_default();
+                if !names.contains(&name) {
+                    names.push(name);
+                }
+            }
+            names.len()
+        };
+        let (barred, taken) = (sections(Consequence::NotAssessable), sections(Consequence::NotUsed));
+        let reason = match (barred, taken) {
+            (0, taken) if taken > 0 && !complete => format!("{}: {} not used; see the findings", rule.title, count(taken, "section")),
+            (0, _) => continue,
+            (barred, _) => format!("{}: implausible in {}; see the findings", rule.title, count(barred, "section")),
+        };
+        if !reasons.contains(&reason) {
+            reasons.push(reason);
+        }
+    }
+    reasons
 }
 
 fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {

@@ -1,10 +1,13 @@
 //! Runs a graph over a campaign: records in parallel, one at a time per worker, to plain results.
 
+mod causes;
+mod copies;
 mod domain;
 mod facts;
 mod judge;
 mod limits;
 mod pairs;
+mod plausibility;
 pub mod pool;
 mod record;
 mod requirements;
@@ -20,7 +23,7 @@ use crate::check::plan::{OnFault, Plan};
 use crate::data::Campaign;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
-use crate::result::{DataItem, FileHash, Finding, QuantityResult, SectionResult, Trace, Verdict, ZoneResult};
+use crate::result::{Consequence, DataItem, FileHash, Finding, QuantityResult, SectionResult, Trace, Verdict, ZoneResult};
 
 pub use facts::{Facts, scalar};
 pub use judge::Judged;
@@ -63,6 +66,7 @@ pub struct Evaluated {
     facts: Facts,
     units: Vec<Unit>,
     values: Vec<SectionValues>,
+    findings: Vec<Finding>,
     notes: Vec<String>,
     /// Records in the order of the sections.
     pub files: Vec<FileHash>,
@@ -75,8 +79,8 @@ pub struct Evaluated {
 pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Outcome, Problems> {
     let prepared = Prepared::new(plan, graph, campaign)?;
     let evaluated = prepared.evaluate(&Shifts::NONE, progress)?.swap_remove(0);
-    let Evaluated { units, values, notes, files, .. } = &evaluated;
-    let judged = judge::judge(plan, &evaluated.facts, units, values);
+    let Evaluated { units, values, findings, notes, files, .. } = &evaluated;
+    let judged = judge::judge(plan, &evaluated.facts, units, values, findings);
     let traces = traces::traces(&prepared.work(), units, &judged.quantities, settings.traces);
     let domain = domain::domain(plan, units);
     Ok(Outcome {
@@ -87,7 +91,7 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
         domain,
         traces,
         vehicle: evaluated.vehicle(plan),
-        findings: Vec::new(),
+        findings: findings.clone(),
         notes: notes.clone(),
         files: files.clone(),
         sections: sections::results(plan, evaluated.units),
@@ -111,7 +115,7 @@ pub fn evaluate(
 impl Evaluated {
     /// What a certification of all usable sections finds.
     pub fn judge(&self, plan: &Plan) -> Judged {
-        judge::judge(plan, &self.facts, &self.units, &self.values)
+        judge::judge(plan, &self.facts, &self.units, &self.values, &self.findings)
     }
 
     /// Every value and limit that the verdict rests on.
@@ -144,6 +148,7 @@ struct Prepared<'a> {
     units: Vec<Unit>,
     notes: Vec<String>,
     present: Vec<Vec<bool>>,
+    recorded: Vec<Vec<bool>>,
 }
 
 impl<'a> Prepared<'a> {
@@ -155,14 +160,23 @@ impl<'a> Prepared<'a> {
             return Err(problems);
         }
         let mut notes = Vec::new();
-        let present = record::present_columns(graph, campaign, &facts, &units, &mut notes);
+        let seen = record::seen_columns(campaign, &units);
+        let present = record::present_columns(graph, &seen, &facts, &units, &mut notes);
+        let recorded = record::recorded_positions(graph, &seen, &facts, &units);
         requirements::check_data(plan, &facts, &mut units);
         stop_on_fault(plan, &units, &[])?;
-        Ok(Self { plan, graph, campaign, facts, units, notes, present })
+        Ok(Self { plan, graph, campaign, facts, units, notes, present, recorded })
     }
 
     fn work(&self) -> record::Work<'_> {
-        record::Work { plan: self.plan, graph: self.graph, campaign: self.campaign, facts: &self.facts, present: &self.present }
+        record::Work {
+            plan: self.plan,
+            graph: self.graph,
+            campaign: self.campaign,
+            facts: &self.facts,
+            present: &self.present,
+            recorded: &self.recorded,
+        }
     }
 
     fn evaluate(&self, shifts: &Shifts<'_>, progress: Progress<'_>) -> Result<Vec<Evaluated>, Problems> {
@@ -189,13 +203,17 @@ impl<'a> Prepared<'a> {
     /// All sections at one shift; without one, some section must be usable.
     fn at(&self, values: Vec<SectionValues>, needed: bool) -> Result<Evaluated, Problems> {
         let (mut units, mut notes) = (self.units.clone(), self.notes.clone());
-        requirements::take_over(self.plan, &mut units, &values, &mut notes)?;
+        let copies = copies::find(self.plan, &units, &values);
+        requirements::take_over(self.plan, &mut units, &values, &copies, &mut notes)?;
         stop_on_fault(self.plan, &units, &values)?;
-        if needed && units.iter().all(|unit| unit.fault.is_some()) {
+        let findings: Vec<Finding> = values.iter().flat_map(|values| values.findings.iter().cloned()).chain(copies).collect();
+        // Sections that are not plausible say why in the findings of a report.
+        let refused_by_finding = findings.iter().any(|finding| finding.consequence == Consequence::NotUsed);
+        if needed && !refused_by_finding && units.iter().all(|unit| unit.fault.is_some()) {
             return Err(nothing_usable(&units, values));
         }
         let files = values.iter().flat_map(|values| values.files.iter().cloned()).collect();
-        Ok(Evaluated { facts: self.facts.clone(), units, values, notes, files })
+        Ok(Evaluated { facts: self.facts.clone(), units, values, findings, notes, files })
     }
 }
 

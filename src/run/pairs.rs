@@ -2,12 +2,14 @@
 
 use std::collections::BTreeSet;
 
+use super::copies::Print;
 use super::facts::Known;
+use super::plausibility;
 use super::record::{Fault, Found, Opened, Work, needed, open};
 use super::sections::Unit;
 use super::signal::{Extent, Samples};
 use super::synchronisation::{self, Offset, Shifts};
-use crate::catalog::Pair;
+use crate::catalog::{Metric, Pair};
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Check, Evaluation, Input, InputSide, Quantity, StepSpec};
 use crate::data::RecordKind;
@@ -15,7 +17,7 @@ use crate::graph::{InputNode, NodeId, Operation, SignalNodes};
 use crate::metrics::filter::Band;
 use crate::metrics::resample;
 use crate::problem::Problem;
-use crate::result::{CheckResult, FileHash};
+use crate::result::{CheckResult, FileHash, Finding};
 use crate::units::Dimension;
 
 /// What one section came to.
@@ -24,6 +26,10 @@ pub struct SectionValues {
     /// For each quantity and signal, SI; `None` where the position was not recorded or the quantity leaves the section out.
     pub pairs: Vec<Vec<Option<PairSi>>>,
     pub checks: Vec<CheckResult>,
+    /// What is not plausible in this section alone.
+    pub findings: Vec<Finding>,
+    /// Marks of the signals that are to differ from others.
+    pub prints: Vec<Print>,
     pub files: Vec<FileHash>,
     /// What a whole record covers, as measured.
     pub extent: Option<Extent>,
@@ -44,7 +50,7 @@ pub struct PairSi {
 }
 
 /// Values of the wanted nodes of one record.
-type Evaluated = Vec<(NodeId, Found)>;
+pub type Evaluated = Vec<(NodeId, Found)>;
 
 /// The simulated record, evaluated.
 pub type Simulated<'a> = &'a [(NodeId, Found)];
@@ -64,7 +70,7 @@ pub fn of_section(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>) -> Vec<Sect
 
 fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionValues) -> Result<Vec<SectionValues>, Fault> {
     let known = unit.known(work.facts);
-    track_checks(work, unit, &known, common)?;
+    let track = track_checks(work, unit, &known, common)?;
     let active: Vec<bool> = work
         .plan
         .quantities
@@ -72,7 +78,7 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
         .map(|quantity| quantity.only.as_ref().map_or(Ok(true), |only| flag(only, &known)))
         .collect::<Result<_, _>>()
         .map_err(Fault::new)?;
-    let mut wanted = wanted(work, &active);
+    let mut wanted = wanted(work, &known, &active);
     if shifts.farthest.is_some() {
         wanted.extend(synchronisation::signals(work, &active));
     }
@@ -98,6 +104,7 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
             let sides = Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent };
             quantities(work, &sides, &active, &mut values)?;
             record_checks(work, &sides, &mut values);
+            plausibility::look(work, unit, &sides, &track, &mut values);
             Ok(())
         });
         if let Err(fault) = filled {
@@ -148,7 +155,7 @@ fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &[bool], values: &mut 
 }
 
 /// Nodes whose values are needed of both records.
-fn wanted(work: &Work<'_>, active: &[bool]) -> BTreeSet<NodeId> {
+fn wanted(work: &Work<'_>, known: &Known<'_>, active: &[bool]) -> BTreeSet<NodeId> {
     let mut wanted = BTreeSet::new();
     for (index, quantity) in work.graph.quantities.iter().enumerate() {
         for (number, signal) in quantity.signals.iter().enumerate() {
@@ -167,6 +174,7 @@ fn wanted(work: &Work<'_>, active: &[bool]) -> BTreeSet<NodeId> {
     for check in &work.graph.checks {
         wanted.extend(check.iter().map(|input| input.node).filter(|&node| !work.graph.nodes[node].track));
     }
+    wanted.extend(plausibility::wanted(work, known, false));
     wanted
 }
 
@@ -225,7 +233,7 @@ fn note_margins(work: &Work<'_>, unit: &Unit, needed: &BTreeSet<NodeId>, opened:
     }
 }
 
-fn number_of(found: &Evaluated, node: NodeId) -> Result<f64, String> {
+pub fn number_of(found: &Evaluated, node: NodeId) -> Result<f64, String> {
     match found.iter().find(|(id, _)| *id == node) {
         Some((_, Found::Number(value, _))) => Ok(*value),
         _ => Err("a value is missing".into()),
@@ -240,10 +248,11 @@ fn samples_of(found: &Evaluated, node: NodeId) -> Result<&Samples, String> {
 }
 
 /// Both records of a section, evaluated.
-struct Sides<'a> {
+#[derive(Debug)]
+pub struct Sides<'a> {
     simulated: &'a Evaluated,
     measured: &'a Evaluated,
-    known: &'a Known<'a>,
+    pub known: &'a Known<'a>,
     extent: Option<Extent>,
 }
 
@@ -260,25 +269,40 @@ impl Sides<'_> {
                 Ok(PairSi { simulated: Some(s), measured: Some(m), difference, samples: self.samples(work, nodes) })
             }
             Evaluation::Metric { metric, .. } => {
-                let entry = metric.0;
-                let (s, m) = if entry.common_points {
-                    common(samples_of(self.simulated, nodes.filtered)?, samples_of(self.measured, nodes.filtered)?, self.extent)?
-                } else {
-                    let values = |found| samples_of(found, nodes.processed).map(|samples| samples.values.to_vec());
-                    (values(self.simulated)?, values(self.measured)?)
-                };
-                let over = match nodes.over {
-                    None => None,
-                    Some(node) => Some((samples_of(self.simulated, node)?, samples_of(self.measured, node)?)),
-                };
-                let over = over.map(|(s, m)| (s.values.as_slice(), m.values.as_slice()));
-                let difference = (entry.run)(&Pair { simulated: &s, measured: &m, over })?;
-                Ok(PairSi { simulated: None, measured: None, difference, samples: m.len() })
+                let node = if metric.0.common_points { nodes.filtered } else { nodes.processed };
+                let (difference, samples) = self.compared(*metric, node, nodes.over)?;
+                Ok(PairSi { simulated: None, measured: None, difference, samples })
             }
         }
     }
 
-    fn input(&self, input: &InputNode, side: InputSide) -> Result<f64, String> {
+    /// A metric of both signals of a node, and of how many measured samples.
+    fn compared(&self, metric: Metric, node: NodeId, over: Option<NodeId>) -> Result<(f64, usize), String> {
+        let entry = metric.0;
+        let (simulated, measured) = (samples_of(self.simulated, node)?, samples_of(self.measured, node)?);
+        let common = if entry.common_points {
+            Common::of(simulated, measured, self.extent)?
+        } else {
+            Common { axis: Vec::new(), simulated: simulated.values.to_vec(), measured: measured.values.to_vec() }
+        };
+        let over = match over {
+            None => None,
+            Some(node) => Some((samples_of(self.simulated, node)?, samples_of(self.measured, node)?)),
+        };
+        let over = over.map(|(s, m)| (s.values.as_slice(), m.values.as_slice()));
+        let pair = Pair { axis: &common.axis, simulated: &common.simulated, measured: &common.measured, over };
+        Ok(((entry.run)(&pair)?, common.measured.len()))
+    }
+
+    /// The samples of a node on both sides: simulated, measured.
+    pub fn samples_of(&self, node: NodeId) -> Result<(&Samples, &Samples), String> {
+        Ok((samples_of(self.simulated, node)?, samples_of(self.measured, node)?))
+    }
+
+    pub fn input(&self, input: &InputNode, side: InputSide) -> Result<f64, String> {
+        if let Some(metric) = input.metric {
+            return self.compared(metric, input.node, None).map(|(value, _)| value);
+        }
         let of = if input.side.resolve(side) == InputSide::Measured { self.measured } else { self.simulated };
         number_of(of, input.node)
     }
@@ -297,31 +321,43 @@ impl Sides<'_> {
 }
 
 /// The same names with nothing yet for inputs and sides.
-fn section<'a>(known: &Known<'a>) -> Known<'a> {
+pub fn section<'a>(known: &Known<'a>) -> Known<'a> {
     Known { facts: known.facts, columns: known.columns, extent: known.extent, inputs: &[], sides: None }
 }
 
-/// Both signals on the measured samples of the section; the simulated one is interpolated unless its samples lie there already.
-fn common(simulated: &Samples, measured: &Samples, extent: Option<Extent>) -> Result<(Vec<f64>, Vec<f64>), String> {
-    let cut = |samples: &Samples| match extent {
-        Some(extent) => samples.cut(extent),
-        None => Ok(samples.clone()),
-    };
-    let (s, m) = (cut(simulated)?, cut(measured)?);
-    let same = s.along.axis.len() == m.along.axis.len()
-        && s.along.axis.iter().zip(m.along.axis.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
-    if same {
-        return Ok((s.values.to_vec(), m.values.to_vec()));
+/// Both signals on the measured samples of the section.
+struct Common {
+    axis: Vec<f64>,
+    simulated: Vec<f64>,
+    measured: Vec<f64>,
+}
+
+impl Common {
+    /// The simulated signal is interpolated unless its samples lie where the measured ones do already.
+    fn of(simulated: &Samples, measured: &Samples, extent: Option<Extent>) -> Result<Self, String> {
+        let cut = |samples: &Samples| match extent {
+            Some(extent) => samples.cut(extent),
+            None => Ok(samples.clone()),
+        };
+        let (s, m) = (cut(simulated)?, cut(measured)?);
+        let same = s.along.axis.len() == m.along.axis.len()
+            && s.along.axis.iter().zip(m.along.axis.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
+        let onto = if same {
+            s.values.to_vec()
+        } else {
+            resample::interpolate(&simulated.along.axis, &simulated.values, &m.along.axis)
+                .map_err(|error| format!("the simulation cannot be brought onto the measured points: {error}"))?
+        };
+        Ok(Self { axis: m.along.axis.to_vec(), simulated: onto, measured: m.values.to_vec() })
     }
-    let onto = resample::interpolate(&simulated.along.axis, &simulated.values, &m.along.axis)
-        .map_err(|error| format!("the simulation cannot be brought onto the measured points: {error}"))?;
-    Ok((onto, m.values.to_vec()))
 }
 
 /// Checks that use the track record. Without one they are said to be not checked.
-fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut SectionValues) -> Result<(), Fault> {
-    let wanted: BTreeSet<NodeId> =
+/// What the track record came to.
+fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut SectionValues) -> Result<Evaluated, Fault> {
+    let mut wanted: BTreeSet<NodeId> =
         work.graph.checks.iter().flatten().map(|input| input.node).filter(|&node| work.graph.nodes[node].track).collect();
+    wanted.extend(plausibility::wanted(work, known, true));
     let there = || work.campaign.has(RecordKind::Track) && work.campaign.record_place(RecordKind::Track, &unit.cell).is_ok();
     let found = if !wanted.is_empty() && there() { side(work, unit, RecordKind::Track, &wanted, known, values)?.0 } else { Vec::new() };
     for (check, inputs) in work.plan.checks.iter().zip(&work.graph.checks) {
@@ -335,7 +371,7 @@ fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut Se
         let inputs: Vec<Result<f64, String>> = inputs.iter().map(value).collect();
         values.checks.push(checked(work, check, known, &inputs));
     }
-    Ok(())
+    Ok(found)
 }
 
 fn record_checks(work: &Work<'_>, sides: &Sides<'_>, values: &mut SectionValues) {
@@ -368,7 +404,7 @@ fn found_values(work: &Work<'_>, check: &Check, inputs: &[Result<f64, String>]) 
     let one = |(input, value): (&Input, &Result<f64, String>)| {
         let value: f64 = format!("{:.3e}", value.as_ref().ok()?).parse().ok()?;
         let signal = input.signal.as_ref()?;
-        let dimension = input.reducer.gives(signal.dimension, work.plan.axis.unit.dimension);
+        let dimension = input.taken.gives(signal.dimension, work.plan.axis.unit.dimension);
         let unit = if dimension == Dimension::ONE { String::new() } else { format!(" {dimension}") };
         let words = input.span.text().split_whitespace().collect::<Vec<_>>().join(" ");
         Some(format!("{words} {value}{unit}"))

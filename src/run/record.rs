@@ -31,6 +31,8 @@ pub struct Work<'a> {
     pub facts: &'a Facts,
     /// For each signal of each quantity, whether its channels were recorded at all.
     pub present: &'a [Vec<bool>],
+    /// The same for each position of each plausibility rule.
+    pub recorded: &'a [Vec<bool>],
 }
 
 /// A reason why a record cannot be used, and the problems behind it.
@@ -399,9 +401,12 @@ impl State<'_> {
     }
 }
 
-/// Which signals of which quantities were recorded at all: a position missing from every record is left out, not a fault of each section.
-pub fn present_columns(graph: &Graph, campaign: &Campaign, facts: &Facts, units: &[Unit], notes: &mut Vec<String>) -> Vec<Vec<bool>> {
-    let mut seen: Vec<(RecordKind, BTreeSet<String>)> = Vec::new();
+/// Columns that some record of each kind has.
+pub type Seen = Vec<(RecordKind, BTreeSet<String>)>;
+
+/// Reads the headings of every record.
+pub fn seen_columns(campaign: &Campaign, units: &[Unit]) -> Seen {
+    let mut seen = Seen::new();
     for kind in [RecordKind::Measurement, RecordKind::Simulation] {
         let mut columns = BTreeSet::new();
         for unit in units {
@@ -411,6 +416,29 @@ pub fn present_columns(graph: &Graph, campaign: &Campaign, facts: &Facts, units:
         }
         seen.push((kind, columns));
     }
+    seen
+}
+
+/// Positions of plausibility rules that both kinds of record have; others are passed over.
+pub fn recorded_positions(graph: &Graph, seen: &Seen, facts: &Facts, units: &[Unit]) -> Vec<Vec<bool>> {
+    let there = |node: NodeId| {
+        let track = graph.nodes[node].track;
+        track || reads(graph, node, facts, units).iter().all(|column| seen.iter().all(|(_, columns)| columns.contains(column)))
+    };
+    graph
+        .plausibility
+        .iter()
+        .map(|rule| {
+            rule.positions
+                .iter()
+                .map(|position| position.own.into_iter().chain(position.inputs.iter().map(|input| input.node)).all(there))
+                .collect()
+        })
+        .collect()
+}
+
+/// Which signals of which quantities were recorded at all: a position missing from every record is left out, not a fault of each section.
+pub fn present_columns(graph: &Graph, seen: &Seen, facts: &Facts, units: &[Unit], notes: &mut Vec<String>) -> Vec<Vec<bool>> {
     graph
         .quantities
         .iter()
@@ -421,7 +449,7 @@ pub fn present_columns(graph: &Graph, campaign: &Campaign, facts: &Facts, units:
                 .map(|signal| {
                     let mut missing: Vec<(String, RecordKind)> = Vec::new();
                     for column in reads(graph, signal.compare, facts, units) {
-                        for (kind, columns) in &seen {
+                        for (kind, columns) in seen {
                             if !columns.contains(&column) {
                                 missing.push((column.clone(), *kind));
                             }

@@ -6,7 +6,7 @@ use super::sections::Unit;
 use crate::check::evaluate::{Watched, flag, number};
 use crate::check::plan::{Expr, OnFault, Plan, Zone};
 use crate::problem::{Problem, Problems};
-use crate::result::CheckResult;
+use crate::result::{CheckResult, Consequence, Finding};
 
 /// Requirements that need no record: the protocol's selection, the zone's condition, the length.
 pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
@@ -83,15 +83,31 @@ fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckR
 ///
 /// # Errors
 /// `section-check` for each check that is not met and says `otherwise stop`.
-pub fn take_over(plan: &Plan, units: &mut [Unit], values: &[SectionValues], notes: &mut Vec<String>) -> Result<(), Problems> {
+pub fn take_over(
+    plan: &Plan,
+    units: &mut [Unit],
+    values: &[SectionValues],
+    copies: &[Finding],
+    notes: &mut Vec<String>,
+) -> Result<(), Problems> {
     let mut stop = Problems::default();
     for (unit, values) in units.iter_mut().zip(values) {
         for (check, rule) in values.checks.iter().zip(&plan.checks).filter(|(check, _)| check.holds == Some(false)) {
             let says = format!("{}: {}", check.title.to_lowercase(), check.says);
             match rule.otherwise {
-                OnFault::NotUsed => unit.refuse(says, false),
+                OnFault::NotUsed | OnFault::NotAssessable => unit.refuse(says, false),
                 OnFault::Note => notes.push(format!("Section {}: {says}.", unit.name)),
                 OnFault::Stop => stop.push(Problem::error("section-check", format!("section {}: {says}", unit.name)).at(&rule.span)),
+            }
+        }
+        let name = unit.name.clone();
+        for finding in values.findings.iter().chain(copies.iter().filter(|copy| copy.section.as_deref() == Some(name.as_str()))) {
+            if finding.consequence == Consequence::NotUsed {
+                unit.refuse(finding.says.clone(), false);
+            }
+            let rule = plan.plausibility.iter().find(|rule| rule.name == finding.code);
+            if let Some(rule) = rule.filter(|rule| rule.otherwise == OnFault::Stop) {
+                stop.push(Problem::error("not-plausible", format!("section {name}: {}", finding.says)).at(&rule.span));
             }
         }
         unit.covered = unit.extent.or(values.extent);

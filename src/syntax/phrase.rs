@@ -56,6 +56,13 @@ pub enum Node {
     Power(Box<Phrase>, i8),
     /// `name(a, b)`, and `larger of a, b` as `larger(a, b)`.
     Call(At<String>, Vec<Phrase>),
+    /// `mean of Q near 50 kN within 10 kN`, or `within a factor of 2`.
+    Near {
+        value: Box<Phrase>,
+        target: Box<Phrase>,
+        tolerance: Box<Phrase>,
+        by_factor: bool,
+    },
     /// `range of curvature`.
     Reduced(Box<Phrase>, Box<Phrase>),
     /// `Y at side R`: the path and the words after `at`.
@@ -138,6 +145,9 @@ impl Phrase {
             Node::Magnitude(inner) => format!("|{}|", inner.meaning()),
             Node::Power(inner, exponent) => format!("{}^{exponent}", inner.meaning()),
             Node::Call(name, arguments) => format!("{}({})", name.node, joined(arguments, " ", Phrase::meaning)),
+            Node::Near { value, target, tolerance, by_factor } => {
+                format!("{} near {} within {by_factor} {}", value.meaning(), target.meaning(), tolerance.meaning())
+            }
             Node::Reduced(reducer, signal) => format!("{} of {}", reducer.meaning(), signal.meaning()),
             Node::PlaceOf(signal, words) => format!("{}@{}", signal.node, joined(words, ".", |word| word.node.clone())),
             Node::Through(inner, filter) => format!("{}>{}", inner.meaning(), filter.node),

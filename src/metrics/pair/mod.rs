@@ -3,11 +3,13 @@
 //! Every metric is `fn(simulated, measured) -> Result<f64, Undefined>`. The mean is never removed beforehand. Sums stand for
 //! integrals over a uniform grid: the sampling distance cancels.
 
+mod alignment;
 mod deviation;
 mod distribution;
 mod geers;
 mod theil;
 
+pub use alignment::{drift, mirrored_correlation, shift};
 pub use deviation::{
     anova_mean, anova_standard_deviation, correlation, kraft_misfit, kraft_misfit_root, root_mean_square_error, weighted_integrated_factor,
 };

@@ -138,6 +138,8 @@ pub(super) fn is_keyword(rule: Rule) -> bool {
             | Rule::kw_to
             | Rule::kw_in
             | Rule::kw_every
+            | Rule::kw_near
+            | Rule::kw_within
             | Rule::kw_holds
             | Rule::then
             | Rule::comma
@@ -191,6 +193,9 @@ fn in_words(rule: Rule) -> &'static str {
         | Rule::power
         | Rule::kw_and
         | Rule::kw_or => OPERATOR,
+        Rule::near | Rule::kw_near => "`near ... within ...`",
+        Rule::kw_within => "`within` and a tolerance",
+        Rule::a_factor_of => "`a factor of`",
         Rule::minus => "`-`",
         Rule::magnitude => "`|...|`",
         Rule::parens => "`(`",

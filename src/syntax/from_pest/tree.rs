@@ -100,8 +100,11 @@ fn negation(pair: Pair<'_, Rule>) -> Option<Phrase> {
 
 /// `a <= b`, and `a <= b <= c` as `a <= b and b <= c`.
 fn comparison(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    let mut inner = parts(pair);
+    let mut inner = parts(pair).peekable();
     let mut left = sum(inner.next()?)?;
+    if inner.peek().is_some_and(|next| next.as_rule() == Rule::near) {
+        return near(left, inner.next()?);
+    }
     let mut all: Option<Phrase> = None;
     while let (Some(op), Some(right)) = (inner.next(), inner.next()) {
         let right = sum(right)?;
@@ -126,6 +129,17 @@ fn comparison(pair: Pair<'_, Rule>) -> Option<Phrase> {
         left = right;
     }
     Some(all.unwrap_or(left))
+}
+
+/// `near b within c` after a value.
+fn near(value: Phrase, pair: Pair<'_, Rule>) -> Option<Phrase> {
+    let range = value.range.start..bytes(&pair).end;
+    let mut inner = parts(pair);
+    let target = Box::new(sum(inner.next()?)?);
+    let next = inner.next()?;
+    let by_factor = next.as_rule() == Rule::a_factor_of;
+    let tolerance = Box::new(sum(if by_factor { inner.next()? } else { next })?);
+    Some(At { node: Node::Near { value: Box::new(value), target, tolerance, by_factor }, range })
 }
 
 pub(super) fn sum(pair: Pair<'_, Rule>) -> Option<Phrase> {

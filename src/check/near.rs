@@ -1,0 +1,84 @@
+//! `a near b within c`: the condition it stands for, and what is compared with what.
+
+use super::Checker;
+use super::plan::{Expr, Kind, Operator, Scalar, Type};
+use super::scalars::{Scope, function, origin};
+use crate::problem::Problem;
+use crate::syntax::document::Text;
+use crate::syntax::phrase::{Node, Phrase};
+use crate::units::Dimension;
+
+/// What a condition compares: the value found, and what it should be near or the bound it should not pass.
+#[derive(Clone, Debug)]
+pub(super) struct Near {
+    pub holds: Expr,
+    pub found: Expr,
+    pub expected: Expr,
+}
+
+impl Checker<'_> {
+    /// `a near b within c` is `|a - b| <= c`; where `c` is a plain number and `a` is not, it is a share of `|b|`. `a near b within a
+    /// factor of c` asks for equal signs and for magnitudes of which neither is more than `c` times the other.
+    pub(super) fn near(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Near> {
+        let Node::Near { value, target, tolerance, by_factor } = &phrase.node else { return None };
+        let (value, target, tolerance) = (self.expr(value, text, scope), self.expr(target, text, scope), self.expr(tolerance, text, scope));
+        let (found, expected, tolerance) = (value?, target?, tolerance?);
+        let span = origin(phrase, text);
+        let make = |kind: Kind, ty: Type| Expr { kind, ty, span: span.clone() };
+        let pair = |operator, a: &Expr, b: &Expr, ty: Type| make(Kind::Binary(operator, Box::new(a.clone()), Box::new(b.clone())), ty);
+        let (a, b, c) = (self.number_type(&found)?, self.number_type(&expected)?, self.number_type(&tolerance)?);
+        if a != b {
+            self.problems.push(
+                Problem::error("unit-mismatch", format!("{} and {} cannot be compared", a.in_words(), b.in_words()))
+                    .at(&expected.span)
+                    .label(b.in_words())
+                    .also(&found.span, a.in_words()),
+            );
+            return None;
+        }
+        if (*by_factor && c != Dimension::ONE) || (!by_factor && c != a && c != Dimension::ONE) {
+            let wanted = if *by_factor { Dimension::ONE.in_words() } else { format!("{}, or a share such as `10 %`", a.in_words()) };
+            self.problems.push(
+                Problem::error("unit-mismatch", format!("this tolerance is {}; {wanted} is needed", c.in_words())).at(&tolerance.span),
+            );
+            return None;
+        }
+        let magnitude = function("magnitude")?;
+        let number = Type::Number(a);
+        let size = |of: &Expr| make(Kind::Call(magnitude, vec![of.clone()]), number.clone());
+        if *by_factor {
+            if let Kind::Constant(Scalar::Number(factor)) = tolerance.kind
+                && factor < 1.0
+            {
+                self.problems.push(Problem::error("out-of-range", "a factor is 1 or more").at(&tolerance.span));
+                return None;
+            }
+            let times = |of: &Expr| pair(Operator::Multiply, &tolerance, &size(of), number.clone());
+            let zero = make(Kind::Constant(Scalar::Number(0.0)), number.clone());
+            let product = pair(Operator::Multiply, &found, &expected, number.clone());
+            let same_sign = pair(Operator::Greater, &product, &zero, Type::Flag);
+            let not_above = pair(Operator::LessEqual, &size(&found), &times(&expected), Type::Flag);
+            let not_below = pair(Operator::LessEqual, &size(&expected), &times(&found), Type::Flag);
+            let sizes = pair(Operator::And, &not_above, &not_below, Type::Flag);
+            return Some(Near { holds: pair(Operator::And, &same_sign, &sizes, Type::Flag), found, expected });
+        }
+        let off = size(&pair(Operator::Subtract, &found, &expected, number.clone()));
+        let room = if c == a { tolerance } else { pair(Operator::Multiply, &tolerance, &size(&expected), number.clone()) };
+        Some(Near { holds: pair(Operator::LessEqual, &off, &room, Type::Flag), found, expected })
+    }
+
+    /// What a condition compares with what, where it is one comparison: `a near b within c`, `a <= b`.
+    pub(super) fn compared(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<(Expr, Option<(Expr, Expr)>)> {
+        if let Node::Near { .. } = &phrase.node {
+            return self.near(phrase, text, scope).map(|near| (near.holds, Some((near.found, near.expected))));
+        }
+        let holds = self.expr(phrase, text, scope)?;
+        let bound = match &holds.kind {
+            Kind::Binary(Operator::Less | Operator::LessEqual | Operator::Greater | Operator::GreaterEqual, left, right) => {
+                Some(((**left).clone(), (**right).clone()))
+            }
+            _ => None,
+        };
+        Some((holds, bound))
+    }
+}

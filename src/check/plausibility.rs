@@ -1,0 +1,165 @@
+//! Checks plausibility rules: what sound data satisfy, at which positions, on which record.
+
+use super::Checker;
+use super::names::normalised;
+use super::plan::{Distinct, Expr, Input, InputSide, Looks, OnFault, Plausibility, Requirement, Signal, Taken, Test};
+use super::scalars::Scope;
+use crate::problem::Problem;
+use crate::syntax::document::{Block, Field};
+use crate::syntax::from_pest;
+use crate::units::{Dimension, Unit};
+
+/// What `distinct` can be asked of.
+const AMONG: [&str; 3] = ["channels", "sections", "sides"];
+
+/// Signals with their names, and the unit of what is taken from them.
+type Of = (Vec<(String, Signal)>, Option<Unit>);
+
+impl Checker<'_> {
+    /// A rule for each signal that the block is about.
+    pub(super) fn plausibility(&mut self, block: &Block) -> Option<Vec<Plausibility>> {
+        let (require, distinct) = (block.field("require"), block.field("distinct"));
+        if let (Some(first), Some(second)) = (require, distinct) {
+            self.problems.push(
+                Problem::error("require-and-distinct", "a plausibility rule has either a condition, or signals that are to differ")
+                    .at(&second.key.span)
+                    .also(&first.key.span, "the condition")
+                    .help("make two rules of it"),
+            );
+            return None;
+        }
+        if distinct.is_none() {
+            self.required(block, "require")?;
+        } else {
+            self.required(block, "of")?;
+        }
+        let chain = block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
+        let mut all: Vec<Of> = Vec::new();
+        let mut whole = true;
+        for field in block.fields_named("of") {
+            match self.signals_with_unit(field) {
+                Some(of) => all.push(of),
+                None => whole = false,
+            }
+        }
+        if block.field("of").is_none() {
+            all.push((Vec::new(), None));
+        }
+        let unless = match block.field("unless") {
+            Some(field) => Some(self.section_condition(field)?),
+            None => None,
+        };
+        let otherwise = self.consequence(block);
+        let chain = chain.filter(|_| whole)?;
+        let mut rules = Vec::new();
+        for (signals, unit) in all {
+            let test = match (require, distinct) {
+                (Some(field), _) => Test::Require(Box::new(self.requirement(field, &signals, unit.as_ref())?)),
+                (None, Some(field)) => Test::Distinct(self.distinct(field)?),
+                (None, None) => return None,
+            };
+            let otherwise = otherwise?;
+            if let (Test::Require(requirement), Some(step)) = (&test, chain.iter().find(|step| !step.kind.keeps_samples()))
+                && requirement.inputs.iter().any(|input| matches!(input.taken, Taken::Compared(metric) if metric.0.common_points))
+            {
+                self.problems.push(
+                    Problem::error("metric-of-window", "a metric that compares samples cannot follow a window or resampling")
+                        .at(&requirement.holds.span)
+                        .also(&step.span, "this step"),
+                );
+                return None;
+            }
+            rules.push(Plausibility {
+                name: block.name_text().to_string(),
+                title: block.title.as_ref().map_or_else(|| block.name_text().replace('_', " "), |title| title.text.clone()),
+                signals,
+                chain: chain.clone(),
+                test,
+                unless: unless.clone(),
+                otherwise,
+                cause: block.field("cause").map(|field| field.value.text.clone()),
+                span: block.span().clone(),
+            });
+        }
+        Some(rules)
+    }
+
+    fn signals_with_unit(&mut self, field: &Field) -> Option<Of> {
+        let signals = self.signals_of(&field.value)?;
+        let name = from_pest::of_places(&field.value, self.problems)?.signal.node;
+        let unit = signals.first().map(|(_, signal, _)| self.own_unit(&name, signal.dimension));
+        Some((signals.into_iter().map(|(name, signal, _)| (name, signal)).collect(), unit))
+    }
+
+    fn requirement(&mut self, field: &Field, signals: &[(String, Signal)], own: Option<&Unit>) -> Option<Requirement> {
+        let phrase = from_pest::expression(&field.value, self.problems)?;
+        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+        let mut scope = Scope::comparing(signals.first().map(|(_, signal)| signal.dimension), axis);
+        let (holds, compared) = self.compared(&phrase, &field.value, &mut scope)?;
+        self.flag_type(&holds)?;
+        self.inputs_of_one_record(&scope.inputs)?;
+        let compared = match compared {
+            Some((found, expected)) => {
+                let dimension = self.number_type(&found)?;
+                let unit = self.unit_of(&found, &expected, &scope.inputs, dimension, own);
+                Some((found, expected, unit))
+            }
+            None => None,
+        };
+        let of = looks(&scope.inputs);
+        Some(Requirement { holds, inputs: scope.inputs, of, compared, words: normalised(&field.value.text) })
+    }
+
+    /// The unit a value is printed in: that of the rule's own signal, of the axis, or SI.
+    fn unit_of(&self, found: &Expr, expected: &Expr, inputs: &[Input], dimension: Dimension, own: Option<&Unit>) -> Unit {
+        let named = inputs.iter().find_map(|input| {
+            let name = input.signal.as_ref()?.span.text();
+            Some(self.own_unit(name.split_whitespace().next()?, dimension))
+        });
+        let axis = self.axis.as_ref().map(|axis| axis.unit.clone());
+        let datum = self.datum_unit(found, dimension).or_else(|| self.datum_unit(expected, dimension));
+        [own.cloned(), datum, axis, named]
+            .into_iter()
+            .flatten()
+            .find(|unit| unit.dimension == dimension)
+            .unwrap_or_else(|| self.own_unit("", dimension))
+    }
+
+    fn distinct(&mut self, field: &Field) -> Option<Distinct> {
+        let mut distinct = Distinct::default();
+        for word in from_pest::list(&field.value, self.problems)? {
+            match word.node.as_str() {
+                "channels" => distinct.channels = true,
+                "sections" => distinct.sections = true,
+                "sides" => distinct.sides = true,
+                other => {
+                    self.problems.push(
+                        Problem::error("unknown-choice", format!("`{other}` is not among what signals can differ between"))
+                            .at(&field.value.place(word.range.clone()))
+                            .suggest(other, AMONG),
+                    );
+                    return None;
+                }
+            }
+        }
+        Some(distinct)
+    }
+
+    fn consequence(&mut self, block: &Block) -> Option<OnFault> {
+        if block.field("otherwise").is_none() {
+            return Some(OnFault::Note);
+        }
+        self.on_fault(block, "otherwise", &["note", "not used", "not assessable", "stop"])
+    }
+}
+
+fn looks(inputs: &[Input]) -> Looks {
+    let track = |input: &Input| input.signal.as_ref().is_some_and(|signal| signal.track);
+    let own = |input: &Input| input.side == InputSide::Own && matches!(input.taken, Taken::Reduced(_));
+    match inputs {
+        [] => Looks::Data,
+        inputs if inputs.iter().any(track) => Looks::Track,
+        inputs if inputs.iter().any(own) => Looks::EachSide,
+        _ => Looks::BothSides,
+    }
+}

@@ -1,0 +1,68 @@
+//! What a number that is off by a factor suggests.
+
+/// A factor between what was found and what was expected, and what most likely makes it. Units of measure only: what is particular
+/// to a quantity, such as the load of an axle in place of that of a wheel, is the protocol's to say.
+struct Factor {
+    factor: f64,
+    says: &'static str,
+}
+
+const FACTORS: &[Factor] = &[
+    Factor { factor: 1000.0, says: "a unit that is off by a factor of 1000, such as N in place of kN" },
+    Factor { factor: 100.0, says: "a unit that is off by a factor of 100, such as cm in place of m" },
+    Factor {
+        factor: 9.806_65,
+        says: "a unit that is off by a factor of about 10, such as kgf or daN in place of N, or m/s^2 in place of g",
+    },
+    Factor { factor: 3.6, says: "km/h in place of m/s" },
+    Factor { factor: 8.0, says: "a factor of 8" },
+    Factor { factor: 4.0, says: "a factor of 4" },
+    Factor { factor: 2.0, says: "a factor of 2" },
+];
+
+/// How near a ratio must come to a factor to suggest it. Expected values are rough (a payload, a roll angle), and factors lie far
+/// apart; 9.81 and 10 are told as one.
+const NEARNESS: f64 = 1.25;
+
+/// `None` where the ratio suggests nothing.
+pub fn likely(found: f64, expected: f64) -> Option<String> {
+    let ratio = found / expected;
+    if !ratio.is_finite() {
+        return None;
+    }
+    if found == 0.0 {
+        return Some("a channel without a signal".into());
+    }
+    let near = |of: f64| (1.0 / NEARNESS..=NEARNESS).contains(&(ratio.abs() / of));
+    let size = if near(1.0) {
+        None
+    } else {
+        let direct = FACTORS.iter().find(|factor| near(factor.factor)).map(|factor| factor.says.to_string());
+        direct.or_else(|| {
+            FACTORS.iter().find(|factor| near(1.0 / factor.factor)).map(|factor| format!("{}, the other way round", factor.says))
+        })
+    };
+    match (ratio < 0.0, size) {
+        (true, None) => Some("a sign that is turned".into()),
+        (true, Some(size)) => Some(format!("a sign that is turned, and {size}")),
+        (false, size) => size,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_and_signs() {
+        let of = |found: f64| likely(found, 50.0).unwrap_or_default();
+        assert_eq!(of(-52.0), "a sign that is turned");
+        assert!(of(51_000.0).contains("factor of 1000, such as N in place of kN"));
+        assert!(of(0.052).ends_with("the other way round"));
+        assert!(of(5.3).contains("kgf or daN") && of(505.0).contains("kgf or daN"));
+        assert_eq!(of(97.0), "a factor of 2");
+        assert_eq!(of(0.0), "a channel without a signal");
+        assert_eq!(likely(70.0, 50.0), None);
+        assert_eq!(likely(1.0, 0.0), None);
+    }
+}

@@ -1,0 +1,142 @@
+//! Plausibility rules in one section: what does not satisfy them, as findings.
+
+use std::collections::BTreeSet;
+
+use super::causes;
+use super::copies::Print;
+use super::facts::{Known, trimmed};
+use super::pairs::{Evaluated, SectionValues, Sides, number_of, section};
+use super::record::{Work, needed};
+use super::sections::Unit;
+use crate::check::evaluate::{flag, number, words};
+use crate::check::plan::{InputSide, Looks, OnFault, Plausibility, Requirement, Test};
+use crate::data::RecordKind;
+use crate::graph::{InputNode, NodeId, PositionNodes};
+use crate::result::{Consequence, Finding};
+
+/// Digits of a number in the sentence of a finding; the number itself stands beside it in full.
+const DIGITS: usize = 4;
+
+/// Nodes whose values the rules need, of the track record or of both others.
+pub fn wanted(work: &Work<'_>, known: &Known<'_>, track: bool) -> BTreeSet<NodeId> {
+    let mut wanted = BTreeSet::new();
+    for (rule, nodes, _) in positions(work, known) {
+        let of_rule = nodes.inputs.iter().map(|input| input.node);
+        wanted.extend(of_rule.filter(|&node| work.graph.nodes[node].track == track));
+        if let (Test::Distinct(_), Some(own), false) = (&rule.test, nodes.own, track) {
+            wanted.insert(own);
+        }
+    }
+    wanted
+}
+
+/// Every rule that the section is to satisfy, at every position that was recorded: the rule, its nodes there, and the name of the
+/// position. Where it cannot be told whether a rule applies, or to which signal, the section lacks a datum that it can do without.
+fn positions<'a>(work: &'a Work<'_>, known: &'a Known<'_>) -> impl Iterator<Item = (&'a Plausibility, &'a PositionNodes, &'a str)> {
+    let asked = |rule: &Plausibility| rule.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known)) == Ok(false);
+    let decided = |nodes: &PositionNodes| {
+        let nodes: BTreeSet<NodeId> = nodes.own.into_iter().chain(nodes.inputs.iter().map(|input| input.node)).collect();
+        needed(work.graph, &nodes, known).is_ok()
+    };
+    let (plan, graph, recorded) = (work.plan, work.graph, work.recorded);
+    plan.plausibility.iter().enumerate().filter(move |(_, rule)| asked(rule)).flat_map(move |(at, rule)| {
+        graph.plausibility[at]
+            .positions
+            .iter()
+            .enumerate()
+            .filter(move |(position, nodes)| recorded[at][*position] && decided(nodes))
+            .map(move |(position, nodes)| (rule, nodes, rule.signals.get(position).map_or("", |(name, _)| name.as_str())))
+    })
+}
+
+/// Looks at one section; what is found goes into its values.
+pub fn look(work: &Work<'_>, unit: &Unit, sides: &Sides<'_>, track: &Evaluated, values: &mut SectionValues) {
+    for (rule, nodes, name) in positions(work, sides.known) {
+        match &rule.test {
+            Test::Require(requirement) => {
+                let at = Position { rule, requirement, unit, name };
+                at.look(sides, nodes, track, &mut values.findings);
+            }
+            Test::Distinct(_) => {
+                let Some((simulated, measured)) = nodes.own.and_then(|own| sides.samples_of(own).ok()) else { continue };
+                for (kind, samples) in [(RecordKind::Simulation, simulated), (RecordKind::Measurement, measured)] {
+                    values.prints.push(Print::of(&rule.name, name, kind, &samples.values));
+                }
+            }
+        }
+    }
+}
+
+/// A requirement at one position of one section.
+struct Position<'a> {
+    rule: &'a Plausibility,
+    requirement: &'a Requirement,
+    unit: &'a Unit,
+    name: &'a str,
+}
+
+impl Position<'_> {
+    fn look(&self, sides: &Sides<'_>, nodes: &PositionNodes, track: &Evaluated, findings: &mut Vec<Finding>) {
+        let of_side = |side: InputSide| -> Vec<Result<f64, String>> { nodes.inputs.iter().map(|input| sides.input(input, side)).collect() };
+        match self.requirement.of {
+            Looks::Data => findings.extend(self.finding(sides.known, &[], None)),
+            Looks::Track => {
+                let inputs: Vec<_> = nodes.inputs.iter().map(|input: &InputNode| number_of(track, input.node)).collect();
+                findings.extend(self.finding(sides.known, &inputs, Some(RecordKind::Track)));
+            }
+            Looks::BothSides => findings.extend(self.finding(sides.known, &of_side(InputSide::Measured), None)),
+            Looks::EachSide => {
+                for (side, kind) in [(InputSide::Simulated, RecordKind::Simulation), (InputSide::Measured, RecordKind::Measurement)] {
+                    findings.extend(self.finding(sides.known, &of_side(side), Some(kind)));
+                }
+            }
+        }
+    }
+
+    /// `None` where the requirement is met, or cannot be told for want of a datum.
+    fn finding(&self, known: &Known<'_>, inputs: &[Result<f64, String>], record: Option<RecordKind>) -> Option<Finding> {
+        let known = Known { inputs, ..section(known) };
+        if flag(&self.requirement.holds, &known) != Ok(false) {
+            return None;
+        }
+        let numbers = self.requirement.compared.as_ref().and_then(|(found, expected, unit)| {
+            let of = |expr| number(expr, &known).ok().map(|value| unit.from_si(value));
+            Some((of(found)?, of(expected)?, unit, words(found)))
+        });
+        let says = match &numbers {
+            Some((value, expected, unit, what)) => {
+                let unit = if unit.text == "-" { String::new() } else { format!(" {unit}") };
+                let (value, expected) = (rounded(*value), rounded(*expected));
+                format!("{}: {what} is {value}{unit}; required: {} ({expected}{unit})", self.rule.title, self.requirement.words)
+            }
+            None => format!("{}; required: {}", self.rule.title, self.requirement.words),
+        };
+        let guessed = numbers.as_ref().and_then(|(value, expected, ..)| causes::likely(*value, *expected));
+        let cause: Vec<String> = guessed.into_iter().chain(self.rule.cause.clone()).collect();
+        Some(Finding {
+            code: self.rule.name.clone(),
+            channel: (!self.name.is_empty()).then(|| self.name.to_string()),
+            section: Some(self.unit.name.clone()),
+            record: record.map(|kind| kind.key().to_string()),
+            value: numbers.as_ref().map(|(value, ..)| *value),
+            expected: numbers.as_ref().map(|(_, expected, ..)| *expected),
+            unit: numbers.as_ref().map(|(_, _, unit, _)| unit.text.clone()),
+            says,
+            cause: (!cause.is_empty()).then(|| cause.join("; ")),
+            consequence: consequence(self.rule.otherwise),
+        })
+    }
+}
+
+/// What a rule's `otherwise` makes of a finding; a run that is to stop does so for its own reason.
+pub fn consequence(otherwise: OnFault) -> Consequence {
+    match otherwise {
+        OnFault::Note => Consequence::Note,
+        OnFault::NotUsed => Consequence::NotUsed,
+        OnFault::NotAssessable | OnFault::Stop => Consequence::NotAssessable,
+    }
+}
+
+fn rounded(value: f64) -> String {
+    trimmed(format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value))
+}
