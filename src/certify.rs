@@ -73,8 +73,11 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
 
 /// What a report says of the campaign: all files read, the records last, and the vehicle with what the protocol reads first.
 pub fn campaign_info(plan: &Plan, campaign: &Campaign, records: Vec<FileHash>, vehicle: Vec<DataItem>) -> CampaignInfo {
-    let mut files: Vec<FileHash> =
-        campaign.files.iter().map(|file| FileHash { path: file.path.clone(), sha256: file.sha256.clone(), bytes: file.bytes }).collect();
+    let mut files: Vec<FileHash> = campaign
+        .files
+        .iter()
+        .map(|file| FileHash { path: file.path.clone(), sha256: file.sha256.clone(), bytes: file.bytes, record: None })
+        .collect();
     files.extend(records);
     CampaignInfo {
         name: campaign.name.clone(),
@@ -90,7 +93,7 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
     let files: Vec<ProtocolFile> = family
         .sources
         .iter()
-        .map(|source| ProtocolFile { name: file_name(&source.name), sha256: sha256(source.text.as_bytes()), text: source.text.clone() })
+        .map(|source| ProtocolFile { name: source.file_name(), sha256: sha256(source.text.as_bytes()), text: source.text.clone() })
         .collect();
     let mut all = Sha256::new();
     for source in &family.sources {
@@ -166,11 +169,6 @@ fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {
         }
         _ => items.push(DataItem { name: prefix.to_string(), value: node.raw.clone(), unit: None, used: false }),
     }
-}
-
-/// Reports name a protocol's file without its folders: they are the same wherever and however the program was called.
-fn file_name(path: &str) -> String {
-    std::path::Path::new(path).file_name().map_or_else(|| path.to_string(), |name| name.to_string_lossy().into_owned())
 }
 
 fn sha256(bytes: &[u8]) -> String {

@@ -24,6 +24,7 @@ pub mod library;
 pub mod metrics;
 pub mod model;
 pub mod problem;
+pub mod provenance;
 pub mod report;
 pub mod result;
 pub mod robustness;

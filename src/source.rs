@@ -32,6 +32,11 @@ impl Source {
         Arc::new(Self { name: name.into(), text: text.into(), first_line })
     }
 
+    /// The name without its folders: the same wherever and however the program was called.
+    pub fn file_name(&self) -> String {
+        std::path::Path::new(&self.name).file_name().map_or_else(|| self.name.clone(), |name| name.to_string_lossy().into_owned())
+    }
+
     /// Line and column (both from 1, column in characters) of a byte offset.
     pub fn line_column(&self, offset: usize) -> (usize, usize) {
         let mut offset = offset.min(self.text.len());

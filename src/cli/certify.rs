@@ -7,12 +7,19 @@ use clap::{Args, ValueEnum};
 
 use super::inputs::{Prepared, prepare, progress_bar};
 use super::output::{Console, Exit};
+use super::sign;
 use crate::certify::certify;
 use crate::data::write::Outputs;
 use crate::problem::{Problem, Problems};
-use crate::report::{figure, findings, html, json, number, tables, typst, view};
+use crate::provenance::carried::REPORT_PDF;
+use crate::provenance::signature::{self, SecretKey, secret_key};
+use crate::provenance::statement;
+use crate::report::{attached, figure, findings, html, json, number, tables, typst, view};
 use crate::result::{Certification, Verdict};
 use crate::run::Settings;
+
+/// Distance plots of a report unless another number is asked for.
+pub const PLOTS: usize = 8;
 
 #[derive(Debug, Args)]
 pub struct Certify {
@@ -31,8 +38,11 @@ pub struct Certify {
     #[arg(long, value_enum, default_value_t = Only::All)]
     only: Only,
     /// How many distance plots to show.
-    #[arg(long, default_value_t = 8)]
+    #[arg(long, default_value_t = PLOTS)]
     plots: usize,
+    /// Sign report.pdf and statement.json with this secret key; see `fishplate sign`.
+    #[arg(long, value_name = "KEY")]
+    sign: Option<PathBuf>,
     /// Records worked on at a time [default: one per core]
     #[arg(long, short)]
     jobs: Option<NonZeroUsize>,
@@ -60,6 +70,11 @@ impl Certify {
         let prepared = prepare(&self.campaign, self.protocol.as_deref(), &self.set, &mut problems);
         console.problems(&problems);
         let Some(Prepared { compiled, campaign, .. }) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        // Asked for before the work begins: a wrong password costs no run.
+        let key = match self.sign.as_deref().map(|path| secret_key(path, sign::password())).transpose() {
+            Ok(key) => key,
+            Err(problem) => return console.fail(problem, Exit::Wrong),
+        };
         let bar = progress_bar(console, campaign.names.len());
         let settings = Settings { traces: if self.only == Only::Results { 0 } else { self.plots } };
         let found = certify(&compiled, &campaign, settings, &|section| {
@@ -74,7 +89,7 @@ impl Certify {
                 return Exit::Wrong;
             }
         };
-        let files = match self.files(&found) {
+        let files = match self.files(&found, key.as_ref()) {
             Ok(files) => files,
             Err(problems) => {
                 console.problems(&problems);
@@ -94,7 +109,7 @@ impl Certify {
     }
 
     /// All files of the report, by path below the output folder.
-    fn files(&self, found: &Certification) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+    fn files(&self, found: &Certification, key: Option<&SecretKey>) -> Result<Vec<(String, Vec<u8>)>, Problems> {
         let results = json::results(found);
         let mut files = Vec::new();
         let tables = tables::tables(found).map_err(|error| Problems(vec![Problem::error("table", error.to_string())]))?;
@@ -105,19 +120,22 @@ impl Certify {
             let data = view::view(found);
             let figures = figure::figures(found);
             if self.only != Only::Html {
-                let attachment = typst::Attachment {
-                    name: "results.json",
-                    mime: "application/json",
-                    bytes: results.as_bytes(),
-                    description: "Every number of this report",
-                };
-                files.push(("report.pdf".into(), typst::typeset(&data, &figures, &[attachment])?.bytes));
+                let names = attached::protocol_names(found);
+                let attachments = attached::attachments(found, &results, &names);
+                files.push((REPORT_PDF.into(), typst::typeset(&data, &figures, &attachments)?.bytes));
             }
             if self.only != Only::Pdf {
                 files.push(("report.html".into(), html::html(&data, &figures)?.into_bytes()));
             }
         }
-        files.push(("results.json".into(), results.into_bytes()));
+        files.push((attached::RESULTS.into(), results.into_bytes()));
+        files.push((statement::FILE.into(), statement::statement(found, &files).into_bytes()));
+        if let Some(key) = key {
+            let signed = files.iter().filter(|(name, _)| [REPORT_PDF, statement::FILE].contains(&name.as_str()));
+            let signed = signed.map(|(name, bytes)| Ok((format!("{name}.minisig"), signature::sign(key, name, bytes)?.into_bytes())));
+            let signed = signed.collect::<Result<Vec<_>, _>>().map_err(|problem| Problems(vec![problem]))?;
+            files.extend(signed);
+        }
         Ok(files)
     }
 }

@@ -8,10 +8,12 @@ mod explain;
 mod inputs;
 mod output;
 mod protocols;
+mod sign;
 mod simulate;
 mod simulator;
 mod study;
 mod values;
+mod verify;
 
 use std::path::PathBuf;
 
@@ -46,6 +48,20 @@ enum Command {
     /// Run a protocol over a campaign and write the report.
     #[command(after_help = "Example:\n  fishplate certify examples/coach --out target/coach-report")]
     Certify(certify::Certify),
+    /// Check a report: that it agrees with itself and, with its campaign, that the same files still give the same numbers and pages.
+    #[command(
+        after_help = "Example:\n  fishplate verify target/coach-report/report.pdf examples/coach\n\nExit code: 0 everything agrees, 1 something differs, 2 an input is wrong, 3 could not be finished"
+    )]
+    Verify(verify::Verify),
+    /// Follow one number of a report back to the line of its rule and the rows of its data.
+    #[command(after_help = "Example:\n  fishplate trace target/coach-report/results.json Y_max S05 Y_1R --campaign examples/coach")]
+    Trace(verify::Trace),
+    /// Make a pair of keys to sign reports with.
+    #[command(after_help = "Example:\n  fishplate keygen laboratory")]
+    Keygen(sign::Keygen),
+    /// Sign files; the signatures are files of their own, in the format of minisign.
+    #[command(after_help = "Example:\n  fishplate sign target/coach-report/report.pdf --key laboratory.key")]
+    Sign(sign::Sign),
     /// How far the verdict depends on choices: sections, synchronisation, parameters of the protocol.
     #[command(after_help = "Example:\n  fishplate study sections examples/coach --out target/coach-sections")]
     Study {
@@ -149,6 +165,10 @@ pub fn run() -> Exit {
     let console = Console::new(arguments.quiet, arguments.color);
     match arguments.command {
         Command::Certify(certify) => certify.run(&console),
+        Command::Verify(verify) => verify.run(&console),
+        Command::Trace(trace) => trace.run(&console),
+        Command::Keygen(keygen) => keygen.run(&console),
+        Command::Sign(sign) => sign.run(&console),
         Command::Study { study } => study.run(&console),
         Command::Simulate(simulate) => simulate.run(&console),
         Command::Diagnose(diagnose) => diagnose.run(&console),

@@ -8,12 +8,14 @@
 //! | `table` | a small table such as `sections.csv` |
 //! | `crate::yaml` | YAML with the place of every word |
 //! | `checks` | whether the samples of a record can be evaluated |
+//! | `fingerprint` | a file of a campaign as it lies on the disk now |
 //! | `write` | every file the program makes |
 
 pub mod campaign;
 mod cells;
 pub mod checks;
 mod faults;
+pub mod fingerprint;
 mod folder;
 pub mod hash;
 pub mod record;

@@ -44,7 +44,11 @@ pub(super) fn read_line(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
     if line.is_empty() { Err(empty(shown)) } else { Ok(line) }
 }
 
-fn read_bytes(path: &Path, shown: &str, limit: u64, buffer: &mut Vec<u8>) -> Result<(), Problem> {
+/// All bytes of a plain file that is not empty and not larger than a limit.
+///
+/// # Errors
+/// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`.
+pub fn read_bytes(path: &Path, shown: &str, limit: u64, buffer: &mut Vec<u8>) -> Result<(), Problem> {
     let unreadable = |why: &dyn std::fmt::Display| Problem::error("file-unreadable", format!("`{shown}` cannot be read: {why}"));
     // What is no plain file is refused before it is opened: a pipe would wait for ever.
     let meta = std::fs::metadata(path).map_err(|error| match error.kind() {

@@ -2,35 +2,53 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::result::{Certification, QuantityResult, StatisticResult};
+use super::attached;
+use crate::result::{Certification, ProtocolFile, ProtocolInfo, QuantityResult, StatisticResult, ZoneResult};
 
 /// The whole result, ending in a line break.
 pub fn results(found: &Certification) -> String {
     let mut root = Map::new();
     root.insert("fishplate".into(), json!(env!("CARGO_PKG_VERSION")));
-    let protocol = &found.protocol;
-    root.insert(
-        "protocol".into(),
-        json!({
-            "name": protocol.name,
-            "title": protocol.title,
-            "sha256": protocol.sha256,
-            "parameters": protocol.parameters,
-            "deviations": protocol.deviations,
-            "files": protocol.files.iter().map(|file| json!({"name": file.name, "sha256": file.sha256})).collect::<Vec<_>>(),
-        }),
-    );
+    root.insert("protocol".into(), protocol(&found.protocol));
     root.insert("campaign".into(), json!({"name": found.campaign.name, "files": found.campaign.files, "vehicle": found.campaign.vehicle}));
     root.insert("verdict".into(), json!(found.verdict));
     root.insert("reasons".into(), json!(found.reasons));
-    root.insert("quantities".into(), Value::Array(found.quantities.iter().map(quantity).collect()));
+    root.insert("quantities".into(), quantities(&found.quantities));
     root.insert("sections".into(), Value::Array(found.sections.iter().map(|section| zone_as_number(json!(section))).collect()));
-    root.insert("zones".into(), Value::Array(found.zones.iter().map(|zone| zone_as_number(json!(zone))).collect()));
+    root.insert("zones".into(), zones(&found.zones));
     root.insert("domain".into(), json!(found.domain));
     root.insert("findings".into(), json!(found.findings));
     root.insert("notes".into(), json!(found.notes));
+    text(&Value::Object(root))
+}
+
+/// A tree of values in the form in which results are written, ending in a line break.
+pub fn text(value: &Value) -> String {
     // A tree of plain values always serialises.
-    serde_json::to_string_pretty(&Value::Object(root)).unwrap_or_default() + "\n"
+    serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
+}
+
+/// What the results say of zones.
+pub fn zones(zones: &[ZoneResult]) -> Value {
+    Value::Array(zones.iter().map(|zone| zone_as_number(json!(zone))).collect())
+}
+
+/// What the results say of the protocol.
+pub fn protocol(protocol: &ProtocolInfo) -> Value {
+    let file = |(at, file): (usize, &ProtocolFile)| json!({"name": file.name, "sha256": file.sha256, "attached": attached::protocol_name(at, &file.name)});
+    json!({
+        "name": protocol.name,
+        "title": protocol.title,
+        "sha256": protocol.sha256,
+        "parameters": protocol.parameters,
+        "deviations": protocol.deviations,
+        "files": protocol.files.iter().enumerate().map(file).collect::<Vec<_>>(),
+    })
+}
+
+/// What the results say of quantities.
+pub fn quantities(quantities: &[QuantityResult]) -> Value {
+    Value::Array(quantities.iter().map(quantity).collect())
 }
 
 fn quantity(quantity: &QuantityResult) -> Value {
@@ -61,6 +79,7 @@ fn quantity(quantity: &QuantityResult) -> Value {
     }
     entry.insert("holds".into(), json!(quantity.holds));
     entry.insert("reason".into(), json!(quantity.reason));
+    entry.insert("rule".into(), json!(quantity.rule));
     entry.insert("statistics".into(), json!(quantity.statistics));
     let values = quantity.values.iter().map(|pair| {
         let mut row = Map::new();

@@ -2,6 +2,7 @@
 //!
 //! [`view::view`] rounds, sorts and words; the templates only place what it gives.
 
+pub mod attached;
 pub mod blind;
 pub mod diagnosis;
 pub mod figure;

@@ -132,6 +132,25 @@ pub struct FileHash {
     pub path: String,
     pub sha256: String,
     pub bytes: u64,
+    /// What it is a record of; `None` for the campaign's own files.
+    pub record: Option<RecordOf>,
+}
+
+/// Which record a file is.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct RecordOf {
+    /// `measurement`, `simulation` or `track`.
+    pub kind: String,
+    pub section: String,
+}
+
+/// Where a rule stands.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct RulePlace {
+    /// Name of one of [`ProtocolInfo::files`].
+    pub file: String,
+    /// From 1.
+    pub line: usize,
 }
 
 /// A named value of the campaign or the vehicle, as text.
@@ -172,6 +191,8 @@ pub struct QuantityResult {
     pub holds: Option<bool>,
     /// Why it is not assessable.
     pub reason: Option<String>,
+    /// Where the protocol defines it.
+    pub rule: RulePlace,
 }
 
 /// One statistic over section x signal pairs against its limit.
@@ -196,6 +217,8 @@ pub struct StatisticResult {
     /// The limit as the protocol words it: `2/3 of std`.
     pub limit_text: String,
     pub reason: Option<String>,
+    /// Where the protocol states the limit.
+    pub rule: RulePlace,
 }
 
 /// One section and signal.

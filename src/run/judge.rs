@@ -164,6 +164,7 @@ fn quantity_result(
             .collect(),
         holds,
         reason,
+        rule: limits::rule_place(&quantity.span),
     };
     (result, fails.into_iter().flatten().collect())
 }

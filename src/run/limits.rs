@@ -7,7 +7,8 @@ use crate::catalog::Statistic;
 use crate::check::evaluate::{Values, flag, number};
 use crate::check::plan::{Limit, Plan, Quantity, Scalar, Scope};
 use crate::metrics::percentile::{Method, percentile};
-use crate::result::StatisticResult;
+use crate::result::{RulePlace, StatisticResult};
+use crate::source::Span;
 
 /// A value equal to its limit passes; this much room is for the rounding of units and sums.
 const EQUAL: f64 = 1e-12;
@@ -108,6 +109,11 @@ enum Closeness {
     Same,
 }
 
+/// Where a rule stands, by the name of its file: folders differ from one machine to the next.
+pub fn rule_place(span: &Span) -> RulePlace {
+    RulePlace { file: span.source.file_name(), line: span.line() }
+}
+
 fn empty(quantity: &Quantity, limit: &Limit, scope: String, count: usize) -> StatisticResult {
     StatisticResult {
         name: limit.statistic.name(),
@@ -122,6 +128,7 @@ fn empty(quantity: &Quantity, limit: &Limit, scope: String, count: usize) -> Sta
         holds: None,
         limit_text: limit.words.clone(),
         reason: None,
+        rule: rule_place(&limit.span),
     }
 }
 

@@ -10,9 +10,11 @@ mod pairs;
 mod plausibility;
 pub mod pool;
 mod record;
+pub mod replay;
 mod requirements;
 mod sections;
 mod signal;
+pub mod single;
 mod synchronisation;
 mod traces;
 
@@ -29,6 +31,7 @@ pub use facts::{Facts, scalar};
 pub use judge::Judged;
 use pairs::SectionValues;
 use pool::Pool;
+use record::Found;
 use sections::Unit;
 pub use synchronisation::{Offset, Shifts};
 

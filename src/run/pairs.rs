@@ -159,15 +159,8 @@ fn wanted(work: &Work<'_>, known: &Known<'_>, active: &[bool]) -> BTreeSet<NodeI
     let mut wanted = BTreeSet::new();
     for (index, quantity) in work.graph.quantities.iter().enumerate() {
         for (number, signal) in quantity.signals.iter().enumerate() {
-            if !active[index] || !work.present[index][number] {
-                continue;
-            }
-            match &work.plan.quantities[index].evaluation {
-                Evaluation::Sides { .. } => wanted.extend(signal.inputs.iter().map(|input| input.node)),
-                Evaluation::Metric { metric, .. } => {
-                    wanted.insert(if metric.0.common_points { signal.filtered } else { signal.processed });
-                    wanted.extend(signal.over);
-                }
+            if active[index] && work.present[index][number] {
+                wanted_of(work, index, signal, &mut wanted);
             }
         }
     }
@@ -176,6 +169,37 @@ fn wanted(work: &Work<'_>, known: &Known<'_>, active: &[bool]) -> BTreeSet<NodeI
     }
     wanted.extend(plausibility::wanted(work, known, false));
     wanted
+}
+
+/// Nodes that one signal of a quantity needs of both records.
+fn wanted_of(work: &Work<'_>, index: usize, signal: &SignalNodes, wanted: &mut BTreeSet<NodeId>) {
+    match &work.plan.quantities[index].evaluation {
+        Evaluation::Sides { .. } => wanted.extend(signal.inputs.iter().map(|input| input.node)),
+        Evaluation::Metric { metric, .. } => {
+            wanted.insert(if metric.0.common_points { signal.filtered } else { signal.processed });
+            wanted.extend(signal.over);
+        }
+    }
+}
+
+/// One pair and what each record gave, the simulated one first.
+pub struct Computed {
+    pub pair: PairSi,
+    pub sides: [(Vec<(NodeId, Found)>, Opened); 2],
+}
+
+/// One signal of one quantity in one section, by itself.
+pub fn single(work: &Work<'_>, unit: &Unit, index: usize, signal: usize) -> Result<Computed, Fault> {
+    let known = unit.known(work.facts);
+    let nodes = &work.graph.quantities[index].signals[signal];
+    let mut wanted = BTreeSet::new();
+    wanted_of(work, index, nodes, &mut wanted);
+    let mut values = SectionValues::default();
+    let (simulated, of_simulated) = side(work, unit, RecordKind::Simulation, &wanted, &known, &mut values)?;
+    let (measured, of_measured) = side(work, unit, RecordKind::Measurement, &wanted, &known, &mut values)?;
+    let sides = Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent };
+    let pair = sides.pair(work, &work.plan.quantities[index], nodes).map_err(Fault::new)?;
+    Ok(Computed { pair, sides: [(simulated, of_simulated), (measured, of_measured)] })
 }
 
 fn side(

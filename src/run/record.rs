@@ -19,7 +19,7 @@ use crate::data::{Campaign, RecordKind};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::{Method, percentiles};
 use crate::problem::Problem;
-use crate::result::FileHash;
+use crate::result::{FileHash, RecordOf};
 use crate::units::Dimension;
 
 /// What every record is worked on with.
@@ -128,7 +128,8 @@ pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<No
     let clock = time.map_or(axis.column.as_str(), |time| time.column.as_str());
     let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
     let checked = check_axis(&record, clock, &axis.column, section.as_ref()).map_err(fault)?;
-    let file = FileHash { path: read.path, sha256: read.sha256, bytes: read.bytes };
+    let of = RecordOf { kind: kind.key().into(), section: unit.name.clone() };
+    let file = FileHash { path: read.path, sha256: read.sha256, bytes: read.bytes, record: Some(of) };
     let columns: Vec<_> = record.columns.into_iter().map(|column| (column.name, Arc::new(column.values))).collect();
     let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));
     let along_axis = values(&axis.column).unwrap_or_default();
@@ -177,6 +178,13 @@ fn placed(says: &str, file: &str, row: usize, more: usize) -> String {
 }
 
 impl Opened {
+    /// First and last row of the file inside the section, and its last row; the header is row 1.
+    pub fn rows(&self) -> ((usize, usize), usize) {
+        let first = self.along.first_row.unwrap_or(1);
+        let inside = self.along.inside(self.extent);
+        ((first + inside.start, first + inside.end.saturating_sub(1)), first + self.along.axis.len().saturating_sub(1))
+    }
+
     /// Values of the wanted nodes. Nodes run level by level, so that channels that pass the same filter pass it together.
     pub fn evaluate(
         &self,

@@ -233,6 +233,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         holds: Some(value.abs() <= limit),
         limit_text: text.into(),
         reason: None,
+        rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
     };
     let statistics = vec![
         statistic("std", "standard deviation (n-1)", std, kind.limit, "see Table 1, footnote **"),
@@ -255,6 +256,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         statistics,
         values,
         reason: None,
+        rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
     }
 }
 
@@ -307,6 +309,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
             holds: Some(true),
             limit_text: "0.3".into(),
             reason: None,
+            rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
         })
         .collect();
     QuantityResult {
@@ -326,6 +329,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         values,
         holds: Some(true),
         reason: None,
+        rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
     }
 }
 
@@ -408,7 +412,7 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
     let mut files: Vec<FileHash> = ["campaign.yaml", "vehicle.yaml", "sections.csv"]
         .iter()
         .enumerate()
-        .map(|(at, path)| FileHash { path: (*path).into(), sha256: hash(at), bytes: 2_311 + at as u64 })
+        .map(|(at, path)| FileHash { path: (*path).into(), sha256: hash(at), bytes: 2_311 + at as u64, record: None })
         .collect();
     for (at, section) in sections.iter().enumerate() {
         for (side, folder) in ["simulation", "measurement"].iter().enumerate() {
@@ -416,6 +420,7 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
                 path: format!("{folder}/{}.csv", section.section),
                 sha256: hash(10 + 2 * at + side),
                 bytes: 1_204_511 + at as u64,
+                record: None,
             });
         }
     }

@@ -3,7 +3,7 @@
 
 use fishplate::result::{
     CampaignInfo, Certification, CheckResult, Curve, DataItem, Deviation, DomainRange, FileHash, FilterInfo, PairValue, ParameterInfo,
-    ProtocolFile, ProtocolInfo, QuantityResult, SectionResult, StatisticResult, Trace, Verdict, ZoneResult,
+    ProtocolFile, ProtocolInfo, QuantityResult, RulePlace, SectionResult, StatisticResult, Trace, Verdict, ZoneResult,
 };
 
 /// A vehicle's name that would run if it were taken for markup.
@@ -200,6 +200,7 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
         values,
         holds,
         reason: missing.then(|| "channel `az_I` is missing in 33 records".to_owned()),
+        rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
     }
 }
 
@@ -220,6 +221,7 @@ fn statistics(values: &[PairValue], unit: &str, limit: f64) -> Vec<StatisticResu
         holds: Some(value.abs() <= limit),
         limit_text: text.into(),
         reason: None,
+        rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
     };
     vec![
         one("mean", "mean", mean, 2.0 / 3.0 * limit, 2.0 * std / n.sqrt(), "2/3 of std"),
@@ -309,20 +311,22 @@ fn traces(noise: &mut Noise) -> Vec<Trace> {
 fn campaign() -> CampaignInfo {
     let hash = |seed: u8| format!("{seed:02x}").repeat(32);
     let mut files = vec![
-        FileHash { path: "campaign.yaml".into(), sha256: hash(1), bytes: 412 },
-        FileHash { path: "vehicle.yaml".into(), sha256: hash(2), bytes: 268 },
-        FileHash { path: "sections.csv".into(), sha256: hash(3), bytes: 2311 },
+        FileHash { path: "campaign.yaml".into(), sha256: hash(1), bytes: 412, record: None },
+        FileHash { path: "vehicle.yaml".into(), sha256: hash(2), bytes: 268, record: None },
+        FileHash { path: "sections.csv".into(), sha256: hash(3), bytes: 2311, record: None },
     ];
     for number in 1..=33_u8 {
         files.push(FileHash {
             path: format!("measurement/S{number:02}.csv"),
             sha256: hash(100 + number),
             bytes: 812_331 + u64::from(number),
+            record: None,
         });
         files.push(FileHash {
             path: format!("simulation/S{number:02}.csv"),
             sha256: hash(150 + number),
             bytes: 903_120 + u64::from(number),
+            record: None,
         });
     }
     CampaignInfo {

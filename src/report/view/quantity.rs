@@ -25,6 +25,8 @@ pub struct QuantityView {
     pub comparison: String,
     pub clause: Option<String>,
     pub source: Option<String>,
+    /// Where the protocol defines it: `annex-t.fp, line 345`.
+    pub rule: String,
     pub notes: Vec<String>,
     pub holds: Finding,
     pub reason: Option<String>,
@@ -106,6 +108,7 @@ pub(super) fn view(at: usize, quantity: &QuantityResult) -> QuantityView {
         comparison: quantity.comparison.clone(),
         clause: quantity.clause.clone(),
         source: quantity.source.clone(),
+        rule: format!("{}, line {}", quantity.rule.file, quantity.rule.line),
         notes: quantity.notes.clone(),
         holds: Finding::of(quantity.holds),
         reason: quantity.reason.clone(),

@@ -1,0 +1,107 @@
+//! `fishplate keygen` and `fishplate sign`.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::output::{Console, Exit};
+use crate::problem::Problem;
+use crate::provenance::signature::{PASSWORD, beside, content, new_keys, secret_key, sign};
+
+#[derive(Debug, Args)]
+pub struct Keygen {
+    /// Name of the keys: NAME.key is the secret one, NAME.pub the public one. Neither may exist.
+    name: PathBuf,
+    /// Do not protect the secret key by a password.
+    #[arg(long)]
+    no_password: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Sign {
+    /// Files to sign; each signature is written beside its file, as FILE.minisig.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Secret key, made by `fishplate keygen` or minisign. Its password is asked for, or read from FISHPLATE_KEY_PASSWORD.
+    #[arg(long, value_name = "FILE")]
+    key: PathBuf,
+}
+
+/// The password from the environment, if it is there.
+pub fn password() -> Option<String> {
+    std::env::var(PASSWORD).ok()
+}
+
+impl Keygen {
+    pub fn run(self, console: &Console) -> Exit {
+        let with = |extension: &str| {
+            let mut name = self.name.clone().into_os_string();
+            name.push(extension);
+            PathBuf::from(name)
+        };
+        let (secret, public) = (with(".key"), with(".pub"));
+        if let Some(there) = [&secret, &public].into_iter().find(|path| path.exists()) {
+            let problem = Problem::error("key-exists", format!("`{}` is there already; a key is never overwritten", there.display()));
+            return console.fail(problem.help("choose another name, or move the old key away"), Exit::Wrong);
+        }
+        let keys = match new_keys(password(), !self.no_password) {
+            Ok(keys) => keys,
+            Err(problem) => return console.fail(problem, Exit::Unfinished),
+        };
+        let written = create(&secret, keys.0.as_bytes(), true).and_then(|()| {
+            create(&public, keys.1.as_bytes(), false).inspect_err(|_| {
+                // A secret key whose public key nobody has is of no use.
+                let _ = std::fs::remove_file(&secret);
+            })
+        });
+        match written {
+            Ok(()) => {
+                console.say(&format!("written: {} (keep it secret), {} (give it to who checks)", secret.display(), public.display()));
+                Exit::Done
+            }
+            Err(problem) => console.fail(problem, Exit::Unfinished),
+        }
+    }
+}
+
+/// A new file, which must not exist; a secret one only its owner can read.
+fn create(path: &Path, bytes: &[u8], secret: bool) -> Result<(), Problem> {
+    let mut options = std::fs::OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, if secret { 0o600 } else { 0o644 });
+    #[cfg(not(unix))]
+    let _ = secret;
+    let failed = |error: std::io::Error| Problem::error("write-failed", format!("`{}` cannot be written: {error}", path.display()));
+    let mut file = options.open(path).map_err(failed)?;
+    file.write_all(bytes).and_then(|()| file.sync_all()).map_err(|error| {
+        let _ = std::fs::remove_file(path);
+        failed(error)
+    })
+}
+
+impl Sign {
+    pub fn run(self, console: &Console) -> Exit {
+        let key = match secret_key(&self.key, password()) {
+            Ok(key) => key,
+            Err(problem) => return console.fail(problem, Exit::Wrong),
+        };
+        // All are read and signed before any signature is written.
+        let mut signed = Vec::new();
+        for path in &self.files {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            match content(path).and_then(|bytes| sign(&key, &name, &bytes)) {
+                Ok(text) => signed.push((beside(path), text)),
+                Err(problem) => return console.fail(problem, Exit::Wrong),
+            }
+        }
+        for (path, text) in signed {
+            if console.write(&path, text.as_bytes()) != Exit::Done {
+                return Exit::Unfinished;
+            }
+            console.say(&format!("written: {}", path.display()));
+        }
+        Exit::Done
+    }
+}

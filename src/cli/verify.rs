@@ -1,0 +1,188 @@
+//! `fishplate verify` and `fishplate trace`.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::inputs::progress_bar;
+use super::output::{Console, Exit};
+use super::protocols::load;
+use crate::check::family::Family;
+use crate::problem::Problems;
+use crate::provenance::carried::{self, Carried};
+use crate::provenance::signature;
+use crate::provenance::trace::{Asked, trace};
+use crate::provenance::verify::{Again, Check, Outcome, against, alone};
+use crate::report::visible::visible;
+
+#[derive(Debug, Args)]
+pub struct Verify {
+    /// A report of `certify`: report.pdf, its folder, or results.json.
+    report: PathBuf,
+    /// Folder of the campaign: its files are compared with the report, and the protocol in the report is run over them again.
+    campaign: Option<PathBuf>,
+    /// Public key that the signature is checked with: a file, or the key itself.
+    #[arg(long, value_name = "KEY")]
+    public_key: Option<String>,
+    /// Signature of the report [default: the file beside it that ends in .minisig]
+    #[arg(long, value_name = "FILE")]
+    signature: Option<PathBuf>,
+    /// The protocol, where the report does not carry it; it must have the SHA-256 that the results name.
+    #[arg(long, short)]
+    protocol: Option<String>,
+    /// Print every difference, not only the first of each kind.
+    #[arg(long)]
+    all: bool,
+    /// How many distance plots the report was written with.
+    #[arg(long, default_value_t = super::certify::PLOTS)]
+    plots: usize,
+    /// Records worked on at a time [default: one per core]
+    #[arg(long, short)]
+    jobs: Option<NonZeroUsize>,
+}
+
+/// Differences of one kind that are printed unless all are asked for.
+const MOST: usize = 20;
+
+impl Verify {
+    pub fn run(self, console: &Console) -> Exit {
+        if let Some(jobs) = self.jobs {
+            // Fails only if the pool was made before, which nothing does before here.
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
+        }
+        if let Some(folder) = self.campaign.as_ref().filter(|folder| !folder.exists()) {
+            let says = format!("there is no campaign `{}`", folder.display());
+            return console.fail(crate::problem::Problem::error("folder-missing", says), Exit::Wrong);
+        }
+        let opened = open(&self.report, self.protocol.as_deref());
+        let (carried, given) = match opened {
+            Ok(opened) => opened,
+            Err(problems) => {
+                console.problems(&problems);
+                return Exit::Wrong;
+            }
+        };
+        let key = self.public_key.as_deref().map(signature::public_key).transpose();
+        let signed = key.and_then(|key| signature::check(&carried.path, self.signature.as_deref(), key.as_ref()));
+        let signed = match signed {
+            Ok(signed) => signed,
+            Err(problem) => return console.fail(problem, Exit::Wrong),
+        };
+        let (mut checks, compiled) = alone(&carried, given.as_ref());
+        checks.push(signed);
+        if let Some(campaign) = &self.campaign {
+            let bar = progress_bar(console, carried.results.sections.len());
+            let progress = |section: &str| {
+                bar.set_message(section.to_string());
+                bar.inc(1);
+            };
+            checks.extend(against(&carried, compiled.as_ref(), Again { campaign, plots: self.plots, progress: &progress }));
+            bar.finish_and_clear();
+        }
+        let differs = checks.iter().any(|check| check.outcome == Outcome::Differs);
+        if !console.quiet || differs {
+            console.print(&told(&carried, &checks, self.campaign.is_some(), if self.all { usize::MAX } else { MOST }, console.color));
+        }
+        if differs { Exit::DoesNotHold } else { Exit::Done }
+    }
+}
+
+/// A report, and the protocol that was named for it.
+fn open(report: &std::path::Path, protocol: Option<&str>) -> Result<(Carried, Option<Family>), Problems> {
+    let mut problems = Problems::default();
+    let given = protocol.map(|name| load(name, &mut problems));
+    if problems.any_error() {
+        return Err(problems);
+    }
+    let carried = carried::open(report).map_err(|problem| Problems(vec![problem]))?;
+    Ok((carried, given.flatten()))
+}
+
+/// What was found, for the terminal. Names in a report are of others: what would move the cursor is made visible.
+fn told(carried: &Carried, checks: &[Check], campaign: bool, most: usize, color: bool) -> String {
+    let results = &carried.results;
+    let mut out = format!(
+        "{}\n  campaign   {}\n  protocol   {}, SHA-256 {}\n  verdict    {}, by fishplate {}\n\n",
+        visible(&carried.shown),
+        visible(&results.campaign.name),
+        visible(&results.protocol.name),
+        visible(&results.protocol.sha256),
+        visible(&results.verdict),
+        visible(&results.fishplate)
+    );
+    for check in checks {
+        let (word, paint) = match check.outcome {
+            Outcome::Agrees => ("agrees", "\u{1b}[32m"),
+            Outcome::Differs => ("DIFFERS", "\u{1b}[31;1m"),
+            Outcome::NotChecked => ("not checked", ""),
+        };
+        let word = format!("{word:<12}");
+        let word = if color && !paint.is_empty() { format!("{paint}{word}\u{1b}[0m") } else { word };
+        out += &format!("{word}{:<15} {}\n", check.name, visible(&check.says));
+        for detail in check.details.iter().take(most) {
+            out += &format!("{:27} {}\n", "", visible(detail));
+        }
+        if check.details.len() > most {
+            out += &format!("{:27} and {} more, shown with `--all`\n", "", check.details.len() - most);
+        }
+    }
+    let differ: Vec<&str> = checks.iter().filter(|check| check.outcome == Outcome::Differs).map(|check| check.name).collect();
+    out += "\n";
+    out += &match (differ.is_empty(), campaign) {
+        (false, _) => format!("Result: differs ({})\n", differ.join(", ")),
+        (true, true) => "Result: everything that was checked agrees\n".to_string(),
+        (true, false) => "Result: the report agrees with itself; give its campaign to check it against the data\n".to_string(),
+    };
+    out
+}
+
+#[derive(Debug, Args)]
+pub struct Trace {
+    /// A report of `certify`: report.pdf, its folder, or results.json.
+    results: PathBuf,
+    /// Id of the quantity.
+    quantity: String,
+    /// Name of the section.
+    section: String,
+    /// Name of the signal.
+    signal: String,
+    /// Folder of the campaign: rows and values are read and computed again.
+    #[arg(long, value_name = "DIR")]
+    campaign: Option<PathBuf>,
+    /// The protocol, where the report does not carry it; it must have the SHA-256 that the results name.
+    #[arg(long, short)]
+    protocol: Option<String>,
+}
+
+impl Trace {
+    pub fn run(self, console: &Console) -> Exit {
+        let wrong = |problems: Problems| {
+            console.problems(&problems);
+            Exit::Wrong
+        };
+        let (carried, given) = match open(&self.results, self.protocol.as_deref()) {
+            Ok(opened) => opened,
+            Err(problems) => return wrong(problems),
+        };
+        let mut problems = Problems::default();
+        let compiled = match carried.sources(given.as_ref()) {
+            Ok(sources) => carried.compiled(&sources, &mut problems),
+            // Without its protocol, a report still says what stands in it; a computation needs the protocol.
+            Err(problem) if self.campaign.is_some() => return wrong(Problems(vec![problem])),
+            Err(_) => None,
+        };
+        if problems.any_error() {
+            return wrong(problems);
+        }
+        let asked = Asked { quantity: &self.quantity, section: &self.section, signal: &self.signal };
+        match trace(&carried, compiled.as_ref(), asked, self.campaign.as_deref()) {
+            Ok(found) => {
+                let text: Vec<String> = found.text.split('\n').map(visible).collect();
+                console.print(&text.join("\n"));
+                if found.agrees { Exit::Done } else { Exit::DoesNotHold }
+            }
+            Err(problems) => wrong(problems),
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Files of a campaign as they lie on the disk now, for who compares them with what a report says of them.
+
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use super::folder::Folder;
+use super::hash::hexadecimal;
+use crate::problem::Problem;
+use crate::source::Source;
+
+/// Read at a time; the size changes no result.
+const BLOCK: usize = 1 << 16;
+
+/// SHA-256 and size of a file named by its path inside a campaign; `None` if there is no such file.
+///
+/// # Errors
+/// `folder-missing`, `path-outside`, `path-invalid`, `file-unreadable`.
+pub fn fingerprint(campaign: &Path, inside: &str) -> Result<Option<(String, u64)>, Problem> {
+    let place = Folder::open(campaign)?.place(inside, &Source::new("", "").whole())?;
+    let unreadable = |why: &dyn std::fmt::Display| Problem::error("file-unreadable", format!("`{inside}` cannot be read: {why}"));
+    match std::fs::metadata(&place.path) {
+        Ok(meta) if meta.is_file() => {}
+        Ok(_) => return Err(unreadable(&"it is no plain file")),
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(None),
+        Err(error) => return Err(unreadable(&error)),
+    }
+    let mut file = File::open(&place.path).map_err(|error| unreadable(&error))?;
+    let (mut hash, mut bytes, mut block) = (Sha256::new(), 0_u64, vec![0_u8; BLOCK]);
+    loop {
+        match file.read(&mut block) {
+            Ok(0) => break,
+            Ok(count) => {
+                hash.update(&block[..count]);
+                bytes += count as u64;
+            }
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return Err(unreadable(&error)),
+        }
+    }
+    Ok(Some((hexadecimal(&hash.finalize()), bytes)))
+}

@@ -1,0 +1,212 @@
+//! A report opened: its results, and the protocol that it carries.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::pdf::Attachments;
+use super::results::Results;
+use crate::certify::{Compiled, compile};
+use crate::check::family::{self, Family};
+use crate::check::{Override, Overrides, plan::SetBy};
+use crate::data::hash::sha256;
+use crate::data::text::{decode, read_bytes};
+use crate::library;
+use crate::problem::{Problem, Problems};
+use crate::report::attached;
+use crate::source::{Source, Spanned};
+use crate::syntax::document::Text;
+
+/// Largest report in bytes; one of 13 sections has two million.
+const REPORT: u64 = 512 << 20;
+/// Largest results in bytes; those of 13 sections have 180 000.
+const RESULTS: usize = 128 << 20;
+/// Most values in results: a value takes up to a hundred bytes of memory once it is read.
+const VALUES: usize = 8_000_000;
+/// Largest file of a protocol in bytes.
+const PROTOCOL: usize = 16 << 20;
+
+/// The name of the report in an output folder.
+pub const REPORT_PDF: &str = "report.pdf";
+
+#[derive(Debug)]
+pub struct Carried {
+    /// As the user named it.
+    pub shown: String,
+    /// The file that was opened, which a signature is of.
+    pub path: PathBuf,
+    /// The output folder, where one was given.
+    pub folder: Option<PathBuf>,
+    /// The bytes of the PDF, if there is one.
+    pub pdf: Option<Vec<u8>>,
+    /// The results as they are written.
+    pub text: String,
+    pub value: Value,
+    pub results: Results,
+    /// Results in the folder that are not those inside its PDF.
+    pub other_results: bool,
+    /// The files of the protocol, as far as the PDF carries them, in the order of the results.
+    pub protocol: Vec<Option<Vec<u8>>>,
+}
+
+/// Opens a report: a PDF, an output folder, or `results.json`.
+///
+/// # Errors
+/// `file-missing` and its kin, `pdf-unreadable`, `no-results`, `results-unreadable`.
+pub fn open(path: &Path) -> Result<Carried, Problem> {
+    let shown = path.display().to_string();
+    if path.is_dir() {
+        let pdf = path.join(REPORT_PDF);
+        let results = path.join(attached::RESULTS);
+        if !pdf.is_file() && !results.is_file() {
+            let says = format!("there is neither `{REPORT_PDF}` nor `{}` in `{shown}`", attached::RESULTS);
+            return Err(Problem::error("no-results", says).help("give the folder that `certify` wrote, a report, or results.json"));
+        }
+        if !pdf.is_file() {
+            return beside(&results, &shown, Some(path));
+        }
+        let mut carried = of_pdf(&pdf, &pdf.display().to_string())?;
+        carried.folder = Some(path.to_path_buf());
+        carried.other_results = results.is_file() && file(&results, RESULTS as u64)? != carried.text.as_bytes();
+        return Ok(carried);
+    }
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+        return beside(path, &shown, None);
+    }
+    of_pdf(path, &shown)
+}
+
+fn file(path: &Path, most: u64) -> Result<Vec<u8>, Problem> {
+    let mut bytes = Vec::new();
+    read_bytes(path, &path.display().to_string(), most, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// Results that lie by themselves. A report beside them that carries the same results gives the protocol.
+fn beside(path: &Path, shown: &str, folder: Option<&Path>) -> Result<Carried, Problem> {
+    let bytes = file(path, RESULTS as u64)?;
+    let (text, value, results) = read(&bytes, shown)?;
+    let pdf = path.parent().unwrap_or(Path::new("")).join(REPORT_PDF);
+    let carried = if pdf.is_file() { of_pdf(&pdf, shown).ok().filter(|carried| carried.text == text) } else { None };
+    let protocol = carried.map_or_else(|| results.protocol.files.iter().map(|_| None).collect(), |carried| carried.protocol);
+    Ok(Carried {
+        shown: shown.into(),
+        path: path.to_path_buf(),
+        folder: folder.map(Path::to_path_buf),
+        pdf: None,
+        text,
+        value,
+        results,
+        other_results: false,
+        protocol,
+    })
+}
+
+fn of_pdf(path: &Path, shown: &str) -> Result<Carried, Problem> {
+    let pdf = file(path, REPORT)?;
+    let attachments = Attachments::of(&pdf, shown)?;
+    let Some(bytes) = attachments.read(attached::RESULTS, RESULTS)? else {
+        let names: Vec<&str> = attachments.names().collect();
+        let problem = Problem::error("no-results", format!("`{shown}` carries no `{}`", attached::RESULTS));
+        return Err(match names.as_slice() {
+            [] => problem.help("only the report that `certify` writes can be checked; printing or saving it anew may drop its attachments"),
+            names => problem.help(format!("it carries {}; only reports of `certify` can be checked", names.join(", "))),
+        });
+    };
+    let (text, value, results) = read(&bytes, &format!("{shown}: {}", attached::RESULTS))?;
+    let mut protocol = Vec::new();
+    for (at, named) in results.protocol.files.iter().enumerate() {
+        protocol.push(attachments.read(&attached::protocol_name(at, &named.name), PROTOCOL)?);
+    }
+    Ok(Carried {
+        shown: shown.into(),
+        path: path.to_path_buf(),
+        folder: None,
+        text,
+        value,
+        results,
+        other_results: false,
+        protocol,
+        pdf: Some(pdf),
+    })
+}
+
+fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Results), Problem> {
+    let unreadable = |says: String| Problem::error("results-unreadable", format!("`{shown}` are no results of `certify`: {says}"));
+    let text = decode(bytes, shown)?;
+    let many = memchr::memchr2_iter(b',', b'[', bytes).count();
+    if many > VALUES {
+        return Err(unreadable(format!("more than {VALUES} values")));
+    }
+    let value: Value = serde_json::from_str(text).map_err(|error| unreadable(error.to_string()))?;
+    let results = Results::of(&value).map_err(unreadable)?;
+    Ok((text.to_string(), value, results))
+}
+
+impl Carried {
+    /// The files of the protocol as text: those that the report carries, else those with the hash that the results name, which the
+    /// program ships or which were given.
+    ///
+    /// # Errors
+    /// `protocol-missing`, `encoding`.
+    pub fn sources(&self, given: Option<&Family>) -> Result<Vec<Arc<Source>>, Problem> {
+        let mut sources = Vec::new();
+        for (at, named) in self.results.protocol.files.iter().enumerate() {
+            // Files of one name in different folders stay apart by their number.
+            let name = format!("{}/{}", at + 1, named.name);
+            let text = match self.protocol.get(at).and_then(Option::as_ref) {
+                Some(bytes) => decode(bytes, &named.name)?.to_string(),
+                None => self.known(at, given)?,
+            };
+            sources.push(Source::new(name, text));
+        }
+        if sources.is_empty() {
+            return Err(Problem::error("protocol-missing", format!("`{}` names no file of its protocol", self.shown)));
+        }
+        Ok(sources)
+    }
+
+    fn known(&self, at: usize, given: Option<&Family>) -> Result<String, Problem> {
+        let named = &self.results.protocol.files[at];
+        let shipped = library::SHIPPED.iter().map(|shipped| shipped.text);
+        let given = given.into_iter().flat_map(|family| &family.sources).map(|source| source.text.as_str());
+        let found = given.chain(shipped).find(|text| sha256(text.as_bytes()) == named.sha256);
+        found.map(str::to_string).ok_or_else(|| {
+            let says = format!("the protocol's file `{}` with SHA-256 {} is not to be had", named.name, named.sha256);
+            Problem::error("protocol-missing", says).help("give report.pdf, which carries it, or name the protocol with `--protocol`")
+        })
+    }
+
+    /// The protocol compiled, with the parameters as the results say they were set.
+    pub fn compiled(&self, sources: &[Arc<Source>], problems: &mut Problems) -> Option<Compiled> {
+        let next = |_: &str, from: &Source| {
+            let at = sources.iter().position(|source| source.name == from.name).map_or(0, |at| at + 1);
+            sources
+                .get(at)
+                .cloned()
+                .ok_or_else(|| Box::new(Problem::error("protocol-missing", "the protocol extends one that the report does not carry")))
+        };
+        let family = family::read(sources.first()?, &next, problems);
+        if problems.any_error() {
+            return None;
+        }
+        compile(family, &self.overrides(), problems)
+    }
+
+    fn overrides(&self) -> Overrides {
+        let mut overrides = Overrides::new();
+        for parameter in &self.results.protocol.parameters {
+            let set_by = match parameter.set_by.as_str() {
+                "campaign" => SetBy::Campaign,
+                "command line" => SetBy::CommandLine,
+                _ => continue,
+            };
+            let source = Source::new(format!("parameter {}", parameter.name), parameter.value.clone());
+            let text = Spanned::new(parameter.value.clone(), source.whole());
+            let text = Text { text: text.value, span: text.span, exact: true };
+            overrides.insert(parameter.name.clone(), Override { text, set_by });
+        }
+        overrides
+    }
+}

@@ -1,0 +1,273 @@
+//! Where the objects of a PDF are: tables and streams of cross-references (ISO 32000-1, clause 7.5), the newest first.
+
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+
+use super::Broken;
+use super::object::{Dict, Object, Parser};
+use super::stream::unpacked;
+
+/// Objects read in all; those on the way to the attachments of a report are about fifty.
+const OBJECTS: usize = 200_000;
+/// Bytes that tables of places and groups of objects may unpack to in all.
+const STRUCTURE: usize = 64 << 20;
+/// Versions of a file that were added to each other; a signature adds one.
+const VERSIONS: usize = 64;
+/// References that lead to references.
+const STEPS: usize = 8;
+
+#[derive(Debug)]
+pub struct Document<'a> {
+    bytes: &'a [u8],
+    budget: Cell<usize>,
+    structure: Cell<usize>,
+    /// Objects being read because another needs them.
+    depth: Cell<usize>,
+    tables: Vec<Table>,
+    pub trailer: Dict,
+    /// Groups of objects that were unpacked.
+    groups: RefCell<BTreeMap<u32, Vec<u8>>>,
+}
+
+/// Cross-references of one version.
+#[derive(Debug)]
+enum Table {
+    /// First number, how many, and where the first line of 20 bytes is.
+    Lines(Vec<(usize, usize, usize)>),
+    Packed {
+        rows: Vec<u8>,
+        widths: [usize; 3],
+        numbers: Vec<(usize, usize)>,
+    },
+}
+
+/// Where one object is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Place {
+    Free,
+    At(usize),
+    /// In a group of objects, at this place of it.
+    In(u32, usize),
+}
+
+impl<'a> Document<'a> {
+    pub fn open(bytes: &'a [u8]) -> Result<Self, Broken> {
+        let mut document = Self {
+            bytes,
+            budget: Cell::new(OBJECTS),
+            structure: Cell::new(STRUCTURE),
+            depth: Cell::new(0),
+            tables: Vec::new(),
+            trailer: Dict::default(),
+            groups: RefCell::default(),
+        };
+        // Readers look for the last one in the last kilobyte of the file.
+        let tail = bytes.len().saturating_sub(2048);
+        let last = memchr::memmem::rfind(&bytes[tail..], b"startxref").ok_or(Broken("its end is missing"))?;
+        let mut next = Some(document.parser(tail + last + b"startxref".len()).integer()?);
+        let mut seen = Vec::new();
+        while let Some(at) = next {
+            if seen.contains(&at) || seen.len() >= VERSIONS {
+                return Err(Broken("its tables of places lead in a circle"));
+            }
+            seen.push(at);
+            let trailer = document.table(at)?;
+            if let Some(both) = trailer.get("XRefStm").and_then(Object::integer) {
+                document.table(both)?;
+            }
+            next = trailer.get("Prev").and_then(Object::integer);
+            document.trailer.fill(trailer);
+        }
+        Ok(document)
+    }
+
+    fn parser(&self, at: usize) -> Parser<'_> {
+        Parser { bytes: self.bytes, at, budget: &self.budget }
+    }
+
+    /// Reads the cross-references at a place; the dictionary that goes with them.
+    fn table(&mut self, at: usize) -> Result<Dict, Broken> {
+        let mut parser = self.parser(at);
+        if !parser.word("xref") {
+            return self.packed(at);
+        }
+        let mut parts = Vec::new();
+        while !parser.word("trailer") {
+            let (first, count) = (parser.integer()?, parser.integer()?);
+            parser.space();
+            parts.push((first, count, parser.at));
+            parser.at = count.checked_mul(20).and_then(|length| parser.at.checked_add(length)).ok_or(Broken("a table is too long"))?;
+        }
+        let Object::Dict(trailer) = parser.object(0)? else { return Err(Broken("its trailer is missing")) };
+        self.tables.push(Table::Lines(parts));
+        Ok(trailer)
+    }
+
+    fn packed(&mut self, at: usize) -> Result<Dict, Broken> {
+        let (dict, data) = self.stream_at(at, None)?;
+        if !dict.get("Type").is_some_and(|kind| kind.is_name("XRef")) {
+            return Err(Broken("its table of places is missing"));
+        }
+        let rows = self.structural(data, &dict)?;
+        let integers = |key: &str| match dict.get(key) {
+            Some(Object::Array(all)) => all.iter().map(Object::integer).collect::<Option<Vec<_>>>(),
+            _ => None,
+        };
+        let widths = integers("W").ok_or(Broken("its table of places is damaged"))?;
+        let &[a, b, c] = widths.as_slice() else { return Err(Broken("its table of places is damaged")) };
+        if widths.iter().any(|width| *width > 8) || a + b + c == 0 {
+            return Err(Broken("its table of places is damaged"));
+        }
+        let size = dict.get("Size").and_then(Object::integer).unwrap_or(0);
+        let numbers = integers("Index").unwrap_or_else(|| vec![0, size]).chunks_exact(2).map(|pair| (pair[0], pair[1])).collect();
+        self.tables.push(Table::Packed { rows, widths: [a, b, c], numbers });
+        Ok(dict)
+    }
+
+    /// Unpacks a part of the structure, all of which together has a limit.
+    fn structural(&self, data: &[u8], dict: &Dict) -> Result<Vec<u8>, Broken> {
+        let found = unpacked(data, dict, self.structure.get())?;
+        self.structure.set(self.structure.get() - found.len());
+        Ok(found)
+    }
+
+    fn place(&self, number: u32) -> Result<Place, Broken> {
+        for table in &self.tables {
+            if let Some(place) = table.place(number, self.bytes)? {
+                return Ok(place);
+            }
+        }
+        Ok(Place::Free)
+    }
+
+    /// An object by its number.
+    pub fn object(&self, number: u32) -> Result<Object, Broken> {
+        // A group may say that its length stands in itself.
+        if self.depth.get() >= STEPS {
+            return Err(Broken("its references lead in a circle"));
+        }
+        self.depth.set(self.depth.get() + 1);
+        let found = self.object_there(number);
+        self.depth.set(self.depth.get() - 1);
+        found
+    }
+
+    fn object_there(&self, number: u32) -> Result<Object, Broken> {
+        match self.place(number)? {
+            Place::Free => Ok(Object::Null),
+            Place::At(at) => {
+                let mut parser = self.parser(at);
+                if parser.integer()? != number as usize {
+                    return Err(Broken("an object is not where it should be"));
+                }
+                parser.integer()?;
+                if !parser.word("obj") {
+                    return Err(Broken("an object is not where it should be"));
+                }
+                parser.object(0)
+            }
+            Place::In(group, index) => self.grouped(group, index),
+        }
+    }
+
+    fn grouped(&self, group: u32, index: usize) -> Result<Object, Broken> {
+        let Place::At(at) = self.place(group)? else { return Err(Broken("a group of objects is missing")) };
+        let (dict, data) = self.stream_at(at, Some(group))?;
+        if !self.groups.borrow().contains_key(&group) {
+            let found = self.structural(data, &dict)?;
+            self.groups.borrow_mut().insert(group, found);
+        }
+        let groups = self.groups.borrow();
+        let data = groups.get(&group).map_or(&[][..], Vec::as_slice);
+        let first = dict.get("First").and_then(Object::integer).ok_or(Broken("a group of objects is damaged"))?;
+        let mut header = Parser { bytes: data, at: 0, budget: &self.budget };
+        for _ in 0..index {
+            (header.integer()?, header.integer()?);
+        }
+        let (_, at) = (header.integer()?, header.integer()?);
+        let at = first.checked_add(at).ok_or(Broken("a group of objects is damaged"))?;
+        Parser { bytes: data, at, budget: &self.budget }.object(0)
+    }
+
+    /// What a reference leads to; any other object itself.
+    pub fn resolved(&self, object: &Object) -> Result<Object, Broken> {
+        let mut object = object.clone();
+        for _ in 0..STEPS {
+            let Object::Reference(number) = object else { return Ok(object) };
+            object = self.object(number)?;
+        }
+        Err(Broken("its references lead in a circle"))
+    }
+
+    /// A value of a dictionary, followed where it is a reference.
+    pub fn get(&self, dict: &Dict, key: &str) -> Result<Object, Broken> {
+        dict.get(key).map_or(Ok(Object::Null), |value| self.resolved(value))
+    }
+
+    /// The data of a stream, unpacked to at most so many bytes.
+    pub fn stream(&self, number: u32, most: usize) -> Result<Vec<u8>, Broken> {
+        let Place::At(at) = self.place(number)? else { return Err(Broken("the data of an attached file are missing")) };
+        let (dict, data) = self.stream_at(at, Some(number))?;
+        unpacked(data, &dict, most)
+    }
+
+    fn stream_at(&self, at: usize, number: Option<u32>) -> Result<(Dict, &'a [u8]), Broken> {
+        let mut parser = self.parser(at);
+        let (found, _) = (parser.integer()?, parser.integer()?);
+        if number.is_some_and(|number| number as usize != found) || !parser.word("obj") {
+            return Err(Broken("an object is not where it should be"));
+        }
+        let Object::Dict(dict) = parser.object(0)? else { return Err(Broken("a stream has no dictionary")) };
+        if !parser.word("stream") {
+            return Err(Broken("a stream is missing"));
+        }
+        let mut start = parser.at;
+        start += usize::from(self.bytes.get(start) == Some(&b'\r'));
+        start += usize::from(self.bytes.get(start) == Some(&b'\n'));
+        let length = self.get(&dict, "Length")?.integer().ok_or(Broken("a stream has no length"))?;
+        let end = start.checked_add(length).filter(|end| *end <= self.bytes.len()).ok_or(Broken("it ends in the middle of a stream"))?;
+        Ok((dict, &self.bytes[start..end]))
+    }
+}
+
+impl Table {
+    fn place(&self, number: u32, bytes: &[u8]) -> Result<Option<Place>, Broken> {
+        let number = number as usize;
+        let damaged = Broken("its table of places is damaged");
+        match self {
+            Self::Lines(parts) => {
+                let Some((first, _, at)) = parts.iter().find(|(first, count, _)| number >= *first && number - first < *count) else {
+                    return Ok(None);
+                };
+                let line = bytes.get(at + 20 * (number - first)..).and_then(|rest| rest.get(..18)).ok_or(damaged)?;
+                let text = std::str::from_utf8(line).map_err(|_| Broken("its table of places is damaged"))?;
+                let offset = text.get(..10).and_then(|digits| digits.parse().ok()).ok_or(Broken("its table of places is damaged"))?;
+                Ok(Some(if text.as_bytes().get(17) == Some(&b'n') { Place::At(offset) } else { Place::Free }))
+            }
+            Self::Packed { rows, widths, numbers } => {
+                let mut row = 0_usize;
+                for (first, count) in numbers {
+                    if number >= *first && number - first < *count {
+                        let width: usize = widths.iter().sum();
+                        let at = row.checked_add(number - first).and_then(|row| row.checked_mul(width)).ok_or(damaged)?;
+                        let fields = rows.get(at..).and_then(|rest| rest.get(..width)).ok_or(Broken("its table of places is damaged"))?;
+                        return Ok(Some(packed_place(fields, widths)));
+                    }
+                    row = row.saturating_add(*count);
+                }
+                Ok(None)
+            }
+        }
+    }
+}
+
+fn packed_place(fields: &[u8], widths: &[usize; 3]) -> Place {
+    let number = |from: usize, width: usize| fields[from..from + width].iter().fold(0_usize, |value, byte| value << 8 | usize::from(*byte));
+    let kind = if widths[0] == 0 { 1 } else { number(0, widths[0]) };
+    let (second, third) = (number(widths[0], widths[1]), number(widths[0] + widths[1], widths[2]));
+    match (kind, u32::try_from(second)) {
+        (1, _) => Place::At(second),
+        (2, Ok(group)) => Place::In(group, third),
+        _ => Place::Free,
+    }
+}

@@ -1,0 +1,172 @@
+//! `results.json` read back: the parts that checks need.
+
+use serde::{Deserialize, Deserializer};
+use serde_json::Value;
+
+use crate::check::plan::Plan;
+use crate::run::replay::{Recorded, RecordedSection, RecordedValue};
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Results {
+    /// Version of the program that wrote them.
+    pub fishplate: String,
+    pub protocol: Protocol,
+    pub campaign: Campaign,
+    pub verdict: String,
+    pub quantities: Vec<Quantity>,
+    pub sections: Vec<Section>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Protocol {
+    pub name: String,
+    pub title: String,
+    pub sha256: String,
+    pub parameters: Vec<Parameter>,
+    pub files: Vec<ProtocolFile>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct ProtocolFile {
+    pub name: String,
+    pub sha256: String,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Parameter {
+    pub name: String,
+    pub value: String,
+    pub set_by: String,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Campaign {
+    pub name: String,
+    pub files: Vec<File>,
+    pub vehicle: Vec<Item>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct File {
+    pub path: String,
+    pub sha256: String,
+    pub bytes: u64,
+    pub record: Option<Record>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Record {
+    pub kind: String,
+    pub section: String,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Item {
+    pub value: String,
+    pub used: bool,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Section {
+    pub section: String,
+    #[serde(default, deserialize_with = "word")]
+    pub zone: Option<String>,
+    pub used: bool,
+    pub reason: Option<String>,
+    pub start: f64,
+    pub end: f64,
+    pub axis_unit: String,
+    pub columns: Vec<Item>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Quantity {
+    pub id: String,
+    pub title: String,
+    pub unit: String,
+    pub statistics: Vec<Statistic>,
+    pub values: Vec<Pair>,
+    pub rule: Option<Place>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Statistic {
+    pub title: String,
+    pub scope: String,
+    pub count: usize,
+    pub unit: String,
+    pub value: Option<f64>,
+    pub limit: Option<f64>,
+    pub normalised: Option<f64>,
+    pub holds: Option<bool>,
+    pub limit_text: String,
+    pub reason: Option<String>,
+    pub rule: Option<Place>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Pair {
+    pub section: String,
+    #[serde(default, deserialize_with = "word")]
+    pub zone: Option<String>,
+    pub signal: String,
+    pub simulated: Option<f64>,
+    pub measured: Option<f64>,
+    #[serde(alias = "value")]
+    pub difference: f64,
+    pub samples: usize,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Place {
+    pub file: String,
+    pub line: usize,
+}
+
+/// A zone's name is written as a number where it is one.
+fn word<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> {
+    Ok(match Value::deserialize(from)? {
+        Value::Null => None,
+        Value::String(text) => Some(text),
+        other => Some(other.to_string()),
+    })
+}
+
+impl Results {
+    /// # Errors
+    /// A key is missing or holds something else; which, in words.
+    pub fn of(value: &Value) -> Result<Self, String> {
+        Self::deserialize(value).map_err(|error| error.to_string())
+    }
+
+    /// What rules read of it.
+    ///
+    /// # Errors
+    /// A quantity of the protocol is missing.
+    pub fn recorded(&self, plan: &Plan) -> Result<Recorded, String> {
+        let vehicle = self.campaign.vehicle.iter().filter(|item| item.used).map(|item| item.value.clone()).collect();
+        let section = |section: &Section| RecordedSection {
+            name: section.section.clone(),
+            zone: section.zone.clone(),
+            fault: (!section.used).then(|| section.reason.clone().unwrap_or_default()),
+            start: section.start,
+            end: section.end,
+            columns: section.columns.iter().map(|item| item.value.clone()).collect(),
+        };
+        let value = |pair: &Pair| RecordedValue {
+            section: pair.section.clone(),
+            signal: pair.signal.clone(),
+            simulated: pair.simulated,
+            measured: pair.measured,
+            difference: pair.difference,
+            samples: pair.samples,
+        };
+        let mut values = Vec::new();
+        for quantity in &plan.quantities {
+            let found = self.quantities.iter().find(|found| found.id == quantity.id);
+            let found = found.ok_or_else(|| format!("the result has no quantity `{}`", quantity.id))?;
+            values.push(found.values.iter().map(value).collect());
+        }
+        Ok(Recorded { vehicle, sections: self.sections.iter().map(section).collect(), values })
+    }
+}

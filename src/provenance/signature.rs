@@ -1,0 +1,160 @@
+//! Detached signatures in the format of minisign: Ed25519 over BLAKE2b of the file, in a file of its own beside it.
+
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use minisign::{KeyPair, PublicKeyBox, SecretKeyBox, SignatureBox};
+pub use minisign::{PublicKey, SecretKey};
+
+use super::verify::Check;
+use crate::data::hash::sha256;
+use crate::data::text::read_bytes;
+use crate::problem::Problem;
+
+/// Where a password may be given; without it, it is asked for on the terminal. Never on the command line, which others can see.
+pub const PASSWORD: &str = "FISHPLATE_KEY_PASSWORD";
+
+/// Largest key or signature file in bytes; they have a few hundred.
+const SMALL: u64 = 64 << 10;
+/// Largest file that is signed or checked.
+const LARGE: u64 = 4 << 30;
+
+/// The signature of a file lies beside it.
+pub fn beside(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(".minisig");
+    path.with_file_name(name)
+}
+
+fn text(path: &Path) -> Result<String, Problem> {
+    let shown = path.display().to_string();
+    let mut bytes = Vec::new();
+    read_bytes(path, &shown, SMALL, &mut bytes)?;
+    crate::data::text::decode(&bytes, &shown).map(str::to_string)
+}
+
+/// All bytes of a file that is to be signed or checked.
+///
+/// # Errors
+/// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`.
+pub fn content(path: &Path) -> Result<Vec<u8>, Problem> {
+    let mut bytes = Vec::new();
+    read_bytes(path, &path.display().to_string(), LARGE, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// A new pair of keys as the texts of two files, secret and public.
+///
+/// # Errors
+/// `key-failed`: no random numbers, or no terminal to ask for a password.
+pub fn new_keys(password: Option<String>, protected: bool) -> Result<(String, String), Problem> {
+    let failed = |error: minisign::PError| {
+        let problem = Problem::error("key-failed", format!("no key could be made: {error}"));
+        problem.help(format!("give a password on the terminal or in {PASSWORD}, or say `--no-password`"))
+    };
+    let keys = if protected { KeyPair::generate_encrypted_keypair(password) } else { KeyPair::generate_unencrypted_keypair() };
+    let keys = keys.map_err(failed)?;
+    let secret = keys.sk.to_box(Some("fishplate secret key")).map_err(failed)?.into_string();
+    let public = keys.pk.to_box().map_err(failed)?.into_string();
+    Ok((secret, public))
+}
+
+/// Reads a secret key, which a password may protect.
+///
+/// # Errors
+/// `key-unreadable`: no secret key, or another password.
+pub fn secret_key(path: &Path, password: Option<String>) -> Result<SecretKey, Problem> {
+    let shown = path.display();
+    let text = text(path)?;
+    let unreadable = |error: minisign::PError| {
+        let problem = Problem::error("key-unreadable", format!("`{shown}` cannot be used as a secret key: {error}"));
+        problem.help(format!(
+            "give the secret key that `fishplate keygen`, or minisign with a password, made; the password is asked for, or read from {PASSWORD}"
+        ))
+    };
+    let boxed = SecretKeyBox::from_string(&text).map_err(unreadable)?;
+    match boxed.clone().into_unencrypted_secret_key() {
+        Ok(key) => Ok(key),
+        // The crate knows no other way to tell that a password is needed.
+        Err(error) if error.to_string().contains("encrypted") => boxed.into_secret_key(password).map_err(unreadable),
+        Err(error) => Err(unreadable(error)),
+    }
+}
+
+/// Reads a public key: a file, or the key itself as one word.
+///
+/// # Errors
+/// `key-unreadable`.
+pub fn public_key(given: &str) -> Result<PublicKey, Problem> {
+    let path = Path::new(given);
+    let unreadable = |error: minisign::PError| {
+        let problem = Problem::error("key-unreadable", format!("`{given}` is no public key: {error}"));
+        problem.help("give the file ending in `.pub` that was made with the secret key, or the key as one word beginning with `RW`")
+    };
+    if path.is_file() {
+        let text = text(path)?;
+        let key = PublicKeyBox::from_string(&text).and_then(|key| key.into_public_key());
+        return key.or_else(|_| PublicKey::from_base64(text.trim())).map_err(unreadable);
+    }
+    PublicKey::from_base64(given).map_err(unreadable)
+}
+
+/// The signature of some bytes, as the text of its file. Its comment, which is signed too, names the file and has no time.
+///
+/// # Errors
+/// `sign-failed`.
+pub fn sign(key: &SecretKey, name: &str, bytes: &[u8]) -> Result<String, Problem> {
+    let plain: String = name.chars().map(|sign| if sign.is_control() { '_' } else { sign }).collect();
+    let comment = format!("file:{plain} sha256:{}", sha256(bytes));
+    let failed = |error: minisign::PError| Problem::error("sign-failed", format!("`{plain}` cannot be signed: {error}"));
+    let public = PublicKey::from_secret_key(key).map_err(failed)?;
+    let untrusted = concat!("signature by fishplate ", env!("CARGO_PKG_VERSION"));
+    let signed = minisign::sign(Some(&public), key, Cursor::new(bytes), Some(&comment), Some(untrusted)).map_err(failed)?;
+    Ok(signed.into_string())
+}
+
+/// The number by which a key is known, as minisign prints it.
+fn number(key: &[u8]) -> String {
+    key.iter().rev().map(|byte| format!("{byte:02X}")).collect()
+}
+
+/// Checks the signature of a file.
+///
+/// # Errors
+/// The signature that was named cannot be read.
+pub fn check(path: &Path, signature: Option<&Path>, key: Option<&PublicKey>) -> Result<Check, Problem> {
+    const NAME: &str = "signature";
+    let own = beside(path);
+    let at = signature.unwrap_or(&own);
+    if signature.is_none() && !at.is_file() {
+        return Ok(match key {
+            None => Check::not_checked(NAME, "there is none beside the report"),
+            Some(_) => Check::differs(NAME, format!("there is no signature `{}`", at.display()), Vec::new()),
+        });
+    }
+    let text = text(at)?;
+    let unreadable =
+        |why: &dyn std::fmt::Display| Ok(Check::differs(NAME, format!("`{}` is no signature", at.display()), vec![why.to_string()]));
+    // Lengths are checked here; the crate that signs takes them as given and would stop the program.
+    let signed = match minisign_verify::Signature::decode(&text) {
+        Ok(signed) => signed,
+        Err(error) => return unreadable(&error),
+    };
+    let by = match SignatureBox::from_string(&text) {
+        Ok(signed) => number(signed.keynum()),
+        Err(error) => return unreadable(&error),
+    };
+    let Some(key) = key else {
+        let says = format!("signed with key {by}; give its public key with `--public-key` to check it");
+        return Ok(Check::not_checked(NAME, says));
+    };
+    let bytes = content(path)?;
+    let checked = minisign_verify::PublicKey::from_base64(&key.to_base64()).and_then(|key| key.verify(&bytes, &signed, false));
+    Ok(match checked {
+        Ok(()) => Check::agrees(NAME, format!("signed with key {by}: {}", signed.trusted_comment())),
+        Err(error) => {
+            let keys = format!("signed with key {by}, checked with key {}: {error}", number(key.keynum()));
+            Check::differs(NAME, "the signature is not one of this file with this key", vec![keys])
+        }
+    })
+}

@@ -1,0 +1,100 @@
+//! What was made from what, as an in-toto Statement v1 with a predicate of SLSA Provenance v1: other programs read these forms.
+//!
+//! Forms: in-toto Attestation Framework, "Statement" and "ResourceDescriptor"; SLSA v1.0, "Provenance". No clock and no host: the
+//! same input gives the same bytes.
+
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+
+use super::verify::Check;
+use crate::data::fingerprint::fingerprint;
+use crate::data::hash::sha256;
+use crate::result::Certification;
+
+/// The file beside the report.
+pub const FILE: &str = "statement.json";
+
+const STATEMENT: &str = "https://in-toto.io/Statement/v1";
+const PREDICATE: &str = "https://slsa.dev/provenance/v1";
+/// Which kind of run it is, so that the external parameters can be understood: a package URL that leads to the page describing them.
+const CERTIFY: &str = "pkg:cargo/fishplate?run=certify-v1#docs/provenance.md";
+const BUILDER: &str = "pkg:cargo/fishplate";
+
+/// The statement about the files of a report, each with its path inside the output folder.
+pub fn statement(found: &Certification, files: &[(String, Vec<u8>)]) -> String {
+    let subject: Vec<Value> = files.iter().map(|(name, bytes)| resource(name, &sha256(bytes))).collect();
+    let protocol = &found.protocol;
+    let parameters: Map<String, Value> = protocol
+        .parameters
+        .iter()
+        .map(|parameter| (parameter.name.clone(), json!({"value": parameter.value, "setBy": parameter.set_by})))
+        .collect();
+    let mut dependencies: Vec<Value> =
+        protocol.files.iter().map(|file| resource(&format!("protocol/{}", file.name), &file.sha256)).collect();
+    dependencies.extend(found.campaign.files.iter().map(|file| resource(&format!("campaign/{}", file.path), &file.sha256)));
+    let statement = json!({
+        "_type": STATEMENT,
+        "subject": subject,
+        "predicateType": PREDICATE,
+        "predicate": {
+            "buildDefinition": {
+                "buildType": CERTIFY,
+                "externalParameters": {
+                    "protocol": {"name": protocol.name, "sha256": protocol.sha256},
+                    "parameters": parameters,
+                    "campaign": {"name": found.campaign.name},
+                },
+                "internalParameters": {},
+                "resolvedDependencies": dependencies,
+            },
+            "runDetails": {
+                "builder": {"id": BUILDER, "version": {"fishplate": env!("CARGO_PKG_VERSION")}},
+            },
+        },
+    });
+    // A tree of plain values always serialises.
+    serde_json::to_string_pretty(&statement).unwrap_or_default() + "\n"
+}
+
+fn resource(name: &str, sha256: &str) -> Value {
+    json!({"name": name, "digest": {"sha256": sha256}})
+}
+
+/// The files of an output folder against the statement in it; nothing if there is none.
+pub fn check(folder: &Path) -> Option<Check> {
+    const NAME: &str = "statement";
+    /// Larger than any statement: one of 100 000 files has about 15 million bytes.
+    const LARGEST: u64 = 64 << 20;
+    let path = folder.join(FILE);
+    if !path.exists() {
+        return None;
+    }
+    let mut bytes = Vec::new();
+    let read = crate::data::text::read_bytes(&path, FILE, LARGEST, &mut bytes);
+    if let Err(problem) = read {
+        return Some(Check::differs(NAME, "the statement cannot be read", vec![problem.says]));
+    }
+    let value: Value = serde_json::from_slice(&bytes).unwrap_or(Value::Null);
+    let subjects = value["subject"].as_array().filter(|_| value["_type"] == STATEMENT);
+    let Some(subjects) = subjects else {
+        return Some(Check::differs(NAME, format!("`{FILE}` is no in-toto Statement v1"), Vec::new()));
+    };
+    let mut details = Vec::new();
+    for subject in subjects {
+        let (Some(name), Some(said)) = (subject["name"].as_str(), subject["digest"]["sha256"].as_str()) else {
+            details.push("a subject has no name or no SHA-256".into());
+            continue;
+        };
+        match fingerprint(folder, name) {
+            Ok(Some((hash, _))) if hash == said => {}
+            Ok(Some((hash, _))) => details.push(format!("changed: {name}: SHA-256 {said} in the statement, {hash} now")),
+            Ok(None) => details.push(format!("missing: {name}")),
+            Err(problem) => details.push(format!("not readable: {name}: {}", problem.says)),
+        }
+    }
+    if details.is_empty() {
+        return Some(Check::agrees(NAME, format!("{} files have the SHA-256 that {FILE} names", subjects.len())));
+    }
+    Some(Check::differs(NAME, "files are not those that the statement names", details))
+}

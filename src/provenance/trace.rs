@@ -1,0 +1,243 @@
+//! One number of a report, back to the line of its rule and the rows of its data.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::carried::Carried;
+use super::results::{File, Pair, Place, Quantity, Statistic};
+use crate::certify::Compiled;
+use crate::data::Campaign;
+use crate::graph::{Node, Operation};
+use crate::problem::{Problem, Problems};
+use crate::report::number::significant;
+use crate::run::single::{Side, Single, single};
+use crate::source::Span;
+use crate::units::Unit;
+
+/// Which number.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'a> {
+    pub quantity: &'a str,
+    pub section: &'a str,
+    pub signal: &'a str,
+}
+
+/// What was found, in words, and whether what the campaign gives now is what the report says.
+#[derive(Debug)]
+pub struct Traced {
+    pub text: String,
+    pub agrees: bool,
+}
+
+/// Everything that one value of a report came from.
+///
+/// With a campaign, its rows and values are read and computed again.
+///
+/// # Errors
+/// `no-such-quantity`, `no-such-section`, `no-such-signal`, `not-evaluated`; what makes the campaign unusable.
+pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, campaign: Option<&Path>) -> Result<Traced, Problems> {
+    let (quantity, pair) = find(carried, asked).map_err(|problem| Problems(vec![problem]))?;
+    let index = compiled.and_then(|compiled| {
+        let index = compiled.plan.quantities.iter().position(|known| known.id == quantity.id)?;
+        let signal = compiled.plan.quantities[index].signals.iter().position(|(name, _)| *name == pair.signal)?;
+        Some((index, signal))
+    });
+    let again = match (compiled, index, campaign) {
+        (Some(compiled), Some(index), Some(folder)) => Some(compute(compiled, index, folder, asked.section)?),
+        _ => None,
+    };
+    let mut out = head(quantity, pair);
+    if let Some((compiled, index)) = compiled.zip(index) {
+        rule(&mut out, compiled, quantity, index.0);
+        operations(&mut out, carried, compiled, index, asked.section)
+            .map_err(|says| Problems(vec![Problem::error("not-evaluated", format!("the result does not fit its protocol: {says}"))]))?;
+    } else {
+        let _ = writeln!(out, "\nThe protocol is not to be had: give report.pdf, which carries it, or name it with `--protocol`.");
+    }
+    let mut agrees = true;
+    let files: Vec<&File> = records(carried, asked.section).collect();
+    for file in &files {
+        let side =
+            again.as_ref().and_then(|again| [&again.simulated, &again.measured].into_iter().find(|side| side.file.path == file.path));
+        agrees &= record(&mut out, file, pair, side, compiled.zip(index));
+    }
+    if let Some(again) = &again {
+        agrees &= [&again.simulated, &again.measured].iter().all(|side| files.iter().any(|file| file.path == side.file.path));
+        agrees &= near(again.difference, pair.difference);
+        let same = if near(again.difference, pair.difference) { "as in the report" } else { "NOT as in the report" };
+        let _ = writeln!(out, "\ncomputed again: {}{}, {same}", again.difference, suffix(&quantity.unit));
+    }
+    statistics(&mut out, carried, quantity, pair);
+    Ok(Traced { text: out, agrees })
+}
+
+/// The same up to rounding; see [`super::compare`].
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= (super::compare::SHARE * a.abs().max(b.abs())).max(super::compare::NEAR)
+}
+
+fn find<'a>(carried: &'a Carried, asked: Asked<'_>) -> Result<(&'a Quantity, &'a Pair), Problem> {
+    let results = &carried.results;
+    let quantity = results.quantities.iter().find(|quantity| quantity.id == asked.quantity).ok_or_else(|| {
+        Problem::error("no-such-quantity", format!("the report has no quantity `{}`", asked.quantity))
+            .suggest(asked.quantity, results.quantities.iter().map(|quantity| quantity.id.as_str()))
+    })?;
+    let section = results.sections.iter().find(|section| section.section == asked.section).ok_or_else(|| {
+        Problem::error("no-such-section", format!("the report has no section `{}`", asked.section))
+            .suggest(asked.section, results.sections.iter().map(|section| section.section.as_str()))
+    })?;
+    if let Some(reason) = section.reason.as_ref().filter(|_| !section.used) {
+        return Err(Problem::error("not-evaluated", format!("section {} is not used: {reason}", section.section)));
+    }
+    let here: Vec<&Pair> = quantity.values.iter().filter(|pair| pair.section == asked.section).collect();
+    let found = here.iter().find(|pair| pair.signal == asked.signal).copied();
+    found.map(|pair| (quantity, pair)).ok_or_else(|| {
+        let says = format!("{} has no value of `{}` in section {}", quantity.id, asked.signal, asked.section);
+        Problem::error("no-such-signal", says).suggest(asked.signal, here.iter().map(|pair| pair.signal.as_str()))
+    })
+}
+
+fn compute(compiled: &Compiled, index: (usize, usize), folder: &Path, section: &str) -> Result<Single, Problems> {
+    let mut problems = Problems::default();
+    let campaign = Campaign::open(folder, &mut problems).filter(|_| !problems.any_error());
+    let Some(campaign) = campaign else { return Err(problems) };
+    single(&compiled.plan, &compiled.graph, &campaign, index, section)
+}
+
+fn suffix(unit: &str) -> String {
+    if unit == "-" { String::new() } else { format!(" {unit}") }
+}
+
+fn head(quantity: &Quantity, pair: &Pair) -> String {
+    let unit = suffix(&quantity.unit);
+    let zone = pair.zone.as_ref().map_or_else(String::new, |zone| format!(" (zone {zone})"));
+    let mut out = format!("{}: {}\nsection {}{zone}, signal {}\n\n", quantity.id, quantity.title, pair.section, pair.signal);
+    for (name, value) in [("simulated", pair.simulated), ("measured", pair.measured)] {
+        if let Some(value) = value {
+            let _ = writeln!(out, "  {name:<11}{value}{unit}");
+        }
+    }
+    let name = if pair.simulated.is_some() { "difference" } else { "value" };
+    let _ = writeln!(out, "  {name:<11}{}{unit}", pair.difference);
+    let _ = writeln!(out, "  samples    {} of the measured signal", pair.samples);
+    out
+}
+
+/// `annex-t.fp:345`, the file without its folder.
+fn place(span: &Span) -> String {
+    format!("{}:{}", span.source.file_name(), span.line())
+}
+
+fn said(place: Option<&Place>) -> String {
+    place.map_or_else(String::new, |place| format!("  ({}:{})", place.file, place.line))
+}
+
+fn rule(out: &mut String, compiled: &Compiled, quantity: &Quantity, index: usize) {
+    let plan = &compiled.plan.quantities[index];
+    let _ = writeln!(out, "\nrule{}", said(quantity.rule.as_ref()));
+    let rows =
+        [("of", &plan.words.of), ("filter", &plan.words.filter), ("value", &plan.words.processing), ("compared", &plan.words.comparison)];
+    for (name, words) in rows {
+        let _ = writeln!(out, "  {name:<11}{words}");
+    }
+    if let Some(source) = &plan.source {
+        let _ = writeln!(out, "  {:<11}{source}", "source");
+    }
+}
+
+fn operations(out: &mut String, carried: &Carried, compiled: &Compiled, index: (usize, usize), section: &str) -> Result<(), String> {
+    let recorded = carried.results.recorded(&compiled.plan)?;
+    let nodes = crate::run::replay::operations(&compiled.plan, &compiled.graph, &recorded, index, section)?;
+    let node = |id: &usize| &compiled.graph.nodes[*id];
+    let width = nodes.iter().map(|id| node(id).label.chars().count()).max().unwrap_or(0).min(60);
+    let _ = writeln!(out, "\noperations, in this order, each with the rule that asked for it first");
+    for id in &nodes {
+        let Node { operation, label, from, .. } = node(id);
+        let _ = writeln!(out, "  {:<8} {label:<width$}  ({})", operation.stage().in_words(), place(from));
+    }
+    let columns = nodes.iter().filter_map(|id| match &node(id).operation {
+        Operation::Read { column } => Some(column.as_str()),
+        _ => None,
+    });
+    let axis = [Some(&compiled.plan.axis), compiled.plan.time.as_ref()].into_iter().flatten().map(|axis| axis.column.as_str());
+    let columns: Vec<&str> = axis.chain(columns).collect();
+    let _ = writeln!(out, "\ncolumns read: {}", columns.join(", "));
+    if let Some(section) = carried.results.sections.iter().find(|known| known.section == section) {
+        let (unit, axis) = (suffix(&section.axis_unit), &compiled.plan.axis.column);
+        let _ = writeln!(out, "evaluated: {axis} {} to {}{unit}", section.start, section.end);
+    }
+    Ok(())
+}
+
+/// The records of a section, the simulated one first.
+fn records<'a>(carried: &'a Carried, section: &'a str) -> impl Iterator<Item = &'a File> {
+    let of = move |file: &&File, kind: &str| file.record.as_ref().is_some_and(|record| record.section == section && record.kind == kind);
+    let all = &carried.results.campaign.files;
+    ["simulation", "measurement"].into_iter().flat_map(move |kind| all.iter().filter(move |file| of(file, kind)))
+}
+
+/// One record; whether it is the one of the report and gives the same.
+fn record(out: &mut String, file: &File, pair: &Pair, side: Option<&Side>, compiled: Option<(&Compiled, (usize, usize))>) -> bool {
+    let _ = writeln!(out, "\n{}\n  SHA-256    {}", file.path, file.sha256);
+    let (Some(side), Some((compiled, index))) = (side, compiled) else { return true };
+    let mut agrees = side.file.sha256 == file.sha256;
+    if !agrees {
+        let _ = writeln!(out, "  CHANGED    {} now", side.file.sha256);
+    }
+    let (first, last) = side.inside;
+    // The header is row 1.
+    let _ = writeln!(out, "  rows       {first} to {last} lie in the section, 2 to {} are filtered", side.last);
+    let plan = &compiled.plan.quantities[index.0];
+    for (node, value, samples) in &side.reduced {
+        let node = &compiled.graph.nodes[*node];
+        let shown = in_unit(*value, node, [&plan.unit, &plan.signal_unit]);
+        let _ = writeln!(out, "  {:<10} {shown}, of {samples} values", node.label);
+    }
+    let before = if file.record.as_ref().is_some_and(|record| record.kind == "simulation") { pair.simulated } else { pair.measured };
+    if let (Some(value), Some(before)) = (side.value, before) {
+        let same = near(value, before);
+        agrees &= same;
+        let words = if same { "as in the report".to_string() } else { format!("NOT the {before} of the report") };
+        let _ = writeln!(out, "  value      {value}{}, {words}", plan.unit.suffix());
+    }
+    agrees
+}
+
+/// A number in the first unit that measures the same, else in SI.
+fn in_unit(value: f64, node: &Node, units: [&Unit; 2]) -> String {
+    match units.into_iter().find(|unit| unit.dimension == node.dimension) {
+        Some(unit) => format!("{}{}", unit.from_si(value), unit.suffix()),
+        None => format!("{value} {} (SI)", node.dimension),
+    }
+}
+
+fn statistics(out: &mut String, carried: &Carried, quantity: &Quantity, pair: &Pair) {
+    let _ = writeln!(out, "\nenters");
+    let zone = pair.zone.as_ref().map(|zone| format!("zone {zone}"));
+    let other = |statistic: &&Statistic| statistic.scope.starts_with("zone ") && Some(&statistic.scope) != zone.as_ref();
+    for statistic in quantity.statistics.iter().filter(|statistic| !other(statistic)) {
+        let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
+        let unit = suffix(&statistic.unit);
+        let shown = |value: Option<f64>| value.map_or_else(|| "-".to_string(), |value| format!("{}{unit}", significant(value, 5)));
+        let holds = match statistic.holds {
+            Some(true) => "holds",
+            Some(false) => "EXCEEDS",
+            None => "not assessable",
+        };
+        let share = statistic.normalised.map_or_else(String::new, |share| format!(", share {share:.3}"));
+        let _ = writeln!(
+            out,
+            "  {}{scope}: {} of {} values, limit {} ({}){share}: {holds}{}",
+            statistic.title,
+            shown(statistic.value),
+            statistic.count,
+            shown(statistic.limit),
+            statistic.limit_text,
+            said(statistic.rule.as_ref())
+        );
+        if let Some(reason) = &statistic.reason {
+            let _ = writeln!(out, "    {reason}");
+        }
+    }
+    let _ = writeln!(out, "verdict of the report: {}", carried.results.verdict);
+}

@@ -1,0 +1,299 @@
+//! Whether a report holds together, and whether its campaign still gives it.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::carried::Carried;
+use super::compare::{Compared, Difference, compare};
+use crate::certify::{Compiled, certify, protocol_info};
+use crate::check::family::Family;
+use crate::data::Campaign;
+use crate::data::fingerprint::fingerprint;
+use crate::data::hash::sha256;
+use crate::problem::{Problem, Problems};
+use crate::report::{attached, figure, json, typst, view};
+use crate::result::Certification;
+use crate::run::replay::replay;
+use crate::run::{Progress, Settings};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    Agrees,
+    Differs,
+    NotChecked,
+}
+
+/// One thing that was looked at.
+#[derive(Clone, Debug)]
+pub struct Check {
+    /// `protocol text`, `input files`, ...
+    pub name: &'static str,
+    pub outcome: Outcome,
+    /// What was found, in one line.
+    pub says: String,
+    /// Every difference, in one line each.
+    pub details: Vec<String>,
+}
+
+impl Check {
+    pub fn agrees(name: &'static str, says: impl Into<String>) -> Self {
+        Self { name, outcome: Outcome::Agrees, says: says.into(), details: Vec::new() }
+    }
+
+    pub fn not_checked(name: &'static str, says: impl Into<String>) -> Self {
+        Self { name, outcome: Outcome::NotChecked, says: says.into(), details: Vec::new() }
+    }
+
+    pub fn differs(name: &'static str, says: impl Into<String>, details: Vec<String>) -> Self {
+        Self { name, outcome: Outcome::Differs, says: says.into(), details }
+    }
+
+    /// Agrees if there is no difference.
+    fn of(name: &'static str, agrees: impl Into<String>, differs: impl Into<String>, details: Vec<String>) -> Self {
+        if details.is_empty() { Self::agrees(name, agrees) } else { Self::differs(name, differs, details) }
+    }
+}
+
+/// How the program that wrote a report is named in messages.
+const THIS: &str = env!("CARGO_PKG_VERSION");
+
+/// What can be checked with the report alone, and its protocol compiled if that is possible.
+pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<Compiled>) {
+    let mut checks = vec![form(carried)];
+    checks.extend(files_beside(carried));
+    let sources = match carried.sources(given) {
+        Ok(sources) => sources,
+        Err(problem) => {
+            checks.push(Check::not_checked("protocol text", with_help(&problem)));
+            return (checks, None);
+        }
+    };
+    let texts: Vec<&str> = sources.iter().map(|source| source.text.as_str()).collect();
+    checks.push(protocol_text(carried, &texts));
+    let mut problems = Problems::default();
+    let compiled = carried.compiled(&sources, &mut problems).filter(|_| !problems.any_error());
+    let Some(compiled) = compiled else {
+        let details = problems.0.iter().map(|problem| format!("{}: {}", problem.code, problem.says)).collect();
+        checks.push(Check::differs("protocol rules", "the protocol in the report has errors", details));
+        return (checks, None);
+    };
+    let found = compare(&carried.value["protocol"], &json::protocol(&protocol_info(&compiled)), "protocol");
+    checks.push(Check::of(
+        "protocol rules",
+        format!("{}, with its parameters, are those of the report", count(compiled.plan.quantities.len(), "quantity", "quantities")),
+        "the protocol in the report says something else than its results",
+        details(&found),
+    ));
+    checks.push(statistics(carried, &compiled));
+    (checks, Some(compiled))
+}
+
+fn with_help(problem: &Problem) -> String {
+    problem.help.as_ref().map_or_else(|| problem.says.clone(), |help| format!("{}: {help}", problem.says))
+}
+
+/// Results have one form only: anything put in by hand, such as a key twice, shows.
+fn form(carried: &Carried) -> Check {
+    if carried.results.fishplate != THIS {
+        let says = format!("written by fishplate {}, this is {THIS}: the form is not compared", carried.results.fishplate);
+        return Check::not_checked("form", says);
+    }
+    let again = json::text(&carried.value);
+    if again == carried.text {
+        return Check::agrees("form", "results.json is in the form in which the program writes it");
+    }
+    let line = again.lines().zip(carried.text.lines()).position(|(a, b)| a != b);
+    let line = line.unwrap_or_else(|| again.lines().count().min(carried.text.lines().count())) + 1;
+    Check::differs("form", "results.json is not in the form in which the program writes it", vec![format!("first at line {line}")])
+}
+
+/// Files of an output folder against the report in it.
+fn files_beside(carried: &Carried) -> Vec<Check> {
+    let Some(folder) = &carried.folder else { return Vec::new() };
+    let mut checks = Vec::new();
+    if carried.pdf.is_some() {
+        let differs = if carried.other_results { vec!["results.json is not the one inside report.pdf".to_string()] } else { Vec::new() };
+        let agrees = "results.json is the one inside report.pdf";
+        checks.push(Check::of("results.json", agrees, "two results", differs));
+    }
+    checks.extend(super::statement::check(folder));
+    checks
+}
+
+fn protocol_text(carried: &Carried, texts: &[&str]) -> Check {
+    let named = &carried.results.protocol;
+    let mut details = Vec::new();
+    for (file, text) in named.files.iter().zip(texts) {
+        let found = sha256(text.as_bytes());
+        if found != file.sha256 {
+            details.push(format!("{}: SHA-256 {} in the results, the text has {found}", file.name, file.sha256));
+        }
+    }
+    let all = sha256(texts.concat().as_bytes());
+    if details.is_empty() && all != named.sha256 {
+        details.push(format!("all files together: SHA-256 {} in the results, the texts have {all}", named.sha256));
+    }
+    let agrees = match texts.len() {
+        1 => "its file has the SHA-256 that the results name".to_string(),
+        many => format!("{many} files have the SHA-256 that the results name"),
+    };
+    Check::of("protocol text", agrees, "the protocol in the report is not the one that was run", details)
+}
+
+/// Whether statistics, verdict and reasons follow from the values that are printed.
+fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
+    const NAME: &str = "statistics";
+    let replayed = carried.results.recorded(&compiled.plan).and_then(|recorded| replay(&compiled.plan, &recorded));
+    let replayed = match replayed {
+        Ok(replayed) => replayed,
+        Err(says) => return Check::differs(NAME, "the values cannot be judged by the protocol", vec![says]),
+    };
+    let value = |key: &str| carried.value.get(key).unwrap_or(&Value::Null);
+    let mut details: Vec<String> = replayed.contradictions;
+    let mut numbers = 0;
+    for (key, again) in [
+        ("verdict", serde_json::json!(replayed.judged.verdict)),
+        ("reasons", serde_json::json!(replayed.judged.reasons)),
+        ("quantities", json::quantities(&replayed.judged.quantities)),
+        ("zones", json::zones(&replayed.judged.zones)),
+    ] {
+        let found = compare(value(key), &again, key);
+        numbers += found.numbers;
+        details.extend(found.differences.iter().map(|one| told(one, "follows from the values")));
+    }
+    let of: usize = carried.results.quantities.iter().map(|quantity| quantity.statistics.len()).sum();
+    let values: usize = carried.results.quantities.iter().map(|quantity| quantity.values.len()).sum();
+    let agrees = format!("{of} statistics, their limits and the verdict follow from {values} values ({numbers} numbers compared)");
+    Check::of(NAME, agrees, "statistics or the verdict do not follow from the values", details)
+}
+
+/// How a campaign is run again.
+#[allow(missing_debug_implementations, reason = "a function has none")]
+#[derive(Clone, Copy)]
+pub struct Again<'a> {
+    pub campaign: &'a Path,
+    /// How many distance plots the report shows.
+    pub plots: usize,
+    pub progress: Progress<'a>,
+}
+
+/// Inputs, numbers and pages against the campaign.
+pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>) -> Vec<Check> {
+    let mut lost = Vec::new();
+    for file in &carried.results.campaign.files {
+        match fingerprint(again.campaign, &file.path) {
+            Ok(Some((hash, _))) if hash == file.sha256 => {}
+            Ok(Some((hash, bytes))) => lost.push(format!(
+                "changed: {}: SHA-256 {} ({} bytes) in the report, {hash} ({bytes} bytes) now",
+                file.path, file.sha256, file.bytes
+            )),
+            Ok(None) => lost.push(format!("missing: {}", file.path)),
+            Err(problem) => lost.push(format!("not readable: {}: {}", file.path, problem.says)),
+        }
+    }
+    let certified = compiled.map(|compiled| run(compiled, again));
+    if let Some(Ok(found)) = &certified {
+        let known = |path: &str| carried.results.campaign.files.iter().any(|file| file.path == path);
+        let extra = found.campaign.files.iter().filter(|file| !known(&file.path));
+        lost.extend(extra.map(|file| format!("extra: {} is read now and was not read for the report", file.path)));
+        let unread = carried.results.campaign.files.iter().filter(|file| !found.campaign.files.iter().any(|now| now.path == file.path));
+        lost.extend(unread.map(|file| format!("no longer read: {}", file.path)));
+    }
+    let files = count(carried.results.campaign.files.len(), "file has", "files have");
+    let inputs = Check::of("input files", format!("{files} the SHA-256 of the report"), "the campaign is not the one of the report", lost);
+    let mut checks = vec![inputs];
+    match certified {
+        None => checks.push(Check::not_checked("run again", "the protocol is not to be had")),
+        Some(Err(problems)) => {
+            let told = problems.0.iter().map(|problem| match &problem.at {
+                Some(at) => format!("{}: {} ({at})", problem.code, problem.says),
+                None => format!("{}: {}", problem.code, problem.says),
+            });
+            checks.push(Check::differs("run again", "the campaign cannot be run any more", told.collect()));
+        }
+        Some(Ok(found)) => checks.extend(compared(carried, &found, again.plots)),
+    }
+    checks
+}
+
+fn run(compiled: &Compiled, again: Again<'_>) -> Result<Certification, Problems> {
+    let mut problems = Problems::default();
+    let campaign = Campaign::open(again.campaign, &mut problems);
+    let Some(campaign) = campaign.filter(|_| !problems.any_error()) else { return Err(problems) };
+    certify(compiled, &campaign, Settings { traces: again.plots }, again.progress)
+}
+
+/// Every number of the report against those of a run now, then the pages.
+fn compared(carried: &Carried, found: &Certification, plots: usize) -> Vec<Check> {
+    let results = json::results(found);
+    // What was written can be read.
+    let Ok(mut now) = serde_json::from_str::<Value>(&results) else { return Vec::new() };
+    let mut before = carried.value.clone();
+    for value in [&mut before, &mut now] {
+        if let Some(entries) = value.as_object_mut() {
+            entries.remove("fishplate");
+        }
+        // Files are told by themselves.
+        if let Some(campaign) = value.get_mut("campaign").and_then(Value::as_object_mut) {
+            campaign.remove("files");
+        }
+    }
+    let mut all = compare(&before, &now, "");
+    // The verdict first: it is what most readers look for.
+    all.differences.sort_by_key(|one| one.path != "verdict");
+    let rounded = if all.rounded == 0 { String::new() } else { format!(", {} of them up to rounding", all.rounded) };
+    let agrees = format!("all {} numbers are those of the report{rounded}", all.numbers);
+    let differs = format!("{} of the report", count(all.differences.len(), "place differs from that", "places differ from those"));
+    let numbers = Check::of("run again", agrees, differs, details(&all));
+    let same = numbers.outcome == Outcome::Agrees;
+    let mut checks = vec![numbers];
+    if let Some(pdf) = &carried.pdf {
+        checks.push(pages(carried, pdf, found, (&results, plots), same));
+    }
+    checks
+}
+
+/// The same input gives the same pages, byte by byte. What follows them may be a signature that another program added.
+fn pages(carried: &Carried, pdf: &[u8], found: &Certification, (results, plots): (&str, usize), same: bool) -> Check {
+    const NAME: &str = "pages";
+    if carried.results.fishplate != THIS {
+        return Check::not_checked(NAME, format!("written by fishplate {}, this is {THIS}", carried.results.fishplate));
+    }
+    if !same {
+        return Check::not_checked(NAME, "numbers differ already");
+    }
+    let names = attached::protocol_names(found);
+    let attachments = attached::attachments(found, results, &names);
+    match typst::typeset(&view::view(found), &figure::figures(found), &attachments) {
+        Err(problems) => Check::not_checked(NAME, problems.0.first().map_or_else(String::new, |problem| problem.says.clone())),
+        Ok(made) if made.bytes == pdf => Check::agrees(NAME, "the PDF is the one that the program writes, byte for byte"),
+        Ok(made) if pdf.starts_with(&made.bytes) => {
+            let added = pdf.len() - made.bytes.len();
+            Check::agrees(NAME, format!("the PDF is the one that the program writes, with {added} bytes added to its end"))
+        }
+        Ok(made) => {
+            let at = made.bytes.iter().zip(pdf).position(|(a, b)| a != b).unwrap_or(made.bytes.len().min(pdf.len()));
+            let help = format!("from byte {} on; a report with another number of plots than {plots}: say so with `--plots`", at + 1);
+            Check::differs(NAME, "the PDF is not the one that the program writes from these inputs", vec![help])
+        }
+    }
+}
+
+fn details(found: &Compared) -> Vec<String> {
+    found.differences.iter().map(|one| told(one, "now")).collect()
+}
+
+/// `quantities[4].values[17].measured (Y_max, S05, Y_1R): 21.35 in the report, 21.36 now`
+fn told(one: &Difference, now: &str) -> String {
+    let of = if one.of.is_empty() { String::new() } else { format!(" ({})", one.of) };
+    match (&one.before, &one.after) {
+        (Some(before), Some(after)) => format!("{}{of}: {before} in the report, {after} {now}", one.path),
+        (Some(before), None) => format!("{}{of}: {before} in the report, not there {now}", one.path),
+        (None, after) => format!("{}{of}: not in the report, {} {now}", one.path, after.as_deref().unwrap_or_default()),
+    }
+}
+
+fn count(number: usize, one: &str, many: &str) -> String {
+    if number == 1 { format!("1 {one}") } else { format!("{number} {many}") }
+}

@@ -1,0 +1,33 @@
+//! Files that a report carries inside: its numbers, and the protocol, so that it can be run again from the report alone.
+
+use super::typst::Attachment;
+use crate::result::{Certification, ProtocolFile};
+
+/// The name under which a PDF carries the results.
+pub const RESULTS: &str = "results.json";
+
+/// The name under which a PDF carries a file of the protocol, the protocol itself being number 0, then its parent, and so on.
+/// The number keeps files apart that have the same name in different folders.
+pub fn protocol_name(at: usize, name: &str) -> String {
+    let plain = |sign: char| sign.is_ascii_alphanumeric() || matches!(sign, '.' | '-' | '_');
+    let plain: String = name.chars().map(|sign| if plain(sign) { sign } else { '_' }).collect();
+    format!("protocol-{}-{plain}", at + 1)
+}
+
+/// Everything attached to a certification report.
+pub fn attachments<'a>(found: &'a Certification, results: &'a str, names: &'a [String]) -> Vec<Attachment<'a>> {
+    let numbers =
+        Attachment { name: RESULTS, mime: "application/json", bytes: results.as_bytes(), description: "Every number of this report" };
+    let protocol = |(name, file): (&'a String, &'a ProtocolFile)| Attachment {
+        name,
+        mime: if file.name.ends_with(".fp") { "text/plain" } else { "application/yaml" },
+        bytes: file.text.as_bytes(),
+        description: "The protocol that was run",
+    };
+    std::iter::once(numbers).chain(names.iter().zip(&found.protocol.files).map(protocol)).collect()
+}
+
+/// The names of the protocol's files for [`attachments`].
+pub fn protocol_names(found: &Certification) -> Vec<String> {
+    found.protocol.files.iter().enumerate().map(|(at, file)| protocol_name(at, &file.name)).collect()
+}

@@ -1,0 +1,179 @@
+//! A verdict once more, from values that were recorded in a result: for who has no records and asks whether it follows from them.
+
+use super::facts::{Facts, Known, scalar};
+use super::judge::{Judged, judge};
+use super::pairs::{PairSi, SectionValues};
+use super::record::needed;
+use super::requirements;
+use super::sections::Unit;
+use crate::check::evaluate::number;
+use crate::check::plan::{Evaluation, Plan, Scalar};
+use crate::graph::{Graph, NodeId};
+use crate::source::{Source, Spanned};
+
+/// What a result says of the data that rules read. All texts are as results have them, in the units that the protocol declares.
+#[derive(Clone, Debug, Default)]
+pub struct Recorded {
+    /// One for each [`Plan::vehicle`].
+    pub vehicle: Vec<String>,
+    pub sections: Vec<RecordedSection>,
+    /// One for each [`Plan::quantities`].
+    pub values: Vec<Vec<RecordedValue>>,
+}
+
+#[derive(Clone, Debug)]
+pub struct RecordedSection {
+    pub name: String,
+    pub zone: Option<String>,
+    /// Why it is not used.
+    pub fault: Option<String>,
+    /// Start and end in the unit of the axis.
+    pub start: f64,
+    pub end: f64,
+    /// One for each [`Plan::columns`].
+    pub columns: Vec<String>,
+}
+
+#[derive(Clone, Debug)]
+pub struct RecordedValue {
+    pub section: String,
+    pub signal: String,
+    /// In the unit of the quantity, as all values.
+    pub simulated: Option<f64>,
+    pub measured: Option<f64>,
+    pub difference: f64,
+    pub samples: usize,
+}
+
+/// What follows from recorded values.
+#[derive(Debug)]
+pub struct Replayed {
+    pub judged: Judged,
+    /// What does not agree with itself, in words.
+    pub contradictions: Vec<String>,
+}
+
+/// Differences that follow from their two sides agree to this share of the larger side: values are recorded in the quantity's unit
+/// and are turned back into SI.
+const ROUNDING: f64 = 1e-9;
+
+/// Judges recorded values as a run judges those it computed.
+///
+/// # Errors
+/// What the result says does not fit the protocol, in words.
+pub fn replay(plan: &Plan, recorded: &Recorded) -> Result<Replayed, String> {
+    let facts = facts(plan, recorded)?;
+    let mut units = units(plan, recorded)?;
+    let mut values = vec![SectionValues::default(); units.len()];
+    let mut contradictions = Vec::new();
+    for (index, quantity) in plan.quantities.iter().enumerate() {
+        for values in &mut values {
+            values.pairs.push(vec![None; quantity.signals.len()]);
+        }
+        for value in recorded.values.get(index).into_iter().flatten() {
+            let place = format!("{} {} {}", quantity.id, value.section, value.signal);
+            let unit = units.iter().position(|unit| unit.name == value.section);
+            let unit = unit.ok_or_else(|| format!("{place}: there is no section `{}`", value.section))?;
+            let signal = quantity.signals.iter().position(|(name, _)| *name == value.signal);
+            let signal = signal.ok_or_else(|| format!("{place}: the quantity has no signal `{}`", value.signal))?;
+            if units[unit].fault.is_some() {
+                contradictions.push(format!("{place}: a value of a section that is not used"));
+            }
+            let si = |value: f64| quantity.unit.to_si(value);
+            let pair = PairSi {
+                simulated: value.simulated.map(si),
+                measured: value.measured.map(si),
+                difference: si(value.difference),
+                samples: value.samples,
+            };
+            if let Some(says) = difference(plan, &facts, &units[unit], index, &pair) {
+                contradictions.push(format!("{place}: {says}"));
+            }
+            if values[unit].pairs[index][signal].replace(pair).is_some() {
+                contradictions.push(format!("{place}: two values"));
+            }
+        }
+    }
+    contradictions.extend(refused(plan, &facts, &units));
+    for unit in &mut units {
+        unit.faulty = unit.fault.is_some();
+    }
+    Ok(Replayed { judged: judge(plan, &facts, &units, &values), contradictions })
+}
+
+fn facts(plan: &Plan, recorded: &Recorded) -> Result<Facts, String> {
+    if recorded.vehicle.len() != plan.vehicle.len() {
+        return Err(format!("the protocol reads {} vehicle data, the result has {}", plan.vehicle.len(), recorded.vehicle.len()));
+    }
+    let read = plan.vehicle.iter().zip(&recorded.vehicle);
+    let vehicle = read.map(|(datum, text)| scalar(&datum.kind, text).map_err(|says| format!("`{}`: {says}", datum.key)));
+    Ok(Facts { vehicle: vehicle.collect::<Result<_, _>>()? })
+}
+
+fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
+    let axis = &plan.axis.unit;
+    let nowhere = Source::new("results.json", "").whole();
+    let one = |section: &RecordedSection| {
+        if section.columns.len() != plan.columns.len() {
+            let (asked, found) = (plan.columns.len(), section.columns.len());
+            return Err(format!("section {}: the protocol declares {asked} columns, the result has {found}", section.name));
+        }
+        let column = |(datum, text): (&crate::check::plan::Datum, &String)| -> Result<Scalar, String> {
+            if text.is_empty() { Err(format!("`{}` is empty", datum.key)) } else { scalar(&datum.kind, text) }
+        };
+        Ok(Unit {
+            name: section.name.clone(),
+            cell: Spanned::new(section.name.clone(), nowhere.clone()),
+            zone: section.zone.clone(),
+            extent: (!plan.sections.whole_records).then(|| (axis.to_si(section.start), axis.to_si(section.end))),
+            covered: None,
+            columns: plan.columns.iter().zip(&section.columns).map(column).collect(),
+            checks: Vec::new(),
+            fault: section.fault.clone(),
+            faulty: false,
+            span: None,
+        })
+    };
+    recorded.sections.iter().map(one).collect()
+}
+
+/// Why a recorded difference does not follow from its two sides.
+fn difference(plan: &Plan, facts: &Facts, unit: &Unit, index: usize, pair: &PairSi) -> Option<String> {
+    let Evaluation::Sides { difference, .. } = &plan.quantities[index].evaluation else { return None };
+    let (Some(s), Some(m)) = (pair.simulated, pair.measured) else { return Some("a side has no value".into()) };
+    let known = Known { sides: Some((s, m)), ..unit.known(facts) };
+    let follows = number(difference, &known).ok()?;
+    let far = (follows - pair.difference).abs();
+    let scale = s.abs().max(m.abs()).max(pair.difference.abs());
+    let unit = &plan.quantities[index].unit;
+    let shown = |value: f64| format!("{}{}", unit.from_si(value), unit.suffix());
+    // A value that is no number compares as far away.
+    (far.is_nan() || far > ROUNDING * scale)
+        .then(|| format!("its difference is {}, {} follows from the two sides", shown(pair.difference), shown(follows)))
+}
+
+/// Sections that are used though requirements on their data are not met.
+fn refused(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
+    let mut again: Vec<Unit> = units.iter().filter(|unit| unit.fault.is_none()).cloned().collect();
+    requirements::check_data(plan, facts, &mut again);
+    let says = |unit: &Unit| unit.fault.as_ref().map(|fault| format!("section {} is used: {fault}", unit.name));
+    again.iter().filter_map(says).collect()
+}
+
+/// The operations that one value of a result came out of, in the order in which they run.
+///
+/// # Errors
+/// What the result says does not fit the protocol, in words.
+pub fn operations(
+    plan: &Plan,
+    graph: &Graph,
+    recorded: &Recorded,
+    (quantity, signal): (usize, usize),
+    section: &str,
+) -> Result<Vec<NodeId>, String> {
+    let facts = facts(plan, recorded)?;
+    let units = units(plan, recorded)?;
+    let unit = units.iter().find(|unit| unit.name == section).ok_or_else(|| format!("there is no section `{section}`"))?;
+    let wanted = [graph.quantities[quantity].signals[signal].compare].into();
+    Ok(needed(graph, &wanted, &unit.known(&facts))?.into_iter().collect())
+}
