@@ -18,6 +18,7 @@ pub mod check;
 pub mod cli;
 pub mod data;
 pub mod diagnose;
+pub mod disk;
 pub mod effects;
 pub mod graph;
 pub mod library;

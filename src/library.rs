@@ -3,8 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::disk;
 use crate::problem::Problem;
 use crate::source::Source;
+
+/// Largest protocol or catalogue in bytes: a hundred times the longest that is shipped. What is larger is another kind of file.
+const LARGEST: u64 = 2 << 20;
 
 /// A protocol that comes with the program.
 #[derive(Debug)]
@@ -38,7 +42,7 @@ pub const CATALOGUES: &[Shipped] = &[Shipped { name: "bogie-vehicle", text: incl
 /// `no-such-catalogue`, `unreadable`, `not-utf8`.
 pub fn find_catalogue(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Box<Problem>> {
     let path = beside.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
-    if path.is_file() {
+    if there(&path)? {
         return read(&path);
     }
     let shipped = CATALOGUES.iter().find(|shipped| shipped.name == name);
@@ -72,7 +76,7 @@ pub fn shipped(name: &str) -> Option<Arc<Source>> {
 /// `no-such-protocol`, or `unreadable` with what the system says.
 pub fn find(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Box<Problem>> {
     let path = beside.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
-    if path.is_file() {
+    if there(&path)? {
         return read(&path);
     }
     shipped(name).ok_or_else(|| {
@@ -92,13 +96,25 @@ pub fn parent(name: &str, from: &Source) -> Result<Arc<Source>, Box<Problem>> {
     find(name, Path::new(&from.name).parent())
 }
 
+/// Whether there is a file, or something that would have to be read as one.
+fn there(path: &Path) -> Result<bool, Box<Problem>> {
+    match disk::kind(path) {
+        Ok(kind) => Ok(matches!(kind, Some(disk::Kind::File(_) | disk::Kind::Other))),
+        Err(error) => Err(unreadable(path, &error)),
+    }
+}
+
+fn unreadable(path: &Path, error: &std::io::Error) -> Box<Problem> {
+    Box::new(Problem::error("unreadable", format!("{} cannot be read: {error}", path.display())))
+}
+
 /// Reads a protocol file.
 ///
 /// # Errors
 /// `unreadable`, `not-utf8`.
 pub fn read(path: &Path) -> Result<Arc<Source>, Box<Problem>> {
     let shown = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|error| Box::new(Problem::error("unreadable", format!("{shown} cannot be read: {error}"))))?;
+    let bytes = disk::read(path, LARGEST).map_err(|error| unreadable(path, &error))?;
     match String::from_utf8(bytes) {
         Ok(text) => Ok(Source::new(shown, text)),
         Err(error) => {

@@ -81,9 +81,10 @@ impl Problem {
         };
         let mut group =
             level.primary_title(plain(&self.says)).id(self.code).elements(Vec::<Snippet<'_, annotate_snippets::Annotation<'_>>>::new());
+        let name = |span: &Span| plain(&span.source.name).replace('\n', "\u{fffd}");
         if let Some(at) = &self.at {
             let mut same = Snippet::source(at.source.text.as_str())
-                .path(at.source.name.as_str())
+                .path(name(at))
                 .line_start(at.source.first_line)
                 .annotation(AnnotationKind::Primary.span(range(at)).label(self.label.clone().map(|text| plain(&text))));
             let mut others: Vec<Snippet<'_, _>> = Vec::new();
@@ -94,7 +95,7 @@ impl Problem {
                 } else {
                     others.push(
                         Snippet::source(span.source.text.as_str())
-                            .path(span.source.name.as_str())
+                            .path(name(span))
                             .line_start(span.source.first_line)
                             .annotation(annotation),
                     );
@@ -133,8 +134,14 @@ fn range(span: &Span) -> std::ops::Range<usize> {
 }
 
 /// User text may hold control characters; a terminal must not act on them.
-fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect()
+pub fn plain(text: &str) -> String {
+    text.chars().map(|c| if acts(c) && c != '\n' { '\u{fffd}' } else { c }).collect()
+}
+
+/// Whether a character makes a terminal do something, or turns the order of what is shown: the controls of bidirectional text
+/// (Unicode Standard Annex #9, Table 4).
+pub fn acts(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// The problems of one stage or input, in the order found.

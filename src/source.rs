@@ -4,7 +4,7 @@
 
 use std::fmt;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// One input text: a protocol, a YAML or CSV file, or an excerpt of one.
 #[derive(PartialEq, Eq)]
@@ -14,6 +14,27 @@ pub struct Source {
     pub text: String,
     /// Number of the first line of `text` in the file (1 unless this is an excerpt).
     pub first_line: usize,
+    lines: Lines,
+}
+
+/// Where the lines of a text begin, found when they are first asked for: a table of a hundred thousand rows is asked for each of them.
+#[derive(Default)]
+struct Lines(OnceLock<Vec<usize>>);
+
+/// They follow from the text.
+impl PartialEq for Lines {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Eq for Lines {}
+
+impl Lines {
+    fn of(&self, text: &str) -> &[usize] {
+        let ends = || memchr::memchr_iter(b'\n', text.as_bytes()).map(|end| end + 1);
+        self.0.get_or_init(|| std::iter::once(0).chain(ends()).collect())
+    }
 }
 
 impl fmt::Debug for Source {
@@ -24,12 +45,12 @@ impl fmt::Debug for Source {
 
 impl Source {
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Arc<Self> {
-        Arc::new(Self { name: name.into(), text: text.into(), first_line: 1 })
+        Self::excerpt(name, text, 1)
     }
 
     /// A few lines of a large file, so that a problem in row 30 000 of a record need not keep the record.
     pub fn excerpt(name: impl Into<String>, text: impl Into<String>, first_line: usize) -> Arc<Self> {
-        Arc::new(Self { name: name.into(), text: text.into(), first_line })
+        Arc::new(Self { name: name.into(), text: text.into(), first_line, lines: Lines::default() })
     }
 
     /// The name without its folders: the same wherever and however the program was called.
@@ -43,10 +64,9 @@ impl Source {
         while !self.text.is_char_boundary(offset) {
             offset -= 1;
         }
-        let before = &self.text[..offset];
-        let line = before.matches('\n').count();
-        let start = before.rfind('\n').map_or(0, |at| at + 1);
-        (self.first_line + line, before[start..].chars().count() + 1)
+        let starts = self.lines.of(&self.text);
+        let line = starts.partition_point(|start| *start <= offset) - 1;
+        (self.first_line + line, self.text[starts[line]..offset].chars().count() + 1)
     }
 
     pub fn span(self: &Arc<Self>, range: Range<usize>) -> Span {

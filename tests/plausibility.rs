@@ -60,13 +60,13 @@ fn faults_are_told_by_section_and_channel() {
     // What is wrong in every section must not be validated, whatever else is told.
     let everywhere =
         ["on both sides", "static wheel load", "load of the", "simulated in", "measured in N", "measured in t", "single axles"];
-    let validated: Vec<&str> = scores
+    let validated: Vec<String> = scores
         .iter()
         .filter(|score| score.validated && everywhere.iter().any(|part| score.fault.contains(part)))
         .filter(|score| !score.fault.contains("a section") && !score.fault.contains("dead"))
-        .map(|score| score.fault)
+        .map(|score| format!("{}: {}", score.fault, score.says))
         .collect();
-    assert_eq!(validated, ["vertical acceleration in g on both sides"; 0], "validated all the same");
+    assert!(validated.is_empty(), "validated all the same: {validated:?}");
 }
 
 #[test]

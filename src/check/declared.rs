@@ -8,10 +8,19 @@ use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Pick};
 
+/// Most positions of a place: the wheels of a train of sixty vehicles. Signals at several places have as many positions as their product.
+const MOST_MEMBERS: usize = 500;
+
 impl Checker<'_> {
     pub(super) fn place(&mut self, name: &str, block: &Block) -> Option<Place> {
         let field = self.required(block, "members")?;
         let written = from_pest::list(&field.value, self.problems)?;
+        if written.len() > MOST_MEMBERS {
+            let says = format!("`{name}` has {} positions; there can be at most {MOST_MEMBERS}", written.len());
+            let problem = Problem::error("too-large", says).at(&field.value.span);
+            self.problems.push(problem.help("name those at which something is compared; others can go to a place of their own"));
+            return None;
+        }
         let mut members: Vec<String> = Vec::new();
         for member in written {
             let place = field.value.place(member.range);

@@ -11,6 +11,9 @@ use crate::source::Span;
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase, Pick};
 
+/// Most positions of one quantity: each is a column of every record, and a signal in memory.
+const MOST_POSITIONS: usize = 2000;
+
 impl Place {
     fn alias(&self, name: &str) -> Option<&(crate::syntax::phrase::Alias, Text)> {
         self.aliases.iter().find(|(alias, _)| alias.name.node == name)
@@ -157,6 +160,12 @@ impl Checker<'_> {
                 Some(members) => members,
                 None => self.names.places.get(place)?.members.clone(),
             };
+            if all.len().saturating_mul(members.len()) > MOST_POSITIONS {
+                let says = format!("`{}` is asked for at more than {MOST_POSITIONS} positions", signal.node);
+                let problem = Problem::error("too-large", says).at(&text.place(signal.range.clone()));
+                self.problems.push(problem.help("choose positions: `at wheelset 1 and side R`"));
+                return None;
+            }
             let with = |before: &Assignment, member: &String| {
                 let mut next = before.clone();
                 next.insert(place.clone(), member.clone());

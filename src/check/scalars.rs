@@ -79,6 +79,11 @@ impl Checker<'_> {
 
     fn expr_inside(&mut self, phrase: &Phrase, text: &Text, span: Origin, scope: &mut Scope) -> Option<Expr> {
         let (kind, ty) = match &phrase.node {
+            Node::Number { value, .. } if !value.is_finite() => {
+                let says = format!("`{}` is larger than any number that can be computed with", span.words);
+                self.problems.push(Problem::error("not-finite", says).at(&span));
+                return None;
+            }
             Node::Number { value, unit } => {
                 let dimension = unit.as_ref().map_or(Dimension::ONE, |unit| unit.dimension);
                 (Kind::Constant(Scalar::Number(*value)), Type::Number(dimension))
@@ -360,6 +365,10 @@ impl Checker<'_> {
         let (a, b) = (a?, b?);
         match operator {
             Operator::Multiply => Some(Type::Number(a * b)),
+            Operator::Divide if matches!(right.kind, Kind::Constant(Scalar::Number(0.0))) => {
+                self.problems.push(Problem::error("not-finite", "this divides by zero").at(&right.span));
+                None
+            }
             Operator::Divide => Some(Type::Number(a / b)),
             Operator::Add | Operator::Subtract if a == b => Some(Type::Number(a)),
             Operator::Add | Operator::Subtract => {

@@ -14,6 +14,13 @@ use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Item, Node, Phrase, Step as Written_};
 use crate::units::Dimension;
 
+/// Most steps of a chain, those of the filters it names among them. Each is a pass over every record and a signal in memory.
+const MOST_STEPS: usize = 32;
+/// Finest step of a grid along a length, in m: a tenth of a millimetre, finer than what a record's distance is written to.
+const FINEST_LENGTH: f64 = 1e-4;
+/// Finest step of a grid along the time, in s: records of test runs have at most some 10 kHz.
+const FINEST_TIME: f64 = 1e-5;
+
 /// What the slots and options of a wording were filled with.
 #[derive(Debug, Default)]
 pub(super) struct Filled {
@@ -55,11 +62,23 @@ impl Checker<'_> {
         let mut ok = true;
         for step in &steps {
             match self.step(step, text) {
-                Some(steps) => all.extend(steps),
+                Some(steps) => {
+                    self.few_steps(all.len() + steps.len(), &text.place(step.range.clone()))?;
+                    all.extend(steps);
+                }
                 None => ok = false,
             }
         }
         ok.then_some(all)
+    }
+
+    fn few_steps(&mut self, count: usize, at: &Span) -> Option<()> {
+        if count <= MOST_STEPS {
+            return Some(());
+        }
+        let says = format!("the filter comes to {count} steps; there can be at most {MOST_STEPS}");
+        self.problems.push(Problem::error("too-large", says).at(at).help("filters that use each other twice double at every level"));
+        None
     }
 
     pub(super) fn filter_named(&mut self, name: &str, span: &Span) -> Option<Vec<Step>> {
@@ -81,7 +100,10 @@ impl Checker<'_> {
             let mut ok = checker.required(&block, "step").is_some();
             for field in block.fields_named("step") {
                 match checker.steps(&field.value) {
-                    Some(found) => steps.extend(found),
+                    Some(found) => {
+                        checker.few_steps(steps.len() + found.len(), &field.value.span)?;
+                        steps.extend(found);
+                    }
                     None => ok = false,
                 }
             }
@@ -333,6 +355,18 @@ impl Checker<'_> {
         result.map_err(|problem| self.problems.push(problem)).ok()
     }
 
+    fn not_too_fine(&mut self, (step, dimension, place): &(f64, Dimension, Span)) -> Option<()> {
+        let finest = if *dimension == Dimension::TIME { FINEST_TIME } else { FINEST_LENGTH };
+        // Half a part in a billion below is the same number in another unit.
+        if *step >= finest * (1.0 - 1e-9) {
+            return Some(());
+        }
+        let (finest, step) = (show_number(finest, *dimension), show_number(*step, *dimension));
+        let problem = Problem::error("out-of-range", format!("the step of {step} is finer than {finest}")).at(place);
+        self.problems.push(problem.help("a step far below the distance of the samples adds points, and no information"));
+        None
+    }
+
     fn spec(&mut self, entry: &StepEntry, filled: &Filled, span: &Span) -> Option<Step> {
         let number = |index: usize| filled.numbers.get(index).map_or(0.0, |(value, _, _)| *value);
         let mut words = Vec::new();
@@ -383,6 +417,7 @@ impl Checker<'_> {
                 let (_, b, place) = filled.numbers.get(1)?;
                 self.suits("step", a == b, &a.in_words(), *b, place)?;
                 words.push(format!(", {}", filled.choices[0]));
+                self.not_too_fine(filled.numbers.get(1)?)?;
                 let ends = if filled.choices[0] == "integral" { Ends::Integral } else { Ends::Samples };
                 StepSpec::Window {
                     rms: entry.kind == StepKind::SlidingRms,
@@ -392,7 +427,10 @@ impl Checker<'_> {
                     ends,
                 }
             }
-            StepKind::Resample => StepSpec::Resample { step: number(0), over_time: filled.numbers.first()?.1 == Dimension::TIME },
+            StepKind::Resample => {
+                self.not_too_fine(filled.numbers.first()?)?;
+                StepSpec::Resample { step: number(0), over_time: filled.numbers.first()?.1 == Dimension::TIME }
+            }
             StepKind::RemoveMean => StepSpec::RemoveMean,
             StepKind::Magnitude => StepSpec::Magnitude,
         };

@@ -1,23 +1,33 @@
 //! `blind`: diagnoses every campaign first, then opens the truths and scores.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
 use rayon::prelude::*;
 
 use super::diagnose::{Asked, diagnosed, json};
 use super::output::{Console, Exit};
+use super::places::{REPORT, check_folder};
 use super::simulate::load_catalogue;
-use crate::data::write::write_whole;
+use crate::data::Campaign;
+use crate::data::campaign::CAMPAIGN_FILE;
+use crate::data::write::Outputs;
 use crate::diagnose::score::{Truth, blind, case};
 use crate::diagnose::settings::Settings;
 use crate::diagnose::{Outcome, Really, effect_of_truth};
+use crate::disk;
 use crate::effects::Catalogue;
 use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::report::blind as report;
 use crate::report::html;
 use crate::result::blind::Case;
+
+/// Largest truth in bytes: a few effects and their sizes.
+const LARGEST_TRUTH: u64 = 1 << 20;
+/// Folders below the given ones in which campaigns are looked for.
+const DEEPEST: usize = 6;
 
 #[derive(Debug, Args)]
 pub struct Blinded {
@@ -57,10 +67,11 @@ impl Blinded {
             console.problems(&problems);
             return Exit::Wrong;
         };
+        let out = Mutex::new(Outputs::new(&self.out));
         // Side by side: a diagnosis alone does not fill all cores all the time.
         let one = |(at, folder): (usize, &PathBuf)| {
             console.say(&format!("{} of {}: {}", at + 1, campaigns.len(), folder.display()));
-            self.one(folder, &catalogue, console)
+            self.one(folder, &catalogue, &out, console)
         };
         let scored = match campaigns.par_iter().enumerate().with_max_len(1).map(one).collect::<Result<Vec<Case>, Problem>>() {
             Ok(cases) => blind(cases),
@@ -74,10 +85,10 @@ impl Blinded {
                 return Exit::Unfinished;
             }
         };
-        let written = write_whole(&self.out.join("blind.json"), text.as_bytes())
-            .and_then(|()| write_whole(&self.out.join("blind.html"), page.as_bytes()));
-        if let Err(problem) = written {
-            return console.fail(problem, Exit::Unfinished);
+        let mut outputs = out.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let added = outputs.add("blind.json", text.as_bytes()).and_then(|()| outputs.add("blind.html", page.as_bytes()));
+        if let Err(exit) = console.commit(added.map(|()| outputs)) {
+            return exit;
         }
         for score in &scored.scores {
             let value = score.value.map_or("-".to_string(), |value| format!("{value:.3}"));
@@ -88,7 +99,7 @@ impl Blinded {
     }
 
     /// The diagnosis is written and closed before the truth is opened.
-    fn one(&self, folder: &Path, catalogue: &Catalogue, console: &Console) -> Result<Case, Problem> {
+    fn one(&self, folder: &Path, catalogue: &Catalogue, out: &Mutex<Outputs>, console: &Console) -> Result<Case, Problem> {
         let mut problems = Problems::default();
         let asked = Asked {
             folder,
@@ -100,15 +111,20 @@ impl Blinded {
             seed: self.seed,
         };
         let name = folder.file_name().map_or_else(|| "campaign".to_string(), |name| name.to_string_lossy().into_owned());
-        let found = diagnosed(&asked, &|_| {}, &mut problems);
+        let places = |campaign: &Campaign| check_folder(&self.out, REPORT, campaign);
+        let found = diagnosed(&asked, &places, &|_| {}, &mut problems);
         console.problems(&problems);
         let Some((campaign, outcome)) = found else {
             let fault = problems.0.first().map_or("no diagnosis".to_string(), |problem| problem.says.clone());
             return Ok(without(&name, fault));
         };
-        write_whole(&self.out.join(&name).join("diagnosis.json"), json(&outcome.diagnosis).as_bytes())?;
-        let text = std::fs::read_to_string(folder.join("truth.json"));
-        let truth = match text.map_err(|error| error.to_string()).and_then(|text| Truth::read(&text)) {
+        let diagnosis = json(&outcome.diagnosis);
+        let mut outputs = out.lock().unwrap_or_else(PoisonError::into_inner);
+        outputs.add(&format!("{name}/diagnosis.json"), diagnosis.as_bytes())?;
+        drop(outputs);
+        let text = disk::read(&folder.join("truth.json"), LARGEST_TRUTH).map_err(|error| error.to_string());
+        let text = text.and_then(|bytes| String::from_utf8(bytes).map_err(|error| error.to_string()));
+        let truth = match text.and_then(|text| Truth::read(&text)) {
             Ok(truth) => truth,
             Err(fault) => return Ok(without(&name, format!("truth.json: {fault}"))),
         };
@@ -117,14 +133,7 @@ impl Blinded {
     }
 
     /// What the true effects do; nothing if there are none, or if the catalogue does not know them.
-    fn true_effect(
-        &self,
-        folder: &Path,
-        campaign: &crate::data::Campaign,
-        outcome: &Outcome,
-        catalogue: &Catalogue,
-        truth: &Truth,
-    ) -> Option<Really> {
+    fn true_effect(&self, folder: &Path, campaign: &Campaign, outcome: &Outcome, catalogue: &Catalogue, truth: &Truth) -> Option<Really> {
         let effects = truth.applied(catalogue).filter(|effects| !effects.is_empty())?;
         let prepared = super::inputs::prepare(folder, self.protocol.as_deref(), &[], &mut Problems::default())?;
         effect_of_truth(campaign, &prepared.compiled, outcome, catalogue, &effects)
@@ -137,12 +146,14 @@ fn without(campaign: &str, fault: String) -> Case {
 
 /// Campaigns at or below a folder.
 fn find(folder: &Path, found: &mut Vec<PathBuf>, depth: usize) {
-    if folder.join(crate::data::campaign::CAMPAIGN_FILE).is_file() {
+    if disk::may_be_file(&folder.join(CAMPAIGN_FILE)) {
         found.push(folder.to_path_buf());
         return;
     }
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
-    for entry in entries.flatten().filter(|entry| entry.path().is_dir() && depth < 6) {
-        find(&entry.path(), found, depth + 1);
+    for name in disk::names(folder).unwrap_or_default() {
+        let below = folder.join(name);
+        if depth < DEEPEST && disk::is_folder(&below).unwrap_or(false) {
+            find(&below, found, depth + 1);
+        }
     }
 }

@@ -5,12 +5,13 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::inputs::{Prepared, prepare, progress_bar};
+use super::inputs::{Prepared, prepare, progress_bar, start_jobs};
 use super::output::{Console, Exit};
+use super::places::{REPORT, check_folder};
 use super::sign;
 use crate::certify::certify;
-use crate::data::write::Outputs;
-use crate::problem::{Problem, Problems};
+use crate::disk::SetKind;
+use crate::problem::{Problem, Problems, plain};
 use crate::provenance::carried::REPORT_PDF;
 use crate::provenance::signature::{self, SecretKey, secret_key};
 use crate::provenance::statement;
@@ -62,12 +63,16 @@ enum Only {
 
 impl Certify {
     pub fn run(self, console: &Console) -> Exit {
-        if let Some(jobs) = self.jobs {
-            // Fails only if the pool was made before, which nothing does before here.
-            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
+        if let Err(exit) = start_jobs(self.jobs, console) {
+            return exit;
         }
         let mut problems = Problems::default();
         let prepared = prepare(&self.campaign, self.protocol.as_deref(), &self.set, &mut problems);
+        if let Some(Prepared { campaign, .. }) = &prepared
+            && let Err(problem) = check_folder(&self.out, REPORT, campaign)
+        {
+            problems.push(problem);
+        }
         console.problems(&problems);
         let Some(Prepared { compiled, campaign, .. }) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
         // Asked for before the work begins: a wrong password costs no run.
@@ -78,7 +83,7 @@ impl Certify {
         let bar = progress_bar(console, campaign.names.len());
         let settings = Settings { traces: if self.only == Only::Results { 0 } else { self.plots } };
         let found = certify(&compiled, &campaign, settings, &|section| {
-            bar.set_message(section.to_string());
+            bar.set_message(plain(section));
             bar.inc(1);
         });
         bar.finish_and_clear();
@@ -96,13 +101,11 @@ impl Certify {
                 return Exit::Unfinished;
             }
         };
-        let mut outputs = Outputs::new(&self.out);
-        let written = files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes)).and_then(|()| outputs.commit());
-        if let Err(problem) = written {
-            return console.fail(problem, Exit::Unfinished);
+        if let Err(exit) = console.write_all(SetKind::Report, &self.out, &files) {
+            return exit;
         }
         if !console.quiet {
-            console.print(&summary(&found, console.color));
+            console.print(&summary(&found, console));
             console.say(&format!("written: {}", self.out.display()));
         }
         if found.verdict == Verdict::Validated { Exit::Done } else { Exit::DoesNotHold }
@@ -141,12 +144,8 @@ impl Certify {
 }
 
 /// The table of verdicts on the terminal.
-fn summary(found: &Certification, color: bool) -> String {
-    let paint = |text: String, holds: Option<bool>| match (color, holds) {
-        (true, Some(true)) => format!("\u{1b}[32m{text}\u{1b}[0m"),
-        (true, Some(false)) => format!("\u{1b}[31;1m{text}\u{1b}[0m"),
-        _ => text,
-    };
+fn summary(found: &Certification, console: &Console) -> String {
+    let paint = |text: String, holds: Option<bool>| holds.map_or(text.clone(), |holds| console.paint(&text, holds));
     let width = found.quantities.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);
     let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
     out += &format!(

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::inputs::{Prepared, prepare};
+use super::inputs::{Prepared, prepare, start_jobs};
 use super::output::{Console, Exit, reports};
+use super::places::{CAMPAIGN, REPORT, check_folder, same};
 use super::simulate::load_catalogue;
 use super::simulator::{Chosen, SimulatorChoice};
 use crate::data::hash::sha256;
@@ -16,6 +17,7 @@ use crate::data::{Campaign, RecordKind};
 use crate::diagnose::inputs::{Inputs, Reference};
 use crate::diagnose::settings::Settings;
 use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
+use crate::disk::SetKind;
 use crate::library;
 use crate::problem::{Problem, Problems, Severity};
 use crate::report::diagnosis as report;
@@ -80,9 +82,8 @@ impl Diagnose {
     }
 
     pub fn run(self, console: &Console) -> Exit {
-        if let Some(jobs) = self.jobs {
-            // Fails only if the pool was made before, which nothing does before here.
-            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
+        if let Err(exit) = start_jobs(self.jobs, console) {
+            return exit;
         }
         let bar = ProgressBar::new_spinner();
         if console.quiet {
@@ -96,11 +97,11 @@ impl Diagnose {
             bar.tick();
         };
         let mut problems = Problems::default();
-        let outcome = diagnosed(&self.asked(), &trying, &mut problems);
+        let outcome = diagnosed(&self.asked(), &|campaign| self.check_folders(campaign), &trying, &mut problems);
         bar.finish_and_clear();
         console.problems(&problems);
         let Some((campaign, outcome)) = outcome else { return Exit::Wrong };
-        match self.write(&campaign, &outcome) {
+        match self.write(&campaign, &outcome, console) {
             Ok(()) => {}
             Err(problem) => return console.fail(problem, Exit::Unfinished),
         }
@@ -111,20 +112,33 @@ impl Diagnose {
         exit(&outcome.diagnosis)
     }
 
-    fn write(&self, campaign: &Campaign, outcome: &Outcome) -> Result<(), Problem> {
+    fn write(&self, campaign: &Campaign, outcome: &Outcome, console: &Console) -> Result<(), Problem> {
         let files =
             files(outcome).map_err(|problems| problems.0.into_iter().next().unwrap_or_else(|| Problem::error("report", "no report")))?;
         let mut outputs = Outputs::new(&self.out);
         files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes))?;
-        outputs.commit()?;
+        // Both are on the disk before either is in its place.
+        let mut all = vec![outputs];
         if let Some(folder) = &self.write_improved {
-            if outcome.improved.is_empty() {
-                let records: Vec<_> = outcome.found.seen.sections.iter().map(|observed| observed.simulated.clone()).collect();
-                return write_improved(folder, campaign, &outcome.found, &records, &outcome.units);
-            }
-            write_improved(folder, campaign, &outcome.found, &outcome.improved, &outcome.units)?;
+            let mut outputs = Outputs::of(SetKind::Campaign, folder);
+            let unchanged = || outcome.found.seen.sections.iter().map(|observed| observed.simulated.clone()).collect();
+            let records: Vec<_> = if outcome.improved.is_empty() { unchanged() } else { outcome.improved.clone() };
+            write_improved(&mut outputs, campaign, &outcome.found, &records, &outcome.units)?;
+            all.push(outputs);
         }
-        Ok(())
+        console.problems(&Problems(all.iter().filter_map(Outputs::mended).collect()));
+        all.into_iter().try_for_each(Outputs::commit)
+    }
+
+    /// Refuses folders that are read, or that are one and the same.
+    fn check_folders(&self, campaign: &Campaign) -> Result<(), Problem> {
+        check_folder(&self.out, REPORT, campaign)?;
+        let Some(improved) = &self.write_improved else { return Ok(()) };
+        if same(improved, &self.out) {
+            let says = format!("the report and the improved simulation cannot both go to `{}`", improved.display());
+            return Err(Problem::error("output-is-input", says).help("give each a folder of its own"));
+        }
+        check_folder(improved, CAMPAIGN, campaign)
     }
 }
 
@@ -150,16 +164,21 @@ pub fn exit(diagnosis: &Diagnosis) -> Exit {
 /// What is wrong with a number of the vehicle file that is there.
 const WRONG: [&str; 2] = ["wrong-kind", "range"];
 
-/// Opens everything and diagnoses.
-pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &mut Problems) -> Option<(Campaign, Outcome)> {
+/// Opens everything and diagnoses; `places` looks at where the outputs go before anything is computed.
+pub fn diagnosed(
+    asked: &Asked<'_>,
+    places: &dyn Fn(&Campaign) -> Result<(), Problem>,
+    trying: &(dyn Fn(&str) + Sync),
+    problems: &mut Problems,
+) -> Option<(Campaign, Outcome)> {
     let Prepared { compiled, campaign, .. } = prepare(asked.folder, asked.protocol, &[], problems)?;
+    places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
     let catalogue = load_catalogue(asked.catalogue, problems)?;
     let settings = Settings::read(&catalogue, problems)?;
     let sections = sections(&campaign, problems)?;
     let references: Vec<Campaign> = asked.references.iter().map(|folder| Campaign::open(folder, problems)).collect::<Option<_>>()?;
     // What is learnt from it would be the gap itself.
-    let whole = |folder: &Path| folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
-    if let Some(same) = asked.references.iter().find(|folder| whole(folder) == whole(asked.folder)) {
+    if let Some(same) = asked.references.iter().find(|folder| same(folder, asked.folder)) {
         let says = format!("`{}` is the campaign itself: its gap would be taken for what the model is wrong in anyway", same.display());
         problems.push(Problem::error("reference", says).help("give a campaign of the same vehicle whose state is known"));
         return None;
@@ -185,7 +204,11 @@ pub fn diagnosed(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &m
         seed: asked.seed,
         trying,
     };
-    match diagnose(&inputs, &compiled, sections) {
+    let found = diagnose(&inputs, &compiled, sections);
+    let kept = of_references.iter().map(|(chosen, _)| chosen).chain([&chosen]).flatten().filter_map(Chosen::warning);
+    let resumed = inputs.references.iter().map(|reference| &reference.cache).chain([&inputs.cache]).flatten();
+    kept.chain(resumed.filter_map(Cache::warning)).for_each(|problem| problems.push(problem));
+    match found {
         Ok(outcome) => {
             problems.0.extend(outcome.warnings.0.iter().cloned());
             Some((campaign, outcome))

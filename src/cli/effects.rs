@@ -26,7 +26,7 @@ impl Effects {
         let catalogue = load_catalogue(&self.catalogue, &mut problems);
         console.problems(&problems);
         let Some(catalogue) = catalogue else { return Exit::Wrong };
-        if self.text { console.print(&catalogue.source.text) } else { console.print(&list(&catalogue)) }
+        if self.text { console.print_file(&catalogue.source.text) } else { console.print(&list(&catalogue)) }
     }
 }
 

@@ -1,11 +1,12 @@
 //! What subcommands that run a protocol over a campaign have in common.
 
+use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::output::Console;
+use super::output::{Console, Exit};
 use super::protocols::load;
 use crate::certify::{Compiled, compile};
 use crate::check::family::{self, Family};
@@ -16,6 +17,25 @@ use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Spanned};
 use crate::syntax::document::Text;
+
+/// Most records that are worked on at a time. Each takes a thread, and memory for its text and its signals; no machine that this runs
+/// on has more cores.
+const MOST_JOBS: usize = 256;
+
+/// Starts the threads that were asked for.
+///
+/// # Errors
+/// How the program ends: there cannot be so many.
+pub fn start_jobs(jobs: Option<NonZeroUsize>, console: &Console) -> Result<(), Exit> {
+    let Some(jobs) = jobs.map(NonZeroUsize::get) else { return Ok(()) };
+    if jobs > MOST_JOBS {
+        let says = format!("`--jobs {jobs}` is more than {MOST_JOBS}");
+        return Err(console.fail(Problem::error("jobs", says).help("leave it out for one per core"), Exit::Wrong));
+    }
+    // Fails only if the pool was made before, which nothing does before here.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global();
+    Ok(())
+}
 
 /// A protocol ready to run, and what to run it over.
 #[derive(Debug)]

@@ -7,6 +7,7 @@ mod effects;
 mod explain;
 mod inputs;
 mod output;
+mod places;
 mod protocols;
 mod sign;
 mod simulate;
@@ -15,10 +16,12 @@ mod study;
 mod values;
 mod verify;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
+use crate::problem::{acts, plain};
 use output::Console;
 pub use output::Exit;
 
@@ -153,12 +156,22 @@ enum Form {
 
 /// Runs the program as called.
 pub fn run() -> Exit {
-    let arguments = match Arguments::try_parse() {
+    run_with(std::env::args_os())
+}
+
+/// Runs the program with arguments, its own name first.
+pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
+    let words: Vec<OsString> = words.into_iter().collect();
+    let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
             // clap prints help and versions this way too, which are no errors.
             let failed = error.use_stderr();
-            let _ = error.print();
+            if words.iter().any(|word| word.to_string_lossy().chars().any(acts)) {
+                eprint!("{}", plain(&error.render().to_string()));
+            } else {
+                let _ = error.print();
+            }
             return if failed { Exit::Wrong } else { Exit::Done };
         }
     };

@@ -4,7 +4,9 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 
 use super::Color;
-use crate::problem::{Problem, Problems};
+use crate::data::write::Outputs;
+use crate::disk::SetKind;
+use crate::problem::{Problem, Problems, acts, plain};
 use crate::report::study::Document;
 use crate::report::{html, typst};
 
@@ -44,8 +46,23 @@ impl Console {
         Self { quiet, color: wanted(std::io::stdout().is_terminal()), color_errors: wanted(std::io::stderr().is_terminal()) }
     }
 
-    /// What was asked for, to standard output. A reader that went away is no fault.
+    /// What was asked for, to standard output: words to be read, in which no character acts on a terminal.
     pub fn print(&self, text: &str) -> Exit {
+        self.put(&painted(&readable(text)))
+    }
+
+    /// A file's own text. Whoever keeps it gets it without loss; a terminal only gets what it can show.
+    pub fn print_file(&self, text: &str) -> Exit {
+        if std::io::stdout().is_terminal() { self.put(&readable(text)) } else { self.put(text) }
+    }
+
+    /// JSON, in which every character can be written in ASCII.
+    pub fn print_json(&self, text: &str) -> Exit {
+        self.put(&escaped(text))
+    }
+
+    /// A reader that went away is no fault.
+    fn put(&self, text: &str) -> Exit {
         match std::io::stdout().lock().write_all(text.as_bytes()) {
             Ok(()) => Exit::Done,
             Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Exit::Done,
@@ -56,8 +73,13 @@ impl Console {
     /// A remark on what is being done.
     pub fn say(&self, text: &str) {
         if !self.quiet {
-            let _ = writeln!(std::io::stderr().lock(), "{text}");
+            let _ = writeln!(std::io::stderr().lock(), "{}", plain(text));
         }
+    }
+
+    /// Text in the colour of what holds, or of what does not.
+    pub fn paint(&self, text: &str, holds: bool) -> String {
+        if self.color { format!("{}{text}{PLAIN}", if holds { GOOD } else { BAD }) } else { text.to_string() }
     }
 
     pub fn problems(&self, problems: &Problems) {
@@ -78,6 +100,26 @@ impl Console {
         exit
     }
 
+    /// Files that belong together, all of them or none; what was written is said, and only then.
+    ///
+    /// # Errors
+    /// How the program is to end.
+    pub fn write_all(&self, kind: SetKind, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Exit> {
+        let mut outputs = Outputs::of(kind, folder);
+        let added = files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes));
+        self.commit(added.map(|()| outputs))
+    }
+
+    /// The end of [`Console::write_all`] for files that were added elsewhere.
+    ///
+    /// # Errors
+    /// How the program is to end.
+    pub fn commit(&self, outputs: Result<Outputs, Problem>) -> Result<(), Exit> {
+        let outputs = outputs.map_err(|problem| self.fail(problem, Exit::Unfinished))?;
+        self.problems(&Problems(outputs.mended().into_iter().collect()));
+        outputs.commit().map_err(|problem| self.fail(problem, Exit::Unfinished))
+    }
+
     /// A whole file, or nothing.
     pub fn write(&self, path: &Path, bytes: &[u8]) -> Exit {
         match crate::data::write::write_whole(path, bytes) {
@@ -85,6 +127,26 @@ impl Console {
             Err(problem) => self.fail(problem, Exit::Unfinished),
         }
     }
+}
+
+/// Where colours begin and end: characters that Unicode keeps for use inside a program, and that print nothing.
+const GOOD: char = '\u{fdd0}';
+const BAD: char = '\u{fdd1}';
+const PLAIN: char = '\u{fdd2}';
+
+fn painted(text: &str) -> String {
+    text.replace(GOOD, "\u{1b}[32m").replace(BAD, "\u{1b}[31;1m").replace(PLAIN, "\u{1b}[0m")
+}
+
+/// Text for a terminal; tabs stay.
+fn readable(text: &str) -> String {
+    text.chars().map(|c| if acts(c) && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c }).collect()
+}
+
+/// JSON whose characters that act are written `\uXXXX`; outside of texts it has none but line breaks.
+fn escaped(json: &str) -> String {
+    let escape = |c: char| if acts(c) && c != '\n' { format!("\\u{:04x}", u32::from(c)) } else { c.to_string() };
+    json.chars().map(escape).collect()
 }
 
 /// A document as report.pdf, with its numbers attached, as report.html, and the numbers themselves as `name`.
@@ -101,4 +163,21 @@ pub fn reports(
     let pdf = typst::typeset_study(data, figures, &[attachment])?.bytes;
     let html = html::study_html(data, figures)?.into_bytes();
     Ok(vec![("report.pdf".into(), pdf), ("report.html".into(), html), (name.into(), numbers.into_bytes())])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_that_acts_reaches_a_terminal() {
+        let nasty = "a\u{1b}[31mb\u{202e}c\u{9b}d\r\te\n";
+        assert_eq!(painted(&readable(nasty)), "a\u{fffd}[31mb\u{fffd}c\u{fffd}d\u{fffd}\te\n");
+        let json = serde_json::to_string(nasty).expect("JSON");
+        let text = escaped(&json);
+        assert!(!text.chars().any(acts), "{text}");
+        assert_eq!(serde_json::from_str::<String>(&text).expect("JSON"), nasty);
+        let console = Console { quiet: false, color: true, color_errors: true };
+        assert_eq!(painted(&readable(&console.paint("x", true))), "\u{1b}[32mx\u{1b}[0m");
+    }
 }

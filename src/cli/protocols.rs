@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::output::{Console, Exit};
 use crate::check::family::{self, Family};
 use crate::check::{self, Overrides};
+use crate::disk::SetKind;
 use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::source::Source;
@@ -41,8 +42,10 @@ pub fn check(names: &[String], console: &Console) -> Exit {
     exit
 }
 
+/// Nothing is written before every text has been read.
 pub fn fmt(paths: &[PathBuf], only_check: bool, console: &Console) -> Exit {
     let mut exit = Exit::Done;
+    let mut changed = Vec::new();
     for path in paths {
         let source = match library::read(path) {
             Ok(source) => source,
@@ -67,9 +70,12 @@ pub fn fmt(paths: &[PathBuf], only_check: bool, console: &Console) -> Exit {
             if exit == Exit::Done {
                 exit = Exit::DoesNotHold;
             }
-        } else if console.write(path, text.as_bytes()) != Exit::Done {
-            exit = Exit::Unfinished;
+        } else {
+            changed.push((path, text));
         }
+    }
+    if exit != Exit::Wrong && changed.iter().any(|(path, text)| console.write(path, text.as_bytes()) != Exit::Done) {
+        exit = Exit::Unfinished;
     }
     exit
 }
@@ -92,7 +98,7 @@ pub fn convert(name: &str, yaml: bool, output: Option<&Path>, console: &Console)
     }
     match output {
         Some(path) => console.write(path, text.as_bytes()),
-        None => console.print(&text),
+        None => console.print_file(&text),
     }
 }
 
@@ -124,7 +130,7 @@ pub fn diff(before: &str, after: &str, console: &Console) -> Exit {
 pub fn list(name: Option<&str>, console: &Console) -> Exit {
     match name {
         Some(name) => match library::shipped(name) {
-            Some(source) => console.print(&source.text),
+            Some(source) => console.print_file(&source.text),
             None => {
                 let problem = Problem::error("no-such-protocol", format!("no shipped protocol is called `{name}`"));
                 console.fail(problem.suggest(name, library::names()), Exit::Wrong)
@@ -156,14 +162,13 @@ pub fn man(out: &Path, console: &Console) -> Exit {
         let named = sub.clone().name(String::leak(name.clone()) as &'static str);
         pages.push((format!("{name}.1"), clap_mangen::Man::new(named)));
     }
+    let mut files = Vec::new();
     for (name, page) in pages {
         let mut bytes = Vec::new();
         if page.render(&mut bytes).is_err() {
             return Exit::Unfinished;
         }
-        if console.write(&out.join(name), &bytes) != Exit::Done {
-            return Exit::Unfinished;
-        }
+        files.push((name, bytes));
     }
-    Exit::Done
+    console.write_all(SetKind::Manual, out, &files).map_or_else(|exit| exit, |()| Exit::Done)
 }

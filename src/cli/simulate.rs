@@ -6,16 +6,18 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use rayon::prelude::*;
 
-use super::inputs::progress_bar;
+use super::inputs::{progress_bar, start_jobs};
 use super::output::{Console, Exit};
+use super::places::{CAMPAIGN, check_file, check_folder};
 use super::simulator::{Chosen, SimulatorChoice};
 use crate::data::Campaign;
 use crate::data::text::read_text;
-use crate::data::write::write_whole;
+use crate::data::write::{Outputs, write_whole};
+use crate::disk::SetKind;
 use crate::effects::{self, Applied, Catalogue};
 use crate::library;
 use crate::model::CHANNELS;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, plain};
 use crate::simulate::{
     Deviation, Plan, Section, check_confined, model_parameters, record_text, sections, simulate, single, write_campaign,
 };
@@ -70,9 +72,8 @@ pub fn load_catalogue(name: &str, problems: &mut Problems) -> Option<Catalogue> 
 
 impl Simulate {
     pub fn run(self, console: &Console) -> Exit {
-        if let Some(jobs) = self.jobs {
-            // Fails only if the pool was made before, which nothing does before here.
-            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
+        if let Err(exit) = start_jobs(self.jobs, console) {
+            return exit;
         }
         let mut problems = Problems::default();
         let catalogue = load_catalogue(&self.catalogue, &mut problems);
@@ -96,6 +97,11 @@ impl Simulate {
     fn whole(&self, folder: &Path, catalogue: &Catalogue, effects: &[Applied], console: &Console) -> Exit {
         let mut problems = Problems::default();
         let campaign = Campaign::open(folder, &mut problems);
+        if let (Some(campaign), Some(out)) = (&campaign, &self.out)
+            && let Err(problem) = check_folder(out, CAMPAIGN, campaign)
+        {
+            problems.push(problem);
+        }
         let prepared = campaign.as_ref().and_then(|campaign| {
             let sections = sections(campaign, &mut problems)?;
             let chosen = self.simulator.open(campaign, &mut problems)?;
@@ -122,7 +128,7 @@ impl Simulate {
             .par_iter()
             .map(|section| {
                 let text = self.record(&chosen, campaign, catalogue, effects, section);
-                bar.set_message(section.name().to_string());
+                bar.set_message(plain(section.name()));
                 bar.inc(1);
                 text
             })
@@ -134,12 +140,15 @@ impl Simulate {
             return Exit::Unfinished;
         }
         let records = sections.iter().map(Section::name).zip(made.into_iter().flatten());
-        match write_campaign(out, campaign, records) {
+        console.problems(&Problems(chosen.warning().into_iter().collect()));
+        let mut outputs = Outputs::of(SetKind::Campaign, out);
+        let added = write_campaign(&mut outputs, campaign, records);
+        match console.commit(added.map(|()| outputs)) {
             Ok(()) => {
                 console.say(&format!("written: {} sections to {}{}", sections.len(), out.display(), chosen.effort()));
                 Exit::Done
             }
-            Err(problem) => console.fail(problem, Exit::Unfinished),
+            Err(exit) => exit,
         }
     }
 
@@ -165,6 +174,9 @@ impl Simulate {
     /// One vehicle on one track.
     fn one(&self, vehicle: &Path, catalogue: &Catalogue, effects: &[Applied], console: &Console) -> Exit {
         let (Some(track), Some(output)) = (&self.track, &self.output) else { return Exit::Wrong };
+        if let Err(problem) = check_file(output, &[vehicle, track]) {
+            return console.fail(problem, Exit::Wrong);
+        }
         let mut problems = Problems::default();
         let tree = read_text(vehicle, &vehicle.display().to_string())
             .map_err(|problem| problems.push(problem))

@@ -111,6 +111,11 @@ impl Chosen<'_> {
         Ok((all, warning))
     }
 
+    /// What was wrong with the records that were kept of a program.
+    pub fn warning(&self) -> Option<Problem> {
+        if let Self::External(program) = self { program.warning() } else { None }
+    }
+
     /// What the program was asked to do: ` (3 calls, 13 records were there)`; nothing for the model.
     pub fn effort(&self) -> String {
         let Self::External(program) = self else { return String::new() };

@@ -5,11 +5,12 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::inputs::{Prepared, prepare, progress_bar};
+use super::inputs::{Prepared, prepare, progress_bar, start_jobs};
 use super::output::{Console, Exit, reports};
+use super::places::{REPORT, check_folder};
 use super::values::{numbers, values};
-use crate::data::write::Outputs;
-use crate::problem::{Problem, Problems};
+use crate::disk::SetKind;
+use crate::problem::{Problem, Problems, plain};
 use crate::report::study as report;
 use crate::result::study as found;
 use crate::robustness::{self, Settings, Synchronisation, Vary};
@@ -91,13 +92,17 @@ impl Study {
         let common = match &self {
             Self::Sections { common } | Self::Sync { common, .. } | Self::Parameters { common, .. } => common,
         };
-        if let Some(jobs) = common.jobs {
-            // Fails only if the pool was made before, which nothing does before here.
-            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
+        if let Err(exit) = start_jobs(common.jobs, console) {
+            return exit;
         }
         let mut problems = common.wrong();
         let asked = self.asked(&mut problems);
         let prepared = prepare(&common.campaign, common.protocol.as_deref(), &common.set, &mut problems);
+        if let Some(prepared) = &prepared
+            && let Err(problem) = check_folder(&common.out, REPORT, &prepared.campaign)
+        {
+            problems.push(problem);
+        }
         console.problems(&problems);
         let Some((asked, prepared)) = asked.zip(prepared).filter(|_| !problems.any_error()) else { return Exit::Wrong };
         match asked.found(common, &prepared, console) {
@@ -165,7 +170,7 @@ impl Asked {
         };
         let bar = progress_bar(console, steps);
         let progress = |step: &str| {
-            bar.set_message(step.to_owned());
+            bar.set_message(plain(step));
             bar.inc(1);
         };
         let found = match &self {
@@ -208,10 +213,8 @@ fn write(common: &Common, study: &found::Study, console: &Console) -> Exit {
             return Exit::Unfinished;
         }
     };
-    let mut outputs = Outputs::new(&common.out);
-    let written = files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes)).and_then(|()| outputs.commit());
-    if let Err(problem) = written {
-        return console.fail(problem, Exit::Unfinished);
+    if let Err(exit) = console.write_all(SetKind::Report, &common.out, &files) {
+        return exit;
     }
     if !console.quiet {
         let document = report::document(study);

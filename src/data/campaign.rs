@@ -2,14 +2,16 @@
 //!
 //! Only the keys of the folder layout are known here; all others are facts that are printed, or asked for by name.
 
-use std::path::Path;
-use std::sync::Arc;
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 
 use super::cells::name_and_unit;
 use super::folder::{Folder, Place, check_file_name};
 use super::record::{Record, Wanted, read_record};
 use super::table::{Cell, Table};
-use super::text::read_text;
+use super::text::{read_any, read_text};
+use crate::disk;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span, Spanned};
 use crate::yaml::{self, Key, Node, Value};
@@ -90,7 +92,12 @@ pub struct Campaign {
     pub files: Vec<ReadFile>,
     folder: Folder,
     record_folders: Vec<(RecordKind, Spanned<String>)>,
+    /// Files in a folder of records that are of no section, by kind; listed where a record is missing.
+    strangers: [OnceLock<Vec<String>>; RecordKind::ALL.len()],
 }
+
+/// Most comparisons of names with names that are made to suggest what was meant for missing records of a campaign.
+const MOST_COMPARISONS: usize = 1_000_000;
 
 impl Campaign {
     /// Opens a campaign by its folder or its `campaign.yaml`. Records are not read yet.
@@ -99,12 +106,18 @@ impl Campaign {
     /// `key-missing`, `wrong-kind`, `no-records`.
     pub fn open(path: &Path, problems: &mut Problems) -> Option<Self> {
         let before = problems.errors();
-        let named = path.file_name().is_some_and(|name| name == CAMPAIGN_FILE) && !path.is_dir();
+        let named = path.file_name().is_some_and(|name| name == CAMPAIGN_FILE) && !disk::is_folder(path).unwrap_or(false);
         let folder = Folder::open(if named { parent(path) } else { path }).map_err(|problem| problems.push(problem)).ok()?;
         let nowhere = Source::new(path.display().to_string(), "").whole();
         let place = folder.place(CAMPAIGN_FILE, &nowhere).map_err(|problem| problems.push(problem)).ok()?;
         let mut opening = Opening { folder, files: Vec::new(), problems };
-        if !place.path.is_file() {
+        if disk::is_folder(&opening.folder.real().join(disk::UNFINISHED)).unwrap_or(false) {
+            let says = format!("`{}` is unfinished: a run was ended while it wrote this campaign", path.display());
+            opening.problems.push(Problem::error("unfinished-set", says).help("run what wrote it again, with the same `--out`"));
+            return None;
+        }
+        // A fault of the disk is told by who reads the file.
+        if matches!(disk::is_file(&place.path), Ok(false)) {
             let says = format!("there is no file `{}`", place.shown);
             opening.problems.push(Problem::error("file-missing", says).help("a campaign is a folder with a file `campaign.yaml`"));
             return None;
@@ -145,6 +158,7 @@ impl Campaign {
             files,
             folder,
             record_folders,
+            strangers: Default::default(),
         };
         if problems.errors() == before {
             campaign.find_names(problems);
@@ -171,9 +185,10 @@ impl Campaign {
     fn measured(&self) -> Result<Vec<Cell>, Problem> {
         let kind = RecordKind::Measurement;
         let (place, span) = self.record_folder(kind)?;
-        let mut names: Vec<String> = std::fs::read_dir(&place.path)
-            .map_err(|_| Problem::error("folder-missing", format!("there is no folder `{}`", place.shown)).at(span))?
-            .filter_map(|entry| Some(entry.ok()?.file_name().to_str()?.strip_suffix(".csv")?.to_string()))
+        let mut names: Vec<String> = disk::names(&place.path)
+            .map_err(|error| no_folder(&error, &place.shown).at(span))?
+            .iter()
+            .filter_map(|name| Some(name.to_str()?.strip_suffix(".csv")?.to_string()))
             .filter(|name| !name.starts_with('.'))
             .collect();
         if names.is_empty() {
@@ -204,21 +219,35 @@ impl Campaign {
         check_file_name(&section.value, &section.span)?;
         let (folder, span) = self.record_folder(kind)?;
         let place = self.folder.place(&format!("{}/{}.csv", folder.inside, section.value), &section.span)?;
-        if place.path.is_file() {
+        let unreadable = |error| Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.inside)).at(&section.span);
+        if disk::is_file(&place.path).map_err(unreadable)? {
             return Ok(place);
         }
-        if !folder.path.is_dir() {
+        if !disk::is_folder(&folder.path).map_err(unreadable)? {
             return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside)).at(span));
         }
-        let mut others: Vec<String> = std::fs::read_dir(&folder.path)
-            .map(|entries| entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect())
-            .unwrap_or_default();
-        // The record of another section is not what was meant.
-        others.retain(|name| !self.names.iter().any(|other| name.strip_suffix(".csv") == Some(&other.value)));
-        others.sort();
-        Err(Problem::error("file-missing", format!("there is no file `{}`", place.inside))
-            .at(&section.span)
-            .suggest(&format!("{}.csv", section.value), others.iter().map(String::as_str)))
+        let others = self.strangers[kind as usize].get_or_init(|| self.strangers(&folder.path));
+        let problem = Problem::error("file-missing", format!("there is no file `{}`", place.inside)).at(&section.span);
+        if others.len().saturating_mul(self.names.len()) > MOST_COMPARISONS {
+            return Err(problem);
+        }
+        Err(problem.suggest(&format!("{}.csv", section.value), others.iter().map(String::as_str)))
+    }
+
+    /// Files of a folder but the records of sections: the record of another section is not what was meant.
+    fn strangers(&self, folder: &Path) -> Vec<String> {
+        let sections: HashSet<&str> = self.names.iter().map(|name| name.value.as_str()).collect();
+        let names = disk::names(folder).unwrap_or_default().into_iter().filter_map(|name| name.into_string().ok());
+        names.filter(|name| !name.strip_suffix(".csv").is_some_and(|name| sections.contains(name))).collect()
+    }
+
+    /// Folders and files that the campaign is read from, as far as they are named, without symbolic links.
+    pub fn inputs(&self) -> Inputs {
+        let real = |place: &Place| disk::real(&place.path).ok().flatten().unwrap_or_else(|| place.path.clone());
+        let folders = RecordKind::ALL.into_iter().filter_map(|kind| Some(real(&self.record_folder(kind).ok()?.0)));
+        let named = self.files.iter().filter_map(|file| self.folder.place(&file.path, &self.tree.span.part(0..0)).ok());
+        let files = named.chain(self.vehicle_files().unwrap_or_default());
+        Inputs { folder: self.folder.real().to_path_buf(), folders: folders.collect(), files: files.map(|place| real(&place)).collect() }
     }
 
     /// Reads the wanted columns of a section's record. Its faults go into results, which must be the same wherever the campaign lies:
@@ -252,8 +281,7 @@ impl Campaign {
         }
         let read = |inside: String| {
             let place = self.folder.place(&inside, &self.tree.span.part(0..0))?;
-            let bytes = std::fs::read(&place.path).map_err(|error| Problem::error("unreadable", format!("{}: {error}", place.shown)))?;
-            Ok((inside, bytes))
+            Ok((inside, read_any(&place.path, &place.shown)?))
         };
         inside.into_iter().map(read).collect()
     }
@@ -269,7 +297,8 @@ impl Campaign {
         let mut found: Vec<Place> = Vec::new();
         for written in named {
             let place = self.folder.place(&written, &self.tree.span.part(0..0))?;
-            if place.path.is_file() && !found.contains(&place) {
+            let unreadable = |error| Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.shown));
+            if disk::is_file(&place.path).map_err(unreadable)? && !found.contains(&place) {
                 found.push(place);
             }
         }
@@ -290,9 +319,30 @@ impl Campaign {
     }
 }
 
+/// What a campaign is read from: absolute paths.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    /// Of the campaign.
+    pub folder: PathBuf,
+    /// Of its records.
+    pub folders: Vec<PathBuf>,
+    pub files: Vec<PathBuf>,
+}
+
 /// Size of a file that was just read.
-fn size(path: &Path) -> u64 {
-    std::fs::metadata(path).map_or(0, |meta| meta.len())
+fn size(place: &Place) -> Result<u64, Problem> {
+    match disk::kind(&place.path) {
+        Ok(Some(disk::Kind::File(size))) => Ok(size),
+        Ok(_) => Err(Problem::error("file-missing", format!("`{}` went away while it was read", place.shown))),
+        Err(error) => Err(Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.shown))),
+    }
+}
+
+fn no_folder(error: &std::io::Error, shown: &str) -> Problem {
+    match disk::missing(error) {
+        true => Problem::error("folder-missing", format!("there is no folder `{shown}`")),
+        false => Problem::error("folder-unreadable", format!("`{shown}` cannot be read: {error}")),
+    }
 }
 
 fn parent(path: &Path) -> &Path {
@@ -320,7 +370,8 @@ impl Opening<'_> {
 
     fn yaml(&mut self, place: &Place, named: Option<&Span>) -> Option<(Arc<Source>, Node)> {
         let (source, sha256) = self.keep(read_text(&place.path, &place.shown).map_err(|problem| named_at(problem, named)))?;
-        self.files.push(ReadFile { path: place.inside.clone(), sha256, bytes: size(&place.path) });
+        let bytes = self.keep(size(place))?;
+        self.files.push(ReadFile { path: place.inside.clone(), sha256, bytes });
         let tree = yaml::load(&source, self.problems)?;
         Some((source, tree))
     }
@@ -361,7 +412,8 @@ impl Opening<'_> {
             self.problems.push(named_at(problem, Some(&written.span)));
         }
         let table = table?;
-        self.files.push(ReadFile { path: place.inside, sha256: table.sha256.clone(), bytes: size(&place.path) });
+        let bytes = self.keep(size(&place))?;
+        self.files.push(ReadFile { path: place.inside, sha256: table.sha256.clone(), bytes });
         Some(table)
     }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use crate::disk;
 use crate::problem::Problem;
 use crate::source::Span;
 
@@ -26,11 +27,18 @@ pub struct Place {
 
 impl Folder {
     pub fn open(folder: &Path) -> Result<Self, Problem> {
-        let real = folder.canonicalize().ok().filter(|real| real.is_dir());
-        match real {
+        let unreadable =
+            |error: std::io::Error| Problem::error("folder-unreadable", format!("`{}` cannot be read: {error}", folder.display()));
+        let there = disk::is_folder(folder).map_err(unreadable)?;
+        match disk::real(folder).map_err(unreadable)?.filter(|_| there) {
             Some(real) => Ok(Self { shown: folder.to_path_buf(), real }),
             None => Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.display()))),
         }
+    }
+
+    /// The folder itself, without symbolic links.
+    pub fn real(&self) -> &Path {
+        &self.real
     }
 
     /// What [`Place::shown`] says after the folder; other names as they are.
@@ -64,7 +72,9 @@ impl Folder {
         let inside = inside.join("/");
         let path = self.real.join(&inside);
         // A path that does not exist yet cannot lead anywhere; whoever opens it is told that it is missing.
-        if path.canonicalize().is_ok_and(|real| !real.starts_with(&self.real)) {
+        let real =
+            disk::real(&path).map_err(|error| Problem::error("file-unreadable", format!("`{written}` cannot be read: {error}")).at(at))?;
+        if real.is_some_and(|real| !real.starts_with(&self.real)) {
             return Err(outside("is a symbolic link out of the campaign's folder"));
         }
         let shown = if self.shown.as_os_str().is_empty() { inside.clone() } else { self.shown.join(&inside).display().to_string() };

@@ -1,18 +1,28 @@
 //! From a file to its text: readable, not empty, UTF-8.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::sync::Arc;
 
 use super::hash::sha256;
+use crate::disk::{self, Kind};
 use crate::problem::Problem;
 use crate::source::{Source, Span};
 
 /// Largest YAML file or table in bytes; protocols, vehicles and section tables have a few thousand.
 const SMALL: u64 = 16 << 20;
-/// Largest record in bytes.
-const LARGE: u64 = 4 << 30;
+/// Largest record in bytes: a hundred channels at 1 kHz for some twenty minutes. A worker holds one such text, and its
+/// numbers, which take about as much again.
+pub const LARGEST_RECORD: u64 = 1 << 30;
+/// Longest line of a record in bytes: ten thousand channels with headings of a hundred characters. A file without lines
+/// (zeros, a picture, a hole on the disk) is told after so many bytes, not after all of them.
+pub const LONGEST_LINE: usize = 1 << 20;
+/// Longest line of a small text in bytes: a table with a thousand columns.
+const LONGEST_TEXT_LINE: usize = 64 << 10;
+/// Bytes that are read at a time.
+const CHUNK: u64 = 1 << 20;
+/// Bytes of a long line that a message shows.
+const SHOWN: usize = 80;
 
 /// A small text file, its byte order mark left out, and the SHA-256 of its bytes.
 ///
@@ -20,28 +30,87 @@ const LARGE: u64 = 4 << 30;
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`, `encoding`.
 pub fn read_text(path: &Path, shown: &str) -> Result<(Arc<Source>, String), Problem> {
     let mut bytes = Vec::new();
-    read_bytes(path, shown, SMALL, &mut bytes)?;
+    read_bounded(path, shown, SMALL, None, &mut bytes)?;
     let text = decode(&bytes, shown)?;
     if text.trim().is_empty() {
         return Err(empty(shown));
     }
+    check_lines(text, shown)?;
     Ok((Source::new(shown, text), sha256(&bytes)))
+}
+
+/// Refuses a text with a line that nobody wrote: it would be shown, whole, with every problem in it.
+///
+/// # Errors
+/// `line-too-long`.
+pub fn check_lines(text: &str, shown: &str) -> Result<(), Problem> {
+    match text.split('\n').position(|line| line.len() > LONGEST_TEXT_LINE) {
+        Some(at) => {
+            let says = format!("line {} of `{shown}` has more than {} kB", at + 1, LONGEST_TEXT_LINE >> 10);
+            Err(Problem::error("line-too-long", says).help("break the line, or look whether this is the right file"))
+        }
+        None => Ok(()),
+    }
 }
 
 /// All bytes of a record file, in the place of what the buffer held.
 pub(super) fn read_large(path: &Path, shown: &str, buffer: &mut Vec<u8>) -> Result<(), Problem> {
-    read_bytes(path, shown, LARGE, buffer)
+    read_bounded(path, shown, LARGEST_RECORD, Some(LONGEST_LINE), buffer)
+}
+
+/// All bytes of a file that a campaign is made of, whatever they are.
+///
+/// # Errors
+/// As [`read_text`], but for `encoding`; a file may be empty.
+pub fn read_any(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
+    let mut bytes = Vec::new();
+    match read_bounded(path, shown, LARGEST_RECORD, None, &mut bytes) {
+        Err(problem) if problem.code != "file-empty" => Err(problem),
+        _ => Ok(bytes),
+    }
+}
+
+/// A line that has no end where the longest should have one; the place of its beginning.
+pub(super) fn long_line(start: &[u8], line: usize, shown: &str) -> Problem {
+    let start = String::from_utf8_lossy(&start[..start.len().min(SHOWN)]).into_owned();
+    let says = format!("line {line} of `{shown}` has more than {} MB", LONGEST_LINE >> 20);
+    Problem::error("line-too-long", says)
+        .at(&Source::excerpt(shown, start, line).whole())
+        .help("a record is a text with one line for each sample; export it again")
 }
 
 /// The first line of a record file.
 pub(super) fn read_line(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
-    let unreadable = |error: std::io::Error| Problem::error("file-unreadable", format!("`{shown}` cannot be read: {error}"));
-    if !path.is_file() {
-        return Err(Problem::error("file-missing", format!("there is no file `{shown}`")));
-    }
+    let unreadable = |error: std::io::Error| unreadable(shown, &error);
+    size(path, shown, LARGEST_RECORD)?;
     let mut line = Vec::new();
-    BufReader::new(File::open(path).map_err(unreadable)?.take(SMALL)).read_until(b'\n', &mut line).map_err(unreadable)?;
+    let file = disk::open(path).map_err(unreadable)?.take(LONGEST_LINE as u64 + 1);
+    BufReader::new(file).read_until(b'\n', &mut line).map_err(unreadable)?;
+    if line.len() > LONGEST_LINE {
+        return Err(long_line(&line, 1, shown));
+    }
     if line.is_empty() { Err(empty(shown)) } else { Ok(line) }
+}
+
+/// Words of every message that a file or folder of a campaign is there and cannot be read.
+pub const UNREADABLE: &str = "cannot be read:";
+
+fn unreadable(shown: &str, why: &dyn std::fmt::Display) -> Problem {
+    Problem::error("file-unreadable", format!("`{shown}` {UNREADABLE} {why}"))
+}
+
+/// The size of a plain file. What is none is refused before it is opened: a pipe would wait for ever.
+fn size(path: &Path, shown: &str, limit: u64) -> Result<u64, Problem> {
+    match disk::kind(path).map_err(|error| unreadable(shown, &error))? {
+        None => Err(Problem::error("file-missing", format!("there is no file `{shown}`"))),
+        Some(Kind::Folder) => Err(unreadable(shown, &"it is a folder")),
+        Some(Kind::Other) => Err(unreadable(shown, &"it is no plain file")),
+        Some(Kind::File(size)) if size > limit => {
+            Err(Problem::error("file-too-large", format!("`{shown}` has {} MB; the most that is read is {} MB", size >> 20, limit >> 20))
+                .help("split it, or leave out channels and samples that are not needed"))
+        }
+        Some(Kind::File(size)) => Ok(size),
+    }
 }
 
 /// All bytes of a plain file that is not empty and not larger than a limit.
@@ -49,25 +118,44 @@ pub(super) fn read_line(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
 /// # Errors
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`.
 pub fn read_bytes(path: &Path, shown: &str, limit: u64, buffer: &mut Vec<u8>) -> Result<(), Problem> {
-    let unreadable = |why: &dyn std::fmt::Display| Problem::error("file-unreadable", format!("`{shown}` cannot be read: {why}"));
-    // What is no plain file is refused before it is opened: a pipe would wait for ever.
-    let meta = std::fs::metadata(path).map_err(|error| match error.kind() {
-        ErrorKind::NotFound | ErrorKind::NotADirectory => Problem::error("file-missing", format!("there is no file `{shown}`")),
-        _ => unreadable(&error),
-    })?;
-    if !meta.is_file() {
-        return Err(unreadable(if meta.is_dir() { &"it is a folder" } else { &"it is no plain file" }));
-    }
-    if meta.len() > limit {
-        return Err(Problem::error(
-            "file-too-large",
-            format!("`{shown}` has {} MB; the most that is read is {} MB", meta.len() >> 20, limit >> 20),
-        ));
-    }
+    read_bounded(path, shown, limit, None, buffer)
+}
+
+/// With a longest line, a file is not read beyond a longer one.
+fn read_bounded(path: &Path, shown: &str, limit: u64, longest: Option<usize>, buffer: &mut Vec<u8>) -> Result<(), Problem> {
+    let unreadable = |error: std::io::Error| unreadable(shown, &error);
+    let size = size(path, shown, limit)?;
     buffer.clear();
-    buffer.reserve(usize::try_from(meta.len()).unwrap_or(0) + 1);
-    let file = File::open(path).map_err(|error| unreadable(&error))?;
-    file.take(limit + 1).read_to_end(buffer).map_err(|error| unreadable(&error))?;
+    let mut file = disk::open(path).map_err(unreadable)?.take(limit + 1);
+    let longest_line = longest.unwrap_or(usize::MAX);
+    if let Some(longest) = longest {
+        let first = usize::try_from(size).unwrap_or(usize::MAX).min(longest + 1);
+        disk::reserve(buffer, first, path).map_err(unreadable)?;
+        (&mut file).take(first as u64).read_to_end(buffer).map_err(unreadable)?;
+        if buffer.len() > longest && memchr::memchr(b'\n', buffer).is_none() {
+            return Err(long_line(buffer, 1, shown));
+        }
+    }
+    // One more than there is, so that the end is seen without growing.
+    let rest = usize::try_from(size).unwrap_or(usize::MAX).saturating_sub(buffer.len()).saturating_add(1);
+    disk::reserve(buffer, rest, path).map_err(unreadable)?;
+    let mut line = memchr::memrchr(b'\n', buffer).map_or(0, |end| end + 1);
+    loop {
+        let before = buffer.len();
+        if (&mut file).take(CHUNK).read_to_end(buffer).map_err(unreadable)? == 0 {
+            break;
+        }
+        if let Some(end) = memchr::memrchr(b'\n', &buffer[before..]) {
+            line = before + end + 1;
+        }
+        if buffer.len() - line > longest_line {
+            let number = 1 + memchr::memchr_iter(b'\n', &buffer[..line]).count();
+            return Err(long_line(&buffer[line..], number, shown));
+        }
+    }
+    if buffer.len() as u64 > limit {
+        return Err(Problem::error("file-too-large", format!("`{shown}` grew beyond {} MB while it was read", limit >> 20)));
+    }
     if buffer.is_empty() { Err(empty(shown)) } else { Ok(()) }
 }
 

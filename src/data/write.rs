@@ -4,12 +4,10 @@ mod format;
 
 pub use format::{Entry, OutColumn, campaign_yaml, record_csv, table_csv};
 
-use std::fs;
-use std::io::Write;
-use std::path::{Component, Path, PathBuf};
+use std::io;
+use std::path::Path;
 
-use tempfile::NamedTempFile;
-
+use crate::disk::{self, Set, SetKind};
 use crate::problem::Problem;
 
 /// Writes a file under a temporary name in the same folder, then renames it. The folder is made if missing.
@@ -17,32 +15,60 @@ use crate::problem::Problem;
 /// # Errors
 /// `write-failed`; the file is then as it was before.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(|| failed(path, &"this is no file name"))?;
-    let mut outputs = Outputs::new(folder);
-    outputs.add(name, bytes)?;
-    outputs.commit()
+    written(path, bytes, disk::write_whole)
+}
+
+/// As [`write_whole`], for what may be lost when the power goes: a cache.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn keep(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
+    written(path, bytes, disk::keep)
+}
+
+fn written(path: &Path, bytes: &[u8], how: fn(&Path, &[u8]) -> io::Result<()>) -> Result<(), Problem> {
+    if path.file_name().is_none() {
+        return Err(failed(path, &"this is no file name"));
+    }
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let done = disk::make_folder(folder).and_then(|()| match disk::is_folder(path)? {
+        true => Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")),
+        false => how(path, bytes),
+    });
+    done.map_err(|error| failed(path, &error))
 }
 
 fn failed(path: &Path, why: &dyn std::fmt::Display) -> Problem {
     Problem::error("write-failed", format!("`{}` cannot be written: {why}", path.display()))
 }
 
-/// Files that belong together: all are written beside their places first, and put into place at the end.
+/// Files that belong together: none is in its place before all are on the disk, and a set that was there before goes out of
+/// its places first.
 ///
 /// Dropped without [`Outputs::commit`], nothing is left behind.
 #[derive(Debug)]
 pub struct Outputs {
-    folder: PathBuf,
-    written: Vec<(NamedTempFile, PathBuf)>,
-    /// Folders that did not exist before, outermost first.
-    made: Vec<PathBuf>,
+    folder: std::path::PathBuf,
+    set: Set,
 }
 
 impl Outputs {
-    /// Outputs in a folder, which is made when the first file is added.
-    pub fn new(folder: impl Into<PathBuf>) -> Self {
-        Self { folder: folder.into(), written: Vec::new(), made: Vec::new() }
+    /// A report in a folder, which is made when the first file is added.
+    pub fn new(folder: impl Into<std::path::PathBuf>) -> Self {
+        Self::of(SetKind::Report, folder)
+    }
+
+    /// A set of a kind.
+    pub fn of(kind: SetKind, folder: impl Into<std::path::PathBuf>) -> Self {
+        let folder = folder.into();
+        Self { set: Set::new(&folder, kind), folder }
+    }
+
+    /// The same in a folder that does not outlive the run.
+    #[must_use]
+    pub fn for_this_run(mut self) -> Self {
+        self.set.unsynced();
+        self
     }
 
     /// Adds a file, named by its path in the folder such as `tables/values.csv`.
@@ -50,72 +76,34 @@ impl Outputs {
     /// # Errors
     /// `write-failed`, `path-outside`.
     pub fn add(&mut self, inside: &str, bytes: &[u8]) -> Result<(), Problem> {
-        let plain = Path::new(inside).components().all(|part| matches!(part, Component::Normal(_)));
-        if inside.is_empty() || !plain {
-            return Err(Problem::error("path-outside", format!("`{inside}` is no path inside the output folder")));
-        }
-        let path = self.folder.join(inside);
-        let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf();
-        self.make(&folder).map_err(|error| failed(&path, &error))?;
-        let temporary = temporary(&folder, bytes).map_err(|error| failed(&path, &error))?;
-        self.written.push((temporary, path));
-        Ok(())
+        self.set.add(inside, bytes).map_err(|error| match error.kind() {
+            io::ErrorKind::InvalidInput => {
+                Problem::error("path-outside", format!("`{inside}` is no path inside the output folder, or is there twice"))
+            }
+            _ => failed(&self.set.path(inside), &error),
+        })
     }
 
-    fn make(&mut self, folder: &Path) -> std::io::Result<()> {
-        let missing: Vec<PathBuf> =
-            folder.ancestors().take_while(|above| !above.as_os_str().is_empty() && !above.exists()).map(Path::to_path_buf).collect();
-        self.made.extend(missing.into_iter().rev());
-        fs::create_dir_all(folder)
+    /// A warning if a set was finished here that a run before left unfinished.
+    pub fn mended(&self) -> Option<Problem> {
+        let says = format!("a run before this one was ended while it wrote to `{}`; its files were put into place", self.folder.display());
+        self.set.mended().then(|| Problem::warning("unfinished-set", says))
     }
 
-    /// Puts every file into its place. If one cannot be, those already put into new places are taken away again.
+    /// Puts every file into its place, and takes away files of the set before that have none in this one.
     ///
     /// # Errors
-    /// `write-failed`.
-    pub fn commit(mut self) -> Result<(), Problem> {
-        let mut new = Vec::new();
-        // What is most likely to fail is found before anything is renamed.
-        if let Some((_, path)) = self.written.iter().find(|(_, path)| path.is_dir()) {
-            return Err(failed(path, &"it is a folder"));
-        }
-        for (temporary, path) in std::mem::take(&mut self.written) {
-            let existed = path.exists();
-            if let Err(error) = temporary.persist(&path) {
-                new.iter().for_each(|path: &PathBuf| drop(fs::remove_file(path)));
-                return Err(failed(&path, &error.error));
-            }
-            if !existed {
-                new.push(path);
-            }
-        }
-        self.made.clear();
-        Ok(())
+    /// `write-failed`; the set before is then whole.
+    pub fn commit(self) -> Result<(), Problem> {
+        let Self { folder, set } = self;
+        set.commit().map_err(|error| failed(&folder, &error))
     }
-}
-
-impl Drop for Outputs {
-    fn drop(&mut self) {
-        self.written.clear();
-        // Only empty folders go; what someone else put there meanwhile stays.
-        self.made.iter().rev().for_each(|folder| drop(fs::remove_dir(folder)));
-    }
-}
-
-fn temporary(folder: &Path, bytes: &[u8]) -> std::io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".fishplate-");
-    // Temporary files are private by default; an output has the permissions any new file gets.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
-    file.flush()?;
-    Ok(file)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {
@@ -152,7 +140,7 @@ mod tests {
         outputs.add("one.txt", b"new").expect("added");
         outputs.add("two.txt", b"2").expect("added");
         outputs.commit().expect("committed");
-        assert_eq!(names(&out), ["one.txt", "two.txt"]);
+        assert_eq!(names(&out), [".fishplate-report.sha256", "one.txt", "two.txt"]);
         assert_eq!(fs::read(out.join("one.txt")).expect("read"), b"new");
     }
 

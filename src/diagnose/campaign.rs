@@ -8,6 +8,9 @@ use super::run::{Found, find};
 use super::settings::Settings;
 use crate::certify::{Compiled, certify};
 use crate::data::Campaign;
+use crate::data::text::UNREADABLE;
+use crate::data::write::Outputs;
+use crate::disk::{self, SetKind};
 use crate::effects::{Applied, Catalogue, Gauss, Signals};
 use crate::problem::{Problem, Problems};
 use crate::result::Certification;
@@ -54,6 +57,12 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     let one = |problem: Problem| Problems(vec![problem]);
     let settings = RunSettings { traces: 0 };
     let before = certify(compiled, inputs.campaign, settings, &quiet)?;
+    // The records were read a moment ago: what is compared must be the same sections.
+    let unread = |section: &&crate::result::SectionResult| section.reason.as_ref().is_some_and(|reason| reason.contains(UNREADABLE));
+    if let Some(section) = before.sections.iter().find(unread) {
+        let says = format!("section {} could not be read again: {}", section.section, section.reason.as_deref().unwrap_or_default());
+        return Err(one(Problem::error("file-unreadable", says)));
+    }
     let mut after = None;
     let mut shrink = None;
     let mut records = Vec::new();
@@ -214,19 +223,20 @@ fn evaluated(
     settings: RunSettings,
 ) -> Result<Certification, Problems> {
     let one = |problem: Problem| Problems(vec![problem]);
-    let folder = tempfile::tempdir().map_err(|error| one(Problem::error("unwritable", format!("no temporary folder: {error}"))))?;
-    write_improved(folder.path(), campaign, found, records, units).map_err(one)?;
+    let folder = disk::scratch().map_err(|error| one(Problem::error("unwritable", format!("no temporary folder: {error}"))))?;
+    let mut outputs = Outputs::of(SetKind::Campaign, folder.path()).for_this_run();
+    write_improved(&mut outputs, campaign, found, records, units).and_then(|()| outputs.commit()).map_err(one)?;
     let mut problems = Problems::default();
     let Some(copy) = Campaign::open(folder.path(), &mut problems) else { return Err(problems) };
     certify(compiled, &copy, settings, &|_| {})
 }
 
-/// Writes a campaign like another with other simulated records.
+/// Writes a campaign like another with other simulated records, up to its commit.
 ///
 /// # Errors
 /// Of writing.
 pub fn write_improved(
-    out: &std::path::Path,
+    outputs: &mut Outputs,
     campaign: &Campaign,
     found: &Found,
     records: &[Signals],
@@ -240,7 +250,7 @@ pub fn write_improved(
         .zip(records)
         .map(|(observed, signals)| Ok((observed.section.name(), record_text(signals, &unit)?)))
         .collect();
-    write_campaign(out, campaign, texts?.into_iter())
+    write_campaign(outputs, campaign, texts?.into_iter())
 }
 
 #[cfg(test)]

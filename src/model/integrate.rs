@@ -14,6 +14,10 @@ const STABLE: f64 = 2.45;
 /// Largest rate of any state, in SI units, of a vehicle at rest: rounding. In the seconds before the track it moves nothing by a
 /// nanometre.
 const AT_REST: f64 = 1e-10;
+/// Most steps that a sample is divided into: those of the reference vehicles at 1 m/s are some ten. A run then takes a hundred times as long.
+const MOST_STEPS: f64 = 1000.0;
+/// Longest run in s: at 30 m/s some 54 km. Its channels take 317 MB.
+pub const LONGEST: f64 = 1800.0;
 /// Longest that a wheelset may be beyond the contact table, in s.
 const BEYOND: f64 = 0.2;
 
@@ -33,6 +37,10 @@ pub enum FailureKind {
     Diverged,
     /// A wheelset (1 to 4) was beyond the contact table for long, or far beyond it; displacement in m.
     Derailed { wheelset: usize, displacement: f64 },
+    /// The vehicle is so stiff for its masses, or so light, that a millisecond would have to be divided into so many steps.
+    TooStiff { steps: f64 },
+    /// The run would last so many s.
+    TooLong { seconds: f64 },
     /// The run would have to begin before its start, by so many m.
     TooEarly { by: f64 },
 }
@@ -47,6 +55,13 @@ impl std::fmt::Display for Failure {
                 "wheelset {wheelset} left the contact table {time:.3} s after the start, at {distance:.1} m: displaced by {:.1} mm",
                 displacement * 1e3
             ),
+            FailureKind::TooStiff { steps } => write!(
+                f,
+                "a millisecond would have to be divided into {steps:.0e} steps, more than {MOST_STEPS:.0}: look at masses, inertias and stiffnesses"
+            ),
+            FailureKind::TooLong { seconds } => {
+                write!(f, "the run would last {seconds:.0} s, longer than {LONGEST:.0} s: look at the length of the track and the speed")
+            }
             FailureKind::TooEarly { by } => write!(f, "the record would begin {by:.1} m before the run does"),
         }
     }
@@ -154,7 +169,10 @@ impl<F: FnMut(usize, &State, &Outputs)> Run<'_, F> {
 }
 
 /// Steps per sample that the vehicle needs at its speed.
-#[must_use]
-pub fn steps_per_sample(equations: &Equations<'_>) -> usize {
-    (equations.fastest_rate() * SAMPLE / STABLE).ceil().max(1.0) as usize
+///
+/// # Errors
+/// They are too many to be computed: [`FailureKind::TooStiff`].
+pub fn steps_per_sample(equations: &Equations<'_>) -> Result<usize, FailureKind> {
+    let steps = (equations.fastest_rate() * SAMPLE / STABLE).ceil().max(1.0);
+    if steps <= MOST_STEPS { Ok(steps as usize) } else { Err(FailureKind::TooStiff { steps }) }
 }

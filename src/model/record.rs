@@ -1,7 +1,7 @@
 //! From a run to a record: the recording chain of the reference.
 
 use super::equations::{Equations, Outputs};
-use super::integrate::{Failure, FailureKind, SAMPLE, run, steps_per_sample};
+use super::integrate::{Failure, FailureKind, LONGEST, SAMPLE, run, steps_per_sample};
 use super::parameters::Vehicle;
 use super::profile::Profile;
 use super::track::{Track, TrackTable};
@@ -101,14 +101,19 @@ pub fn simulate_with(setup: &Setup<'_>, window: Window, divided: Option<usize>) 
     if window.from < s0 {
         return Err(Failure { time: 0.0, distance: s0, kind: FailureKind::TooEarly { by: s0 - window.from } });
     }
+    let seconds = (window.to - s0) / setup.speed;
+    if seconds > LONGEST {
+        return Err(Failure { time: 0.0, distance: s0, kind: FailureKind::TooLong { seconds } });
+    }
     let first = first_at(window.from, s0, setup.speed);
     let mut last = first;
     while at(last) < window.to {
         last += DECIMATION;
     }
     let samples = last + 1 + (RUN_OUT / SAMPLE) as usize;
+    let divided = divided.map_or_else(|| steps_per_sample(&equations), Ok);
+    let divided = divided.map_err(|kind| Failure { time: 0.0, distance: s0, kind })?;
     let mut raw = vec![vec![0.0; samples]; CHANNELS.len()];
-    let divided = divided.unwrap_or_else(|| steps_per_sample(&equations));
     run(&equations, &track, equations.at_rest(), s0, samples, divided, |n, _, outputs| {
         for (channel, value) in raw.iter_mut().zip(channels(outputs)) {
             channel[n] = value;

@@ -15,6 +15,8 @@ pub struct Results {
     pub verdict: String,
     pub quantities: Vec<Quantity>,
     pub sections: Vec<Section>,
+    #[serde(default)]
+    pub findings: Vec<crate::result::Finding>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -167,6 +169,6 @@ impl Results {
             let found = found.ok_or_else(|| format!("the result has no quantity `{}`", quantity.id))?;
             values.push(found.values.iter().map(value).collect());
         }
-        Ok(Recorded { vehicle, sections: self.sections.iter().map(section).collect(), values })
+        Ok(Recorded { vehicle, sections: self.sections.iter().map(section).collect(), values, findings: self.findings.clone() })
     }
 }

@@ -142,6 +142,13 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
     Ok(all)
 }
 
+/// A cell that a spreadsheet takes for text or a number: what it would take for a formula gets an apostrophe in front, as spreadsheets
+/// themselves mark text (OWASP, CSV Injection).
+fn inert(cell: &str) -> std::borrow::Cow<'_, str> {
+    let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) && cell.parse::<f64>().is_err();
+    if formula { format!("'{cell}").into() } else { cell.into() }
+}
+
 /// A table as a file of its name.
 ///
 /// # Errors
@@ -150,7 +157,7 @@ pub fn csv_file(name: &str, header: &[&str], rows: Vec<Vec<String>>) -> Result<(
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(header)?;
     for row in rows {
-        writer.write_record(row)?;
+        writer.write_record(row.iter().map(|cell| inert(cell).into_owned()))?;
     }
     let bytes = writer.into_inner().map_err(|error| error.into_error())?;
     Ok((format!("{name}.csv"), bytes))
@@ -185,4 +192,21 @@ fn section_rows(found: &Certification) -> Vec<Vec<String>> {
 /// Full precision; an empty cell where there is no number.
 fn number(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| value.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_cell_is_a_formula() {
+        for formula in ["=1+1", "+A1", "-A1", "@SUM(A1)", "\t=1", "\r=1", "-"] {
+            assert_eq!(inert(formula), format!("'{formula}"));
+        }
+        for plain in ["", "-1.5", "+2", "-1e-3", "1+1", "Y_1R", "a=b"] {
+            assert_eq!(inert(plain), plain);
+        }
+        let (_, bytes) = csv_file("t", &["a"], vec![vec!["=1+1".into()]]).expect("written");
+        assert_eq!(bytes, b"a\n'=1+1\n");
+    }
 }

@@ -84,7 +84,13 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
     let evaluated = prepared.evaluate(&Shifts::NONE, progress)?.swap_remove(0);
     let Evaluated { units, values, findings, notes, files, .. } = &evaluated;
     let judged = judge::judge(plan, &evaluated.facts, units, values, findings);
-    let traces = traces::traces(&prepared.work(), units, &judged.quantities, settings.traces);
+    let (mut traces, mut notes) = (Vec::new(), notes.clone());
+    for trace in traces::traces(&prepared.work(), units, &judged.quantities, settings.traces) {
+        match trace {
+            Ok(trace) => traces.push(trace),
+            Err(note) => notes.push(note),
+        }
+    }
     let domain = domain::domain(plan, units);
     Ok(Outcome {
         verdict: judged.verdict,
@@ -95,7 +101,7 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
         traces,
         vehicle: evaluated.vehicle(plan),
         findings: findings.clone(),
-        notes: notes.clone(),
+        notes,
         files: files.clone(),
         sections: sections::results(plan, evaluated.units),
     })

@@ -382,8 +382,17 @@ fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut Se
     let mut wanted: BTreeSet<NodeId> =
         work.graph.checks.iter().flatten().map(|input| input.node).filter(|&node| work.graph.nodes[node].track).collect();
     wanted.extend(plausibility::wanted(work, known, true));
-    let there = || work.campaign.has(RecordKind::Track) && work.campaign.record_place(RecordKind::Track, &unit.cell).is_ok();
-    let found = if !wanted.is_empty() && there() { side(work, unit, RecordKind::Track, &wanted, known, values)?.0 } else { Vec::new() };
+    let there = || match work.campaign.record_place(RecordKind::Track, &unit.cell) {
+        Ok(_) => Ok(true),
+        // That there is none is said of each check; that it cannot be read is a fault.
+        Err(problem) if problem.code == "file-unreadable" => Err(Fault::new(problem.says)),
+        Err(_) => Ok(false),
+    };
+    let found = if !wanted.is_empty() && work.campaign.has(RecordKind::Track) && there()? {
+        side(work, unit, RecordKind::Track, &wanted, known, values)?.0
+    } else {
+        Vec::new()
+    };
     for (check, inputs) in work.plan.checks.iter().zip(&work.graph.checks) {
         if !inputs.is_empty() && !inputs.iter().all(|input| work.graph.nodes[input.node].track) {
             // Filled in once both records are evaluated.

@@ -9,6 +9,7 @@ use super::sections::Unit;
 use crate::check::evaluate::number;
 use crate::check::plan::{Evaluation, Plan, Scalar};
 use crate::graph::{Graph, NodeId};
+use crate::result::Finding;
 use crate::source::{Source, Spanned};
 
 /// What a result says of the data that rules read. All texts are as results have them, in the units that the protocol declares.
@@ -19,6 +20,8 @@ pub struct Recorded {
     pub sections: Vec<RecordedSection>,
     /// One for each [`Plan::quantities`].
     pub values: Vec<Vec<RecordedValue>>,
+    /// What was not plausible in the records.
+    pub findings: Vec<Finding>,
 }
 
 #[derive(Clone, Debug)]
@@ -98,7 +101,7 @@ pub fn replay(plan: &Plan, recorded: &Recorded) -> Result<Replayed, String> {
     for unit in &mut units {
         unit.faulty = unit.fault.is_some();
     }
-    Ok(Replayed { judged: judge(plan, &facts, &units, &values), contradictions })
+    Ok(Replayed { judged: judge(plan, &facts, &units, &values, &recorded.findings), contradictions })
 }
 
 fn facts(plan: &Plan, recorded: &Recorded) -> Result<Facts, String> {

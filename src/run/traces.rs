@@ -17,7 +17,8 @@ use crate::units::Unit;
 const STRETCHES: usize = 700;
 
 /// The pair with the largest difference of each quantity, measured by its limits; the worst first, each signal of a section once.
-pub fn traces(work: &Work<'_>, units: &[Section], quantities: &[QuantityResult], most: usize) -> Vec<Trace> {
+/// For a plot that cannot be made, a note says why.
+pub fn traces(work: &Work<'_>, units: &[Section], quantities: &[QuantityResult], most: usize) -> Vec<Result<Trace, String>> {
     let mut picks: Vec<(f64, usize, usize, usize)> = Vec::new();
     for (index, quantity) in quantities.iter().enumerate() {
         let limit = quantity.statistics.iter().filter_map(|statistic| statistic.limit).fold(f64::NAN, f64::max);
@@ -34,7 +35,14 @@ pub fn traces(work: &Work<'_>, units: &[Section], quantities: &[QuantityResult],
     let mut shown = BTreeSet::new();
     picks.retain(|(_, index, unit, signal)| shown.insert((work.graph.quantities[*index].signals[*signal].filtered, *unit)));
     picks.truncate(most);
-    picks.par_iter().filter_map(|(_, index, unit, signal)| trace(work, &units[*unit], *index, *signal)).collect()
+    let one = |(_, index, unit, signal): &(f64, usize, usize, usize)| {
+        let unit = &units[*unit];
+        trace(work, unit, *index, *signal).map_err(|why| {
+            let id = &quantities[*index].id;
+            format!("there is no plot of {id} in section {}: {why}", unit.name)
+        })
+    };
+    picks.par_iter().map(one).collect()
 }
 
 /// What a plot runs over: the axis of the records, or the signal that the quantity's metric runs over.
@@ -44,7 +52,7 @@ struct Over {
     unit: Unit,
 }
 
-fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Option<Trace> {
+fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Result<Trace, String> {
     let quantity = &work.plan.quantities[index];
     let nodes = &work.graph.quantities[index].signals[signal];
     let axis = &work.plan.axis;
@@ -59,20 +67,21 @@ fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Option
     let wanted: BTreeSet<NodeId> = [node].into_iter().chain(over.node).collect();
     let known = unit.known(work.facts);
     let curve = |kind: RecordKind| {
-        let needed = needed(work.graph, &wanted, &known).ok()?;
-        let opened = open(work, unit, kind, &needed).ok()?;
-        let found = opened.evaluate(work.graph, &needed, &wanted, &known, work.plan.sections.percentiles).ok()?;
+        let needed = needed(work.graph, &wanted, &known)?;
+        let opened = open(work, unit, kind, &needed).map_err(|fault| fault.says)?;
+        let found = opened.evaluate(work.graph, &needed, &wanted, &known, work.plan.sections.percentiles)?;
         let of = |node: NodeId| {
             found
                 .iter()
                 .find_map(|(id, found)| if let (true, Found::Samples(samples)) = (*id == node, found) { Some(samples) } else { None })
         };
-        let samples = of(node)?;
+        let none = || "the signal has no samples".to_string();
+        let samples = of(node).ok_or_else(none)?;
         let x: &[f64] = match over.node {
-            Some(node) => &of(node)?.values,
+            Some(node) => &of(node).ok_or_else(none)?.values,
             None => &samples.along.axis,
         };
-        Some((thinned(samples, x, &quantity.signal_unit, &over.unit), opened.extent))
+        Ok::<_, String>((thinned(samples, x, &quantity.signal_unit, &over.unit), opened.extent))
     };
     let (measured, extent) = curve(RecordKind::Measurement)?;
     let (simulated, _) = curve(RecordKind::Simulation)?;
@@ -80,7 +89,7 @@ fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Option
         None => (over.unit.from_si(extent.0), over.unit.from_si(extent.1)),
         Some(_) => measured.x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x))),
     };
-    Some(Trace {
+    Ok(Trace {
         quantity: quantity.id.clone(),
         section: unit.name.clone(),
         zone: unit.zone.clone(),

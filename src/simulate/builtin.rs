@@ -6,6 +6,7 @@ use super::{Simulator, Task};
 use crate::data::record::{Record, Wanted, read_record};
 use crate::data::table::Cell;
 use crate::data::{Campaign, RecordKind};
+use crate::disk;
 use crate::effects::{Channel, Signals};
 use crate::model::{self, CHANNELS, PARAMETERS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, VehicleFault, Window};
 use crate::problem::{Problem, Problems};
@@ -47,7 +48,7 @@ impl<'a> Builtin<'a> {
             campaign.place(&written.unwrap_or_else(|| Spanned::new(default.to_string(), campaign.tree.span.part(0..0))))
         };
         let read = |key: &str, default: &str, needed: bool, problems: &mut Problems| match place(key, default) {
-            Ok(place) if place.path.is_file() || needed => profile(&place.path, &place.shown, problems),
+            Ok(place) if needed || disk::may_be_file(&place.path) => profile(&place.path, &place.shown, problems),
             Ok(_) => None,
             Err(problem) => {
                 problems.push(problem);
@@ -209,7 +210,7 @@ pub fn single(
     let vehicle = vehicle(tree, &mut problems);
     let (new, worn) = (beside("profile.file", "profile.csv"), beside("profile.worn_file", "profile_worn.csv"));
     let new = profile(&new, &new.display().to_string(), &mut problems);
-    let worn = worn.is_file().then(|| profile(&worn, &worn.display().to_string(), &mut problems)).flatten();
+    let worn = disk::may_be_file(&worn).then(|| profile(&worn, &worn.display().to_string(), &mut problems)).flatten();
     let track = read_track(track_file, &track_file.display().to_string());
     let (Some(mut vehicle), Some(new), Ok(track)) = (vehicle, new, track.map_err(|problem| problems.push(problem))) else {
         return Err(problems);

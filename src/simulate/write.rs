@@ -1,14 +1,18 @@
 //! A simulated campaign as a folder.
 
-use std::path::Path;
-
 use crate::data::write::{Entry, Outputs, campaign_yaml};
 use crate::data::{Campaign, RecordKind};
 use crate::problem::Problem;
 
 /// A campaign like another, with other simulated records. Everything that the other has is copied beside them.
-pub fn write_campaign(out: &Path, campaign: &Campaign, records: impl Iterator<Item = (impl AsRef<str>, String)>) -> Result<(), Problem> {
-    let mut outputs = Outputs::new(out);
+///
+/// # Errors
+/// Of reading the other, and of writing; nothing is in its place before [`Outputs::commit`].
+pub fn write_campaign(
+    outputs: &mut Outputs,
+    campaign: &Campaign,
+    records: impl Iterator<Item = (impl AsRef<str>, String)>,
+) -> Result<(), Problem> {
     for (name, text) in records {
         outputs.add(&format!("simulation/{}.csv", name.as_ref()), text.as_bytes())?;
     }
@@ -20,5 +24,5 @@ pub fn write_campaign(out: &Path, campaign: &Campaign, records: impl Iterator<It
     for (inside, bytes) in campaign.other_files(RecordKind::Simulation)? {
         outputs.add(&inside, &bytes)?;
     }
-    outputs.commit()
+    Ok(())
 }

@@ -53,7 +53,11 @@ pub fn certify(campaign: &Path, more: &[&str]) -> Certified {
     let ran = ran(program().arg("certify").arg(campaign).arg("--out").arg(&folder).args(more));
     let found = Certified { ran, out };
     let left = files(found.out.path());
-    assert!(!left.iter().any(|path| path.to_string_lossy().contains(".fishplate-")), "half-written files: {left:?}");
+    let half = [".fishplate-new", ".fishplate-unfinished", ".tmp"].map(std::ffi::OsStr::new);
+    let below = |path: &PathBuf| path.strip_prefix(found.out.path()).map(Path::to_path_buf).unwrap_or_default();
+    let half_written =
+        |path: &PathBuf| below(path).iter().any(|part| half.contains(&part) || Path::new(part).extension() == Some("tmp".as_ref()));
+    assert!(!left.iter().any(half_written), "half-written files: {left:?}");
     if found.ran.code >= 2 {
         assert!(!found.out.path().join("new").exists(), "something was written: {left:?}\n{}", found.ran.stderr);
     } else {

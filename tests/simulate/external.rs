@@ -208,6 +208,46 @@ mod programs {
         assert!(!cfg!(target_os = "linux") || (0..100).any(gone), "the child {child} goes on");
     }
 
+    /// What left the group of the program is ended, too.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn time_out_of_what_is_in_a_session_of_its_own() {
+        if !std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()).any(|folder| folder.join("setsid").is_file()) {
+            println!("skipped: there is no setsid");
+            return;
+        }
+        let command = r#"[sh, -c, 'setsid sh -c "echo \$\$ > child; exec sleep 300" & sleep 300', '{out}']"#;
+        let place = place(command, "timeout: 1 s\n");
+        fails(&place, &["simulator-timeout"]);
+        let child = place.text("child").trim().to_string();
+        let gone = |_| {
+            let state = fs::read_to_string(format!("/proc/{child}/stat"));
+            let gone = state.map_or(true, |state| state.contains(") Z "));
+            std::thread::sleep(std::time::Duration::from_millis(if gone { 0 } else { 50 }));
+            gone
+        };
+        assert!(!child.is_empty() && (0..100).any(gone), "the child {child} goes on");
+    }
+
+    /// An entry of the cache that was changed is told, and its record made anew.
+    #[test]
+    fn a_damaged_cache() {
+        let place = twin();
+        let effects = ["--effect", "friction=0.5"];
+        place.simulated("first", &arguments(&effects));
+        let kept = files(&place.path("cache"));
+        let entry = kept.iter().find(|path| path.extension().is_some_and(|extension| extension == "csv")).expect("kept").clone();
+        let text = fs::read_to_string(&entry).expect("there");
+        fs::write(&entry, text.replacen('1', "2", 1)).expect("written");
+        let ran = place.simulated("second", &arguments(&effects));
+        assert!(ran.stderr.contains("warning[cache-damaged]"), "{}", ran.stderr);
+        assert_eq!(fs::read_to_string(&entry).expect("there"), text);
+        for section in SECTIONS {
+            let record = |out: &str| place.text(&format!("{out}/simulation/{section}.csv"));
+            assert_eq!(record("first"), record("second"), "{section}");
+        }
+    }
+
     #[test]
     fn exit_code_and_last_words() {
         let command = "[sh, -c, 'for n in 1 2 3 4 5 6 7 8 9 10 11 12; do echo line $n >&2; done; exit 7', '{out}']";

@@ -23,6 +23,30 @@ impl Line<'_> {
     }
 }
 
+/// Rows before the last one that say how many decimals its last number should have.
+const BEFORE: usize = 8;
+
+/// A file that was cut off inside its last number: there is no line break at its end, and the number has fewer decimals than those above
+/// it, which all have the same. Where their number varies, nothing can be told.
+pub(super) fn cut_number(rows: &str, ended: bool, line: usize, shown: &str, faults: &mut Faults<'_>) {
+    let mut lines = rows.rsplit('\n').take(1 + BEFORE);
+    let (false, Some(last)) = (ended, lines.next()) else { return };
+    let decimals = |line: &str| {
+        let cell = line.trim_end_matches('\r').rsplit(',').next().unwrap_or_default().trim();
+        if cell.contains(['e', 'E', '"']) { None } else { Some(cell.split_once('.').map_or(0, |(_, decimals)| decimals.len())) }
+    };
+    let before: Vec<Option<usize>> = lines.map(decimals).collect();
+    let (Some(&Some(usual)), Some(found)) = (before.first(), decimals(last)) else { return };
+    if before.len() == BEFORE && before.iter().all(|count| *count == Some(usual)) && found < usual {
+        let start = last.rfind(',').map_or(0, |comma| comma + 1);
+        faults.push(|| {
+            let says = format!("the file ends without a line break, in a number with {found} decimals where the rows above have {usual}");
+            let at = Source::excerpt(shown, last, line).span(start..last.len());
+            Problem::error("truncated-row", says).at(&at).help("the file may have been cut off; export or copy it again")
+        });
+    }
+}
+
 /// Reads a row that holds quotes or blanks, or finds what is wrong with it. Columns may end with different lengths if there is a fault.
 pub(super) fn slow_row(line: &Line<'_>, width: usize, sinks: &mut [Sink], faults: &mut Faults<'_>) {
     if line.text.trim().is_empty() {

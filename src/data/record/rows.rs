@@ -2,6 +2,7 @@
 
 use super::{Column, fault, marks::Marks, number};
 use crate::data::faults::Faults;
+use crate::data::text::{LONGEST_LINE, long_line};
 use crate::problem::Problem;
 
 /// Rows reserved for before the first is read are bounded by what a row of one-digit numbers takes.
@@ -27,7 +28,7 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
     let mut at = start;
     // Blank lines at the end are no rows.
     let end_of_rows = start + text[start..].trim_end().len();
-    while at < end_of_rows {
+    'file: while at < end_of_rows {
         let stretch = at;
         marks.find(bytes, stretch);
         let mut cells = marks.after();
@@ -46,6 +47,10 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
                 // Cut off by the end of the stretch: the next one begins with it.
                 break;
             }
+            if end - at > LONGEST_LINE {
+                faults.push(|| long_line(&bytes[at..end], rows + 2, shown));
+                break 'file;
+            }
             let line = fault::Line { text: text[at..end].trim_end_matches('\r'), number: rows + 2, last: end == bytes.len(), shown };
             // A faulty row still counts, so that the rows after it keep their numbers.
             fault::slow_row(&line, width, &mut sinks, &mut faults);
@@ -53,6 +58,9 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
             at = end + 1;
             cells = &cells[cells.partition_point(|mark| *mark < at)..];
         }
+    }
+    if faults.is_empty() && rows > 0 {
+        fault::cut_number(&text[start..end_of_rows], text.len() > end_of_rows, rows + 1, shown, &mut faults);
     }
     if rows == 0 {
         faults.push(|| Problem::error("no-rows", format!("`{shown}` has a header and no samples")));

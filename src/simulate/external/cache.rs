@@ -1,16 +1,24 @@
 //! Records that were made before, by what they were made from.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 
 use crate::data::hash::sha256;
-use crate::data::write::write_whole;
+use crate::data::text::LARGEST_RECORD;
+use crate::data::write::keep;
+use crate::disk;
 use crate::problem::Problem;
 
 /// Where records of other simulators are kept between runs; or nowhere.
 #[derive(Clone, Debug, Default)]
 pub struct Cache {
     folder: Option<PathBuf>,
+    /// Entries that are not what was kept.
+    damaged: Arc<Mutex<Vec<PathBuf>>>,
 }
+
+/// What a line at the end of an entry begins with; the checksum of the key and the record follows.
+const SEAL: &str = "# fishplate record, SHA-256 ";
 
 impl Cache {
     /// A cache in a folder, which is made.
@@ -19,15 +27,15 @@ impl Cache {
     /// `write-failed`: it cannot be made.
     pub fn at(folder: &Path) -> Result<Self, Problem> {
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
-        std::fs::create_dir_all(&folder)
+        disk::make_folder(&folder)
             .map_err(|error| Problem::error("write-failed", format!("the cache `{}` cannot be made: {error}", folder.display())))?;
-        Ok(Self { folder: Some(folder) })
+        Ok(Self { folder: Some(folder), damaged: Arc::default() })
     }
 
     /// Keeps nothing.
     #[must_use]
     pub fn none() -> Self {
-        Self { folder: None }
+        Self::default()
     }
 
     /// The cache that is used unless another is named: `fishplate-cache` in the system's folder for temporary files.
@@ -37,26 +45,69 @@ impl Cache {
     pub fn temporary() -> Result<Self, Problem> {
         let cache = Self::at(&std::env::temp_dir().join("fishplate-cache"))?;
         #[cfg(unix)]
-        if let Some(folder) = &cache.folder {
-            use std::os::unix::fs::MetadataExt;
-            let owner = std::fs::metadata(folder).map(|meta| meta.uid());
-            if owner.is_ok_and(|owner| owner != rustix::process::getuid().as_raw()) {
-                let says = format!("the cache `{}` belongs to another user", folder.display());
-                return Err(Problem::error("write-failed", says).help("name a folder with `--cache DIR`, or keep none with `--no-cache`"));
-            }
+        if let Some(folder) = &cache.folder
+            && !disk::owner(folder).is_ok_and(|owner| owner == rustix::process::getuid().as_raw())
+        {
+            let says = format!("the cache `{}` belongs to another user", folder.display());
+            return Err(Problem::error("write-failed", says).help("name a folder with `--cache DIR`, or keep none with `--no-cache`"));
         }
         Ok(cache)
     }
 
     /// The file of a key, whether it is there or not.
-    pub(super) fn file(&self, key: &str) -> Option<PathBuf> {
+    fn file(&self, key: &str) -> Option<PathBuf> {
         Some(self.folder.as_ref()?.join(key.get(..2)?).join(format!("{key}.csv")))
+    }
+
+    /// The record of a key as it was kept; nothing if there is none, or if what is there is not that.
+    pub(super) fn get(&self, key: &str) -> Option<Vec<u8>> {
+        let path = self.file(key)?;
+        let bytes = match disk::kind(&path) {
+            Ok(None) => return None,
+            Ok(Some(_)) => disk::read(&path, LARGEST_RECORD).ok(),
+            Err(_) => None,
+        };
+        let record = bytes.and_then(|bytes| {
+            let end = memchr::memmem::rfind(&bytes, SEAL.as_bytes())?;
+            let found = bytes[end + SEAL.len()..].trim_ascii_end() == seal(key, &bytes[..end]).as_bytes();
+            found.then(|| bytes[..end].to_vec())
+        });
+        if record.is_none() {
+            self.is_damaged(key);
+        }
+        record
+    }
+
+    /// Notes that the entry of a key cannot be used.
+    pub(super) fn is_damaged(&self, key: &str) {
+        if let (Some(path), Ok(mut damaged)) = (self.file(key), self.damaged.lock()) {
+            damaged.push(path);
+        }
+    }
+
+    /// A warning of entries that were not what was kept; their records were made anew.
+    pub(super) fn warning(&self) -> Option<Problem> {
+        let mut damaged = self.damaged.lock().ok()?;
+        let first = damaged.iter().min()?.display().to_string();
+        let says = match damaged.len() {
+            1 => format!("the cache entry `{first}` is damaged; its record was made anew"),
+            count => format!("{count} cache entries are damaged, `{first}` among them; their records were made anew"),
+        };
+        damaged.clear();
+        Some(Problem::warning("cache-damaged", says))
     }
 
     /// Keeps a record, whole or not at all.
     pub(super) fn keep(&self, key: &str, bytes: &[u8]) -> Result<(), Problem> {
-        self.file(key).map_or(Ok(()), |path| write_whole(&path, bytes))
+        let Some(path) = self.file(key) else { return Ok(()) };
+        let sealed = [bytes, SEAL.as_bytes(), seal(key, bytes).as_bytes(), b"\n"].concat();
+        keep(&path, &sealed)
     }
+}
+
+/// Ties a record to the key that it is kept under: one that was exchanged for another is seen, too.
+fn seal(key: &str, bytes: &[u8]) -> String {
+    sha256(&[key.as_bytes(), b"\n", bytes].concat())
 }
 
 /// What a record depends on, gathered into a key.
@@ -76,7 +127,7 @@ impl Key {
     /// # Errors
     /// `file-unreadable`.
     pub fn add_file(&mut self, what: &str, path: &Path) -> Result<(), Problem> {
-        let bytes = std::fs::read(path)
+        let bytes = disk::read(path, LARGEST_RECORD)
             .map_err(|error| Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", path.display())))?;
         self.add(what, &sha256(&bytes));
         Ok(())
@@ -85,5 +136,65 @@ impl Key {
     /// 64 hexadecimal digits.
     pub fn finish(&self) -> String {
         sha256(self.text.as_bytes())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_entry_is_what_was_kept_or_nothing() {
+        let temp = tempfile::tempdir().expect("a temporary folder");
+        let cache = Cache::at(temp.path()).expect("made");
+        let keys = ["aa".repeat(32), "ab".repeat(32)];
+        assert_eq!((cache.get(&keys[0]), cache.warning()), (None, None));
+        for key in &keys {
+            cache.keep(key, format!("record of {key}\n").as_bytes()).expect("kept");
+            assert_eq!(cache.get(key), Some(format!("record of {key}\n").into_bytes()));
+        }
+        assert_eq!(cache.warning(), None);
+        let paths = keys.each_ref().map(|key| cache.file(key).expect("a path"));
+        let first = std::fs::read(&paths[0]).expect("read");
+
+        // Every byte changed, and every length but the whole.
+        for at in 0..first.len() - 1 {
+            let mut bytes = first.clone();
+            bytes[at] ^= 1;
+            std::fs::write(&paths[0], &bytes).expect("written");
+            assert_eq!(cache.get(&keys[0]), None, "byte {at}");
+            std::fs::write(&paths[0], &first[..at]).expect("written");
+            assert_eq!(cache.get(&keys[0]), None, "{at} bytes");
+        }
+        // Another record, itself whole.
+        std::fs::copy(&paths[1], &paths[0]).expect("copied");
+        assert_eq!(cache.get(&keys[0]), None);
+        let warning = cache.warning().expect("told");
+        assert!(warning.code == "cache-damaged" && warning.says.contains("cache entries are damaged"), "{}", warning.says);
+        assert_eq!(cache.warning(), None);
+    }
+
+    /// What would wait for ever, or has no end.
+    #[cfg(unix)]
+    #[test]
+    fn only_plain_files_are_read() {
+        let temp = tempfile::tempdir().expect("a temporary folder");
+        let cache = Cache::at(temp.path()).expect("made");
+        let key = "aa".repeat(32);
+        let path = cache.file(&key).expect("a path");
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        std::os::unix::fs::symlink("/dev/zero", &path).expect("linked");
+        assert_eq!(cache.get(&key), None);
+        assert!(cache.warning().is_some());
+        std::fs::remove_file(&path).expect("removed");
+        let made = std::process::Command::new("mkfifo").arg(&path).status().expect("mkfifo runs");
+        assert!(made.success());
+        assert_eq!(cache.get(&key), None);
+        cache.keep(&key, b"x").expect("takes the place of the pipe");
+        assert_eq!(cache.get(&key), Some(b"x".to_vec()));
+        std::fs::remove_file(&path).expect("removed");
+        std::fs::create_dir(&path).expect("made");
+        assert_eq!(cache.get(&key), None);
+        assert!(cache.keep(&key, b"x").is_err());
     }
 }

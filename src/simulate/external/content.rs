@@ -6,6 +6,7 @@ use super::cache::Key;
 use super::read::Program;
 use super::words::Word;
 use crate::data::Campaign;
+use crate::disk;
 use crate::problem::Problem;
 use crate::source::Spanned;
 
@@ -21,7 +22,8 @@ pub(super) fn vehicle_file(campaign: &Campaign) -> Result<Option<PathBuf>, Probl
 pub(super) fn basis(campaign: &Campaign, program: &Program, vehicle: Option<&Path>) -> Result<Key, Problem> {
     let mut key = Key::default();
     key.add("simulator", &program.source.text);
-    for file in program.command.iter().filter_map(Word::plain).map(|word| program.folder.join(word)).filter(|path| path.is_file()) {
+    for file in program.command.iter().filter_map(Word::plain).map(|word| program.folder.join(word)).filter(|path| disk::may_be_file(path))
+    {
         key.add_file("program", &file)?;
     }
     for file in &program.inputs {

@@ -4,6 +4,7 @@ mod cache;
 mod content;
 mod process;
 mod read;
+mod started;
 mod words;
 
 use std::fmt::Display;
@@ -18,7 +19,9 @@ use super::campaign::{Units, in_units, read_signals, recorded};
 use super::compare::{Deviation, deviations};
 use super::{Section, Simulator, Task};
 use crate::data::record::read_headings;
+use crate::data::text::LARGEST_RECORD;
 use crate::data::{Campaign, Heading, RecordKind};
+use crate::disk;
 use crate::effects::Signals;
 use crate::problem::Problem;
 use crate::source::Source;
@@ -195,11 +198,26 @@ impl<'a> External<'a> {
         Ok(signals)
     }
 
+    /// A record that was kept.
+    fn read_kept(&self, bytes: &[u8], section: &Section) -> Result<Signals, Problem> {
+        let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be made: {error}"));
+        let folder = disk::scratch().map_err(failed)?;
+        let file = folder.path().join("record.csv");
+        crate::data::write::keep(&file, bytes)?;
+        self.read(&file, section)
+    }
+
+    /// What is wrong with the cache, and mended.
+    #[must_use]
+    pub fn warning(&self) -> Option<Problem> {
+        self.cache.warning()
+    }
+
     /// One call and its record as written.
     fn call(&self, task: &Task<'_>) -> Result<(Signals, Vec<u8>), Problem> {
         let section = task.section;
-        let disk = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be made: {error}"));
-        let folder = tempfile::Builder::new().prefix("fishplate-").tempdir().map_err(disk)?;
+        let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be made: {error}"));
+        let folder = disk::scratch().map_err(failed)?;
         let out = folder.path().join("record.csv");
         let words = self.filled(task, &out)?;
         let executable = self.program.executable();
@@ -212,7 +230,7 @@ impl<'a> External<'a> {
         };
         self.calls.fetch_add(1, Ordering::Relaxed);
         process::run(&call).map_err(|fault| self.failed(&fault, &words, section))?;
-        if !out.is_file() {
+        if !disk::may_be_file(&out) {
             let says = format!("section `{}`: {} ended well and wrote no record", section.name(), self.program.name);
             let problem = Problem::error("simulator-output", says).at(&section.cell.span);
             return Err(problem.help(format!("the command was: {}", words.join(" "))));
@@ -222,7 +240,8 @@ impl<'a> External<'a> {
             let help = problem.help.clone().unwrap_or_else(|| format!("the command was: {}", words.join(" ")));
             Problem { says, ..problem }.help(help)
         })?;
-        let bytes = std::fs::read(&out).map_err(|error| Problem::error("file-unreadable", format!("the record: {error}")))?;
+        let bytes = disk::read(&out, LARGEST_RECORD)
+            .map_err(|error| Problem::error("file-unreadable", format!("the record cannot be read: {error}")))?;
         Ok((signals, bytes))
     }
 
@@ -262,10 +281,12 @@ impl Simulator for External<'_> {
         self.filled(task, Path::new(""))?;
         let key = self.key(task)?;
         // A record in the cache that cannot be read is made anew.
-        let kept = self.cache.file(&key).filter(|file| file.is_file());
-        if let Some(Ok(signals)) = kept.map(|file| self.read(&file, task.section)) {
-            self.found.fetch_add(1, Ordering::Relaxed);
-            return Ok(signals);
+        if let Some(bytes) = self.cache.get(&key) {
+            if let Ok(signals) = self.read_kept(&bytes, task.section) {
+                self.found.fetch_add(1, Ordering::Relaxed);
+                return Ok(signals);
+            }
+            self.cache.is_damaged(&key);
         }
         let mut tries = 0;
         loop {

@@ -6,6 +6,9 @@ use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
+use super::started::{self, Mark};
+use crate::disk;
+
 /// A call to be made.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'a> {
@@ -39,17 +42,19 @@ const LONGEST_PAUSE: Duration = Duration::from_millis(50);
 /// # Errors
 /// See [`Fault`].
 pub fn run(call: &Call<'_>) -> Result<(), Fault> {
-    let mut error = tempfile::tempfile().map_err(Fault::NotStarted)?;
-    let mut output = tempfile::tempfile().map_err(Fault::NotStarted)?;
+    let mut error = disk::scratch_file().map_err(Fault::NotStarted)?;
+    let mut output = disk::scratch_file().map_err(Fault::NotStarted)?;
     let to = |file: &File| file.try_clone().map(Stdio::from).map_err(Fault::NotStarted);
     let mut command = Command::new(call.program);
     command.args(call.arguments).current_dir(call.folder).stdin(Stdio::null()).stdout(to(&output)?).stderr(to(&error)?);
     command.envs(call.environment.iter().map(|(name, value)| (name, value)));
+    let mark = Mark::new();
+    command.env(started::NAME, mark.value());
     // A group of its own, so that what it starts ends with it.
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
     let mut child = command.spawn().map_err(Fault::NotStarted)?;
-    let status = wait(&mut child, call.timeout);
+    let status = wait(&mut child, call.timeout, &mark);
     let mut said = || {
         let said = last_lines(&mut error);
         if said.is_empty() { last_lines(&mut output) } else { said }
@@ -63,7 +68,7 @@ pub fn run(call: &Call<'_>) -> Result<(), Fault> {
 }
 
 /// How the child ended; `None` if it was ended here.
-fn wait(child: &mut Child, timeout: Duration) -> std::io::Result<Option<ExitStatus>> {
+fn wait(child: &mut Child, timeout: Duration, mark: &Mark) -> std::io::Result<Option<ExitStatus>> {
     let started = Instant::now();
     let mut pause = FIRST_LOOK;
     loop {
@@ -71,13 +76,13 @@ fn wait(child: &mut Child, timeout: Duration) -> std::io::Result<Option<ExitStat
             Ok(Some(status)) => return Ok(Some(status)),
             Ok(None) => {}
             Err(error) => {
-                end(child);
+                end(child, mark);
                 return Err(error);
             }
         }
         let left = timeout.saturating_sub(started.elapsed());
         if left.is_zero() {
-            end(child);
+            end(child, mark);
             return Ok(None);
         }
         std::thread::sleep(pause.min(left));
@@ -85,13 +90,14 @@ fn wait(child: &mut Child, timeout: Duration) -> std::io::Result<Option<ExitStat
     }
 }
 
-/// Ends a child and its group, and waits until it is gone.
-fn end(child: &mut Child) {
+/// Ends a child, its group and what left that group, and waits until the child is gone.
+fn end(child: &mut Child, mark: &Mark) {
     #[cfg(unix)]
     if let Some(group) = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw) {
         let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
     }
     let _ = child.kill();
+    started::end(mark);
     let _ = child.wait();
 }
 

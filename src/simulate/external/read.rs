@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::words::{Hole, Word};
+use crate::disk;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span};
 use crate::units::{Dimension, Unit};
@@ -236,7 +237,7 @@ impl Reader<'_> {
     fn inputs(&mut self, node: &Node) -> Vec<PathBuf> {
         let texts = self.texts(node, "inputs");
         let paths: Vec<PathBuf> = texts.iter().map(|text| self.folder.join(text)).collect();
-        for (text, _) in texts.iter().zip(&paths).filter(|(_, path)| !path.is_file()) {
+        for (text, _) in texts.iter().zip(&paths).filter(|(_, path)| !disk::may_be_file(path)) {
             self.fault("file-missing", format!("there is no file `{text}` beside this one"), &node.span);
         }
         paths
@@ -260,7 +261,7 @@ impl Reader<'_> {
             return self.fault("wrong-kind", "the first word is the program, without placeholders", &place.span);
         };
         if name.contains(['/', '\\']) {
-            if !self.folder.join(name).is_file() {
+            if !disk::may_be_file(&self.folder.join(name)) {
                 self.fault("no-such-program", format!("there is no program `{name}`, seen from the folder of this file"), &place.span);
             }
         } else if !on_path(name) {
@@ -273,5 +274,5 @@ impl Reader<'_> {
 fn on_path(name: &str) -> bool {
     let folders = std::env::var_os("PATH").unwrap_or_default();
     let endings: &[&str] = if cfg!(windows) { &["", ".exe", ".bat", ".cmd"] } else { &[""] };
-    std::env::split_paths(&folders).any(|folder| endings.iter().any(|ending| folder.join(format!("{name}{ending}")).is_file()))
+    std::env::split_paths(&folders).any(|folder| endings.iter().any(|ending| disk::may_be_file(&folder.join(format!("{name}{ending}")))))
 }

@@ -1,0 +1,65 @@
+//! What a set of files replaces: written before the commit point, read where a run was ended after it.
+
+use std::io;
+use std::path::{Component, Path};
+
+/// The name of the journal beside the files of a set that are not in their places.
+pub const JOURNAL: &str = "journal";
+/// First line: the form, so that another version knows what it cannot read.
+const HEAD: &str = "fishplate set 1";
+
+/// What a set puts into its folder and takes away. Paths are plain paths inside the folder, with `/`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Journal {
+    /// In the order of their numbers, which name the files until they are in place.
+    pub installs: Vec<String>,
+    pub removes: Vec<String>,
+}
+
+impl Journal {
+    pub fn text(&self) -> String {
+        let lines = |what: &str, paths: &[String]| paths.iter().map(|path| format!("{what} {path}\n")).collect::<String>();
+        format!("{HEAD}\n{}{}end\n", lines("put", &self.installs), lines("remove", &self.removes))
+    }
+
+    pub fn read(text: &str) -> io::Result<Self> {
+        let wrong = || io::Error::new(io::ErrorKind::InvalidData, "its journal cannot be read");
+        let mut journal = Self::default();
+        let mut lines = text.lines();
+        if lines.next() != Some(HEAD) {
+            return Err(wrong());
+        }
+        for line in lines {
+            match line.split_once(' ') {
+                Some(("put", path)) if plain(path) => journal.installs.push(path.to_string()),
+                Some(("remove", path)) if plain(path) => journal.removes.push(path.to_string()),
+                None if line == "end" => return Ok(journal),
+                _ => break,
+            }
+        }
+        Err(wrong())
+    }
+}
+
+/// Whether a path stays inside the folder it is joined to, and fits a line.
+pub fn plain(path: &str) -> bool {
+    let parts = Path::new(path).components();
+    !path.is_empty() && !path.contains(['\n', '\r', '\0']) && parts.into_iter().all(|part| matches!(part, Component::Normal(_)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_and_nothing_less() {
+        let journal = Journal { installs: vec!["a b.csv".into(), "t/x".into()], removes: vec!["old".into()] };
+        let text = journal.text();
+        assert_eq!(Journal::read(&text).ok(), Some(journal));
+        for cut in 0..text.len() - 1 {
+            assert!(Journal::read(&text[..cut]).is_err(), "{}", &text[..cut]);
+        }
+        assert!(Journal::read(&text.replace("put t/x", "put ../x")).is_err());
+        assert!(Journal::read(&text.replace("set 1", "set 2")).is_err());
+    }
+}
