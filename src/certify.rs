@@ -6,10 +6,14 @@ use crate::check::plan::{DatumKind, Parameter, Plan, Scalar, SetBy};
 use crate::check::{self, Overrides, diff, family::Family};
 use crate::data::Campaign;
 use crate::data::campaign::Fact;
+use crate::data::identification::Stated;
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
-use crate::result::{CampaignInfo, Certification, DataItem, FileHash, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo};
+use crate::result::{
+    CampaignInfo, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo, ReportItem,
+};
 use crate::run::{self, Progress, Settings};
+use crate::syntax::document::Block;
 use crate::yaml::{Node, Value};
 
 /// A protocol checked and compiled, ready to run.
@@ -84,6 +88,7 @@ pub fn campaign_info(plan: &Plan, campaign: &Campaign, records: Vec<FileHash>, v
         files,
         vehicle: vehicle_items(plan, campaign, vehicle),
         facts: campaign.facts.iter().map(fact_item).collect(),
+        report: campaign.report.iter().map(report_item).collect(),
     }
 }
 
@@ -120,9 +125,20 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
                 source: filter.source.clone(),
             })
             .collect(),
+        channels: family.merged.blocks.iter().filter(|block| block.kind.text == "channel").map(channel_info).collect(),
         graph_nodes: graph.nodes.len(),
         graph_svg: graph::svg(graph),
         verdict_rule: plan.verdict.words.clone(),
+    }
+}
+
+fn channel_info(block: &Block) -> ChannelInfo {
+    let notes: Vec<&str> = block.fields_named("note").map(|field| field.value.text.as_str()).collect();
+    ChannelInfo {
+        name: block.name_text().to_string(),
+        title: block.title.as_ref().map_or_else(String::new, |title| title.text.clone()),
+        unit: block.field("in").map_or_else(String::new, |field| field.value.text.clone()),
+        note: notes.join(" "),
     }
 }
 
@@ -138,6 +154,15 @@ fn parameter_info(parameter: &Parameter) -> ParameterInfo {
         value: parameter.value.clone(),
         default: parameter.default.clone(),
         set_by: set_by.into(),
+    }
+}
+
+fn report_item((field, value): &Stated) -> ReportItem {
+    ReportItem {
+        path: field.group.into_iter().chain([field.key]).map(str::to_string).collect(),
+        title: field.title.into(),
+        clause: field.clause.map(str::to_string),
+        value: value.clone(),
     }
 }
 

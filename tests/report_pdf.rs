@@ -124,7 +124,34 @@ fn an_archive_can_keep_it() {
     for word in ["pdfaid:part", "pdfaid:conformance", "pdfuaid:part", "/StructTreeRoot", "/Lang", "/Outlines"] {
         assert!(holds(&pdf.bytes, word), "{word} is missing");
     }
-    assert!(holds(&pdf.bytes, "2000-01-01T00:00:00"), "the date is the constant");
+    assert!(holds(&pdf.bytes, "2023-06-30T00:00:00"), "the date is that of issue");
+}
+
+#[test]
+fn a_report_without_a_date_of_issue_bears_none() {
+    let mut found = certification::certification();
+    found.campaign.report.clear();
+    let pdf = rendered(&found);
+    for word in ["ModDate", "CreationDate", "xmp:CreateDate", "xmp:ModifyDate", "stEvt:when", "0001-01-01"] {
+        assert!(!holds(&pdf.bytes, word), "{word}");
+    }
+    assert!(pdf.pages > 30 && holds(&pdf.bytes, "AFRelationship"));
+    let Some(info) = poppler("pdfinfo", &[], &pdf) else { return };
+    let info = String::from_utf8_lossy(&info);
+    assert!(info.contains("Tagged") && !info.contains("CreationDate"), "{info}");
+    let Some(attached) = poppler("pdfdetach", &["-save", "1", "-o", "/dev/stdout"], &pdf) else { return };
+    assert_eq!(attached, RESULTS, "the file is whole");
+}
+
+#[test]
+fn what_a_report_is_known_by_stands_in_it() {
+    let Some(text) = text(full()) else { return };
+    for word in
+        ["Identification of the report", "ISO/IEC 17025:2017", "Report R-2023-17, revision B", "not stated", "Notation", "page 2 of"]
+    {
+        assert!(text.contains(word), "`{word}` is missing");
+    }
+    assert!(text.contains("continued"), "tables that reach over pages say so");
 }
 
 #[test]

@@ -150,7 +150,7 @@ fn summary(found: &Certification, console: &Console) -> String {
     let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
     out += &format!(
         "{:width$}  {:>8}  {:<26} {:>5}  {:>12}  {:>12}  {:>8}\n",
-        "quantity", "unit", "statistic", "n", "value", "limit", "share"
+        "quantity", "unit", "statistic", "n", "value", "limit", "|v|/limit"
     );
     for quantity in &found.quantities {
         for (index, statistic) in quantity.statistics.iter().enumerate() {
@@ -158,8 +158,8 @@ fn summary(found: &Certification, console: &Console) -> String {
             let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
             let show = |value: Option<f64>| value.map_or("-".to_string(), |value| number::significant(value, 4));
             let verdict = match statistic.holds {
-                Some(true) => "holds",
-                Some(false) => "EXCEEDS",
+                Some(true) => "met",
+                Some(false) => "NOT MET",
                 None => "not assessable",
             };
             let unit = if index == 0 { quantity.unit.as_str() } else { "" };

@@ -253,23 +253,23 @@ fn summary(diagnosis: &Diagnosis) -> String {
     for line in &diagnosis.says {
         let _ = writeln!(out, "  {line}");
     }
-    out += "\nWhere:\n";
+    out += "\nLocation of the gap:\n";
     for place in diagnosis.r#where.iter().take(6) {
         let mark = if place.significant { "" } else { "  (not significant)" };
         let _ = writeln!(out, "  {:4.0} %  {}{mark}", 100.0 * place.share_of_gap, place.says);
     }
     if diagnosis.causes.len() > 1 {
-        out += "\nRivals:\n";
+        out += "\nOther candidates:\n";
         for cause in diagnosis.causes.iter().skip(1) {
-            let mark = if cause.in_ambiguity_set { "  cannot be told apart" } else { "" };
+            let mark = if cause.in_ambiguity_set { "  not distinguishable" } else { "" };
             let _ = writeln!(out, "  {:5.1} %  {}{mark}", 100.0 * cause.probability, cause.says);
         }
     }
     for vetoed in &diagnosis.vetoed {
-        let _ = writeln!(out, "\nRefused: {}", vetoed.says);
+        let _ = writeln!(out, "\nRejected: {}", vetoed.says);
     }
     if let Some(measure) = &diagnosis.discriminating_measurement {
-        let _ = writeln!(out, "\nTo settle it, measure: {measure}");
+        let _ = writeln!(out, "\nTo distinguish the causes, measure: {measure}");
     }
     out
 }

@@ -8,6 +8,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::cells::name_and_unit;
 use super::folder::{Folder, Place, check_file_name};
+use super::identification::{self, REPORT_KEY, Stated};
 use super::record::{Record, Wanted, read_record};
 use super::table::{Cell, Table};
 use super::text::{read_any, read_text};
@@ -80,6 +81,8 @@ pub struct Campaign {
     pub tree: Node,
     pub facts: Vec<Fact>,
     pub parameters: Vec<Parameter>,
+    /// What the block `report` states.
+    pub report: Vec<Stated>,
     /// Name or path of the protocol that is used if none is given.
     pub protocol: Option<Spanned<String>>,
     /// All of the vehicle file; an empty map if the campaign names none.
@@ -139,11 +142,13 @@ impl Campaign {
         let record_folders = RecordKind::ALL.into_iter().filter_map(|kind| Some((kind, opening.text(&tree, kind.key())?))).collect();
         let protocol = opening.text(&tree, "protocol");
         let parameters = opening.parameters(&tree);
+        let report = identification::read(&tree, opening.problems);
         let Opening { folder, files, .. } = opening;
         let mut campaign = Self {
             name: name.unwrap_or_default(),
             facts: facts(&tree),
             parameters,
+            report,
             protocol,
             vehicle: vehicle.unwrap_or_else(|| Node {
                 value: Value::Map(Vec::new()),
@@ -435,7 +440,7 @@ impl Opening<'_> {
 
 /// Scalars at the top and one map below it, in the order written.
 fn facts(tree: &Node) -> Vec<Fact> {
-    const LAYOUT: [&str; 5] = ["name", "vehicle", "sections", "parameters", "protocol"];
+    const LAYOUT: [&str; 6] = ["name", "vehicle", "sections", "parameters", "protocol", REPORT_KEY];
     let layout = |key: &str| LAYOUT.contains(&key) || RecordKind::ALL.iter().any(|kind| kind.key() == key);
     let mut facts = Vec::new();
     for (key, node) in tree.entries().iter().filter(|(key, _)| !layout(&key.text)) {

@@ -4,6 +4,7 @@
 //! | file | what |
 //! |---|---|
 //! | `campaign` | a campaign folder: `campaign.yaml`, the vehicle, the sections, where the records are |
+//! | `identification` | what the campaign says the report is known by |
 //! | `record` | one sampled record, the hot path |
 //! | `table` | a small table such as `sections.csv` |
 //! | `crate::yaml` | YAML with the place of every word |
@@ -18,6 +19,7 @@ mod faults;
 pub mod fingerprint;
 mod folder;
 pub mod hash;
+pub mod identification;
 pub mod record;
 pub mod table;
 pub mod text;

@@ -149,7 +149,7 @@ fn idle(
         }
     }
     Ok(worst.map(|(member, most)| {
-        (member, format!("on sections kept out of the fit it removes {:.0} % of the gap in the quantities that it changes", 100.0 * most))
+        (member, format!("on sections excluded from the fit it removes {:.0} % of the gap in the quantities that it affects", 100.0 * most))
     }))
 }
 

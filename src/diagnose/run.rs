@@ -74,7 +74,7 @@ fn check_tolerated(inputs: &Inputs<'_>, problems: &mut Problems) {
     let model = crate::simulate::model_parameters();
     for (key, span) in inputs.settings.tolerances.iter().flat_map(|tolerance| &tolerance.named) {
         if value_of(inputs.campaign, key).is_none() && parameter(key).is_none() {
-            let says = format!("neither the vehicle file nor the model has `{key}`: this tolerance is not allowed for");
+            let says = format!("neither the vehicle file nor the model has `{key}`: this tolerance is not used");
             problems.push(Problem::warning("unknown-parameter", says).at(span).suggest(key, model.iter().map(|(name, _)| *name)));
         }
     }

@@ -10,8 +10,10 @@ const LINE: f64 = 13.0;
 const GAP: f64 = 8.0;
 const TOP: f64 = 34.0;
 /// Characters that fit on a line of a box in the font size used.
-const CHARACTERS: usize = 22;
-const MOST_LINES: usize = 5;
+const CHARACTERS: usize = 19;
+/// Height of the line that says how often a box stands, below its words.
+const COUNT_LINE: f64 = 11.0;
+const MOST_LINES: usize = 6;
 const SWEEPS: usize = 12;
 
 /// A box of the picture.
@@ -117,7 +119,7 @@ fn wrapped(text: &str) -> Vec<String> {
 }
 
 fn card_height(card: &Card) -> f64 {
-    card.lines.len() as f64 * LINE + 8.0
+    card.lines.len() as f64 * LINE + 8.0 + if card.count > 1 { COUNT_LINE } else { 0.0 }
 }
 
 /// Orders each column by the mean height of neighbours, sweeping to and fro; gives the height of the picture.

@@ -77,15 +77,15 @@ pub fn chapters(blind: &Blind) -> Vec<Chapter> {
                 numeric("d"),
                 numeric("Least d"),
                 numeric("Parameter error"),
-                numeric("Removed, said"),
+                numeric("Removed, stated"),
                 numeric("Removed, true"),
             ],
             cases.collect(),
-            "Every campaign; d is the whitened size of the true effects, least d of what one of several adds beside the others",
+            "All campaigns; d is the whitened size of the true effects; least d is the contribution of one of several effects beside the others",
         ),
         chapter(
             "confusion",
-            "What was named for what",
+            "Confusion of effects",
             vec![text("Truth"), text("Named first, or verdict"), numeric("Cases")],
             confusion,
             "Counts",
@@ -100,9 +100,9 @@ pub fn chapters(blind: &Blind) -> Vec<Chapter> {
         chapter(
             "calibration",
             "Probabilities",
-            vec![numeric("Said"), numeric("Cases"), numeric("Right"), numeric("95 % interval of the share")],
+            vec![numeric("Stated"), numeric("Cases"), numeric("Right"), numeric("95 % interval of the share")],
             calibration.collect(),
-            "Mean probability of the first cause, and in how many cases it is right",
+            "Mean probability of the first cause, and number of cases in which it is right",
         ),
     ]
 }

@@ -39,19 +39,20 @@ pub fn document(found: &Diagnosis, before: &Certification) -> Document {
     let share = |value: f64| format!("{} %", number::fixed(100.0 * value, 0));
     Document {
         title: format!("Diagnosis: {}", found.campaign),
-        kind: "Where simulation and measurement differ, and why".into(),
+        kind: "Differences between simulation and measurement, and their causes".into(),
         program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).into(),
         headline: Finding { word: found.verdict.to_string(), class, sign: sign(class) },
         sentence: found.says.first().cloned().unwrap_or_default(),
         key_facts: vec![
-            Fact { name: "Protocol before".into(), value: before.verdict.in_words().into() },
+            Fact { name: "Verdict before".into(), value: before.verdict.in_words().into() },
             Fact {
-                name: "Protocol with the effects".into(),
+                name: "Verdict with the effects".into(),
                 value: found.shrink.as_ref().map_or("-".into(), |shrink| shrink.verdict_after.clone()),
             },
             Fact { name: "Gap removed".into(), value: found.shrink.as_ref().map_or("-".into(), |shrink| share(shrink.fraction_removed)) },
             Fact { name: "Sections".into(), value: found.how.sections.to_string() },
         ],
+        symbols: before.quantities.iter().map(|quantity| quantity.symbol.clone()).collect(),
         campaign: view::campaign(&before.campaign),
         protocol: view::protocol_view(&before.protocol),
         chapters,
@@ -89,7 +90,7 @@ fn chapter(id: &str, title: &str, items: Vec<Item>) -> Chapter {
 fn answer(found: &Diagnosis) -> Chapter {
     let mut items = vec![Item::List { entries: found.says.clone() }];
     if let Some(measure) = &found.discriminating_measurement {
-        items.push(Item::text(format!("What would settle it: {measure}.")));
+        items.push(Item::text(format!("Measurement that would distinguish the causes: {measure}.")));
     }
     if !found.notes.is_empty() {
         items.push(Item::Heading { text: "Remarks".into() });
@@ -133,13 +134,13 @@ fn places(found: &Diagnosis) -> Chapter {
     let table = Table { caption: caption.into(), head, rows: rows.collect() };
     let significant = found.r#where.iter().filter(|place| place.significant).count();
     let mut text = format!(
-        "{significant} of {} cells differ by more than noise, tolerances and what a model of this kind may be wrong in.",
+        "{significant} of {} cells differ by more than noise, declared tolerances and the allowed model discrepancy.",
         found.r#where.len()
     );
     if significant == 0 && !found.causes.is_empty() {
-        text.push_str(" No cell does so by itself: what follows rests on all of them together.");
+        text.push_str(" No single cell does; the conclusions below rest on all cells together.");
     }
-    let caption = "Share of the gap by quantity and position, zone and band: the darker, the larger; a dot marks what is significant";
+    let caption = "Share of the gap by quantity and position, zone and band; darker cells have a larger share (scale below); a dot marks significant cells";
     let map = Item::figure("map", caption, "A map of cells, darker where more of the gap lies");
     let mut items = vec![Item::text(text), map, Item::Table { table }];
     if !found.invariants.is_empty() {
@@ -167,10 +168,10 @@ fn invariants(all: &[Invariant], named: bool) -> Table {
     });
     let caption = "Sums of quasi-static forces that only some causes can move, measured - simulated, mean over the sections; \
                    allowed is one standard deviation, in which it is counted how far off they are (after: as it is beside the effects)";
-    let mut head = vec![Head::text("Sum"), Head::text("To which side"), Head::number("As simulated")];
+    let mut head = vec![Head::text("Sum"), Head::text("Symmetry"), Head::number("As simulated")];
     head.extend(named.then(|| Head::number("With the effects")));
-    head.extend([Head::number("Allowed"), Head::number(if named { "Off before" } else { "Off" })]);
-    head.extend(named.then(|| Head::number("Off after")));
+    head.extend([Head::number("Allowed"), Head::number(if named { "Deviation before" } else { "Deviation" })]);
+    head.extend(named.then(|| Head::number("Deviation after")));
     Table { caption: caption.into(), head, rows: rows.collect() }
 }
 
@@ -181,19 +182,21 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
     }
     let significant: Vec<&Trend> = found.trends.iter().filter(|trend| trend.before.significant || trend.after.significant).collect();
     let gone = significant.iter().filter(|trend| !trend.after.significant).count();
-    let mut text = format!("Of {} trends of a difference over one of what the section table says, ", found.trends_tested);
+    let mut text = format!("Of {} trends of a difference over a column of the section table, ", found.trends_tested);
     let named = !found.causes.is_empty();
     text += &match (significant.len(), named) {
-        (0, _) if found.trends.is_empty() => "none is more than what may differ.".to_owned(),
-        (0, _) => "none is more than what may differ; the nearest to it are listed.".to_owned(),
+        (0, _) if found.trends.is_empty() => "none exceeds the allowed difference.".to_owned(),
+        (0, _) => "none exceeds the allowed difference; the closest ones are listed.".to_owned(),
         (some, true) => {
-            format!("{some} are more than what may differ as simulated or with the effects; {gone} of these are not with the effects.")
+            format!(
+                "{some} exceed the allowed difference, as simulated or with the effects; {gone} of these no longer do with the effects."
+            )
         }
-        (some, false) => format!("{some} are more than what may differ."),
+        (some, false) => format!("{some} exceed the allowed difference."),
     };
     if !found.together.is_empty() {
         text += &format!(
-            " What follows one of two that go together may follow the other (correlation in brackets): {}.",
+            " A trend over one of two correlated columns may belong to the other (correlation in brackets): {}.",
             found.together.join("; ")
         );
     }
@@ -252,16 +255,16 @@ fn shapes(all: &[Shape]) -> Table {
             shape.keeps_to.or(shape.reason).unwrap_or(number::NONE).to_owned(),
         ]
     });
-    let caption = "Dynamic content as recorded, measured over simulated, with 90 % intervals by resampling the sections; and how much of what \
-                   the spectra differ in is alike in all sections, compared at the same frequency or at the same wavelength";
+    let caption = "Dynamic content as recorded, measured over simulated, with 90 % intervals by resampling the sections; and the share of the \
+                   difference of the spectra that is common to all sections, compared at equal frequency or at equal wavelength";
     let head = vec![
         Head::text("Quantity"),
         Head::number("Rms"),
         Head::number("Peak"),
         Head::number("Crest"),
-        Head::number("Alike in Hz"),
-        Head::number("Alike in m"),
-        Head::text("Keeps to"),
+        Head::number("Common in Hz"),
+        Head::number("Common in m"),
+        Head::text("Scales with"),
     ];
     Table { caption: caption.into(), head, rows: rows.collect() }
 }
@@ -301,7 +304,7 @@ fn cause_rows(cause: &Cause) -> Vec<Vec<String>> {
 
 fn found_by(effect: &NamedEffect) -> String {
     let stands = effect.stability.map_or(String::new(), |first| {
-        format!("; in {} % of resamples of the sections no other effect has more evidence", number::fixed(100.0 * first, 0))
+        format!("; in {} % of the resamples of the sections it has the most evidence", number::fixed(100.0 * first, 0))
     });
     format!("{}: {}{stands}", effect.title, effect.added_by)
 }
@@ -319,18 +322,18 @@ fn causes(found: &Diagnosis) -> Chapter {
     ];
     let mut items = Vec::new();
     if !found.causes.is_empty() {
-        let caption = "Causes and their rivals; evidence is twice the logarithm of the Bayes factor against no effect";
+        let caption = "Candidate causes; evidence is twice the logarithm of the Bayes factor against no effect";
         let rows = found.causes.iter().flat_map(cause_rows).collect();
         items.push(Item::Table { table: Table { caption: caption.into(), head, rows } });
         let entries: Vec<String> = found.causes[0].effects.iter().map(found_by).collect();
-        items.push(Item::Heading { text: "How the effects were added, and how firmly they stand".into() });
+        items.push(Item::Heading { text: "How the effects were found, and their stability".into() });
         items.push(Item::List { entries });
     }
     if !found.vetoed.is_empty() {
-        items.push(Item::Heading { text: "Refused".into() });
+        items.push(Item::Heading { text: "Rejected effects".into() });
         items.push(Item::List { entries: found.vetoed.iter().map(|vetoed| vetoed.says.clone()).collect() });
     }
-    chapter("which", "Which effect", items)
+    chapter("which", "Cause", items)
 }
 
 fn shrunk(shrink: &Shrink) -> Chapter {
@@ -356,22 +359,22 @@ fn shrunk(shrink: &Shrink) -> Chapter {
         Head::number("Std before"),
         Head::number("after"),
         Head::number("Removed"),
-        Head::number("Squares removed"),
+        Head::number("Variance removed"),
         Head::number("above noise"),
     ];
     let mut items = vec![
         Item::text(format!(
-            "Each section was simulated with sizes that were fitted to the other sections. The {} falls from {} to {}.",
+            "Each section was simulated with parameters fitted to the other sections. The {} changes from {} to {}.",
             shrink.measure,
             number::fixed(shrink.before, 3),
             number::fixed(shrink.after, 3)
         )),
-        Item::figure("before-after", "Normalised values before and with the effects", "Two marks per statistic, joined by a line"),
+        Item::figure("before-after", "Statistics divided by their limits, before and with the effects", "Two marks per statistic, joined by a line"),
         Item::Table {
             table: Table {
-                caption: "Normalised mean and standard deviation before and with the effects; what is removed of their root mean square, \
-                          with a 90 % interval by resampling sections; and of the squared differences, as they are and above what the \
-                          declared noise of the channels makes by itself"
+                caption: "Mean and standard deviation divided by their limits, before and with the effects; fraction of their root mean square that is removed, \
+                          with a 90 % interval by resampling sections; fraction of the squared differences that is removed, in total and \
+                          above the declared noise of the channels"
                     .into(),
                 head,
                 rows: shrink.quantities.iter().map(row).collect(),
@@ -381,7 +384,7 @@ fn shrunk(shrink: &Shrink) -> Chapter {
     if let Some(touched) = &shrink.touched {
         let share = |value: f64| number::fixed(100.0 * value, 0);
         items.push(Item::text(format!(
-            "In the quantities that the effects change ({}) {} % is removed ({} to {} %, 90 %, by resampling sections).",
+            "In the quantities affected ({}), {} % of the gap is removed (90 % interval {} to {} %, by resampling sections).",
             touched.quantities.join(", "),
             share(touched.fraction_removed),
             share(touched.low),
@@ -390,10 +393,10 @@ fn shrunk(shrink: &Shrink) -> Chapter {
     }
     if shrink.shares.len() > 1 {
         let entries = shrink.shares.iter().map(|(name, share)| format!("{name}: {} %", number::fixed(100.0 * share, 0))).collect();
-        items.push(Item::Heading { text: "Shares of the effects".into() });
+        items.push(Item::Heading { text: "Contribution of each effect".into() });
         items.push(Item::List { entries });
     }
-    chapter("how-far", "How far the gap shrinks", items)
+    chapter("how-far", "Reduction of the gap", items)
 }
 
 fn signals(found: &Diagnosis) -> Option<Chapter> {
@@ -402,7 +405,7 @@ fn signals(found: &Diagnosis) -> Option<Chapter> {
         Item::figure(format!("signals-{at}"), caption, "Measured and simulated signals over distance")
     };
     let items: Vec<Item> = found.pictures.iter().enumerate().map(item).collect();
-    (!items.is_empty()).then(|| chapter("signals", "Signals where the gap is widest", items))
+    (!items.is_empty()).then(|| chapter("signals", "Signals with the largest gap", items))
 }
 
 fn seen(found: &Diagnosis) -> Chapter {
@@ -416,19 +419,19 @@ fn seen(found: &Diagnosis) -> Chapter {
         Head::text("Effect"),
         Head::text("Parameter"),
         Head::number("Neutral"),
-        Head::number("Seen from, below"),
-        Head::number("above"),
+        Head::number("Detectable below"),
+        Head::number("Detectable above"),
         Head::short("Unit"),
     ];
-    let caption = "The sizes from which on this campaign can show each effect (five standard deviations of what is allowed for; nothing where its range ends before)";
+    let caption = "Values from which each effect can be detected with this campaign (five standard deviations of the allowed difference; a dash where the range of the parameter ends before)";
     let mut items = vec![Item::Table { table: Table { caption: caption.into(), head, rows: rows.collect() } }];
     if !found.nearest.is_empty() {
         let rows = found.nearest.iter().map(|one| vec![one.says.clone(), number::fixed(one.evidence, 1), one.wants.clone()]);
-        let head = vec![Head::text("Effect"), Head::number("Evidence"), Head::text("What it wants to be named")];
-        let caption = "Nearest to being named, each by itself, for what is left";
+        let head = vec![Head::text("Effect"), Head::number("Evidence"), Head::text("Criterion not met")];
+        let caption = "Effects closest to being named, each alone, for the remaining gap";
         items.push(Item::Table { table: Table { caption: caption.into(), head, rows: rows.collect() } });
     }
-    chapter("seen", "What would have been seen", items)
+    chapter("seen", "Detectable effects", items)
 }
 
 fn how(found: &Diagnosis) -> Chapter {
@@ -436,12 +439,12 @@ fn how(found: &Diagnosis) -> Chapter {
     let rows = [
         ("Catalogue of effects", how.catalogue.clone()),
         ("Simulator", how.simulator.clone()),
-        ("Effects added as", how.mode.clone()),
+        ("Combination of effects", how.mode.clone()),
         ("Tolerances", how.tolerances.clone()),
         ("Sections", how.sections.to_string()),
         ("Features", how.features.to_string()),
         ("Simulated sections", found.simulations_run.to_string()),
-        ("Evidence needed", number::fixed(how.threshold, 1)),
+        ("Evidence required", number::fixed(how.threshold, 1)),
         ("Chi-squared per feature, before", number::fixed(how.chi_squared_before, 3)),
         ("Chi-squared per feature, after", number::fixed(how.chi_squared_after, 3)),
         ("Seed", how.seed.to_string()),
@@ -451,5 +454,5 @@ fn how(found: &Diagnosis) -> Chapter {
         head: vec![Head::text("Setting"), Head::text("Value")],
         rows: rows.map(|(name, value)| vec![name.to_string(), value]).to_vec(),
     };
-    chapter("how", "How it was found", vec![Item::Table { table }])
+    chapter("how", "Method and settings", vec![Item::Table { table }])
 }

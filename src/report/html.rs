@@ -3,6 +3,8 @@
 //! What comes from users is data: escaped by the engine, invisible signs spelled out. The page's policy admits its own style
 //! and script by their hashes and nothing from elsewhere, so that even an escaping fault could neither run nor call out.
 
+mod symbols;
+
 use std::collections::BTreeMap;
 
 use minijinja::syntax::SyntaxConfig;
@@ -19,7 +21,7 @@ use crate::report::visible::visible;
 const CSS: &str = include_str!("../../templates/html/report.css");
 const SCRIPT: &str = include_str!("../../templates/html/report.js");
 
-const TEMPLATES: [(&str, &str); 17] = [
+const TEMPLATES: [(&str, &str); 19] = [
     ("chapters.html", include_str!("../../templates/chapters.html")),
     ("html/chapters.html", include_str!("../../templates/html/chapters.html")),
     ("report.html", include_str!("../../templates/report.html")),
@@ -28,6 +30,8 @@ const TEMPLATES: [(&str, &str); 17] = [
     ("html/macros.html", include_str!("../../templates/html/macros.html")),
     ("html/navigation.html", include_str!("../../templates/html/navigation.html")),
     ("html/cover.html", include_str!("../../templates/html/cover.html")),
+    ("html/identity.html", include_str!("../../templates/html/identity.html")),
+    ("html/notation.html", include_str!("../../templates/html/notation.html")),
     ("html/summary.html", include_str!("../../templates/html/summary.html")),
     ("html/vehicle.html", include_str!("../../templates/html/vehicle.html")),
     ("html/sections.html", include_str!("../../templates/html/sections.html")),
@@ -73,14 +77,18 @@ pub fn chapters_html(title: &str, chapters: &[Chapter]) -> Result<String, Proble
     struct Page<'a> {
         title: &'a str,
         chapters: &'a [Chapter],
+        symbols: [String; 0],
     }
-    filled("chapters.html", &Page { title, chapters }, &[]).map_err(|error| Problems(vec![Problem::error("report-template", error)]))
+    filled("chapters.html", &Page { title, chapters, symbols: [] }, &[])
+        .map_err(|error| Problems(vec![Problem::error("report-template", error)]))
 }
 
 fn filled(frame: &str, data: &impl Serialize, figures: &[(String, String)]) -> Result<String, String> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build().map_err(said)?);
+    environment.add_filter("symbol", |text: String| Value::from_safe_string(symbols::typeset(&text)));
+    environment.add_filter("symbols", |text: String, known: Vec<String>| Value::from_safe_string(symbols::typeset_in(&text, &known)));
     for (name, text) in TEMPLATES {
         environment.add_template(name, text).map_err(said)?;
     }

@@ -3,14 +3,22 @@
 use serde_json::{Map, Value, json};
 
 use super::attached;
-use crate::result::{Certification, ProtocolFile, ProtocolInfo, QuantityResult, StatisticResult, ZoneResult};
+use crate::result::{Certification, ProtocolFile, ProtocolInfo, QuantityResult, StatisticResult, ZoneResult, report};
 
 /// The whole result, ending in a line break.
 pub fn results(found: &Certification) -> String {
     let mut root = Map::new();
     root.insert("fishplate".into(), json!(env!("CARGO_PKG_VERSION")));
     root.insert("protocol".into(), protocol(&found.protocol));
-    root.insert("campaign".into(), json!({"name": found.campaign.name, "files": found.campaign.files, "vehicle": found.campaign.vehicle}));
+    root.insert(
+        "campaign".into(),
+        json!({
+            "name": found.campaign.name,
+            "files": found.campaign.files,
+            "vehicle": found.campaign.vehicle,
+            "report": report::tree(&found.campaign.report),
+        }),
+    );
     root.insert("verdict".into(), json!(found.verdict));
     root.insert("reasons".into(), json!(found.reasons));
     root.insert("quantities".into(), quantities(&found.quantities));

@@ -126,6 +126,24 @@ pub fn unit(text: &str) -> String {
     printed
 }
 
+/// A formula or condition as printed: `|a| - 2 * b >= 0.1 m^-1` becomes `|a| − 2 · b ≥ 0.1 m⁻¹`.
+pub fn formula(text: &str) -> String {
+    let text = text.replace(" - ", " \u{2212} ").replace(" * ", " · ").replace("<=", "≤").replace(">=", "≥");
+    let mut printed = String::with_capacity(text.len());
+    let mut letters = text.chars().peekable();
+    while let Some(letter) = letters.next() {
+        let mut raised = letters.clone().skip_while(|c| *c == '-');
+        if letter != '^' || !raised.next().is_some_and(|c| c.is_ascii_digit()) {
+            printed.push(letter);
+            continue;
+        }
+        while let Some(c) = letters.next_if(|c| *c == '-' || c.is_ascii_digit()) {
+            printed.push(if c == '-' { '⁻' } else { superscript(c) });
+        }
+    }
+    printed
+}
+
 /// Text that is a number gets a true minus sign; other text stays as it is.
 pub fn in_text(text: &str) -> String {
     if is_number(text) { text.replace('-', "\u{2212}") } else { text.to_owned() }
@@ -171,6 +189,13 @@ fn signed(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn formulas_get_signs_and_raised_exponents() {
+        assert_eq!(formula("sign(measured) * (simulated - measured)"), "sign(measured) · (simulated \u{2212} measured)");
+        assert_eq!(formula("a <= 0.1 m^-1; b >= 2 m/s^2"), "a ≤ 0.1 m⁻¹; b ≥ 2 m/s²");
+        assert_eq!(formula("a^b 3-4 ^"), "a^b 3-4 ^");
+    }
 
     #[test]
     fn fixed_numbers_have_a_true_minus_and_no_minus_zero() {

@@ -5,11 +5,13 @@
 pub mod blind;
 pub mod diagnosis;
 pub mod finding;
+pub mod report;
 pub mod study;
 
 use serde::Serialize;
 
 pub use finding::{Consequence, Finding};
+pub use report::ReportItem;
 
 /// Everything a report prints, in the order of the protocol and of the campaign.
 #[derive(Clone, Debug, Serialize)]
@@ -70,6 +72,8 @@ pub struct ProtocolInfo {
     pub deviations: Vec<Deviation>,
     pub parameters: Vec<ParameterInfo>,
     pub filters: Vec<FilterInfo>,
+    /// Measured and simulated channels that the protocol declares.
+    pub channels: Vec<ChannelInfo>,
     /// Number of nodes of the processing graph.
     pub graph_nodes: usize,
     /// The processing graph drawn, one SVG text.
@@ -108,6 +112,15 @@ pub struct ParameterInfo {
 }
 
 #[derive(Clone, Debug, Serialize)]
+pub struct ChannelInfo {
+    pub name: String,
+    pub title: String,
+    pub unit: String,
+    /// Sign convention and other remarks.
+    pub note: String,
+}
+
+#[derive(Clone, Debug, Serialize)]
 pub struct FilterInfo {
     pub name: String,
     pub title: String,
@@ -125,6 +138,13 @@ pub struct CampaignInfo {
     pub vehicle: Vec<DataItem>,
     /// Other keys of campaign.yaml, in its order.
     pub facts: Vec<DataItem>,
+    /// What the campaign says the report is known by, stated or not.
+    #[serde(serialize_with = "as_tree")]
+    pub report: Vec<ReportItem>,
+}
+
+fn as_tree<S: serde::Serializer>(items: &[ReportItem], to: S) -> Result<S::Ok, S::Error> {
+    report::tree(items).serialize(to)
 }
 
 #[derive(Clone, Debug, Serialize)]

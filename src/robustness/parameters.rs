@@ -59,8 +59,8 @@ pub fn parameters(
     }
     let quiet = |_: &str| {};
     let evaluated = evaluate(plan, &compiled.graph, campaign, &Shifts::NONE, &quiet)?.swap_remove(0);
-    progress("as it is");
-    let base = at_value(&evaluated, plan, settings, "as it is", true);
+    progress("baseline");
+    let base = at_value(&evaluated, plan, settings, "baseline", true);
     let mut parameters = Vec::new();
     for (varied, variable, values) in compiled_values {
         let as_it_is = variable.as_it_is();

@@ -124,28 +124,50 @@ fn changes(base: &AtOffset, at: &AtOffset) -> Vec<String> {
         changes.push(format!("all sections: {reason}"));
     }
     for reason in base.reasons.iter().filter(|reason| at.verdict != Verdict::NotAssessable && !same_limit(&at.reasons, reason)) {
-        changes.push(format!("all sections: no longer {reason}"));
+        changes.push(format!("all sections, no longer: {reason}"));
     }
     for (before, now) in base.selected.iter().zip(&at.selected).filter(|(before, now)| before.holds != now.holds) {
-        let word = if now.holds { "holds" } else { "fails" };
+        let word = if now.holds { "met" } else { "not met" };
         changes.push(format!(
-            "the one selection: {} of {} {word} instead of {}",
+            "single selection: criterion on the {} of {} {word} instead of {}",
             before.name,
             before.id,
-            if now.holds { "failing" } else { "holding" }
+            if now.holds { "not met" } else { "met" }
         ));
     }
     changes
 }
 
-/// Reasons end in the share of the limit, which is another at every offset.
+/// Reasons state the value of the statistic, which is another at every offset.
 fn same_limit(reasons: &[String], reason: &str) -> bool {
-    let limit = |text: &str| text.rsplit_once(" (").map_or_else(|| text.to_owned(), |(limit, _)| limit.to_owned());
-    reasons.iter().any(|known| limit(known) == limit(reason))
+    reasons.iter().any(|known| of_limit(known) == of_limit(reason))
+}
+
+/// The words of a reason before the value: `Y_qst: mean (zone 1)` of `Y_qst: mean (zone 1) 4.33 kN exceeds the limit ...`.
+fn of_limit(reason: &str) -> Vec<&str> {
+    let verbs = ["exceeds", "is", "does"];
+    let words = reason.split_whitespace().take_while(|word| !verbs.contains(word));
+    let mut words: Vec<&str> = words.collect();
+    let number = |word: &&str| word.replace('\u{2212}', "-").parse::<f64>().is_ok();
+    words.truncate(words.iter().rposition(number).unwrap_or(words.len()));
+    words
 }
 
 fn lost(base: &Evaluated, at: &Evaluated, plan: &Plan) -> Vec<(String, String)> {
     let (before, now) = (base.pool(plan).sections, at.pool(plan).sections);
     let gone = before.into_iter().zip(now).filter(|(before, now)| before.used && !now.used);
     gone.map(|(_, now)| (now.name, now.reason.unwrap_or_default())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_is_known_again_whatever_its_value() {
+        let known = ["Q: 95 % value (zones 1, 2) 4.33 kN exceeds the limit 3.33 kN by 30 %".to_owned()];
+        assert!(same_limit(&known, "Q: 95 % value (zones 1, 2) \u{2212}5.1 kN exceeds in magnitude the limit 3.33 kN by 53 %"));
+        assert!(!same_limit(&known, "Q: 95 % value (zone 1) 4.33 kN exceeds the limit 3.33 kN by 30 %"));
+        assert!(!same_limit(&known, "Q: 90 % value (zones 1, 2) 4.33 kN exceeds the limit 3.33 kN by 30 %"));
+    }
 }

@@ -20,10 +20,10 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
     let mut missing = Vec::new();
     let zones: Vec<ZoneResult> = plan.zones.iter().map(|zone| zone_result(zone, units)).collect();
     for zone in zones.iter().filter(|zone| !zone.holds) {
-        missing.push(format!("zone {} has {}, at least {} needed", zone.zone, count(zone.used, "usable section"), zone.minimum));
+        missing.push(format!("zone {} has {}; at least {} required", zone.zone, count(zone.used, "usable section"), zone.minimum));
     }
     if used.len() < plan.sections.minimum {
-        missing.push(format!("{}, at least {} needed", count(used.len(), "usable section"), plan.sections.minimum));
+        missing.push(format!("{}; at least {} required", count(used.len(), "usable section"), plan.sections.minimum));
     }
     missing.extend(not_plausible(plan, findings, missing.is_empty()));
     let mut quantities = Vec::new();
@@ -53,8 +53,9 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
     }
     match plan.verdict.rule {
         Rule::EveryLimit => {}
-        Rule::AtLeastQuantities(needed) => reasons.insert(0, format!("{} hold, at least {needed} needed", count(holding, "quantity"))),
-        Rule::AtLeastLimits(needed) => reasons.insert(0, format!("{} hold, at least {needed} needed", count(limits_holding, "limit"))),
+        Rule::AtLeastQuantities(needed) => reasons
+            .insert(0, format!("{} of {} meet their criteria; at least {needed} required", holding, count(quantities.len(), "quantity"))),
+        Rule::AtLeastLimits(needed) => reasons.insert(0, format!("{} met; at least {needed} required", count(limits_holding, "limit"))),
     }
     Judged { verdict: Verdict::NotValidated, reasons, quantities, zones }
 }
@@ -121,9 +122,9 @@ fn quantity_result(
     }
     let recorded = signals.iter().filter(|recorded| **recorded).count();
     let reason = if recorded < quantity.minimum_signals {
-        Some(format!("{} recorded, at least {} needed", count(recorded, "signal"), quantity.minimum_signals))
+        Some(format!("{} recorded; at least {} required", count(recorded, "signal"), quantity.minimum_signals))
     } else if members.len() < quantity.minimum_pairs {
-        Some(format!("{} of section and signal, at least {} needed", count(members.len(), "pair"), quantity.minimum_pairs))
+        Some(format!("{} of section and signal; at least {} required", count(members.len(), "pair"), quantity.minimum_pairs))
     } else {
         None
     };

@@ -34,7 +34,7 @@ pub fn compare(plan: &Plan, facts: &Facts, quantity: &Quantity, members: &[Membe
             }
             Err(reason) => {
                 let mut result = empty(quantity, limit, "all".into(), 0);
-                result.reason = Some(format!("whether its limit applies cannot be told: {reason}"));
+                result.reason = Some(format!("it cannot be determined whether the limit applies: {reason}"));
                 all.push(Compared { result, fails: None });
             }
         }
@@ -86,7 +86,7 @@ impl Part<'_> {
             Self::All => Ok(true),
             Self::Zones(zones) => Ok(unit.zone.as_ref().is_some_and(|zone| zones.contains(zone))),
             Self::Where(Scope::Where(condition, _)) => flag(condition, &unit.known(facts))
-                .map_err(|reason| format!("whether section {} belongs to it cannot be told: {reason}", unit.name)),
+                .map_err(|reason| format!("it cannot be determined whether section {} belongs to this group: {reason}", unit.name)),
             Self::Where(_) => Ok(false),
         }
     }
@@ -147,7 +147,7 @@ fn of_part(plan: &Plan, facts: &Facts, quantity: &Quantity, limit: &Limit, part:
     }
     let mut result = empty(quantity, limit, part.in_words(), inside.len());
     let outcome = if inside.is_empty() {
-        Err("there is no value".into())
+        Err("no value is available".into())
     } else if limit.statistic == Statistic::Each {
         each(plan, facts, quantity, limit, &inside, &mut result)
     } else {
@@ -164,14 +164,52 @@ fn of_part(plan: &Plan, facts: &Facts, quantity: &Quantity, limit: &Limit, part:
     Compared { result, fails }
 }
 
-/// `Y_qst: mean exceeds its limit (1.30 of the limit)`
+/// `Y_qst: mean 4.33 kN exceeds the limit 3.33 kN by 30 %`
 fn sentence(quantity: &Quantity, limit: &Limit, result: &StatisticResult) -> String {
-    let scope = if result.scope == "all" { String::new() } else { format!(", {},", result.scope) };
+    let scope = if result.scope == "all" { String::new() } else { format!(" ({})", result.scope) };
+    let unit = if result.unit == "-" { String::new() } else { format!(" {}", result.unit) };
+    let (Some(value), Some(bound)) = (result.value, result.limit) else {
+        return format!("{}: {}{scope} does not meet its limit", quantity.id, result.title);
+    };
+    let (shown, shown_bound) = apart(value, bound);
+    let what = format!("{}: {}{scope} {shown}{unit}", quantity.id, result.title);
     if limit.at_least {
-        return format!("{}: {}{scope} is below its limit", quantity.id, result.title);
+        return format!("{what} is below the limit {shown_bound}{unit}");
     }
-    let share = result.normalised.map_or(String::new(), |share| format!(" ({share:.2} of the limit)"));
-    format!("{}: {}{scope} exceeds its limit{share}", quantity.id, result.title)
+    let of = if value < 0.0 { "exceeds in magnitude the limit" } else { "exceeds the limit" };
+    format!("{what} {of} {shown_bound}{unit}{}", excess(value.abs() / bound))
+}
+
+/// ` by 30 %`; nothing where the ratio says nothing.
+fn excess(ratio: f64) -> String {
+    let percent = 100.0 * (ratio - 1.0);
+    match percent {
+        _ if !percent.is_finite() || percent <= 0.0 => String::new(),
+        _ if percent < 0.1 => " by less than 0.1 %".into(),
+        _ if percent < 10.0 => format!(" by {percent:.1} %"),
+        _ if percent < 1000.0 => format!(" by {percent:.0} %"),
+        _ => format!(", {ratio:.0} times the limit"),
+    }
+}
+
+/// Value and limit with three significant digits, more where they would read the same or compare otherwise than they do.
+fn apart(value: f64, bound: f64) -> (String, String) {
+    let read = |text: &str| text.replace('\u{2212}', "-").parse::<f64>().unwrap_or(f64::NAN).abs();
+    let shown = |digits: usize| (significant(value, digits), significant(bound, digits));
+    let right = |(a, b): &(String, String)| (read(a) > read(b)) == (value.abs() > bound.abs()) && read(a) != read(b);
+    (LEAST_DIGITS..MOST_DIGITS).map(shown).find(right).unwrap_or_else(|| shown(MOST_DIGITS))
+}
+
+/// Significant digits of a value in a sentence, and of one that is close to its limit.
+const LEAST_DIGITS: usize = 3;
+const MOST_DIGITS: usize = 12;
+
+fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let decimals = (digits as f64 - 1.0 - value.abs().log10().floor()).clamp(0.0, 17.0) as usize;
+    format!("{value:.decimals$}").replace('-', "\u{2212}")
 }
 
 /// A statistic over all members against one limit.
@@ -203,7 +241,7 @@ fn pooled(
 }
 
 fn no_limit(reason: &str) -> String {
-    format!("its limit has no value: {reason}")
+    format!("its limit cannot be evaluated: {reason}")
 }
 
 /// Every pair against its own limit: the worst stands for all.
@@ -324,6 +362,19 @@ impl Values for Named<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_of_a_sentence_differ_where_the_values_do() {
+        assert_eq!(apart(0.06090123, 0.046_666_67), ("0.0609".into(), "0.0467".into()));
+        assert_eq!(apart(5.0001, 5.0), ("5.0001".into(), "5.0000".into()));
+        assert_eq!(apart(-12.34, 10.0), ("\u{2212}12.3".into(), "10.0".into()));
+        assert_eq!(excess(1.305), " by 30 %");
+        assert_eq!(
+            (excess(1.0004), excess(1.05), excess(f64::INFINITY)),
+            (" by less than 0.1 %".into(), " by 5.0 %".into(), String::new())
+        );
+        assert_eq!(excess(25.0), ", 25 times the limit");
+    }
 
     #[test]
     fn a_value_equal_to_its_limit_passes() {

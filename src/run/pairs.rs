@@ -226,7 +226,7 @@ pub fn margin_note<'a>(used: impl Iterator<Item = &'a SectionValues>) -> Option<
     let short: Vec<f64> = margins.iter().copied().flatten().collect();
     let least = short.iter().copied().reduce(f64::min)?;
     Some(format!(
-        "In {} of {} sections the records reach less than {SLOW_FILTER_MARGIN} s beyond the section (least {least:.1} s): a filter with an edge below {SLOW_FILTER} Hz has not fully settled there, and its values may be off by a few per cent.",
+        "In {} of {} sections the records extend less than {SLOW_FILTER_MARGIN} s beyond the section (minimum {least:.1} s). A filter with a cut-off below {SLOW_FILTER} Hz has not fully settled there, and its values may deviate by a few per cent.",
         short.len(),
         margins.len()
     ))
@@ -421,18 +421,18 @@ fn checked(work: &Work<'_>, check: &Check, known: &Known<'_>, inputs: &[Result<f
     let result = |holds: Option<bool>, says: String| CheckResult { name: check.name.clone(), title: check.title.clone(), holds, says };
     let spared = check.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known));
     match spared {
-        Ok(true) => return result(Some(true), "not asked of this section".into()),
+        Ok(true) => return result(Some(true), "does not apply to this section".into()),
         Err(reason) => return result(None, reason),
         Ok(false) => {}
     }
     match flag(&check.require, &Known { inputs, ..section(known) }) {
-        Ok(true) => result(Some(true), check.words.clone()),
-        Ok(false) => result(Some(false), format!("not satisfied: {}, with {}", check.words, found_values(work, check, inputs))),
+        Ok(true) => result(Some(true), format!("{}{}", check.words, found_values(work, check, inputs))),
+        Ok(false) => result(Some(false), format!("not met: {}{}", check.words, found_values(work, check, inputs))),
         Err(reason) => result(None, reason),
     }
 }
 
-/// `range of curvature 0.00021 1/m, mean of curvature 0.002 1/m`
+/// `; found: range of curvature 0.00021 1/m, mean of curvature 0.002 1/m`
 fn found_values(work: &Work<'_>, check: &Check, inputs: &[Result<f64, String>]) -> String {
     let one = |(input, value): (&Input, &Result<f64, String>)| {
         let value: f64 = format!("{:.3e}", value.as_ref().ok()?).parse().ok()?;
@@ -442,5 +442,6 @@ fn found_values(work: &Work<'_>, check: &Check, inputs: &[Result<f64, String>]) 
         let words = input.span.text().split_whitespace().collect::<Vec<_>>().join(" ");
         Some(format!("{words} {value}{unit}"))
     };
-    check.inputs.iter().zip(inputs).filter_map(one).collect::<Vec<_>>().join(", ")
+    let found = check.inputs.iter().zip(inputs).filter_map(one).collect::<Vec<_>>().join(", ");
+    if found.is_empty() { found } else { format!("; found: {found}") }
 }

@@ -31,8 +31,11 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
         for check in checks {
             if check.holds != Some(true) {
                 let subject = match (check.name.as_str(), check.holds) {
-                    ("zone", Some(_)) => format!("contradicts its zone {}", unit.zone.as_deref().unwrap_or_default()),
-                    ("zone", None) => format!("whether it is of zone {} cannot be told", unit.zone.as_deref().unwrap_or_default()),
+                    ("zone", Some(_)) => format!("does not meet the condition of zone {}", unit.zone.as_deref().unwrap_or_default()),
+                    ("zone", None) => format!(
+                        "it cannot be determined whether it meets the condition of zone {}",
+                        unit.zone.as_deref().unwrap_or_default()
+                    ),
                     _ => check.title.to_lowercase(),
                 };
                 unit.refuse(format!("{subject}: {}", check.says), false);
@@ -42,24 +45,21 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
     }
 }
 
-/// A condition on the section's data. What is not met is told with the data it was read from.
+/// A condition on the section's data, told with the data it was read from.
 fn condition(plan: &Plan, facts: &Facts, unit: &Unit, name: &str, title: &str, expr: &Expr, words: &str) -> CheckResult {
     let known = unit.known(facts);
     let watched = Watched::new(&known);
-    let (holds, says) = match flag(expr, &watched) {
-        Ok(true) => (Some(true), words.to_string()),
-        Ok(false) => {
-            let read: Vec<String> = watched
-                .columns()
-                .iter()
-                .map(|&index| item(&plan.columns[index], unit.columns[index].as_ref().ok()))
-                .map(|item| {
-                    format!("{} {}{}", item.name.to_lowercase(), item.value, item.unit.map_or(String::new(), |unit| format!(" {unit}")))
-                })
-                .collect();
-            let by = if read.is_empty() { String::new() } else { format!(", with {}", read.join(", ")) };
-            (Some(false), format!("not satisfied: {words}{by}"))
-        }
+    let found = flag(expr, &watched);
+    let read: Vec<String> = watched
+        .columns()
+        .iter()
+        .map(|&index| item(&plan.columns[index], unit.columns[index].as_ref().ok()))
+        .map(|item| format!("{} {}{}", item.name.to_lowercase(), item.value, item.unit.map_or(String::new(), |unit| format!(" {unit}"))))
+        .collect();
+    let with = if read.is_empty() { String::new() } else { format!("; found: {}", read.join(", ")) };
+    let (holds, says) = match found {
+        Ok(true) => (Some(true), format!("{words}{with}")),
+        Ok(false) => (Some(false), format!("not met: {words}{with}")),
         Err(reason) => (None, reason),
     };
     CheckResult { name: name.into(), title: title.into(), holds, says }
@@ -72,7 +72,7 @@ fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckR
     let (holds, says) = match number(minimum, &unit.known(facts)) {
         // A length written with two decimals may fall short of the minimum by rounding alone.
         Ok(minimum) => {
-            (Some(end - start >= minimum * (1.0 - 1e-9)), format!("length {}, at least {} needed", shown(end - start), shown(minimum)))
+            (Some(end - start >= minimum * (1.0 - 1e-9)), format!("{}; at least {} required", shown(end - start), shown(minimum)))
         }
         Err(reason) => (None, reason),
     };

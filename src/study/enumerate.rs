@@ -136,8 +136,8 @@ pub fn marked(case: &Case) -> (Counted, Fails) {
         sections: importance(case, &halves, &verdicts.any),
         worst,
         methods: vec![
-            "Every selection was looked at: nothing is sampled, and shares, quartiles, extremes and outliers are exact.".into(),
-            "A selection's sums are added from those of its sections; records are not evaluated again.".into(),
+            "Every selection was evaluated; shares, quartiles, extremes and outliers are exact.".into(),
+            "The sums of a selection are formed from those of its sections; records are not evaluated again.".into(),
         ],
     };
     (counted, verdicts.any)

@@ -214,19 +214,19 @@ fn methods(all: u64, interval: (f64, f64), known: &[Option<Spread>], settings: &
     let ended = if width <= wanted {
         format!("until the 95 % interval of the share (Wilson) was no wider than {wanted}: it is {width:.5} wide")
     } else {
-        format!("which is the most; the 95 % interval of the share (Wilson) is {width:.5} wide, more than the {wanted} wanted")
+        format!("which is the maximum; the 95 % interval of the share (Wilson) is {width:.5} wide, more than the {wanted} wanted")
     };
     let mut methods = vec![format!(
-        "There are too many selections to look at all: {all} were drawn at random (seed {}), every one as likely, {ended}.",
+        "There are too many selections to evaluate all: {all} were drawn at random with equal probability (seed {}), {ended}.",
         settings.seed
     )];
     methods.extend(known::methods(known));
     if known.iter().any(Option::is_none) {
         methods.push(format!(
-            "Quartiles of the others are estimated from the first {} drawn selections, with 95 % intervals between order statistics that hold for any distribution; their least and greatest values are those that were drawn.",
+            "Quartiles of the others are estimated from the first {} drawn selections, with distribution-free 95 % intervals between order statistics; their minima and maxima are those of the drawn selections.",
             KEPT.min(all as usize)
         ));
     }
-    methods.push("Shares of the selections in which a limit or a quantity fails are those of the selections drawn.".into());
+    methods.push("Shares of selections in which a criterion is not met refer to the drawn selections.".into());
     methods
 }

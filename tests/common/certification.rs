@@ -94,6 +94,25 @@ pub fn certification() -> Certification {
     }
 }
 
+/// Some of what a report is known by: stated, not stated, and text that nobody would state.
+fn report() -> Vec<ReportItem> {
+    let item = |path: &[&str], title: &str, clause: Option<&str>, value: Option<&str>| ReportItem {
+        path: path.iter().map(ToString::to_string).collect(),
+        title: title.into(),
+        clause: clause.map(Into::into),
+        value: value.map(Into::into),
+    };
+    vec![
+        item(&["number"], "Report number", Some("7.8.2.1 d)"), Some("R-2023-17")),
+        item(&["revision"], "Revision", Some("7.8.8"), Some("B")),
+        item(&["customer"], "Customer", Some("7.8.2.1 e)"), Some(HOSTILE)),
+        item(&["laboratory"], "Laboratory", Some("7.8.2.1 b)"), None),
+        item(&["test item", "vehicle number"], "Test item: vehicle number", Some("7.8.2.1 g)"), Some(LONG)),
+        item(&["dates", "issue"], "Date of issue", Some("7.8.2.1 j)"), Some("2023-06-30")),
+        item(&["model version"], "Model version", None, None),
+    ]
+}
+
 /// A certification without anything in it.
 pub fn empty() -> Certification {
     Certification {
@@ -109,11 +128,12 @@ pub fn empty() -> Certification {
             deviations: Vec::new(),
             parameters: Vec::new(),
             filters: Vec::new(),
+            channels: Vec::new(),
             graph_nodes: 0,
             graph_svg: String::new(),
             verdict_rule: String::new(),
         },
-        campaign: CampaignInfo { name: String::new(), files: Vec::new(), vehicle: Vec::new(), facts: Vec::new() },
+        campaign: CampaignInfo { name: String::new(), files: Vec::new(), vehicle: Vec::new(), facts: Vec::new(), report: Vec::new() },
         verdict: Verdict::NotAssessable,
         reasons: Vec::new(),
         quantities: Vec::new(),
@@ -442,6 +462,7 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
             item("assumed_friction", "0.4", Some("-"), false),
             item("simulation_ran_on", "nominal track, measured irregularities", None, false),
         ],
+        report: report(),
     }
 }
 
@@ -499,6 +520,7 @@ fn protocol() -> ProtocolInfo {
                 source: Some("EN 14363, 7.4".into()),
             },
         ],
+        channels: vec![ChannelInfo { name: "Y".into(), title: "Guiding force".into(), unit: "kN".into(), note: HOSTILE.into() }],
         graph_nodes: 96,
         graph_svg: drawing("graph", 1400, 600),
         verdict_rule: "every statistic of every quantity holds, and every zone has at least 3 sections".into(),

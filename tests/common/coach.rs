@@ -339,6 +339,7 @@ fn campaign() -> CampaignInfo {
             DataItem { used: false, ..item("owner", EXPRESSION, None) },
         ],
         facts: vec![item("sampling_rate", "300", Some("Hz")), item("assumed_friction", "0.4", Some("-"))],
+        report: Vec::new(),
     }
 }
 
@@ -376,6 +377,7 @@ fn protocol() -> ProtocolInfo {
             steps: "low-pass 20 Hz, Butterworth order 4, zero-phase".into(),
             source: Some("EN 14363:2016".into()),
         }],
+        channels: Vec::new(),
         graph_nodes: 42,
         graph_svg: "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"200\" height=\"40\" viewBox=\"0 0 200 40\"><rect x=\"2\" y=\"8\" width=\"80\" height=\"24\" fill=\"none\" stroke=\"#1f242b\"/><text x=\"12\" y=\"24\" font-size=\"11\">channel</text><path d=\"M82 20H118\" stroke=\"#1f242b\"/><rect x=\"118\" y=\"8\" width=\"80\" height=\"24\" fill=\"none\" stroke=\"#1f242b\"/><text x=\"128\" y=\"24\" font-size=\"11\">low-pass</text></svg>".into(),
         verdict_rule: "Every mean and every standard deviation is within its limit, and every zone has at least 3 sections.".into(),

@@ -75,11 +75,11 @@ pub fn nothing_out_of_the_ordinary(found: &Found, settings: &Settings) -> Option
         let nothing = of.neutral()?;
         let nearest = nothing.clamp(low, high);
         let holds = match deviations(of, nearest, settings, &found.declared, true) {
-            _ if nearest == nothing => format!("{}, which changes nothing", short(nothing)),
-            away if away < ORDINARY => format!("{}, which is {away:.1} declared standard deviations off", short(nearest)),
+            _ if nearest == nothing => format!("{}, at which the effect has no influence", short(nothing)),
+            away if away < ORDINARY => format!("{}, which is {away:.1} declared standard deviations away", short(nearest)),
             _ => return None,
         };
-        Some((at, format!("the interval of its size, {} to {}, holds {holds}", short(low), short(high)), member.evidence))
+        Some((at, format!("the interval of its size, {} to {}, includes {holds}", short(low), short(high)), member.evidence))
     };
     let found = found.chosen.members.iter().enumerate().filter_map(holds).min_by(|a, b| a.2.total_cmp(&b.2));
     found.map(|(at, says, _)| (at, says))

@@ -125,7 +125,7 @@ fn more_sections(inputs: &Inputs<'_>, found: &Found, causes: &[Cause]) -> Option
     let stratum = inputs.settings.stratum.as_deref();
     let kind = apart.sections.first().zip(stratum).and_then(|(at, column)| found.seen.sections[*at].section.says(column));
     Some(format!(
-        "as many sections again like {} ({}): the two nearest causes, {:.1} standard deviations apart now, would be {:.1}",
+        "the same number of additional sections like {} ({}); the two closest causes would then differ by {3:.1} standard deviations instead of {2:.1}",
         sections.join(", "),
         kind.unwrap_or_else(|| "the kind that helps most".into()),
         apart.now,

@@ -153,7 +153,7 @@ pub fn worth_a_word(catalogue: &Catalogue, drifts: &[Drift]) -> Option<String> {
     let on = if drift.signals.len() > 2 { String::new() } else { format!(" ({})", drift.signals.join(", ")) };
     let unit = if drift.unit == "-" { String::new() } else { format!(" {}", drift.unit) };
     Some(format!(
-        "{title}{on}: no one size holds over the campaign. It follows {}: {} changes by {}{unit} ({} to {}) from {} to {}.",
+        "{title}{on}: no single value fits the whole campaign. It depends on {}: {} changes by {}{unit} ({} to {}) from {} to {}.",
         drift.covariate,
         drift.parameter,
         short(drift.change),

@@ -63,28 +63,26 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         says.extend(crate::diagnose::gap::shapes::worth_a_word(&shapes));
     }
     says.extend(neither(inputs, found, &causes, verdict));
-    let noted = found.runs.failed.iter().map(|failed| format!("a run failed and was left out: {failed}"));
-    let left_out = found.seen.left_out.iter().map(|(section, reason)| format!("section {section} was left out: {reason}"));
+    let noted = found.runs.failed.iter().map(|failed| format!("a simulation failed and was excluded: {failed}"));
+    let left_out = found.seen.left_out.iter().map(|(section, reason)| format!("section {section} was excluded: {reason}"));
     let again = found.seen.sections.iter().filter(|observed| observed.again).map(|observed| observed.section.name());
-    let again = again.map(|name| format!("section {name} is another one measured again: it does not count twice"));
+    let again = again.map(|name| format!("section {name} repeats another section and is not counted twice"));
     let mut notes: Vec<String> = noted.chain(left_out).chain(again).collect();
     let unknown = found.declared.unknown.iter();
-    notes.extend(
-        unknown.map(|name| format!("the catalogue knows no tolerance `{name}`: what the campaign declares there is not allowed for")),
-    );
+    notes.extend(unknown.map(|name| format!("the catalogue has no tolerance `{name}`; the value that the campaign declares is not used")));
     let tolerances = if found.declared.any {
         "declared by the campaign"
     } else {
-        notes.push("the campaign declares no tolerances: documented defaults were taken, and the verdict is the weaker for it".into());
+        notes.push("the campaign declares no tolerances; documented defaults were used, which weakens the verdict".into());
         "documented defaults"
     };
     notes.extend(alone(found));
     if !inputs.references.is_empty() {
         let names: Vec<&str> = inputs.references.iter().map(|reference| reference.campaign.name.as_str()).collect();
-        notes.push(format!("what the simulation is wrong in anyway was learnt from: {}", names.join(", ")));
+        notes.push(format!("the standing discrepancy of the simulation was estimated from: {}", names.join(", ")));
     }
     if inputs.simulator.is_none() {
-        notes.push("no simulator could be run: only effects of the measuring chain were tried".into());
+        notes.push("no simulator could be run; only effects of the measuring chain were tested".into());
     }
     Diagnosis {
         fishplate: env!("CARGO_PKG_VERSION"),
@@ -141,7 +139,7 @@ fn alone(found: &Found) -> Option<String> {
     };
     let all: Vec<String> = (0..found.seen.sections.len()).filter_map(one).collect();
     let told = !all.is_empty() && !found.chosen.members.is_empty();
-    told.then(|| format!("sections that stand out alone, and do not decide whether the gap is explained: {}", all.join("; ")))
+    told.then(|| format!("individual outlying sections, which do not decide whether the gap is explained: {}", all.join("; ")))
 }
 
 fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
@@ -154,7 +152,7 @@ fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
             size: refused.fitted.size,
             parameter: of.size.clone(),
             evidence: refused.fitted.evidence,
-            says: format!("{title}{on} improves the fit as a whole, but: {}", refused.reason),
+            says: format!("{title}{on} improves the overall fit, but: {}", refused.reason),
         }
     };
     found.refused.iter().map(one).collect()
@@ -168,13 +166,13 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
         let needed = if found.masks[fit.mask].asked_by.is_some() { 2.0 * bar } else { bar };
         let away = deviations(&found.candidates[fit.candidate], fit.size, inputs.settings, &found.declared, true);
         let wants = match () {
-            () if fit.evidence < needed => format!("evidence of {needed:.1}"),
+            () if fit.evidence < needed => format!("evidence of at least {needed:.1}"),
             () if away < TOLERANCE_SD => {
-                format!("a size further from what is declared: {away:.1} of {TOLERANCE_SD:.1} standard deviations")
+                format!("larger deviation from the declared value: {away:.1} of {TOLERANCE_SD:.1} standard deviations")
             }
             // One at a time is looked at: what explains most.
-            () if found.chosen.members.is_empty() => "more evidence than what was refused in its place".into(),
-            () => "a larger share of what is named".into(),
+            () if found.chosen.members.is_empty() => "more evidence than the effect that was rejected in its place".into(),
+            () => "a larger share of the named effects".into(),
         };
         Nearest { effect: of.effect.clone(), says: cause(inputs, found, std::slice::from_ref(fit), 0).says, evidence: fit.evidence, wants }
     };
@@ -193,27 +191,24 @@ fn says(
     let mut lines: Vec<String> = found.seen.faults.iter().map(faulty).collect();
     match verdict {
         "no significant gap" => {
-            lines.push("What differs is within noise, declared tolerances and what a model of this kind is allowed to be wrong in.".into())
+            lines.push("The differences are within noise, declared tolerances and the allowed model discrepancy.".into())
         }
         "explained" => lines.push(format!("{}.", causes[0].says)),
         "ambiguous" => {
             let mut set: Vec<String> = causes.iter().filter(|cause| cause.in_ambiguity_set).map(|cause| cause.says.clone()).collect();
-            set.extend(
-                found
-                    .suspect
-                    .as_ref()
-                    .map(|suspect| format!("`{}` times {:.2}, which no effect of the catalogue moves", suspect.key, suspect.factor)),
-            );
+            set.extend(found.suspect.as_ref().map(|suspect| {
+                format!("`{}` multiplied by {:.2}, a parameter that no effect of the catalogue changes", suspect.key, suspect.factor)
+            }));
             lines.push(match &set[..] {
-                [alone] => format!("{alone}; the data cannot tell it from all else."),
-                all => format!("The data cannot tell apart: {}.", all.join(" | ")),
+                [alone] => format!("{alone}; the data do not distinguish it from all alternatives."),
+                all => format!("The data do not distinguish between these causes: {}.", all.join(" | ")),
             });
             let failing = found.chosen.members.iter().zip(&found.stability).filter(|(_, stability)| stability.fails());
             lines.extend(failing.map(|(member, stability)| {
                 let effect = &found.candidates[member.candidate].effect;
                 let title = inputs.catalogue.effect(effect).map_or(effect, |effect| &effect.title);
                 let beaten = 100.0 * (1.0 - stability.first);
-                format!("{title}: where the sections are drawn anew, another effect has more evidence in {beaten:.0} % of the draws.")
+                format!("{title}: when the sections are resampled, another effect has more evidence in {beaten:.0} % of the resamples.")
             }));
         }
         _ => {
@@ -227,10 +222,10 @@ fn says(
             let catalogue = &inputs.catalogue.name;
             if let Some(suspect) = &found.suspect {
                 lines.push(format!(
-                    "Outside the catalogue: `{}` times {:.2} explains more than {} (evidence {:.0} against {:.0}).",
+                    "Outside the catalogue: `{}` multiplied by {:.2} explains more than {} (evidence {:.0} against {:.0}).",
                     suspect.key,
                     suspect.factor,
-                    if suspect.of_all { "all effects together" } else { "any effect does" },
+                    if suspect.of_all { "all effects together" } else { "any single effect" },
                     suspect.evidence,
                     suspect.answer
                 ));
@@ -239,19 +234,23 @@ fn says(
                 let looks = cause(inputs, found, std::slice::from_ref(&refused.fitted), 0).says;
                 let reason = &refused.reason;
                 lines.push(format!(
-                    "What is left looks in part like another effect, with more evidence ({evidence:.0}) than any that is named, and contradicts it: {looks}, but {reason}."
+                    "Part of the remaining gap resembles another effect with more evidence ({evidence:.0}) than any named effect, but contradicts it: {looks}; however, {reason}."
                 ));
             }
             lines.push(match named.is_empty() {
                 true if found.suspect.is_some() || found.contradicting.is_some() => {
-                    "Beside the effects that come nearest, nothing is left that is more than is allowed for.".into()
+                    "With the closest effects, no remaining difference exceeds the allowed one.".into()
                 }
-                true if left => format!("No effect of the catalogue `{catalogue}` explains the gap: what is left is no chance."),
-                true => format!("Beside that, nothing is left that an effect of the catalogue `{catalogue}` should explain."),
-                false => format!("No effect of the catalogue `{catalogue}` explains the gap. It is left in {}.", named.join(", ")),
+                true if left => {
+                    format!("No effect of the catalogue `{catalogue}` explains the gap: the remaining difference is systematic.")
+                }
+                true => {
+                    format!("Apart from that, no difference remains that an effect of the catalogue `{catalogue}` would have to explain.")
+                }
+                false => format!("No effect of the catalogue `{catalogue}` explains the gap. It remains in {}.", named.join(", ")),
             });
             if let Some(first) = causes.first() {
-                lines.push(format!("Explained in part: {}; {:.0} % of the excess is left.", first.says, 100.0 * unexplained));
+                lines.push(format!("Partly explained: {}; {:.0} % of the excess remains.", first.says, 100.0 * unexplained));
             }
         }
     }
@@ -260,10 +259,10 @@ fn says(
         let removed = 100.0 * shrink.fraction_removed;
         lines.push(match removed < 0.0 {
             false => format!(
-                "On sections kept out of the fit the gap falls from {before:.3} to {after:.3}: {removed:.0} % is removed ({low:.0} to {high:.0} %)."
+                "On sections excluded from the fit the gap decreases from {before:.3} to {after:.3}: {removed:.0} % is removed ({low:.0} to {high:.0} %)."
             ),
             true => format!(
-                "On sections kept out of the fit the gap grows from {before:.3} to {after:.3}: by {:.0} % ({:.0} to {:.0} %).",
+                "On sections excluded from the fit the gap increases from {before:.3} to {after:.3}: by {:.0} % ({:.0} to {:.0} %).",
                 -removed, -high, -low
             ),
         });

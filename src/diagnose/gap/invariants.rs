@@ -99,7 +99,7 @@ pub fn worst(all: &[Invariant]) -> Option<String> {
     let one = all.iter().max_by(|a, b| off(a).total_cmp(&off(b))).filter(|one| off(one) > WORTH)?;
     let (after, unit, parity) = (one.after, &one.unit, one.parity);
     Some(format!(
-        "Of the sums of forces, `{}` is off most: by {after:.2} {unit}, {:.1} times what is allowed for, {parity}.",
+        "The sum of forces with the largest deviation is `{}`: {after:.2} {unit}, {:.1} times the allowed value, {parity}.",
         one.name,
         off(one)
     ))

@@ -220,7 +220,7 @@ fn scaling(sections: &[Compared], wanted: &Wanted, draws: &[Vec<f64>]) -> Scalin
     let by_frequency = rows(sections, &points, speed, false);
     if !moving {
         let strongest = strongest(&by_frequency).map(|(at, mean)| found(mean, points[at], None));
-        return Scaling { keeps_to: Err("speeds are too much alike"), alike: None, strongest };
+        return Scaling { keeps_to: Err("speeds are too similar"), alike: None, strongest };
     }
     let by_wavelength = rows(sections, &points, speed, true);
     let once = vec![1.0; sections.len()];
@@ -234,7 +234,7 @@ fn scaling(sections: &[Compared], wanted: &Wanted, draws: &[Vec<f64>]) -> Scalin
         () => (Err("either fits as well"), if wavelength > frequency { &by_wavelength } else { &by_frequency }),
     };
     let strongest = strongest(rows).map(|(at, mean)| found(mean, points[at], Some(speed / points[at])));
-    let keeps_to = if strongest.is_none() { Err("spectra differ nowhere for sure") } else { keeps_to };
+    let keeps_to = if strongest.is_none() { Err("no significant difference of the spectra") } else { keeps_to };
     Scaling { keeps_to, alike: Some((frequency, wavelength)), strongest }
 }
 
@@ -254,24 +254,24 @@ pub fn worth_a_word(all: &[Shape]) -> Option<String> {
 
 fn in_words(shape: &Shape) -> String {
     let Some(strongest) = shape.strongest else {
-        return format!("The spectra of the {} differ nowhere for sure.", shape.quantity);
+        return format!("The spectra of the {} show no significant difference.", shape.quantity);
     };
     let more = format!("{:.2} times the simulated amplitude", strongest.ratio);
     let turns = strongest.per_wheel_turn.and_then(|turns| TURNS.into_iter().find(|whole| (turns / whole - 1.0).abs() < WHOLE));
     match (shape.keeps_to, strongest.wavelength) {
         (Some("frequency"), _) => format!(
-            "What the spectra of the {} differ in keeps to frequency, as a mode of the vehicle does: most at {:.1} Hz, {more}.",
+            "The difference of the spectra of the {} scales with frequency, as a mode of the vehicle does; it is largest at {:.1} Hz, {more}.",
             shape.quantity, strongest.frequency
         ),
         (Some(_), Some(wavelength)) => {
             let turns = match turns {
                 Some(1.0) => ", one turn of a wheel".to_string(),
-                Some(turns) => format!(", {turns:.0} waves to the turn of a wheel"),
+                Some(turns) => format!(", {turns:.0} waves per wheel revolution"),
                 None => String::new(),
             };
             let quantity = &shape.quantity;
             format!(
-                "What the spectra of the {quantity} differ in keeps to wavelength, as track and wheels do: most at {wavelength:.1} m{turns}, {more}."
+                "The difference of the spectra of the {quantity} scales with wavelength, as track and wheel irregularities do; it is largest at {wavelength:.1} m{turns}, {more}."
             )
         }
         _ => format!("The spectra of the {} differ most at {:.1} Hz, {more}.", shape.quantity, strongest.frequency),
@@ -321,9 +321,9 @@ mod tests {
     #[test]
     fn speeds_that_are_alike_cannot_tell() {
         let shape = shape_of(&sections(|_| 30.0, |_| 9.0, 1.0));
-        assert_eq!((shape.keeps_to, shape.reason), (None, Some("speeds are too much alike")));
+        assert_eq!((shape.keeps_to, shape.reason), (None, Some("speeds are too similar")));
         let shape = shape_of(&sections(|at| 16.0 + 2.0 * at as f64, |_| 9.0, 0.0));
-        assert_eq!((shape.keeps_to, shape.reason), (None, Some("spectra differ nowhere for sure")));
+        assert_eq!((shape.keeps_to, shape.reason), (None, Some("no significant difference of the spectra")));
     }
 
     /// A sine of amplitude 2 beside noise of unit variance: rms (1 + 2)^1/2 times as large.

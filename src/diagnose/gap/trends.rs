@@ -98,7 +98,7 @@ pub fn certain(trends: &[Trend]) -> bool {
 pub fn worth_a_word(trends: &[Trend]) -> Option<String> {
     let trend = trends.iter().filter(|trend| trend.after.significant).min_by(|a, b| a.after.p_value.total_cmp(&b.after.p_value))?;
     Some(format!(
-        "What is left in the {} ({}, {}) follows {}: it changes by {} from {} to {} (correlation {:.2}).",
+        "The remaining difference of the {} ({}, {}) depends on {}: it changes by {} from {} to {} (correlation {:.2}).",
         trend.quantity,
         trend.position,
         trend.wavelength_or_band,

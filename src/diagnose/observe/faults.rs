@@ -59,7 +59,7 @@ fn still(measured: &[f64], simulated: &[f64], rate: f64) -> Option<String> {
     let seconds = (longest.1 - longest.0) as f64 / rate;
     let meanwhile = simulated.get(longest.0..longest.1.min(simulated.len())).map_or(0.0, range);
     (seconds >= STILL && meanwhile > MOVES * range(simulated) && meanwhile > 0.0)
-        .then(|| format!("keeps the value {} for {seconds:.1} s while the simulation moves", measured[longest.0]))
+        .then(|| format!("keeps the value {} for {seconds:.1} s while the simulated signal varies", measured[longest.0]))
 }
 
 /// Rows of samples at the extreme value; a bound that the simulation does not reach cannot be told from a quiet section.
@@ -70,7 +70,7 @@ fn cut_off(measured: &[f64], simulated: &[f64]) -> Option<String> {
     for (bound, over) in [(most, true), (least, false)] {
         let rows = measured.chunk_by(|a, b| a.to_bits() == b.to_bits()).filter(|row| row[0] == bound && row.len() >= ROW).count();
         if rows >= TIMES && range(measured) > 0.0 && beyond(bound, over) {
-            return Some(format!("does not go {} {bound}: it is cut off there", if over { "above" } else { "below" }));
+            return Some(format!("is saturated: it does not go {} {bound}", if over { "above" } else { "below" }));
         }
     }
     None

@@ -148,7 +148,7 @@ pub fn search(
         if let Some(other) = undone(&chosen) {
             let last = chosen.members.pop().expect("just pushed");
             barred.push(last.candidate);
-            let reason = format!("it mostly undoes what {} does", fitter.candidates[chosen.members[other].candidate].effect);
+            let reason = format!("it mostly cancels the effect of {}", fitter.candidates[chosen.members[other].candidate].effect);
             refused.push(Refused::new(last, reason));
             refit(fitter, z, &mut chosen);
             continue;

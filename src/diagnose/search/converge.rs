@@ -112,10 +112,10 @@ impl Converging<'_> {
         let fitter = Fitter::knowing(whitener, candidates, masks.to_vec(), now.known);
         let fault = |member: &Fitted| {
             if member.evidence < now.bars.least(&fitter.candidates[member.candidate]) {
-                return Some("simulated at the size that was found, it has too little evidence");
+                return Some("when simulated at the estimated value, it has too little evidence");
             }
             (!plausible(&fitter.candidates[member.candidate], member.size))
-                .then_some("beside the others it asks for a size that is not plausible")
+                .then_some("together with the other effects it requires an implausible value")
         };
         let first_fault = |members: &[Fitted]| members.iter().enumerate().find_map(|(at, member)| Some((at, fault(member)?)));
         while let Some((at, reason)) = first_fault(&now.chosen.members) {
@@ -196,7 +196,7 @@ impl Converging<'_> {
         let change = fit.change(fitter.candidates, &fitter.masks);
         carried(&self.place.covariance, &fitter.masks[fit.mask], &change, &rest).map_or(judged, |(at, share)| {
             let section = self.workshop.seen.sections[at].section.name();
-            Judged::Refused(format!("without section {section} only {:.0} % of the evidence is left", 100.0 * share))
+            Judged::Refused(format!("without section {section} only {:.0} % of the evidence remains", 100.0 * share))
         })
     }
 }

@@ -196,7 +196,7 @@ pub fn contradiction(
     if low.1 >= SOME || below < SURE {
         return Judged::Doubtful;
     }
-    Judged::Contradicted(format!("{} ask for {:.0} % of it, {} for {:.0} %", high.0.says, 100.0 * high.1, low.0.says, 100.0 * low.1))
+    Judged::Contradicted(format!("{} require {:.0} % of it, {} {:.0} %", high.0.says, 100.0 * high.1, low.0.says, 100.0 * low.1))
 }
 
 /// A view that asks for less than this share of an effect contradicts it, if it is by so many standard errors below what all ask for.

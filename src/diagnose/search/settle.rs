@@ -94,7 +94,7 @@ impl Settled<'_> {
             }
             self.refined((candidates, masks), &mut now, runs);
             while now.chosen.members.get(count).is_some_and(|next| next.evidence < bars.least(&candidates[next.candidate])) {
-                let reason = "with the tolerances as they act beside what was found before it, it has too little evidence";
+                let reason = "with the tolerances evaluated together with the effects found before, it has too little evidence";
                 refused.push(Refused::new(now.chosen.members.remove(count), reason));
                 alone_again(candidates, &now.chosen.members);
                 self.refined((candidates, masks), &mut now, runs);
@@ -107,10 +107,12 @@ impl Settled<'_> {
                 let from = if masks[member.mask].asked_by.is_some() { " from that of the other sections" } else { "" };
                 let reason = match () {
                     () if member.evidence < bars.least(of) => "it has too little evidence".to_string(),
-                    () if away < needed => format!("its size is {away:.1} declared standard deviations off{from}, not {needed:.1}"),
+                    () if away < needed => {
+                        format!("its value is only {away:.1} declared standard deviations away{from}; {needed:.1} are required")
+                    }
                     () => return None,
                 };
-                Some((at, format!("with the tolerances as they act beside it, {reason}")))
+                Some((at, format!("with the tolerances evaluated together with it, {reason}")))
             };
             let Some((weak, reason)) = (0..count).find_map(weak) else {
                 count += 1;

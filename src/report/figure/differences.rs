@@ -101,7 +101,8 @@ pub fn draw(canvas: &mut Canvas, quantity: &QuantityResult, against: &Against<'_
     let y = scale(quantity, levels, bottom, top);
     let frame = Frame { x, y };
     grounds(canvas, &frame, levels, slots);
-    let what = if quantity.has_sides { "simulated − measured" } else { "value of the metric" };
+    let formula = number::formula(&quantity.comparison);
+    let what = if quantity.has_sides { formula.as_str() } else { "value of the metric" };
     frame.y_axis(canvas, &y.ticks(TICKS), &axis::title(what, &quantity.unit));
     names(canvas, &frame, slots);
     zone_heads(canvas, &frame, slots);

@@ -10,6 +10,10 @@ use crate::result::diagnosis::Where;
 const ROW: f64 = 11.0;
 const NAMES: f64 = 176.0;
 const HEAD: f64 = 60.0;
+/// Height of the scale below the map, with its margins.
+const SCALE: f64 = 27.0;
+/// Shades of the scale.
+const STEPS: usize = 6;
 
 /// Rows in the order of the shares they hold; a dot marks cells that are significant.
 pub fn map(places: &[Where]) -> String {
@@ -32,7 +36,8 @@ pub fn map(places: &[Where]) -> String {
     columns.sort_by(|a, b| a.0.cmp(&b.0).then(edge(&a.1).total_cmp(&edge(&b.1))));
     let wide = (WIDTH - NAMES) / columns.len().max(1) as f64;
     let most = places.iter().map(|place| place.share_of_gap).fold(1e-12, f64::max);
-    let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows.len() as f64 + 4.0);
+    let bottom = HEAD + ROW * rows.len() as f64;
+    let mut canvas = Canvas::new(WIDTH, bottom + SCALE);
     canvas.draw(|layer| {
         for (at, (zone, band)) in columns.iter().enumerate() {
             let x = NAMES + wide * (at as f64 + 0.5);
@@ -70,7 +75,26 @@ pub fn map(places: &[Where]) -> String {
         }
         layer.line((NAMES, HEAD), (WIDTH, HEAD), GRID, 0.5);
     });
+    scale(&mut canvas, bottom + 0.5 * (SCALE - ROW), most);
     canvas.finish()
+}
+
+/// What the shades stand for, from none to the largest share.
+fn scale(canvas: &mut Canvas, top: f64, most: f64) {
+    let wide = (WIDTH - NAMES) / STEPS as f64;
+    canvas.draw(|layer| {
+        layer.text("share of the gap", (NAMES - 4.0, top + 0.5 * ROW), &Font::right(SMALL).color(MUTED));
+        for step in 0..STEPS {
+            let of = step as f64 / (STEPS - 1) as f64;
+            let x = NAMES + wide * step as f64;
+            layer.rect((x, top), (x + wide - 1.0, top + ROW), shade(of));
+            let says = format!("{} %", number::significant(100.0 * most * of * of, 2));
+            let color = if of > 0.55 { WHITE } else { INK };
+            layer.text(&says, (x + 0.5 * wide, top + 0.5 * ROW), &Font::middle(SMALL).color(color));
+        }
+        layer.line((NAMES, top), (WIDTH - 1.0, top), GRID, 0.5);
+        layer.line((NAMES, top + ROW), (WIDTH - 1.0, top + ROW), GRID, 0.5);
+    });
 }
 
 fn name(place: &Where) -> String {

@@ -6,7 +6,8 @@ use super::axis::Scale;
 use super::canvas::{Canvas, Font, Group, Layer};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{self, BEYOND, GRID, INK, MUTED, Mark, SHADE, TEXT, WIDTH, cut, text_width};
+use super::style::{self, BEYOND, GRID, INK, MUTED, Mark, SHADE, TEXT, WIDTH, text_width};
+use super::symbol::symbol_left_of;
 use crate::report::number;
 use crate::result::{QuantityResult, StatisticResult};
 
@@ -129,9 +130,8 @@ fn ground(canvas: &mut Canvas, frame: &Frame) {
 fn row(canvas: &mut Canvas, frame: &Frame, quantity: &QuantityResult, series: &Series, (top, line, lines): (f64, f64, usize), labels: f64) {
     let middle = top + lines as f64 * line / 2.0;
     let fails = quantity.holds == Some(false);
-    let label = cut(&quantity.symbol, TEXT, labels);
     canvas.group(&Group { class: "row", title: Some(&quantity.title), ..Group::default() }, |layer| {
-        layer.text(&label, (frame.left() - 6.0, middle), &Font::right(TEXT).bold(fails));
+        symbol_left_of(layer, &quantity.symbol, (frame.left() - 6.0, middle), &Font::right(TEXT).bold(fails), labels);
     });
     finding(canvas, quantity.holds, (frame.right() + 8.0, middle));
     let statistics: Vec<&StatisticResult> = shown(quantity).collect();
@@ -167,12 +167,12 @@ fn finding(canvas: &mut Canvas, holds: Option<bool>, (x, y): (f64, f64)) {
         let word = match holds {
             Some(true) => {
                 layer.path(&[(x, y + 0.3), (x + 2.2, y + 2.6), (x + 6.2, y - 2.8)], INK, 1.1);
-                "holds"
+                "met"
             }
             Some(false) => {
                 layer.line((x + 0.5, y - 2.6), (x + 5.7, y + 2.6), INK, 1.4);
                 layer.line((x + 0.5, y + 2.6), (x + 5.7, y - 2.6), INK, 1.4);
-                "fails"
+                "not met"
             }
             None => {
                 layer.line((x, y), (x + 6.0, y), MUTED, 1.1);

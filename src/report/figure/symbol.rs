@@ -1,4 +1,4 @@
-//! Symbols of quantities as labels: dots over letters that no single character has are drawn.
+//! Symbols of quantities as labels: subscripts, and dots over letters that no single character has, are drawn.
 //!
 //! A font sets them as two drawings for one letter, of which a PDF cannot say what they stand for together.
 
@@ -8,12 +8,56 @@ use super::style::{Mark, cut, text_width};
 /// Two dots over the letter before them.
 const DIAERESIS: char = '\u{308}';
 
+/// Size of a subscript, of that of its letter.
+const SMALLER: f64 = 0.78;
+/// How far below its letter a subscript stands, of the letter's size.
+const LOWER: f64 = 0.22;
+
+/// What stands before and after the one underscore of a symbol.
+fn parts(label: &str) -> (&str, &str) {
+    label.split_once('_').filter(|(base, sub)| !base.is_empty() && !sub.is_empty() && !sub.contains('_')).unwrap_or((label, ""))
+}
+
+/// A symbol about a point, cut to a width, with its subscript.
+pub fn symbol(layer: &mut Layer<'_>, label: &str, at: Point, size: f64, width: f64) {
+    let (base, sub) = parts(label);
+    let own = NARROWER * SMALLER * text_width(sub, size);
+    if sub.is_empty() || NARROWER * text_width(base, size) + own > width {
+        return plain(layer, label, at, &Font::middle(size), width);
+    }
+    pieces(layer, (base, sub), at, &Font::middle(size));
+}
+
+/// The same with its end at a point.
+pub fn symbol_left_of(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: f64) {
+    let (base, sub) = parts(label);
+    let wide = |base: &str, sub: &str| NARROWER * (text_width(base, font.size) + SMALLER * text_width(sub, font.size));
+    let middle = Font { held: Held::Middle, ..*font };
+    if sub.is_empty() || wide(base, sub) > width {
+        let shown = cut(label, font.size, width);
+        return plain(layer, label, (x - 0.5 * wide(&bare(&shown), ""), y), &middle, width);
+    }
+    pieces(layer, (base, sub), (x - 0.5 * wide(base, sub), y), &middle);
+}
+
+fn pieces(layer: &mut Layer<'_>, (base, sub): (&str, &str), (x, y): Point, font: &Font) {
+    let (wide, own) = (NARROWER * text_width(&bare(base), font.size), NARROWER * SMALLER * text_width(sub, font.size));
+    plain(layer, base, (x - 0.5 * own, y), font, f64::INFINITY);
+    let below = Font { size: SMALLER * font.size, held: Held::Start, ..*font };
+    layer.text(sub, (x + 0.5 * (wide - own) + 0.04 * font.size, y + LOWER * font.size), &below);
+}
+
+/// Without accents.
+fn bare(label: &str) -> String {
+    label.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).collect()
+}
+
 /// A label about a point, cut to a width, each diaeresis drawn over its letter; other accents are left out.
-pub fn symbol(layer: &mut Layer<'_>, label: &str, (x, y): Point, size: f64, width: f64) {
-    let bare: String = label.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).collect();
-    let shown = cut(&bare, size, width);
+fn plain(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: f64) {
+    let size = font.size;
+    let shown = cut(&bare(label), size, width);
     let Some(letter) = dotted(label).filter(|letter| *letter < shown.chars().count()) else {
-        layer.text(&shown, (x, y), &Font::middle(size));
+        layer.text(&shown, (x, y), font);
         return;
     };
     // The letter stands about a place of its own, so that the dots are over it whatever the font's widths are.
@@ -24,11 +68,11 @@ pub fn symbol(layer: &mut Layer<'_>, label: &str, (x, y): Point, size: f64, widt
     let center = x - 0.5 * NARROWER * text_width(&shown, size) + NARROWER * text_width(&before, size) + half;
     for (text, at, held) in [(&before, center - half, Held::End), (&own, center, Held::Middle), (&after, center + half, Held::Start)] {
         if !text.is_empty() {
-            layer.text(text, (at, y), &Font { held, ..Font::middle(size) });
+            layer.text(text, (at, y), &Font { held, ..*font });
         }
     }
     for side in [-1.0, 1.0] {
-        layer.mark(Mark::Circle, (center + side * 0.13 * size, y - 0.42 * size), 0.06 * size, Font::middle(size).color);
+        layer.mark(Mark::Circle, (center + side * 0.13 * size, y - 0.42 * size), 0.06 * size, font.color);
     }
 }
 

@@ -13,6 +13,8 @@ pub struct Document {
     pub headline: Finding,
     pub sentence: String,
     pub key_facts: Vec<Fact>,
+    /// Symbols of the quantities, which the PDF and the page set with subscripts.
+    pub symbols: Vec<String>,
     pub campaign: CampaignView,
     pub protocol: ProtocolView,
     pub chapters: Vec<Chapter>,

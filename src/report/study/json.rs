@@ -59,7 +59,7 @@ fn shares(root: &mut Map<String, Value>, found: &SelectionStudy) {
     root.insert("combinations".into(), whole(found.combinations));
     root.insert("validated".into(), if share.exact { json!(share.validated) } else { Value::Null });
     if !share.exact {
-        root.insert("reason".into(), json!("not all selections were looked at"));
+        root.insert("reason".into(), json!("not all selections were evaluated"));
     }
     root.insert("share_validated".into(), json!(share.share));
     root.insert("exact".into(), json!(share.exact));

@@ -20,7 +20,7 @@ pub fn document(study: &Study) -> Document {
     let (title, opening, mut chapters) = match &study.found {
         Found::Sections(found) => ("Selection of sections", sections::opening(found), sections::chapters(found)),
         Found::Sync(found) => ("Synchronisation", sync::opening(found), sync::chapters(found)),
-        Found::Parameters(found) => ("Free choices of the protocol", parameters::opening(found), parameters::chapters(found)),
+        Found::Parameters(found) => ("Parameters of the protocol", parameters::opening(found), parameters::chapters(found)),
     };
     if !study.notes.is_empty() {
         chapters.push(Chapter { id: "remarks".into(), title: "Remarks".into(), items: vec![Item::List { entries: study.notes.clone() }] });
@@ -28,23 +28,34 @@ pub fn document(study: &Study) -> Document {
     chapters.push(settings(study));
     Document {
         title: format!("{title}: {}", study.campaign.name),
-        kind: format!("How far the verdict depends on choices: {}", title.to_lowercase()),
+        kind: format!("Robustness of the verdict: {}", title.to_lowercase()),
         program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned(),
         headline: opening.headline,
         sentence: opening.sentence,
         key_facts: opening.facts,
+        symbols: symbols(&study.found),
         campaign: view::campaign(&study.campaign),
         protocol: view::protocol_view(&study.protocol),
         chapters,
     }
 }
 
+/// Symbols of the quantities, each once.
+fn symbols(found: &Found) -> Vec<String> {
+    let all: Vec<&String> = match found {
+        Found::Sections(found) => found.quantities.iter().map(|quantity| &quantity.symbol).collect(),
+        Found::Sync(found) => found.offsets.iter().flat_map(|at| &at.selected).map(|one| &one.symbol).collect(),
+        Found::Parameters(found) => found.base.statistics.iter().map(|one| &one.symbol).collect(),
+    };
+    all.into_iter().collect::<indexmap::IndexSet<_>>().into_iter().cloned().collect()
+}
+
 /// That a verdict stays, and which; a good sign only where it is the good one. `None`: it does not stay.
 fn stays(verdict: Option<Verdict>, otherwise: &str) -> Finding {
     match verdict {
-        Some(Verdict::Validated) => Finding::new(Some(true), "The verdict stays: validated", "", ""),
+        Some(Verdict::Validated) => Finding::new(Some(true), "Verdict unchanged: validated", "", ""),
         // Neither good nor bad: that it does not depend on a choice says nothing for the model.
-        Some(verdict) => Finding { class: "open", sign: "–", word: format!("The verdict stays: {}", verdict.in_words()) },
+        Some(verdict) => Finding { class: "open", sign: "–", word: format!("Verdict unchanged: {}", verdict.in_words()) },
         None => Finding::new(None, "", "", otherwise),
     }
 }
@@ -62,7 +73,7 @@ fn settings(study: &Study) -> Chapter {
     };
     let table = Table {
         caption: "Parameters of the protocol, values used and defaults".into(),
-        head: ["Name", "Meaning", "Used", "Default", "Set by"].map(Head::text).to_vec(),
+        head: vec![Head::short("Name"), Head::text("Meaning"), Head::short("Used"), Head::short("Default"), Head::short("Set by")],
         rows: study.protocol.parameters.iter().map(row).collect(),
     };
     Chapter {

@@ -11,20 +11,20 @@ pub fn opening(found: &ParameterStudy) -> Opening {
         found.parameters.iter().filter(|parameter| parameter.decides).map(|parameter| parameter.title.as_str()).collect();
     let values: usize = found.parameters.iter().map(|parameter| parameter.values.len()).sum();
     let sentence = if deciding.is_empty() {
-        format!("As it is, the verdict is {}. No value that was tried changes it.", found.base.verdict.in_words())
+        format!("The baseline verdict is '{}'; no tested value changes it.", found.base.verdict.in_words())
     } else {
-        format!("As it is, the verdict is {}. It changes with: {}.", found.base.verdict.in_words(), deciding.join("; "))
+        format!("The baseline verdict is '{}'. It changes with: {}.", found.base.verdict.in_words(), deciding.join("; "))
     };
     Opening {
         headline: super::stays(
             Some(found.base.verdict).filter(|_| deciding.is_empty()),
-            &format!("{} of {} free choices decide the verdict", deciding.len(), found.parameters.len()),
+            &format!("{} of {} parameters affect the verdict", deciding.len(), found.parameters.len()),
         ),
         sentence,
         facts: [
             ("Parameters varied", found.parameters.len().to_string()),
-            ("Values tried", values.to_string()),
-            ("Verdict as it is", found.base.verdict.in_words().to_owned()),
+            ("Values tested", values.to_string()),
+            ("Baseline verdict", found.base.verdict.in_words().to_owned()),
             ("Selections validated", found.base.share.as_ref().map_or_else(|| number::NONE.to_owned(), share)),
         ]
         .map(|(name, value)| Fact { name: name.to_owned(), value })
@@ -36,7 +36,7 @@ pub fn chapters(found: &ParameterStudy) -> Vec<Chapter> {
     let row = |parameter: &Varied, at: &AtValue| {
         vec![
             parameter.name.clone(),
-            if at.is_base { format!("{} (as it is)", at.value) } else { at.value.clone() },
+            if at.is_base { format!("{} (baseline)", at.value) } else { at.value.clone() },
             at.verdict.in_words().to_owned(),
             at.largest.as_ref().map_or_else(|| number::NONE.to_owned(), |(_, value)| number::beside(*value, 1.0, 3)),
             at.largest.as_ref().map_or_else(String::new, |(which, _)| which.clone()),
@@ -46,14 +46,14 @@ pub fn chapters(found: &ParameterStudy) -> Vec<Chapter> {
     let rows = found.parameters.iter().flat_map(|parameter| parameter.values.iter().map(move |at| row(parameter, at)));
     let mut chapters = vec![Chapter {
         id: "choices".into(),
-        title: "Which free choice decides the verdict".into(),
+        title: "Parameters that affect the verdict".into(),
         items: vec![
             Item::text(
-                "Each parameter is varied by itself, all others as they are. A value in bold in the figure is the one as it is; a parameter in bold decides.",
+                "Each parameter is varied individually; all others keep their baseline values. In the figure, baseline values and the parameters that affect the verdict are printed in bold.",
             ),
             Item::figure(
                 "choices",
-                "Largest statistic divided by its limit for every value, and the share of selections validated",
+                "Largest statistic divided by its limit for each value, and the share of selections validated",
                 "For every value of every parameter the largest normalised statistic; the numbers are in the table.",
             ),
             Item::Table {
@@ -63,8 +63,8 @@ pub fn chapters(found: &ParameterStudy) -> Vec<Chapter> {
                         Head::text("Parameter"),
                         Head::text("Value"),
                         Head::short("Verdict"),
-                        Head::number("Largest"),
-                        Head::text("of"),
+                        Head::number("Largest ratio"),
+                        Head::text("Statistic"),
                         Head::number("Validated"),
                     ],
                     rows: rows.collect(),
@@ -76,7 +76,7 @@ pub fn chapters(found: &ParameterStudy) -> Vec<Chapter> {
     for parameter in &found.parameters {
         items.push(statistics(parameter));
     }
-    chapters.push(Chapter { id: "statistics".into(), title: "Statistics along the parameters".into(), items });
+    chapters.push(Chapter { id: "statistics".into(), title: "Statistics by parameter value".into(), items });
     chapters
 }
 

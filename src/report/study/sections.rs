@@ -23,7 +23,7 @@ pub fn opening(found: &SelectionStudy) -> Opening {
     let same = match agrees {
         share if share >= 1.0 => "does not depend on the sections chosen",
         share if share >= 0.5 => "depends on the sections chosen",
-        _ => "is another for most selections than for all sections together",
+        _ => "differs for most selections from that of all sections together",
     };
     // What stands in the box is the share: good where all are validated, bad where none is.
     let holds = match all {
@@ -32,10 +32,10 @@ pub fn opening(found: &SelectionStudy) -> Opening {
         _ => None,
     };
     let looked = if found.share.exact {
-        format!("All {} selections were looked at.", number::large(found.combinations))
+        format!("All {} selections were evaluated.", number::large(found.combinations))
     } else {
         format!(
-            "Of {} selections {} were drawn at random; the interval is at 95 %.",
+            "Of {} selections, {} were drawn at random; the interval is a 95 % confidence interval.",
             number::large(found.combinations),
             number::count(found.share.looked_at)
         )
@@ -43,7 +43,7 @@ pub fn opening(found: &SelectionStudy) -> Opening {
     Opening {
         headline: Finding::new(holds, &share(&found.share), &share(&found.share), &share(&found.share)),
         sentence: format!(
-            "of the selections are validated. All usable sections together are {}: the verdict {same}. {looked}",
+            "of the selections are validated. The verdict on all usable sections together is '{}'. The verdict {same}. {looked}",
             found.verdict.in_words()
         ),
         facts: vec![
@@ -64,10 +64,10 @@ pub fn chapters(found: &SelectionStudy) -> Vec<Chapter> {
     let mut chapters = vec![
         Chapter { id: "selections".into(), title: "Selections".into(), items },
         Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items: spread(&found.quantities, "boxes", "") },
-        Chapter { id: "failing".into(), title: "What fails".into(), items: failing(found) },
+        Chapter { id: "failing".into(), title: "Criteria not met".into(), items: failing(found) },
         Chapter {
             id: "sections".into(),
-            title: "Which sections matter".into(),
+            title: "Influence of individual sections".into(),
             items: importance(&found.sections, found.removal.as_ref()),
         },
     ];
@@ -89,7 +89,7 @@ fn strata(found: &SelectionStudy) -> Item {
     });
     Item::Table {
         table: Table {
-            caption: "What a selection takes, and what it is taken from".into(),
+            caption: "Composition of a selection, and the sections it is drawn from".into(),
             head: vec![
                 Head::short("Zone"),
                 Head::text("Title"),
@@ -125,21 +125,21 @@ pub fn spread(quantities: &[QuantitySpread], figure: &str, at: &str) -> Vec<Item
     let beyond = statistics().filter(|(_, statistic)| statistic.failing > 0.0).count();
     let mut head = vec![Head::text("Quantity"), Head::short("Statistic")];
     head.extend(scopes.then(|| Head::short("Pairs")));
-    head.extend(["All", "Least", "25 %", "Median", "75 %", "Greatest", "Outliers"].map(Head::number));
-    head.push(Head::number("Fails"));
+    head.extend(["All", "Min", "25 %", "Median", "75 %", "Max", "Outliers"].map(Head::number));
+    head.push(Head::number("Not met"));
     vec![
         Item::figure(
             figure,
             format!("Statistics of all selections divided by their limits{at}"),
             format!(
-                "Box plots of {} normalised statistics; {beyond} reach beyond their limits in some selections. The numbers are in the table.",
+                "Box plots of {} normalised statistics; {beyond} exceed their limits in some selections. The numbers are in the table.",
                 rows.len()
             ),
         ),
         Item::Table {
             table: Table {
                 caption: format!(
-                    "Statistics divided by their limits over the selections{at}; \"all\" is for all usable sections together{}",
+                    "Statistics divided by their limits over the selections{at}; “All” refers to all usable sections together{}",
                     known(&spreads)
                 ),
                 head,
@@ -172,24 +172,24 @@ fn known(spreads: &[Spread]) -> String {
     let within = spreads.iter().filter_map(|spread| spread.within).fold(0.0, f64::max);
     match (estimated, within > 0.0) {
         (false, false) => "; all numbers are exact".to_owned(),
-        (true, false) => "; quartiles with ± are estimated, with all else in their rows, the others are exact".to_owned(),
-        (true, true) => format!(
-            "; quartiles with ± are estimated, with all else in their rows, the others are within {} for certain",
-            number::significant(within, 1)
-        ),
-        (false, true) => format!("; quartiles are within {} for certain", number::significant(within, 1)),
+        (true, false) => "; rows with ± are estimated, all others are exact".to_owned(),
+        (true, true) => {
+            format!("; rows with ± are estimated, quartiles of all others are exact to within {}", number::significant(within, 1))
+        }
+        (false, true) => format!("; quartiles are exact to within {}", number::significant(within, 1)),
     }
 }
 
 fn failing(found: &SelectionStudy) -> Vec<Item> {
     let fails: Vec<&QuantitySpread> = found.quantities.iter().filter(|quantity| quantity.failing > 0.0).collect();
     if fails.is_empty() {
-        return vec![Item::text("No quantity fails in any selection that was looked at.")];
+        return vec![Item::text("All criteria are met in every selection that was evaluated.")];
     }
     let mut items = vec![Item::Table {
         table: Table {
-            caption: "Quantities that fail: in which share of the selections, and in which share they alone fail".into(),
-            head: vec![Head::text("Quantity"), Head::text("Title"), Head::number("Fails"), Head::number("Fails alone")],
+            caption: "Quantities whose criteria are not met: share of the selections, and share in which no other quantity is concerned"
+                .into(),
+            head: vec![Head::text("Quantity"), Head::text("Title"), Head::number("Not met"), Head::number("Not met alone")],
             rows: fails
                 .iter()
                 .map(|quantity| {
@@ -205,11 +205,11 @@ fn failing(found: &SelectionStudy) -> Vec<Item> {
     }];
     items.push(Item::Table {
         table: Table {
-            caption: "The selection that is worst for each limit that some selection breaks".into(),
+            caption: "Worst selection for each limit that is exceeded in some selection".into(),
             head: vec![
                 Head::short("Quantity"),
                 Head::short("Statistic"),
-                Head::number("Of its limit"),
+                Head::number("Ratio to limit"),
                 Head::text("Sections of the selection"),
             ],
             rows: found
@@ -239,13 +239,13 @@ fn importance(sections: &[Importance], removal: Option<&Removal>) -> Vec<Item> {
     let removal = removal.map(|removal| Item::text(worded(removal)));
     let table = [Item::Table {
         table: Table {
-            caption: "Share of selections validated with and without each section, the largest difference first".into(),
+            caption: "Share of selections validated with and without each section, sorted by the difference".into(),
             head: vec![
                 Head::text("Section"),
                 Head::short("Zone"),
-                Head::number("With it"),
-                Head::number("Without it"),
-                Head::number("Difference, points"),
+                Head::number("With"),
+                Head::number("Without"),
+                Head::number("Difference, percentage points"),
             ],
             rows: sorted
                 .iter()
@@ -266,26 +266,23 @@ fn worded(removal: &Removal) -> String {
     match removal.sets.as_slice() {
         [] if removal.complete => {
             format!(
-                "No set of sections changes the verdict of all sections together ({verdict}) by its removal: all sets were tried that leave what a selection takes."
+                "The verdict on all sections together ({verdict}) does not change when sections are removed. All sets were tested that leave enough sections for a selection."
             )
         }
         [] => {
             let larger = match &removal.larger {
-                None => "larger ones were not all tried".to_owned(),
+                None => "not all larger sets were tested".to_owned(),
                 Some(set) => format!(
-                    "without {} sections it changes, which were given up one at a time, always the one that helps most, so that a smaller set is not excluded: {}",
+                    "it changes when {} sections are removed, chosen one at a time by largest influence, so a smaller set cannot be excluded: {}",
                     set.len(),
                     set.join(", ")
                 ),
             };
-            format!(
-                "No set of up to {} sections changes the verdict of all sections together ({verdict}) by its removal; {larger}.",
-                removal.tried
-            )
+            format!("Removing up to {} sections does not change the verdict on all sections together ({verdict}); {larger}.", removal.tried)
         }
         [first, rest @ ..] => {
             let size = first.len();
-            let plural = if size == 1 { "section" } else { "sections" };
+            let plural = if size == 1 { "section is" } else { "sections are" };
             let others = match removal.count - 1 {
                 0 => "it is the only set of this size".to_owned(),
                 1 => "there is one other set of this size".to_owned(),
@@ -294,7 +291,7 @@ fn worded(removal: &Removal) -> String {
             let more: Vec<String> = rest.iter().take(5).map(|set| set.join(" and ")).collect();
             let more = if more.is_empty() { String::new() } else { format!(": {}", more.join("; ")) };
             format!(
-                "The verdict of all sections together ({verdict}) changes without {} {plural}: {}; {others}{more}. No smaller set changes it.",
+                "The verdict on all sections together ({verdict}) changes when {} {plural} removed: {}; {others}{more}. No smaller set changes it.",
                 size,
                 first.join(", ")
             )
@@ -312,7 +309,7 @@ fn reduction(reduction: &Reduction) -> Chapter {
         title: "Representative sections".into(),
         items: vec![
             Item::text(format!(
-                "Before anything was selected, the sections were reduced to at most {} for each zone, so that the highest standard deviation of all sections stays.",
+                "Before the selection, the sections were reduced to at most {} per zone so that the largest standard deviation of all sections is retained.",
                 reduction.most
             )),
             Item::Table {

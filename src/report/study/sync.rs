@@ -18,19 +18,19 @@ pub fn opening(found: &SyncStudy) -> Opening {
     let (first, last) = (found.offsets.first().map_or(0.0, |at| at.offset), found.offsets.last().map_or(0.0, |at| at.offset));
     let facts = [
         ("Offsets", format!("{} to {}", shown(found, first), shown(found, last))),
-        ("Validated, least", percent(low)),
-        ("Validated, greatest", percent(high)),
-        ("Estimates taken out", if found.corrected { "yes" } else { "no" }.to_owned()),
+        ("Validated, minimum", percent(low)),
+        ("Validated, maximum", percent(high)),
+        ("Estimated offsets removed", if found.corrected { "yes" } else { "no" }.to_owned()),
     ];
     Opening {
         headline: super::stays(base.map(|base| base.verdict).filter(|_| same), "The verdict changes"),
         sentence: format!(
-            "The measurement was shifted against the simulation from {} to {}. The verdict on all sections together {}; the share of selections validated lies between {} and {}.",
+            "The measurement was shifted relative to the simulation, from {} to {}. The verdict on all sections together {}. The share of validated selections is between {} and {}.",
             shown(found, first),
             shown(found, last),
             match base.filter(|_| same) {
                 Some(base) => format!("is the same at every offset ({})", base.verdict.in_words()),
-                None => "is not the same at every offset".to_owned(),
+                None => "depends on the offset".to_owned(),
             },
             percent(low),
             percent(high)
@@ -42,8 +42,8 @@ pub fn opening(found: &SyncStudy) -> Opening {
 pub fn chapters(found: &SyncStudy) -> Vec<Chapter> {
     let mut chapters = vec![
         Chapter { id: "shares".into(), title: "Share validated".into(), items: shares(found) },
-        Chapter { id: "one".into(), title: "One selection".into(), items: one(found) },
-        Chapter { id: "estimates".into(), title: "Offsets found in the signals".into(), items: estimates(found) },
+        Chapter { id: "one".into(), title: "Single selection".into(), items: one(found) },
+        Chapter { id: "estimates".into(), title: "Offsets estimated from the signals".into(), items: estimates(found) },
     ];
     let mut items = Vec::new();
     for (at, offset) in found.offsets.iter().enumerate() {
@@ -74,20 +74,20 @@ fn shares(found: &SyncStudy) -> Vec<Item> {
     let mut items = vec![
         Item::figure(
             "shares",
-            "Share of the selections validated over the offset of the measurement",
+            "Share of selections validated as a function of the measurement offset",
             "Share of selections validated over the offset; the numbers are in the table.",
         ),
         Item::Table {
             table: Table {
-                caption: "Influence of the synchronisation: share of selections validated, share validated without offset and no longer, share validated only with it, and the verdict".into(),
+                caption: "Influence of the synchronisation: share of selections validated, share validated without the offset but not with it, share validated only with it, and the verdict".into(),
                 head: vec![
                     Head::number("Offset"),
                     Head::number("Validated"),
-                    Head::number("No longer"),
-                    Head::number("Newly"),
+                    Head::number("Lost"),
+                    Head::number("Gained"),
                     Head::number("Selections"),
                     Head::short("All sections"),
-                    Head::text("What changes"),
+                    Head::text("Changes"),
                 ],
                 rows: found.offsets.iter().map(row).collect(),
             },
@@ -101,7 +101,7 @@ fn shares(found: &SyncStudy) -> Vec<Item> {
         })
         .collect();
     if !lost.is_empty() {
-        items.push(Item::text("Sections that cannot be used at some offset, which changes what is selected from:"));
+        items.push(Item::text("Sections that cannot be used at some offsets, so that the selections differ:"));
         items.push(Item::List { entries: lost });
     }
     items
@@ -124,11 +124,11 @@ fn one(found: &SyncStudy) -> Vec<Item> {
         Item::text(format!("One selection drawn at random: {}.", found.selection.join(", "))),
         Item::figure(
             "selection",
-            "Statistics of the one selection divided by their limits, at every offset",
+            "Statistics of a single selection divided by their limits, at each offset",
             "Normalised statistics of one selection at every offset; the numbers are in the table.",
         ),
         Item::Table {
-            table: Table { caption: "Statistics of the one selection divided by their limits".into(), head, rows: rows.collect() },
+            table: Table { caption: "Statistics of a single selection divided by their limits".into(), head, rows: rows.collect() },
         },
     ]
 }
@@ -145,17 +145,17 @@ fn estimates(found: &SyncStudy) -> Vec<Item> {
         ]
     });
     let what = if found.corrected {
-        "These offsets were taken out before the offsets of this study were put in."
+        "These offsets were removed before the offsets of this study were applied."
     } else {
-        "They are reported only: nothing was corrected."
+        "They are reported for information; no correction was applied."
     };
     vec![
         Item::text(format!(
-            "By cross-correlation of all filtered signals of both records of a section; the interval is at 95 %, from the section with an eighth left out in turn and from how far groups of signals that share no channel lie apart. {what}"
+            "Estimated by cross-correlation of all filtered signals of both records of a section. The 95 % interval combines a jackknife over eighths of the section with the scatter between groups of signals that share no channel. {what}"
         )),
         Item::Table {
             table: Table {
-                caption: format!("What would have to be added to the measurement's axis, in {}", number::unit(&found.axis_unit)),
+                caption: format!("Offset to be added to the axis of the measurement, in {}", number::unit(&found.axis_unit)),
                 head: vec![
                     Head::text("Section"),
                     Head::short("Zone"),

@@ -3,6 +3,7 @@
 //! What comes from users reaches the templates as data (`/data.json`), never as markup, so that no name can act as code.
 //! Nothing outside the program is read: fonts and templates are embedded, there is no clock and no network.
 
+mod date;
 mod text;
 mod world;
 
@@ -10,7 +11,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use typst::diag::SourceDiagnostic;
-use typst::foundations::{Datetime, Smart};
+use typst::foundations::Smart;
 use typst_layout::PagedDocument;
 use typst_pdf::{PdfOptions, PdfStandard, PdfStandards, Timestamp};
 
@@ -88,13 +89,14 @@ fn framed(frame: String, data: &impl Serialize, figures: &[(String, String)], at
     }
     files.add("/data.json", value.to_string().into_bytes())?;
     let ident = ident(&value, figures, attachments);
-    let pdf = compile(&files, ident);
+    let issued = value.pointer("/campaign/report/issued").and_then(Value::as_str).and_then(date::issued);
+    let pdf = compile(&files, ident, issued);
     // Typst's caches are global and would keep every report of a batch alive.
     typst::comemo::evict(0);
     pdf
 }
 
-fn compile(files: &Files, ident: String) -> Result<Pdf, Problems> {
+fn compile(files: &Files, ident: String, issued: Option<Timestamp>) -> Result<Pdf, Problems> {
     let compiled = typst::compile::<PagedDocument>(files);
     let warnings = Problems(compiled.warnings.iter().map(|found| problem(found, files)).collect());
     let refuse = |errors: &[SourceDiagnostic]| Problems(errors.iter().map(|found| problem(found, files)).collect());
@@ -104,18 +106,15 @@ fn compile(files: &Files, ident: String) -> Result<Pdf, Problems> {
     let options = PdfOptions {
         ident: Smart::Custom(ident),
         creator: Smart::Custom(Some(concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned())),
-        timestamp: fixed_date(),
+        timestamp: issued.or_else(date::placeholder),
         standards,
         ..PdfOptions::default()
     };
-    let bytes = typst_pdf::pdf(&document, &options).map_err(|errors| refuse(&errors))?;
+    let mut bytes = typst_pdf::pdf(&document, &options).map_err(|errors| refuse(&errors))?;
+    if issued.is_none() {
+        date::remove_placeholder(&mut bytes);
+    }
     Ok(Pdf { bytes, pages: document.pages().len(), warnings })
-}
-
-/// PDF/A-3 asks for a date where files are attached. A clock would make every run another document, so it is a constant, and
-/// the report says so.
-fn fixed_date() -> Option<Timestamp> {
-    Datetime::from_ymd_hms(2000, 1, 1, 0, 0, 0).map(Timestamp::new_utc)
 }
 
 /// `report.typ` with the parts that this report has.

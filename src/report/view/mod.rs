@@ -3,6 +3,8 @@
 //! PDF and HTML are filled from the same [`ReportData`]; neither template calculates. Names and texts of users are passed
 //! on as they are: escaping is the template's task.
 
+mod identity;
+mod notation;
 mod protocol;
 mod quantity;
 mod section;
@@ -13,6 +15,8 @@ use serde::Serialize;
 use crate::report::{findings, number};
 use crate::result::{CampaignInfo, Certification, DataItem, Verdict};
 
+pub use identity::{IdentityRow, ReportHead};
+pub use notation::{ChannelRow, NotationView, SymbolRow, Term};
 pub use protocol::{ProtocolView, SourceFile, view as protocol_view};
 pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair};
 pub use section::{CheckTable, ColumnHead, DomainView, SectionRow, SectionTable, ZoneView};
@@ -37,6 +41,11 @@ pub struct ReportData {
     pub cover_reasons: Vec<String>,
     /// Where the others are, if there are others.
     pub more_reasons: Option<String>,
+    /// What an assessor expects a report to state, stated or not.
+    pub identity: Vec<IdentityRow>,
+    /// Symbols of the quantities, which the PDF and the page set with subscripts.
+    pub symbols: Vec<String>,
+    pub notation: NotationView,
     /// Short facts for the cover, name and value.
     pub key_facts: Vec<Fact>,
     pub campaign: CampaignView,
@@ -80,9 +89,9 @@ impl Finding {
         Self { class, sign, word: word.to_owned() }
     }
 
-    /// Of a limit or a requirement: `holds`, `fails`, `not assessed`.
+    /// Of an acceptance criterion or a requirement: `met`, `not met`, `not assessed`.
     pub(crate) fn of(holds: Option<bool>) -> Self {
-        Self::new(holds, "holds", "fails", "not assessed")
+        Self::new(holds, "met", "not met", "not assessed")
     }
 }
 
@@ -104,6 +113,7 @@ pub struct FigureView {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CampaignView {
     pub name: String,
+    pub report: ReportHead,
     pub facts: Vec<DataRow>,
     /// Data of the vehicle that a rule reads.
     pub vehicle_used: Vec<DataRow>,
@@ -146,10 +156,12 @@ pub fn view(found: &Certification) -> ReportData {
         Verdict::NotValidated => Some(false),
         Verdict::NotAssessable => None,
     };
-    let quantities: Vec<QuantityView> = found.quantities.iter().enumerate().map(|(at, quantity)| quantity::view(at, quantity)).collect();
+    let quantities: Vec<QuantityView> =
+        found.quantities.iter().enumerate().map(|(at, quantity)| quantity::view(at, quantity, found.protocol.source.as_deref())).collect();
     let (summary, further) = summary::tables(&found.quantities);
+    let reasons: Vec<String> = found.reasons.iter().map(|reason| in_symbols(reason, found)).collect();
     ReportData {
-        title: format!("Validation report: {}", found.campaign.name),
+        title: title(found),
         program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned(),
         verdict: Finding::new(
             verdict_holds,
@@ -158,9 +170,12 @@ pub fn view(found: &Certification) -> ReportData {
             Verdict::NotAssessable.in_words(),
         ),
         verdict_sentence: sentence(found.verdict).to_owned(),
-        reasons: found.reasons.clone(),
-        cover_reasons: found.reasons.iter().take(REASONS_ON_COVER).cloned().collect(),
+        cover_reasons: reasons.iter().take(REASONS_ON_COVER).cloned().collect(),
+        reasons,
         more_reasons: more_reasons(found.reasons.len()),
+        identity: identity::checklist(found),
+        symbols: quantities.iter().map(|quantity| quantity.symbol.clone()).collect(),
+        notation: notation::view(found),
         key_facts: key_facts(found),
         campaign: campaign(&found.campaign),
         protocol: protocol::view(&found.protocol),
@@ -185,14 +200,24 @@ pub fn view(found: &Certification) -> ReportData {
     }
 }
 
+fn title(found: &Certification) -> String {
+    format!("Validation report: {}", found.campaign.name)
+}
+
+/// A sentence about a quantity names it by its symbol.
+fn in_symbols(reason: &str, found: &Certification) -> String {
+    let of = reason.split_once(": ").and_then(|(id, says)| Some((found.quantities.iter().find(|quantity| quantity.id == id)?, says)));
+    of.map_or_else(|| reason.to_owned(), |(quantity, says)| format!("{}: {says}", symbol(&quantity.symbol)))
+}
+
 fn sentence(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Validated => {
-            "All requirements of the protocol hold: the simulation model is validated for the domain stated in this report."
+            "All acceptance criteria of the protocol are met. The simulation model is validated for the domain stated in this report."
         }
-        Verdict::NotValidated => "At least one requirement of the protocol does not hold: the simulation model is not validated.",
+        Verdict::NotValidated => "At least one acceptance criterion is not met. The simulation model is not validated.",
         Verdict::NotAssessable => {
-            "The campaign does not contain what the protocol needs: the simulation model can be called neither validated nor not validated."
+            "The campaign does not contain the data that the protocol requires. The simulation model cannot be assessed."
         }
     }
 }
@@ -206,16 +231,16 @@ fn key_facts(found: &Certification) -> Vec<Fact> {
     let holding = found.quantities.iter().filter(|quantity| quantity.holds == Some(true)).count();
     let failing = found.quantities.iter().filter(|quantity| quantity.holds == Some(false)).count();
     let open = found.quantities.len() - holding - failing;
-    let mut quantities = format!("{holding} of {} hold", found.quantities.len());
+    let mut quantities = format!("{holding} of {} met", found.quantities.len());
     if failing > 0 {
-        quantities.push_str(&format!(", {failing} {}", if failing == 1 { "fails" } else { "fail" }));
+        quantities.push_str(&format!(", {failing} not met"));
     }
     if open > 0 {
         quantities.push_str(&format!(", {open} not assessed"));
     }
     let pairs: usize = found.quantities.iter().map(|quantity| quantity.values.len()).sum();
     let mut facts = vec![
-        fact("Quantities", quantities),
+        fact("Criteria by quantity", quantities),
         fact("Sections", format!("{used} of {} used", found.sections.len())),
         fact("Compared pairs", number::count(pairs as u64)),
     ];
@@ -224,6 +249,24 @@ fn key_facts(found: &Certification) -> Vec<Fact> {
         facts.push(fact("Test zones", format!("{filled} of {} with enough sections", found.zones.len())));
     }
     facts
+}
+
+/// Words that begin the place inside a work.
+const PLACES: [&str; 10] = ["Table", "Section", "Clause", "Annex", "Chapter", "Figure", "Equation", "Page", "p.", "§"];
+
+/// Whether a text names a place inside a work, and no work: `Table 1, footnote`.
+fn is_place(text: &str) -> bool {
+    PLACES.iter().any(|word| {
+        text.strip_prefix(word).is_some_and(|rest| rest.trim_start().starts_with(|c: char| c.is_ascii_digit() || c.is_ascii_uppercase()))
+    })
+}
+
+/// The source of a rule with the work it belongs to, which is that of the protocol.
+fn with_work(source: &str, work: Option<&str>) -> String {
+    let Some(work) = work.filter(|_| is_place(source)) else { return source.to_owned() };
+    // The protocol may name a place of the work too.
+    let whole = work.rsplit_once(", ").filter(|(_, last)| is_place(last)).map_or(work, |(whole, _)| whole);
+    format!("{whole}, {source}")
 }
 
 /// The name of a section, signal or zone short enough for a table.
@@ -260,6 +303,7 @@ pub fn campaign(campaign: &CampaignInfo) -> CampaignView {
     let of = |used: bool| campaign.vehicle.iter().filter(|item| item.used == used).map(data_row).collect();
     CampaignView {
         name: campaign.name.clone(),
+        report: identity::head(&campaign.report),
         facts: campaign.facts.iter().map(data_row).collect(),
         vehicle_used: of(true),
         vehicle_other: of(false),
@@ -287,7 +331,7 @@ fn overview(found: &Certification) -> Option<FigureView> {
     let beyond = normalised.iter().filter(|value| **value > 1.0).count();
     (!normalised.is_empty()).then(|| FigureView {
         name: "overview".into(),
-        caption: "Statistics of all quantities divided by their limits; the requirement holds up to 1".into(),
+        caption: "Statistics of all quantities divided by their limits; a criterion is met up to 1".into(),
         alt: format!(
             "Chart of {} normalised statistics of {} quantities against the limit 1: {beyond} beyond the limit. The numbers are in the summary table.",
             normalised.len(),
@@ -331,6 +375,16 @@ fn traces(found: &Certification) -> Vec<TraceView> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_place_is_told_with_its_work() {
+        let work = Some("A & B, A title, with a comma, Table 1");
+        assert_eq!(with_work("Table 1", work), "A & B, A title, with a comma, Table 1");
+        assert_eq!(with_work("Section 3.2", work), "A & B, A title, with a comma, Section 3.2");
+        assert_eq!(with_work("Common practice", work), "Common practice");
+        assert_eq!((with_work("Table 1", None), with_work("Tableau", work)), ("Table 1".into(), "Tableau".into()));
+        assert_eq!(with_work("Table 2", Some("ISO 1")), "ISO 1, Table 2");
+    }
 
     #[test]
     fn long_names_keep_their_ends() {

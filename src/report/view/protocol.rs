@@ -80,7 +80,7 @@ pub fn view(protocol: &ProtocolInfo) -> ProtocolView {
         files: protocol.files.iter().map(source_file).collect(),
         deviations: protocol.deviations.iter().map(deviation).collect(),
         parameters: protocol.parameters.iter().map(parameter).collect(),
-        filters: protocol.filters.iter().map(filter).collect(),
+        filters: protocol.filters.iter().map(|one| filter(one, protocol.source.as_deref())).collect(),
         graph_nodes: protocol.graph_nodes,
         graph: (!protocol.graph_svg.trim().is_empty()).then(|| FigureView {
             name: "graph".into(),
@@ -114,6 +114,11 @@ fn parameter(parameter: &ParameterInfo) -> ParameterView {
     }
 }
 
-fn filter(filter: &FilterInfo) -> FilterView {
-    FilterView { name: filter.name.clone(), title: filter.title.clone(), steps: filter.steps.clone(), source: filter.source.clone() }
+fn filter(filter: &FilterInfo, work: Option<&str>) -> FilterView {
+    FilterView {
+        name: filter.name.clone(),
+        title: filter.title.clone(),
+        steps: filter.steps.clone(),
+        source: filter.source.as_deref().map(|source| super::with_work(source, work)),
+    }
 }

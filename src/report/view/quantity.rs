@@ -91,7 +91,7 @@ pub struct ValueRow {
     pub cells: Vec<Vec<String>>,
 }
 
-pub(super) fn view(at: usize, quantity: &QuantityResult) -> QuantityView {
+pub(super) fn view(at: usize, quantity: &QuantityResult, work: Option<&str>) -> QuantityView {
     let decimals = number::decimals(
         &quantity.unit,
         quantity.values.iter().flat_map(|pair| [Some(pair.difference), pair.simulated, pair.measured]).flatten(),
@@ -105,9 +105,9 @@ pub(super) fn view(at: usize, quantity: &QuantityResult) -> QuantityView {
         of: quantity.of.clone(),
         filter: quantity.filter.clone(),
         processing: quantity.processing.clone(),
-        comparison: quantity.comparison.clone(),
+        comparison: number::formula(&quantity.comparison),
         clause: quantity.clause.clone(),
-        source: quantity.source.clone(),
+        source: quantity.source.as_deref().map(|source| super::with_work(source, work)),
         rule: format!("{}, line {}", quantity.rule.file, quantity.rule.line),
         notes: quantity.notes.clone(),
         holds: Finding::of(quantity.holds),
@@ -133,7 +133,7 @@ fn statistic(found: &StatisticResult) -> StatisticView {
         low: number::optional(found.interval.map(|interval| interval.0), decimals),
         high: number::optional(found.interval.map(|interval| interval.1), decimals),
         limit: summary::limit(Some(found)),
-        limit_text: found.limit_text.clone(),
+        limit_text: number::formula(&found.limit_text),
         normalised: summary::normalised(Some(found)),
         holds: Finding::of(found.holds),
         reason: found.reason.clone(),

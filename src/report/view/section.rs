@@ -97,7 +97,7 @@ pub(super) fn zones(found: &Certification) -> Vec<ZoneView> {
         .map(|zone| ZoneView {
             zone: name(&zone.zone),
             title: zone.title.clone(),
-            condition: zone.condition.clone(),
+            condition: number::formula(&zone.condition),
             used: zone.used.to_string(),
             given: zone.given.to_string(),
             minimum: zone.minimum.to_string(),
@@ -153,7 +153,7 @@ fn table(zone: Option<&str>, known: Option<&ZoneResult>, sections: &[&SectionRes
             (Some(zone), _) => format!("Zone {zone}"),
             (None, _) => "Sections".to_owned(),
         },
-        condition: known.map(|zone| zone.condition.clone()).unwrap_or_default(),
+        condition: known.map(|zone| number::formula(&zone.condition)).unwrap_or_default(),
         axis_unit: number::unit(axis_unit),
         columns,
         rows: sections
@@ -198,7 +198,7 @@ fn checks(sections: &[&SectionResult]) -> Vec<CheckTable> {
                         .iter()
                         .map(|(name, _)| {
                             let check = section.checks.iter().find(|check| check.name == *name)?;
-                            Some(CheckCell { holds: Finding::of(check.holds), says: check.says.clone() })
+                            Some(CheckCell { holds: Finding::of(check.holds), says: number::formula(&check.says) })
                         })
                         .collect(),
                 })

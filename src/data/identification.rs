@@ -1,0 +1,240 @@
+//! What `campaign.yaml` says under `report`: by what a report is known, for whom it is, of what, with what, and when.
+
+use crate::problem::{Problem, Problems};
+use crate::yaml::{Key, Node, Value};
+
+/// The key of the block.
+pub const REPORT_KEY: &str = "report";
+
+/// Something that an assessor expects a test report to state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// The map inside the block that it stands in, if it stands in one.
+    pub group: Option<&'static str>,
+    pub key: &'static str,
+    pub title: &'static str,
+    /// Clause of ISO/IEC 17025:2017 that asks for it, if one does.
+    pub clause: Option<&'static str>,
+}
+
+impl Field {
+    const fn new(group: Option<&'static str>, key: &'static str, title: &'static str, clause: Option<&'static str>) -> Self {
+        Self { group, key, title, clause }
+    }
+}
+
+const ITEM: Option<&str> = Some("test item");
+const DATES: Option<&str> = Some("dates");
+/// The date that a report bears.
+const ISSUE: &str = "issue";
+
+/// In the order in which they are printed.
+pub const FIELDS: &[Field] = &[
+    Field::new(None, "number", "Report number", Some("7.8.2.1 d)")),
+    Field::new(None, "revision", "Revision", Some("7.8.8")),
+    Field::new(None, "customer", "Customer", Some("7.8.2.1 e)")),
+    Field::new(None, "laboratory", "Laboratory", Some("7.8.2.1 b)")),
+    Field::new(None, "location", "Location of the tests", Some("7.8.2.1 c)")),
+    Field::new(ITEM, "description", "Test item", Some("7.8.2.1 g)")),
+    Field::new(ITEM, "vehicle number", "Test item: vehicle number", Some("7.8.2.1 g)")),
+    Field::new(ITEM, "state", "Test item: state", Some("7.8.2.1 g)")),
+    Field::new(DATES, "receipt", "Date of receipt of the test item", Some("7.8.2.1 h)")),
+    Field::new(DATES, "test", "Date of test", Some("7.8.2.1 i)")),
+    Field::new(DATES, ISSUE, "Date of issue", Some("7.8.2.1 j)")),
+    Field::new(None, "sampling", "Sampling plan or choice of sections", Some("7.8.2.1 k)")),
+    Field::new(None, "simulation software", "Simulation software", None),
+    Field::new(None, "model version", "Model version", None),
+    Field::new(None, "instrumentation", "Instrumentation", Some("7.8.3.1 a)")),
+    Field::new(None, "calibration", "Calibration and traceability", Some("6.5")),
+    Field::new(None, "uncertainty", "Measurement uncertainty", Some("7.8.3.1 c)")),
+    Field::new(None, "decision rule", "Decision rule", Some("7.8.6")),
+    Field::new(None, "external providers", "Results from external providers", Some("7.8.2.1 p)")),
+    Field::new(None, "authorised by", "Person authorising the report", Some("7.8.2.1 o)")),
+    Field::new(None, "distribution", "Distribution", None),
+];
+
+/// A field of [`FIELDS`] and what is stated.
+pub type Stated = (&'static Field, Option<String>);
+
+/// All fields, in the order of [`FIELDS`]; what is not stated is `None`.
+///
+/// Problems: `unknown-key` (with the nearest one), `key-twice`, `wrong-kind`, `report-date` (a date of issue that is none).
+pub fn read(tree: &Node, problems: &mut Problems) -> Vec<Stated> {
+    let mut found: Vec<Stated> = FIELDS.iter().map(|field| (field, None)).collect();
+    let Some(block) = tree.get(REPORT_KEY) else { return found };
+    match &block.value {
+        Value::Null => {}
+        Value::Map(entries) => {
+            for (key, node) in entries {
+                entry(key, node, &mut found, problems);
+            }
+        }
+        _ => {
+            let says = format!("`{REPORT_KEY}` must be a map of keys and values; this is {}", block.kind_in_words());
+            problems.push(Problem::error("wrong-kind", says).at(&block.span));
+        }
+    }
+    found
+}
+
+fn entry(key: &Key, node: &Node, found: &mut [Stated], problems: &mut Problems) {
+    let name = plain(&key.text);
+    if let Some(group) = FIELDS.iter().filter_map(|field| field.group).find(|group| *group == name) {
+        match &node.value {
+            Value::Map(entries) => {
+                for (inner, node) in entries {
+                    let name = plain(&inner.text);
+                    match FIELDS.iter().position(|field| field.group == Some(group) && field.key == name) {
+                        Some(at) => state(at, inner, node, found, problems),
+                        None => problems.push(unknown(inner, &format!("`{group}` of a report"), members(group))),
+                    }
+                }
+            }
+            // A test item in a word or two.
+            _ if node.scalar_text().is_some() && members(group).any(|key| key == "description") => {
+                let at = FIELDS.iter().position(|field| field.group == Some(group) && field.key == "description");
+                at.into_iter().for_each(|at| state(at, key, node, found, problems));
+            }
+            Value::Null => {}
+            _ => {
+                let keys = members(group).map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
+                let says = format!("`{group}` must be a map with {keys}; this is {}", node.kind_in_words());
+                problems.push(Problem::error("wrong-kind", says).at(&node.span));
+            }
+        }
+        return;
+    }
+    // `date of issue` beside the others is `issue` among the dates.
+    let dated = name.strip_prefix("date of ");
+    let at = FIELDS.iter().position(|field| match field.group {
+        None => field.key == name,
+        group => group == DATES && Some(field.key) == dated,
+    });
+    match at {
+        Some(at) => state(at, key, node, found, problems),
+        None => {
+            let groups = FIELDS.iter().filter_map(|field| field.group);
+            let dates = ["date of receipt", "date of test", "date of issue"];
+            let alone = FIELDS.iter().filter(|field| field.group.is_none()).map(|field| field.key);
+            problems.push(unknown(key, "a report", alone.chain(groups).chain(dates)));
+        }
+    }
+}
+
+/// Keys of a map inside the block.
+fn members(group: &'static str) -> impl Iterator<Item = &'static str> {
+    FIELDS.iter().filter(move |field| field.group == Some(group)).map(|field| field.key)
+}
+
+fn unknown<'a>(key: &Key, of: &str, known: impl Iterator<Item = &'a str>) -> Problem {
+    let mut known: Vec<&str> = known.collect();
+    known.dedup();
+    let problem = Problem::error("unknown-key", format!("{of} has no key `{}`", key.text)).at(&key.span);
+    let suggested = problem.suggest(&plain(&key.text), known.iter().copied());
+    if suggested.help.is_some() { suggested } else { suggested.help(format!("the keys are {}", known.join(", "))) }
+}
+
+fn state(at: usize, key: &Key, node: &Node, found: &mut [Stated], problems: &mut Problems) {
+    let field = found[at].0;
+    let text = match &node.value {
+        Value::Null => return,
+        Value::List(items) => items.iter().map(Node::scalar_text).collect::<Option<Vec<_>>>().map(|items| items.join("; ")),
+        _ => node.scalar_text().map(str::to_owned),
+    };
+    let Some(text) = text else {
+        let says = format!("`{}` must be text or a list of texts; this is {}", key.text, node.kind_in_words());
+        return problems.push(Problem::error("wrong-kind", says).at(&node.span));
+    };
+    let text = text.trim().to_owned();
+    if text.is_empty() {
+        return;
+    }
+    if (field.group, field.key) == (DATES, ISSUE) && date(&text).is_none() {
+        let says = format!("`{text}` is no date of issue");
+        return problems.push(Problem::error("report-date", says).at(&node.span).help("write year-month-day, such as 2026-03-31"));
+    }
+    if found[at].1.is_some() {
+        return problems.push(Problem::error("key-twice", format!("the {} is stated twice", field.title.to_lowercase())).at(&key.span));
+    }
+    found[at].1 = Some(text);
+}
+
+/// Underscores join words as spaces do.
+fn plain(key: &str) -> String {
+    key.trim().replace('_', " ")
+}
+
+/// Year, month and day of `2026-03-31`; `None` if there is no such day.
+pub fn date(text: &str) -> Option<(i32, u8, u8)> {
+    let form = text.len() == 10
+        && text.bytes().enumerate().all(|(at, byte)| if at == 4 || at == 7 { byte == b'-' } else { byte.is_ascii_digit() });
+    let number = |range: std::ops::Range<usize>| text.get(range)?.parse::<u16>().ok();
+    let (year, month, day) = if form { (number(0..4)?, number(5..7)?, number(8..10)?) } else { return None };
+    let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let days = match month {
+        2 if leap => 29,
+        2 => 28,
+        4 | 6 | 9 | 11 => 30,
+        1..=12 => 31,
+        _ => return None,
+    };
+    (year > 0 && (1..=days).contains(&day)).then_some((i32::from(year), month as u8, day as u8))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+
+    fn stated(text: &str) -> (Vec<(String, String)>, String) {
+        let mut problems = Problems::default();
+        let source = Source::new("campaign.yaml", text);
+        let found = crate::yaml::load(&source, &mut problems).map(|tree| read(&tree, &mut problems)).unwrap_or_default();
+        let given = found.into_iter().filter_map(|(field, value)| Some((field.title.to_owned(), value?))).collect();
+        (given, problems.render(false))
+    }
+
+    #[test]
+    fn a_block_is_read_in_either_way() {
+        let (given, problems) = stated(
+            "report:\n  number: R 7\n  test_item:\n    vehicle number: 61 81 20\n  date of issue: 2026-02-28\n  calibration: [a, b]\n",
+        );
+        assert_eq!(problems, "");
+        let want = [
+            ("Report number", "R 7"),
+            ("Test item: vehicle number", "61 81 20"),
+            ("Date of issue", "2026-02-28"),
+            ("Calibration and traceability", "a; b"),
+        ];
+        assert_eq!(given, want.map(|(a, b)| (a.to_owned(), b.to_owned())));
+        assert_eq!(stated("report:\n  test item: coach\n  dates: {test: spring}\n").0[0].1, "coach");
+        assert!(stated("name: x\n").0.is_empty() && stated("report:\n").1.is_empty());
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_the_nearest_key() {
+        for (text, says) in [
+            ("report:\n  custommer: x\n", "customer"),
+            ("report:\n  test item:\n    vehicel number: x\n", "vehicle number"),
+            ("report:\n  zzz: x\n", "the keys are number"),
+            ("report:\n  dates: 2026-01-01\n", "must be a map"),
+            ("report: [a]\n", "must be a map"),
+            ("report:\n  number: {a: b}\n", "text or a list"),
+            ("report:\n  date of issue: 2026-02-30\n", "is no date of issue"),
+            ("report:\n  date of issue: 2026-02-01\n  dates: {issue: 2026-02-02}\n", "stated twice"),
+        ] {
+            let problems = stated(text).1;
+            assert!(problems.contains(says) && problems.contains("campaign.yaml:"), "{text}: {problems}");
+        }
+    }
+
+    #[test]
+    fn days_of_the_calendar() {
+        assert_eq!(date("2024-02-29"), Some((2024, 2, 29)));
+        assert_eq!((date("2023-02-29"), date("1900-02-29"), date("2000-02-29").is_some()), (None, None, true));
+        assert_eq!(
+            (date("2026-13-01"), date("2026-04-31"), date("26-04-01"), date("2026/04/01"), date("0000-01-01")),
+            (None, None, None, None, None)
+        );
+    }
+}

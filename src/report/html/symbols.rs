@@ -1,0 +1,66 @@
+//! Symbols of quantities as HTML: letters in italics, what stands after the underscore as a subscript.
+
+use minijinja::HtmlEscape;
+
+/// `(Y/Q)_qst` as HTML, escaped.
+pub(super) fn typeset(symbol: &str) -> String {
+    let parts: Vec<&str> = symbol.split('_').collect();
+    let (base, sub) = match parts[..] {
+        [base] => (base, None),
+        [base, sub] if !base.is_empty() && !sub.is_empty() => (base, Some(sub)),
+        _ => return HtmlEscape(symbol).to_string(),
+    };
+    let mut out = String::new();
+    let mut letters = base.chars().peekable();
+    while let Some(letter) = letters.next() {
+        if !(letter.is_ascii_alphabetic() || letter == 'ÿ') {
+            out += &HtmlEscape(&letter.to_string()).to_string();
+            continue;
+        }
+        out += &format!("<i>{letter}");
+        while let Some(accent) = letters.next_if(|c| ('\u{300}'..='\u{36f}').contains(c)) {
+            out.push(accent);
+        }
+        out += "</i>";
+    }
+    if let Some(sub) = sub {
+        out += &format!("<sub>{}</sub>", HtmlEscape(sub));
+    }
+    out
+}
+
+/// A text, escaped, with every known symbol in it typeset.
+pub(super) fn typeset_in(text: &str, known: &[String]) -> String {
+    let mut known: Vec<&str> = known.iter().map(String::as_str).filter(|symbol| symbol.contains('_')).collect();
+    known.sort_by_key(|symbol| std::cmp::Reverse(symbol.len()));
+    let (mut out, mut plain, mut rest) = (String::new(), String::new(), text);
+    while let Some(first) = rest.chars().next() {
+        match known.iter().find(|symbol| rest.starts_with(**symbol)) {
+            Some(symbol) => {
+                out += &format!("{}{}", HtmlEscape(&plain), typeset(symbol));
+                plain.clear();
+                rest = &rest[symbol.len()..];
+            }
+            None => {
+                plain.push(first);
+                rest = &rest[first.len_utf8()..];
+            }
+        }
+    }
+    out + &HtmlEscape(&plain).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn symbols_get_subscripts_and_stay_escaped() {
+        assert_eq!(typeset("(Y/Q)_qst"), "(<i>Y</i>&#x2f;<i>Q</i>)<sub>qst</sub>");
+        assert_eq!(typeset("z\u{308}*_rms"), "<i>z\u{308}</i>*<sub>rms</sub>");
+        assert_eq!(typeset("a_b_c<"), "a_b_c&lt;");
+        assert_eq!(typeset("<_>"), "&lt;<sub>&gt;</sub>");
+        let known = ["Y_max".to_owned(), "ΣY_max".to_owned()];
+        assert_eq!(typeset_in("<ΣY_max: Y_max", &known), "&lt;Σ<i>Y</i><sub>max</sub>: <i>Y</i><sub>max</sub>");
+    }
+}
