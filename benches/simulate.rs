@@ -67,7 +67,7 @@ impl Campaign {
     }
 
     fn steps(&self, section: &Section) -> usize {
-        steps_per_sample(&Equations::new(&self.vehicle, &self.profile, section.speed)).expect("a step")
+        steps_per_sample(&Equations::new(&self.vehicle, &self.profile, section.speed)).expect("few steps")
     }
 
     /// Samples of a run, of 1 ms.

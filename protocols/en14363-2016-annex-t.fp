@@ -103,8 +103,11 @@ vehicle secondary_suspension "Secondary suspension"
   one of  true, false
 
 vehicle Q0 "Static vertical wheel force"
-  in   kN
-  key  static_wheel_load
+  in     kN
+  key    static_wheel_load
+  range  10 kN to 200 kN
+  note   "Of one wheel. The range is that of axle loads from 2 t to 41 t; beyond it another unit, or the load"
+         "of an axle or of the vehicle, is likely."
 
 section zone "Test zone"
   one of  zones

@@ -7,10 +7,12 @@ use crate::check::{self, Overrides, diff, family::Family};
 use crate::data::Campaign;
 use crate::data::campaign::Fact;
 use crate::data::identification::Stated;
+use crate::data::origin::Origin;
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
 use crate::result::{
-    CampaignInfo, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo, ReportItem,
+    CampaignInfo, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, FittedTo, OriginInfo, ParameterInfo, ProtocolFile,
+    ProtocolInfo, ReportItem,
 };
 use crate::run::{self, Progress, Settings};
 use crate::syntax::document::Block;
@@ -60,10 +62,14 @@ pub fn compile(family: Family, overrides: &Overrides, problems: &mut Problems) -
 /// What makes the campaign unusable as a whole; see [`run::run`].
 pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Certification, Problems> {
     let outcome = run::run(&compiled.plan, &compiled.graph, campaign, settings, progress)?;
+    let campaign = campaign_info(&compiled.plan, campaign, outcome.files, outcome.vehicle);
+    let mut notes = outcome.notes;
+    notes.extend(campaign.origin.as_ref().map(|origin| format!("{}.", origin.says)));
     Ok(Certification {
         protocol: protocol_info(compiled),
-        campaign: campaign_info(&compiled.plan, campaign, outcome.files, outcome.vehicle),
         verdict: outcome.verdict,
+        verdict_note: campaign.origin.as_ref().and_then(OriginInfo::note),
+        campaign,
         reasons: outcome.reasons,
         quantities: outcome.quantities,
         sections: outcome.sections,
@@ -71,7 +77,7 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
         domain: outcome.domain,
         traces: outcome.traces,
         findings: outcome.findings,
-        notes: outcome.notes,
+        notes,
     })
 }
 
@@ -85,10 +91,36 @@ pub fn campaign_info(plan: &Plan, campaign: &Campaign, records: Vec<FileHash>, v
     files.extend(records);
     CampaignInfo {
         name: campaign.name.clone(),
+        origin: campaign.origin.as_ref().map(|origin| origin_info(origin, &files)),
         files,
         vehicle: vehicle_items(plan, campaign, vehicle),
         facts: campaign.facts.iter().map(fact_item).collect(),
         report: campaign.report.iter().map(report_item).collect(),
+    }
+}
+
+/// Where the simulated records come from, with what of it is among the files of this run.
+fn origin_info(origin: &Origin, files: &[FileHash]) -> OriginInfo {
+    let these = origin.fitted_to.iter().filter(|fitted| files.iter().any(|file| file.sha256 == fitted.sha256)).count();
+    let parts = [origin.program.as_str(), origin.command.as_str()];
+    let made_by = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
+    let effects = match origin.effects.len() {
+        0 => "without effects added".to_string(),
+        1 => format!("with the effect {}", origin.effects_in_words(" = ")),
+        _ => format!("with the effects {}", origin.effects_in_words(" = ")),
+    };
+    let fitted = match (origin.fitted_to.len(), these) {
+        (0, _) => String::new(),
+        (all, 0) => format!(", fitted to {all} measured records of another campaign"),
+        (all, these) if these == all => format!(", fitted to the same {all} measured records"),
+        (all, these) => format!(", fitted to {all} measured records, {these} of which are the same"),
+    };
+    OriginInfo {
+        says: format!("The simulated records were written by {made_by}, {effects}{fitted} (origin of the campaign)"),
+        made_by,
+        effects: origin.effects.iter().map(|effect| effect.in_words(" = ")).collect(),
+        fitted_to: origin.fitted_to.iter().map(|file| FittedTo { path: file.path.clone(), sha256: file.sha256.clone() }).collect(),
+        fitted_to_these: these,
     }
 }
 
@@ -169,7 +201,7 @@ fn report_item((field, value): &Stated) -> ReportItem {
 fn fact_item(fact: &Fact) -> DataItem {
     let plain = fact.name.replace('_', " ");
     let name = if fact.group.is_empty() { plain } else { format!("{}: {plain}", fact.group.replace('_', " ")) };
-    DataItem { name, value: fact.text.clone(), unit: fact.unit.clone().filter(|unit| unit != "-"), used: false }
+    DataItem { name, value: fact.text.clone(), unit: fact.unit.clone().filter(|unit| unit != "-"), used: false, unit_assumed: false }
 }
 
 /// Values the protocol reads first, with their units, then all others of the file.
@@ -190,9 +222,9 @@ fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {
         }
         Value::List(list) => {
             let value = list.iter().map(|item| item.raw.as_str()).collect::<Vec<_>>().join(", ");
-            items.push(DataItem { name: prefix.to_string(), value, unit: None, used: false });
+            items.push(DataItem { name: prefix.to_string(), value, unit: None, used: false, unit_assumed: false });
         }
-        _ => items.push(DataItem { name: prefix.to_string(), value: node.raw.clone(), unit: None, used: false }),
+        _ => items.push(DataItem { name: prefix.to_string(), value: node.raw.clone(), unit: None, used: false, unit_assumed: false }),
     }
 }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use fishplate::data::table::Cell;
 use fishplate::data::write::Outputs;
+use fishplate::disk::SetKind;
 use fishplate::effects::{Applied, Catalogue, Channel, Gauss, Signals};
 use fishplate::model::{CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window, simulate};
 use fishplate::simulate::{Fact, Plan, Section, record_text};
@@ -38,7 +39,7 @@ fn make(out: &Path, set: &Set, case: &Case, draw: u64) -> Result<(), String> {
     let (new, worn) = (profile("profile.csv")?, profile("profile_worn.csv")?);
     let world = World::draw(&mut random);
     let name = format!("{}-{:02}", set.name, case.number);
-    let mut outputs = Outputs::new(out.join(&name));
+    let mut outputs = Outputs::of(SetKind::Campaign, out.join(&name));
     let mut add = |inside: &str, text: &str| outputs.add(inside, text.as_bytes()).map_err(|problem| problem.says);
     let mut table = String::from("section,zone [-],start [m],end [m],radius [m],direction,cant [mm],cant deficiency [mm],speed [km/h]\n");
     for (at, stretch) in stretches(case.design, &mut random).iter().enumerate() {

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use fishplate::data::RecordKind;
 use fishplate::data::write::Outputs;
+use fishplate::disk::SetKind;
 use fishplate::effects::{Applied, Catalogue, Signals};
 use fishplate::problem::Problems;
 use fishplate::simulate::{Builtin, Plan, Section, Simulator, incremented, record_text};
@@ -41,7 +42,7 @@ pub fn campaign(out: &Path, base: &Base, case: &Case, catalogue: &Catalogue) -> 
         }
     }
 
-    let mut outputs = Outputs::new(out);
+    let mut outputs = Outputs::of(SetKind::Campaign, out);
     let mut add = |inside: &str, bytes: &[u8]| outputs.add(inside, bytes).map_err(|problem| problem.says);
     files.iter().try_for_each(|(inside, bytes)| add(inside, bytes))?;
     for (at, section) in base.sections.iter().enumerate() {

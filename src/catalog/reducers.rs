@@ -104,8 +104,8 @@ pub enum Statistic {
     Named(&'static StatisticEntry),
 }
 
-/// Low and high end of a confidence interval of some values.
-pub type Interval = fn(&[f64]) -> Option<(f64, f64)>;
+/// Low and high end of a confidence interval of some values, each with the number of its site.
+pub type Interval = fn(&[f64], &[usize]) -> Option<(f64, f64)>;
 
 #[derive(Debug)]
 pub struct StatisticEntry {
@@ -113,7 +113,7 @@ pub struct StatisticEntry {
     pub title: &'static str,
     /// From the differences and the divisor's n - `ddof`.
     pub run: fn(&[f64], usize) -> Option<f64>,
-    /// 95 % confidence interval for independent normal values, where there is one.
+    /// 95 % confidence interval for normal values that are independent between sites, where there is one.
     pub interval: Option<Interval>,
 }
 
@@ -132,13 +132,13 @@ pub const STATISTICS: &[StatisticEntry] = &[
         name: "mean",
         title: "mean",
         run: |x, _| statistics::mean(x),
-        interval: Some(|x| mean_interval(x, CONFIDENCE).map(|interval| (interval.low, interval.high))),
+        interval: Some(|x, site| mean_interval(x, site, CONFIDENCE).map(|interval| (interval.low, interval.high))),
     },
     StatisticEntry {
         name: "std",
         title: "standard deviation",
         run: |x, ddof| statistics::standard_deviation(x, if ddof == 0 { Divisor::Population } else { Divisor::Sample }),
-        interval: Some(|x| standard_deviation_interval(x, CONFIDENCE).map(|interval| (interval.low, interval.high))),
+        interval: Some(|x, site| standard_deviation_interval(x, site, CONFIDENCE).map(|interval| (interval.low, interval.high))),
     },
     plain("rms", "root mean square", |x, _| statistics::rms(x)),
     plain("median", "median", |x, _| statistics::median(x)),

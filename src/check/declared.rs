@@ -1,8 +1,8 @@
 //! Blocks that declare what records, vehicle and sections hold: places, data, channels, signals.
 
 use super::Checker;
-use super::names::{Channel, Place, SignalDef};
-use super::plan::{Datum, DatumKind, Scalar};
+use super::names::{Channel, Place, SignalDef, normalised};
+use super::plan::{Datum, DatumKind, DatumRange, Scalar};
 use crate::problem::Problem;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
@@ -84,16 +84,38 @@ impl Checker<'_> {
             }
         };
         let key = block.field(key).map_or(standard_key, |field| field.value.text.trim().to_string());
-        Some(Datum { name: name.to_string(), title, key, kind, default: None, span: block.span().clone() })
+        Some(Datum { name: name.to_string(), title, key, kind, default: None, range: None, span: block.span().clone() })
     }
 
-    /// The default of a datum, once everything has a name.
+    /// The range of a number of the vehicle, in its unit.
+    fn datum_range(&mut self, name: &str, kind: &DatumKind, field: &Field) -> Option<DatumRange> {
+        let DatumKind::Number(unit) = kind else {
+            let says = format!("`{name}` is a choice of words and has no range");
+            self.problems.push(Problem::error("unknown-field", says).at(&field.key.span));
+            return None;
+        };
+        let [low, high] = self.range_ends(name, unit.dimension, field, None)?;
+        if low > high {
+            let says = format!("the range of `{name}` ends before it begins");
+            self.problems.push(Problem::error("out-of-range", says).at(&field.value.span));
+            return None;
+        }
+        Some(DatumRange { low, high, words: normalised(&field.value.text), span: field.value.span.clone() })
+    }
+
+    /// Range and default of a datum, once everything has a name.
     pub(super) fn datum_default(&mut self, name: &str, block: &Block) -> Option<()> {
         let data = if block.kind.text == "vehicle" { &self.names.vehicle } else { &self.names.columns };
         let Some(index) = data.iter().position(|datum| datum.name == name) else { return Some(()) };
+        let data_kind = data[index].kind.clone();
+        let range = block.field("range");
+        if let Some(range) = range {
+            let range = self.datum_range(name, &data_kind, range)?;
+            self.names.vehicle[index].range = Some(range);
+        }
         let Some(field) = block.field("default") else { return Some(()) };
         let word = field.value.text.trim();
-        let default = match data[index].kind.clone() {
+        let default = match data_kind {
             DatumKind::Number(unit) => {
                 let (value, dimension) = self.constant(&field.value)?;
                 if dimension != unit.dimension {
@@ -104,6 +126,9 @@ impl Checker<'_> {
                         None => problem,
                     });
                     return None;
+                }
+                if let Some(range) = range {
+                    self.within_range(name, value, dimension, &field.value, range);
                 }
                 Scalar::Number(value)
             }

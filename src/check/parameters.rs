@@ -87,25 +87,8 @@ impl Checker<'_> {
         Some((Scalar::Number(value), Type::Number(dimension)))
     }
 
-    fn within_range(&mut self, name: &str, value: f64, dimension: Dimension, source: &Text, range: &Field) {
-        let Some((low, high)) = from_pest::range(&range.value, self.problems) else { return };
-        let mut ends = [0.0; 2];
-        for (end, phrase) in ends.iter_mut().zip([low, high]) {
-            let Some((found, of)) = self.constant_phrase(&phrase, &range.value) else { return };
-            if of != dimension {
-                self.problems.push(
-                    Problem::error(
-                        "unit-mismatch",
-                        format!("parameter `{name}` is {}, its range is {}", dimension.in_words(), of.in_words()),
-                    )
-                    .at(&range.value.place(phrase.range.clone()))
-                    .label(of.in_words())
-                    .also(&source.span, dimension.in_words()),
-                );
-                return;
-            }
-            *end = found;
-        }
+    pub(super) fn within_range(&mut self, name: &str, value: f64, dimension: Dimension, source: &Text, range: &Field) {
+        let Some(ends) = self.range_ends(name, dimension, range, Some(source)) else { return };
         if !(ends[0]..=ends[1]).contains(&value) {
             self.problems.push(
                 Problem::error("out-of-range", format!("`{}` is outside the range of `{name}`", normalised(&source.text)))
@@ -114,6 +97,27 @@ impl Checker<'_> {
                     .help(format!("allowed: {}", normalised(&range.value.text))),
             );
         }
+    }
+
+    /// Both ends of a range in SI; they must have the dimension of what it is the range of.
+    pub(super) fn range_ends(&mut self, name: &str, dimension: Dimension, range: &Field, of_value: Option<&Text>) -> Option<[f64; 2]> {
+        let (low, high) = from_pest::range(&range.value, self.problems)?;
+        let mut ends = [0.0; 2];
+        for (end, phrase) in ends.iter_mut().zip([low, high]) {
+            let (found, of) = self.constant_phrase(&phrase, &range.value)?;
+            if of != dimension {
+                let says = format!("`{name}` is {}, its range is {}", dimension.in_words(), of.in_words());
+                let at = range.value.place(phrase.range.clone());
+                let problem = Problem::error("unit-mismatch", says).at(&at).label(of.in_words());
+                self.problems.push(match of_value {
+                    Some(source) => problem.also(&source.span, dimension.in_words()),
+                    None => problem,
+                });
+                return None;
+            }
+            *end = found;
+        }
+        Some(ends)
     }
 
     /// A number that follows from constants alone, with its dimension.

@@ -76,6 +76,20 @@ pub struct Datum {
     pub key: String,
     pub kind: DatumKind,
     pub default: Option<Scalar>,
+    /// What a number may be; none where the protocol does not say.
+    pub range: Option<DatumRange>,
+    pub span: Span,
+}
+
+/// The least and the largest value of a datum, both allowed.
+#[derive(Clone, Debug)]
+pub struct DatumRange {
+    /// In SI.
+    pub low: f64,
+    /// In SI.
+    pub high: f64,
+    /// As written: `10 kN to 200 kN`.
+    pub words: String,
     pub span: Span,
 }
 

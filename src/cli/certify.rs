@@ -149,8 +149,8 @@ fn summary(found: &Certification, console: &Console) -> String {
     let width = found.quantities.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);
     let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
     out += &format!(
-        "{:width$}  {:>8}  {:<26} {:>5}  {:>12}  {:>12}  {:>8}\n",
-        "quantity", "unit", "statistic", "n", "value", "limit", "|v|/limit"
+        "{:width$}  {:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}\n",
+        "quantity", "unit", "statistic", "pairs", "n", "value", "limit", "|v|/limit"
     );
     for quantity in &found.quantities {
         for (index, statistic) in quantity.statistics.iter().enumerate() {
@@ -162,15 +162,17 @@ fn summary(found: &Certification, console: &Console) -> String {
                 Some(false) => "NOT MET",
                 None => "not assessable",
             };
+            let verdict = format!("{verdict}{}", if statistic.marginal { ", marginal" } else { "" });
             let unit = if index == 0 { quantity.unit.as_str() } else { "" };
             let share = statistic.normalised.map_or("-".to_string(), |share| format!("{share:.3}"));
             out += &format!(
-                "{name:width$}  {unit:>8}  {:<26} {:>5}  {:>12}  {:>12}  {share:>8}  {}\n",
+                "{name:width$}  {unit:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {share:>8}  {}\n",
                 format!("{}{scope}", statistic.title),
                 statistic.count,
+                statistic.n,
                 show(statistic.value),
                 show(statistic.limit),
-                paint(verdict.to_string(), statistic.holds)
+                paint(verdict, statistic.holds)
             );
         }
         if let (Some(reason), true) = (&quantity.reason, quantity.statistics.is_empty()) {
@@ -190,7 +192,7 @@ fn summary(found: &Certification, console: &Console) -> String {
         out += &format!("note: {note}\n");
     }
     let holds = found.verdict == Verdict::Validated;
-    out += &format!("\n{}\n", paint(format!("Verdict: {}", found.verdict.in_words()), Some(holds)));
+    out += &format!("\n{}\n", paint(format!("Verdict: {}", found.verdict_in_words()), Some(holds)));
     for reason in &found.reasons {
         out += &format!("  {reason}\n");
     }

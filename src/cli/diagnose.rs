@@ -121,9 +121,7 @@ impl Diagnose {
         let mut all = vec![outputs];
         if let Some(folder) = &self.write_improved {
             let mut outputs = Outputs::of(SetKind::Campaign, folder);
-            let unchanged = || outcome.found.seen.sections.iter().map(|observed| observed.simulated.clone()).collect();
-            let records: Vec<_> = if outcome.improved.is_empty() { unchanged() } else { outcome.improved.clone() };
-            write_improved(&mut outputs, campaign, &outcome.found, &records, &outcome.units)?;
+            write_improved(&mut outputs, campaign, outcome)?;
             all.push(outputs);
         }
         console.problems(&Problems(all.iter().filter_map(Outputs::mended).collect()));

@@ -19,9 +19,10 @@ use crate::library;
 use crate::model::CHANNELS;
 use crate::problem::{Problem, Problems, plain};
 use crate::simulate::{
-    Deviation, Plan, Section, check_confined, model_parameters, record_text, sections, simulate, single, write_campaign,
+    Deviation, Made, Plan, Section, check_confined, effects_of_origin, model_parameters, record_text, sections, simulate, single,
+    write_campaign,
 };
-use crate::units::{Dimension, Unit};
+use crate::units::{Dimension, Unit, number};
 use crate::yaml;
 
 #[derive(Debug, Args)]
@@ -140,9 +141,16 @@ impl Simulate {
             return Exit::Unfinished;
         }
         let records = sections.iter().map(Section::name).zip(made.into_iter().flatten());
+        let made = Made {
+            command: "simulate",
+            simulator: Some(chosen.simulator().name()),
+            effects: effects_of_origin(effects, catalogue),
+            added: self.increment,
+            fitted: false,
+        };
         console.problems(&Problems(chosen.warning().into_iter().collect()));
         let mut outputs = Outputs::of(SetKind::Campaign, out);
-        let added = write_campaign(&mut outputs, campaign, records);
+        let added = write_campaign(&mut outputs, campaign, records, Some(&made));
         match console.commit(added.map(|()| outputs)) {
             Ok(()) => {
                 console.say(&format!("written: {} sections to {}{}", sections.len(), out.display(), chosen.effort()));
@@ -262,15 +270,8 @@ fn speed(written: Option<&str>) -> Result<f64, Problem> {
         return Err(Problem::error("speed-missing", "a speed is needed").help("write `--speed 30` for m/s, or `--speed '108 km/h'`"));
     };
     let wrong = |says: String| Problem::error("speed", says).help("write `--speed 30` for m/s, or `--speed '108 km/h'`");
-    let end = written.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(written.len());
-    let (digits, unit) = written.split_at(end);
-    let number: f64 = digits.parse().map_err(|_| wrong(format!("`{written}` is no speed")))?;
-    let unit = if unit.trim().is_empty() { "m/s" } else { unit.trim() };
-    let unit = Unit::parse(unit).map_err(|unknown| wrong(format!("`{}` is no unit", unknown.word)))?;
-    if unit.dimension != Dimension::LENGTH / Dimension::TIME {
-        return Err(wrong(format!("{unit} is not the unit of a speed")));
-    }
-    let speed = unit.to_si(number);
+    let unit = Unit { text: "m/s".into(), factor: 1.0, dimension: Dimension::LENGTH / Dimension::TIME };
+    let speed = number::read(written, &unit).map_err(|refused| wrong(refused.says))?.si;
     if !(1.0..=150.0).contains(&speed) {
         return Err(wrong(format!("a speed of {speed:.1} m/s is outside what the model is for: 1 to 150 m/s")));
     }

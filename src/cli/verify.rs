@@ -80,11 +80,19 @@ impl Verify {
             checks.extend(against(&carried, compiled.as_ref(), Again { campaign, plots: self.plots, progress: &progress }));
             bar.finish_and_clear();
         }
-        let differs = checks.iter().any(|check| check.outcome == Outcome::Differs);
-        if !console.quiet || differs {
-            console.print(&told(&carried, &checks, self.campaign.is_some(), if self.all { usize::MAX } else { MOST }, console.color));
+        let any = |outcome: Outcome| checks.iter().any(|check| check.outcome == outcome);
+        let exit = match (any(Outcome::Differs), any(Outcome::NotPossible)) {
+            (true, _) => Exit::DoesNotHold,
+            (false, true) => Exit::Unfinished,
+            (false, false) => Exit::Done,
+        };
+        if !console.quiet || exit != Exit::Done {
+            let most = if self.all { usize::MAX } else { MOST };
+            if console.print(&told(&carried, &checks, self.campaign.is_some(), most, console.color)) != Exit::Done {
+                return Exit::Unfinished;
+            }
         }
-        if differs { Exit::DoesNotHold } else { Exit::Done }
+        exit
     }
 }
 
@@ -116,21 +124,27 @@ fn told(carried: &Carried, checks: &[Check], campaign: bool, most: usize, color:
             Outcome::Agrees => ("agrees", "\u{1b}[32m"),
             Outcome::Differs => ("DIFFERS", "\u{1b}[31;1m"),
             Outcome::NotChecked => ("not checked", ""),
+            Outcome::NotPossible => ("NOT POSSIBLE", "\u{1b}[31;1m"),
         };
-        let word = format!("{word:<12}");
+        let word = format!("{word:<13}");
         let word = if color && !paint.is_empty() { format!("{paint}{word}\u{1b}[0m") } else { word };
         out += &format!("{word}{:<15} {}\n", check.name, visible(&check.says));
         for detail in check.details.iter().take(most) {
-            out += &format!("{:27} {}\n", "", visible(detail));
+            out += &format!("{:28} {}\n", "", visible(detail));
         }
         if check.details.len() > most {
-            out += &format!("{:27} and {} more, shown with `--all`\n", "", check.details.len() - most);
+            out += &format!("{:28} and {} more, shown with `--all`\n", "", check.details.len() - most);
         }
     }
-    let differ: Vec<&str> = checks.iter().filter(|check| check.outcome == Outcome::Differs).map(|check| check.name).collect();
+    let named = |outcome: Outcome| {
+        let found: Vec<&str> = checks.iter().filter(|check| check.outcome == outcome).map(|check| check.name).collect();
+        found.join(", ")
+    };
+    let (differ, open) = (named(Outcome::Differs), named(Outcome::NotPossible));
     out += "\n";
-    out += &match (differ.is_empty(), campaign) {
-        (false, _) => format!("Result: differs ({})\n", differ.join(", ")),
+    out += &match (differ.is_empty() && open.is_empty(), campaign) {
+        (false, _) if differ.is_empty() => format!("Result: could not be finished ({open})\n"),
+        (false, _) => format!("Result: differs ({differ})\n"),
         (true, true) => "Result: everything that was checked agrees\n".to_string(),
         (true, false) => "Result: the report agrees with itself; give its campaign to check it against the data\n".to_string(),
     };
@@ -179,8 +193,10 @@ impl Trace {
         match trace(&carried, compiled.as_ref(), asked, self.campaign.as_deref()) {
             Ok(found) => {
                 let text: Vec<String> = found.text.split('\n').map(visible).collect();
-                console.print(&text.join("\n"));
-                if found.agrees { Exit::Done } else { Exit::DoesNotHold }
+                match console.print(&text.join("\n")) {
+                    Exit::Done if !found.agrees => Exit::DoesNotHold,
+                    exit => exit,
+                }
             }
             Err(problems) => wrong(problems),
         }

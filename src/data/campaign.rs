@@ -9,6 +9,7 @@ use std::sync::{Arc, OnceLock};
 use super::cells::name_and_unit;
 use super::folder::{Folder, Place, check_file_name};
 use super::identification::{self, REPORT_KEY, Stated};
+use super::origin::{ORIGIN_KEY, Origin};
 use super::record::{Record, Wanted, read_record};
 use super::table::{Cell, Table};
 use super::text::{read_any, read_text};
@@ -85,6 +86,8 @@ pub struct Campaign {
     pub report: Vec<Stated>,
     /// Name or path of the protocol that is used if none is given.
     pub protocol: Option<Spanned<String>>,
+    /// What made the simulated records, where a program says so.
+    pub origin: Option<Origin>,
     /// All of the vehicle file; an empty map if the campaign names none.
     pub vehicle: Node,
     /// Absent if the campaign has no section table: then every measured record is evaluated as a whole.
@@ -142,6 +145,7 @@ impl Campaign {
         let record_folders = RecordKind::ALL.into_iter().filter_map(|kind| Some((kind, opening.text(&tree, kind.key())?))).collect();
         let protocol = opening.text(&tree, "protocol");
         let parameters = opening.parameters(&tree);
+        let origin = opening.origin(&tree);
         let report = identification::read(&tree, opening.problems);
         let Opening { folder, files, .. } = opening;
         let mut campaign = Self {
@@ -150,6 +154,7 @@ impl Campaign {
             parameters,
             report,
             protocol,
+            origin,
             vehicle: vehicle.unwrap_or_else(|| Node {
                 value: Value::Map(Vec::new()),
                 span: tree.span.clone(),
@@ -422,6 +427,19 @@ impl Opening<'_> {
         Some(table)
     }
 
+    /// A file, or what stands in `campaign.yaml` itself.
+    fn origin(&mut self, tree: &Node) -> Option<Origin> {
+        let node = tree.get(ORIGIN_KEY)?;
+        if matches!(node.value, Value::Map(_)) {
+            return Origin::read(node, self.problems);
+        }
+        let written = self.text(tree, ORIGIN_KEY)?;
+        let place = self.folder.place(&written.value, &written.span);
+        let place = self.keep(place)?;
+        let (_, found) = self.yaml(&place, Some(&written.span))?;
+        Origin::read(&found, self.problems)
+    }
+
     fn parameters(&mut self, tree: &Node) -> Vec<Parameter> {
         let Some(node) = tree.get("parameters") else { return Vec::new() };
         if !matches!(node.value, Value::Map(_) | Value::Null) {
@@ -440,7 +458,7 @@ impl Opening<'_> {
 
 /// Scalars at the top and one map below it, in the order written.
 fn facts(tree: &Node) -> Vec<Fact> {
-    const LAYOUT: [&str; 6] = ["name", "vehicle", "sections", "parameters", "protocol", REPORT_KEY];
+    const LAYOUT: [&str; 7] = ["name", "vehicle", "sections", "parameters", "protocol", ORIGIN_KEY, REPORT_KEY];
     let layout = |key: &str| LAYOUT.contains(&key) || RecordKind::ALL.iter().any(|kind| kind.key() == key);
     let mut facts = Vec::new();
     for (key, node) in tree.entries().iter().filter(|(key, _)| !layout(&key.text)) {

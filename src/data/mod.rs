@@ -8,6 +8,8 @@
 //! | `record` | one sampled record, the hot path |
 //! | `table` | a small table such as `sections.csv` |
 //! | `crate::yaml` | YAML with the place of every word |
+//! | `origin` | what made the records of a campaign that a program wrote |
+//! | `sites` | which sections are the same stretch of track |
 //! | `checks` | whether the samples of a record can be evaluated |
 //! | `fingerprint` | a file of a campaign as it lies on the disk now |
 //! | `write` | every file the program makes |
@@ -20,7 +22,9 @@ pub mod fingerprint;
 mod folder;
 pub mod hash;
 pub mod identification;
+pub mod origin;
 pub mod record;
+pub mod sites;
 pub mod table;
 pub mod text;
 pub mod write;

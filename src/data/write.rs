@@ -2,7 +2,7 @@
 
 mod format;
 
-pub use format::{Entry, OutColumn, campaign_yaml, record_csv, table_csv};
+pub use format::{Entry, OutColumn, campaign_yaml, record_csv, table_csv, yaml_text};
 
 use std::io;
 use std::path::Path;
@@ -152,6 +152,8 @@ mod tests {
             assert_eq!(outputs.add(bad, b"").map_err(|problem| problem.code), Err("path-outside"), "{bad}");
         }
         fs::write(temp.path().join("file"), b"").expect("written");
-        assert_eq!(outputs.add("file/x", b"").map_err(|problem| problem.code), Err("write-failed"));
+        outputs.add("file/x", b"").expect("beside its place");
+        assert_eq!(outputs.commit().map_err(|problem| problem.code), Err("write-failed"));
+        assert_eq!(names(temp.path()), ["file"]);
     }
 }

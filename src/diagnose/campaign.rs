@@ -8,6 +8,7 @@ use super::run::{Found, find};
 use super::settings::Settings;
 use crate::certify::{Compiled, certify};
 use crate::data::Campaign;
+use crate::data::origin::OriginEffect;
 use crate::data::text::UNREADABLE;
 use crate::data::write::Outputs;
 use crate::disk::{self, SetKind};
@@ -16,7 +17,7 @@ use crate::problem::{Problem, Problems};
 use crate::result::Certification;
 use crate::result::diagnosis::Diagnosis;
 use crate::run::Settings as RunSettings;
-use crate::simulate::{Section, Simulator, Units, record_text, recorded, write_campaign};
+use crate::simulate::{Made, Section, Simulator, Units, effects_of_origin, record_text, recorded, write_campaign};
 use crate::units::Unit;
 
 /// The answer with what it was made of.
@@ -32,6 +33,10 @@ pub struct Outcome {
     pub improved: Vec<Signals>,
     /// Units of their channels.
     pub units: Units,
+    /// The effects in `improved`, with the sizes that all sections ask for.
+    pub added: Vec<OriginEffect>,
+    /// What simulated them, if anything did.
+    pub simulator: Option<String>,
     /// What could not be taken into account.
     pub warnings: Problems,
 }
@@ -66,6 +71,7 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     let mut after = None;
     let mut shrink = None;
     let mut records = Vec::new();
+    let mut added = Vec::new();
     let evaluate = |found: &Found, records: &[Signals]| evaluated(inputs.campaign, compiled, found, records, &units, settings);
     while !found.chosen.members.is_empty() {
         if let Some((either, reason)) = super::answer::causes::nothing_out_of_the_ordinary(&found, inputs.settings) {
@@ -83,11 +89,13 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
         after = Some(made);
         let all = applied(&found, &found.chosen.members);
         records = improved(&found, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
+        added = effects_of_origin(&all, inputs.catalogue);
         break;
     }
     let mut diagnosis = super::answer::words::diagnosis(inputs, &found, &units, shrink);
     diagnosis.pictures = super::answer::pictures::pictures(inputs.settings, &found, &records, &units);
-    Ok(Outcome { diagnosis, found, before, after, improved: records, units, warnings: problems })
+    let simulator = inputs.simulator.map(|simulator| simulator.name().to_string());
+    Ok(Outcome { diagnosis, found, before, after, improved: records, units, added, simulator, warnings: problems })
 }
 
 /// Records with the effects, each section with the sizes that the others ask for; a member may be left out.
@@ -225,22 +233,38 @@ fn evaluated(
     let one = |problem: Problem| Problems(vec![problem]);
     let folder = disk::scratch().map_err(|error| one(Problem::error("unwritable", format!("no temporary folder: {error}"))))?;
     let mut outputs = Outputs::of(SetKind::Campaign, folder.path()).for_this_run();
-    write_improved(&mut outputs, campaign, found, records, units).and_then(|()| outputs.commit()).map_err(one)?;
+    write_records(&mut outputs, campaign, found, records, units, None).and_then(|()| outputs.commit()).map_err(one)?;
     let mut problems = Problems::default();
     let Some(copy) = Campaign::open(folder.path(), &mut problems) else { return Err(problems) };
     certify(compiled, &copy, settings, &|_| {})
 }
 
-/// Writes a campaign like another with other simulated records, up to its commit.
+/// Writes the campaign with the named effects added to its simulation, and with an origin that says so; without any, its simulation
+/// as it was read. Nothing is in its place before the commit.
 ///
 /// # Errors
 /// Of writing.
-pub fn write_improved(
+pub fn write_improved(outputs: &mut Outputs, campaign: &Campaign, outcome: &Outcome) -> Result<(), Problem> {
+    let as_read = || outcome.found.seen.sections.iter().map(|observed| observed.simulated.clone()).collect();
+    let records = if outcome.improved.is_empty() { as_read() } else { outcome.improved.clone() };
+    let made = Made {
+        command: "diagnose",
+        simulator: outcome.simulator.as_deref().filter(|_| !outcome.added.is_empty()),
+        effects: outcome.added.clone(),
+        added: true,
+        fitted: !outcome.added.is_empty(),
+    };
+    write_records(outputs, campaign, &outcome.found, &records, &outcome.units, Some(&made))
+}
+
+/// Writes a campaign like another with other simulated records.
+fn write_records(
     outputs: &mut Outputs,
     campaign: &Campaign,
     found: &Found,
     records: &[Signals],
     units: &Units,
+    made: Option<&Made<'_>>,
 ) -> Result<(), Problem> {
     let unit = |name: &str| units.iter().find(|(known, _)| known == name).map_or_else(Unit::one, |(_, unit)| unit.clone());
     let texts: Result<Vec<(&str, String)>, Problem> = found
@@ -250,7 +274,7 @@ pub fn write_improved(
         .zip(records)
         .map(|(observed, signals)| Ok((observed.section.name(), record_text(signals, &unit)?)))
         .collect();
-    write_campaign(outputs, campaign, texts?.into_iter())
+    write_campaign(outputs, campaign, texts?.into_iter(), made)
 }
 
 #[cfg(test)]

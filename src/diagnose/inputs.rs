@@ -45,5 +45,5 @@ impl std::fmt::Debug for Inputs<'_> {
 /// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
 #[must_use]
 pub fn value_of(campaign: &Campaign, key: &str) -> Option<f64> {
-    campaign.vehicle.lookup(key).and_then(crate::yaml::Node::number).or_else(|| parameter(key)?.neutral)
+    campaign.vehicle.lookup(key).and_then(|node| crate::simulate::number_of(node, key)).or_else(|| parameter(key)?.neutral)
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 use crate::check::plan::Plan;
+use crate::result::Finding;
 use crate::run::replay::{Recorded, RecordedSection, RecordedValue};
 
 #[derive(Clone, Debug, Deserialize)]
@@ -16,7 +17,7 @@ pub struct Results {
     pub quantities: Vec<Quantity>,
     pub sections: Vec<Section>,
     #[serde(default)]
-    pub findings: Vec<crate::result::Finding>,
+    pub findings: Vec<Finding>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -71,6 +72,9 @@ pub struct Item {
 #[derive(Clone, Debug, Deserialize)]
 pub struct Section {
     pub section: String,
+    /// The first section of its site.
+    #[serde(default)]
+    pub site: Option<String>,
     #[serde(default, deserialize_with = "word")]
     pub zone: Option<String>,
     pub used: bool,
@@ -149,6 +153,7 @@ impl Results {
         let vehicle = self.campaign.vehicle.iter().filter(|item| item.used).map(|item| item.value.clone()).collect();
         let section = |section: &Section| RecordedSection {
             name: section.section.clone(),
+            site: section.site.clone().unwrap_or_else(|| section.section.clone()),
             zone: section.zone.clone(),
             fault: (!section.used).then(|| section.reason.clone().unwrap_or_default()),
             start: section.start,

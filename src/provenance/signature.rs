@@ -16,8 +16,8 @@ pub const PASSWORD: &str = "FISHPLATE_KEY_PASSWORD";
 
 /// Largest key or signature file in bytes; they have a few hundred.
 const SMALL: u64 = 64 << 10;
-/// Largest file that is signed or checked.
-const LARGE: u64 = 4 << 30;
+/// Largest file that is signed or checked, in bytes: that of a report.
+const LARGE: u64 = 512 << 20;
 
 /// The signature of a file lies beside it.
 pub fn beside(path: &Path) -> PathBuf {

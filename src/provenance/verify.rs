@@ -21,7 +21,10 @@ use crate::run::{Progress, Settings};
 pub enum Outcome {
     Agrees,
     Differs,
+    /// Nothing asked for it, or it cannot differ in a way that matters.
     NotChecked,
+    /// It was asked for and could not be done, so that nothing can be said.
+    NotPossible,
 }
 
 /// One thing that was looked at.
@@ -45,6 +48,10 @@ impl Check {
         Self { name, outcome: Outcome::NotChecked, says: says.into(), details: Vec::new() }
     }
 
+    pub fn not_possible(name: &'static str, says: impl Into<String>) -> Self {
+        Self { name, outcome: Outcome::NotPossible, says: says.into(), details: Vec::new() }
+    }
+
     pub fn differs(name: &'static str, says: impl Into<String>, details: Vec<String>) -> Self {
         Self { name, outcome: Outcome::Differs, says: says.into(), details }
     }
@@ -65,7 +72,7 @@ pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<C
     let sources = match carried.sources(given) {
         Ok(sources) => sources,
         Err(problem) => {
-            checks.push(Check::not_checked("protocol text", with_help(&problem)));
+            checks.push(Check::not_possible("protocol text", with_help(&problem)));
             return (checks, None);
         }
     };
@@ -202,9 +209,10 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
     }
     let files = count(carried.results.campaign.files.len(), "file has", "files have");
     let inputs = Check::of("input files", format!("{files} the SHA-256 of the report"), "the campaign is not the one of the report", lost);
+    let same = inputs.outcome == Outcome::Agrees;
     let mut checks = vec![inputs];
     match certified {
-        None => checks.push(Check::not_checked("run again", "the protocol is not to be had")),
+        None => checks.push(Check::not_possible("run again", "the protocol cannot be run")),
         Some(Err(problems)) => {
             let told = problems.0.iter().map(|problem| match &problem.at {
                 Some(at) => format!("{}: {} ({at})", problem.code, problem.says),
@@ -212,7 +220,7 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
             });
             checks.push(Check::differs("run again", "the campaign cannot be run any more", told.collect()));
         }
-        Some(Ok(found)) => checks.extend(compared(carried, &found, again.plots)),
+        Some(Ok(found)) => checks.extend(compared(carried, &found, again.plots, same)),
     }
     checks
 }
@@ -225,7 +233,7 @@ fn run(compiled: &Compiled, again: Again<'_>) -> Result<Certification, Problems>
 }
 
 /// Every number of the report against those of a run now, then the pages.
-fn compared(carried: &Carried, found: &Certification, plots: usize) -> Vec<Check> {
+fn compared(carried: &Carried, found: &Certification, plots: usize, inputs: bool) -> Vec<Check> {
     let results = json::results(found);
     // What was written can be read.
     let Ok(mut now) = serde_json::from_str::<Value>(&results) else { return Vec::new() };
@@ -246,7 +254,7 @@ fn compared(carried: &Carried, found: &Certification, plots: usize) -> Vec<Check
     let agrees = format!("all {} numbers are those of the report{rounded}", all.numbers);
     let differs = format!("{} of the report", count(all.differences.len(), "place differs from that", "places differ from those"));
     let numbers = Check::of("run again", agrees, differs, details(&all));
-    let same = numbers.outcome == Outcome::Agrees;
+    let same = inputs && numbers.outcome == Outcome::Agrees;
     let mut checks = vec![numbers];
     if let Some(pdf) = &carried.pdf {
         checks.push(pages(carried, pdf, found, (&results, plots), same));
@@ -261,12 +269,12 @@ fn pages(carried: &Carried, pdf: &[u8], found: &Certification, (results, plots):
         return Check::not_checked(NAME, format!("written by fishplate {}, this is {THIS}", carried.results.fishplate));
     }
     if !same {
-        return Check::not_checked(NAME, "numbers differ already");
+        return Check::not_checked(NAME, "inputs or numbers differ already");
     }
     let names = attached::protocol_names(found);
     let attachments = attached::attachments(found, results, &names);
     match typst::typeset(&view::view(found), &figure::figures(found), &attachments) {
-        Err(problems) => Check::not_checked(NAME, problems.0.first().map_or_else(String::new, |problem| problem.says.clone())),
+        Err(problems) => Check::not_possible(NAME, problems.0.first().map_or_else(String::new, |problem| problem.says.clone())),
         Ok(made) if made.bytes == pdf => Check::agrees(NAME, "the PDF is the one that the program writes, byte for byte"),
         Ok(made) if pdf.starts_with(&made.bytes) => {
             let added = pdf.len() - made.bytes.len();

@@ -129,8 +129,8 @@ fn places(found: &Diagnosis) -> Chapter {
         Head::number("p"),
     ];
     let caption = "Cells by their share of the gap, tested against noise, declared tolerances and what a model may be wrong in; \
-                   * significant at a false discovery rate of 5 %. Mean and rms are of the differences, measured - simulated, over the sections \
-                   and wheels of a cell: quasi-static ones towards the simulated side, those of bands relative";
+                   * significant at a false discovery rate of 5 %. Mean and rms are over the sections and wheels \
+                   of a cell: of sign(measured) (simulated - measured) for quasi-static values, of rms simulated / measured - 1 for bands";
     let table = Table { caption: caption.into(), head, rows: rows.collect() };
     let significant = found.r#where.iter().filter(|place| place.significant).count();
     let mut text = format!(
@@ -166,7 +166,7 @@ fn invariants(all: &[Invariant], named: bool) -> Table {
         cells.extend(named.then(|| off(one.after, one.allowed_after)));
         cells
     });
-    let caption = "Sums of quasi-static forces that only some causes can move, measured - simulated, mean over the sections; \
+    let caption = "Sums of quasi-static forces that only some causes can move, simulated - measured, mean over the sections; \
                    allowed is one standard deviation, in which it is counted how far off they are (after: as it is beside the effects)";
     let mut head = vec![Head::text("Sum"), Head::text("Symmetry"), Head::number("As simulated")];
     head.extend(named.then(|| Head::number("With the effects")));
@@ -218,7 +218,7 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
         cells
     };
     let caption = format!(
-        "What measured - simulated changes by over the range of what the section table says, by generalised least squares on that \
+        "What simulated - measured changes by over the range of what the section table says, by generalised least squares on that \
          alone, with a 90 % interval; * significant at a false discovery rate of 5 %. Levels that turn with the curve count as in one \
          direction. r is the correlation of the differences as they are{}",
         if named { ", with the effects" } else { "" }

@@ -16,10 +16,12 @@ pub fn results(found: &Certification) -> String {
             "name": found.campaign.name,
             "files": found.campaign.files,
             "vehicle": found.campaign.vehicle,
+            "origin": found.campaign.origin,
             "report": report::tree(&found.campaign.report),
         }),
     );
     root.insert("verdict".into(), json!(found.verdict));
+    root.insert("verdict_note".into(), json!(found.verdict_note));
     root.insert("reasons".into(), json!(found.reasons));
     root.insert("quantities".into(), quantities(&found.quantities));
     root.insert("sections".into(), Value::Array(found.sections.iter().map(|section| zone_as_number(json!(section))).collect()));
@@ -65,6 +67,7 @@ fn quantity(quantity: &QuantityResult) -> Value {
     entry.insert("title".into(), json!(quantity.title));
     entry.insert("unit".into(), json!(quantity.unit));
     entry.insert("pairs".into(), json!(quantity.values.len()));
+    entry.insert("n".into(), json!(quantity.n));
     let named = |name: &str| quantity.statistics.iter().find(|statistic| statistic.name == name && statistic.scope == "all");
     let (mean, std) = (named("mean"), named("std"));
     if quantity.has_sides && (mean.is_some() || std.is_some()) {

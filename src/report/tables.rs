@@ -22,6 +22,7 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
                 s.name.clone(),
                 s.scope.clone(),
                 s.count.to_string(),
+                s.n.to_string(),
                 s.unit.clone(),
                 number(s.value),
                 number(s.interval.map(|(low, _)| low)),
@@ -29,6 +30,7 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
                 number(s.limit),
                 number(s.normalised),
                 s.holds.map_or(String::new(), |holds| holds.to_string()),
+                s.marginal.to_string(),
                 s.reason.clone().unwrap_or_default(),
             ]
         })
@@ -42,6 +44,7 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
             "processing",
             "statistic",
             "scope",
+            "pairs",
             "n",
             "unit",
             "value",
@@ -50,6 +53,7 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
             "limit",
             "normalised",
             "holds",
+            "marginal",
             "reason",
         ],
         statistics.collect(),
@@ -118,13 +122,11 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
         .iter()
         .map(|d| vec![d.name.clone(), d.unit.clone(), d.scope.clone(), number(Some(d.low)), number(Some(d.high)), d.count.to_string()]);
     add("domain", &["quantity", "unit", "scope", "low", "high", "sections"], domain.collect())?;
-    let vehicle = found
-        .campaign
-        .vehicle
-        .iter()
-        .chain(&found.campaign.facts)
-        .map(|item| vec![item.name.clone(), item.value.clone(), item.unit.clone().unwrap_or_default(), item.used.to_string()]);
-    add("vehicle", &["name", "value", "unit", "used by the protocol"], vehicle.collect())?;
+    let vehicle = found.campaign.vehicle.iter().chain(&found.campaign.facts).map(|item| {
+        let unit = item.unit.clone().unwrap_or_default();
+        vec![item.name.clone(), item.value.clone(), unit, item.unit_assumed.to_string(), item.used.to_string()]
+    });
+    add("vehicle", &["name", "value", "unit", "unit assumed", "used by the protocol"], vehicle.collect())?;
     let parameters = found
         .protocol
         .parameters

@@ -86,8 +86,8 @@ pub struct Where {
     pub zones: Vec<String>,
     pub sections: Vec<String>,
     pub wavelength_or_band: String,
-    /// Mean difference, measured - simulated: levels in the unit of the channel, towards the simulated side; bands as a ratio of rms
-    /// less one.
+    /// Mean difference, simulated - measured: levels in the unit of the channel, towards the side of the measured one, that is
+    /// sign(measured) (simulated - measured); bands as rms simulated over measured, less one.
     pub difference: f64,
     /// Root mean square of the same differences: more than their mean where they are not alike in all its sections and wheels.
     pub difference_rms: f64,
@@ -99,7 +99,7 @@ pub struct Where {
     pub says: String,
 }
 
-/// A sum of quasi-static values that only some causes can move, mean over the sections, measured - simulated.
+/// A sum of quasi-static values that only some causes can move, mean over the sections, simulated - measured.
 #[derive(Clone, Debug, Serialize)]
 pub struct Invariant {
     pub name: String,
@@ -152,8 +152,8 @@ pub struct Drift {
     pub p_value: f64,
 }
 
-/// What measured - simulated grows by over the range of a covariate, with a 90 % interval: levels in their unit, in curves turned to one
-/// side where they turn with the curve; bands as a ratio of rms less one.
+/// What simulated - measured grows by over the range of a covariate, with a 90 % interval: levels in their unit, in curves turned to one
+/// side where they turn with the curve; bands as rms simulated over measured, less one.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Slope {
     pub change: f64,

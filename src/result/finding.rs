@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Something in the campaign that an assessor has to look at.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// What kind of finding: the name of the protocol's rule, or a code of the program in kebab case.
     pub code: String,
@@ -26,7 +26,7 @@ pub struct Finding {
 }
 
 /// What a finding does to the verdict.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Consequence {
     /// It is told and changes nothing.

@@ -5,12 +5,14 @@
 pub mod blind;
 pub mod diagnosis;
 pub mod finding;
+pub mod origin;
 pub mod report;
 pub mod study;
 
 use serde::Serialize;
 
 pub use finding::{Consequence, Finding};
+pub use origin::{FittedTo, OriginInfo};
 pub use report::ReportItem;
 
 /// Everything a report prints, in the order of the protocol and of the campaign.
@@ -19,6 +21,8 @@ pub struct Certification {
     pub protocol: ProtocolInfo,
     pub campaign: CampaignInfo,
     pub verdict: Verdict,
+    /// What belongs beside the verdict: how the simulation was made, where it was changed after the comparison.
+    pub verdict_note: Option<String>,
     /// Why the verdict is not "validated"; empty if it is.
     pub reasons: Vec<String>,
     pub quantities: Vec<QuantityResult>,
@@ -43,6 +47,14 @@ pub enum Verdict {
     NotValidated,
     #[serde(rename = "not assessable")]
     NotAssessable,
+}
+
+impl Certification {
+    /// `validated, with a simulation fitted to the same measurements`
+    pub fn verdict_in_words(&self) -> String {
+        let note = self.verdict_note.as_ref().map_or(String::new(), |note| format!(", {note}"));
+        format!("{}{note}", self.verdict.in_words())
+    }
 }
 
 impl Verdict {
@@ -138,6 +150,8 @@ pub struct CampaignInfo {
     pub vehicle: Vec<DataItem>,
     /// Other keys of campaign.yaml, in its order.
     pub facts: Vec<DataItem>,
+    /// What made the simulated records, where the campaign says so.
+    pub origin: Option<OriginInfo>,
     /// What the campaign says the report is known by, stated or not.
     #[serde(serialize_with = "as_tree")]
     pub report: Vec<ReportItem>,
@@ -181,6 +195,8 @@ pub struct DataItem {
     pub unit: Option<String>,
     /// Whether a rule of the protocol reads it.
     pub used: bool,
+    /// The campaign states no unit: `unit` is the protocol's.
+    pub unit_assumed: bool,
 }
 
 /// One quantity of the protocol: what was done, what came out, whether it holds.
@@ -206,6 +222,8 @@ pub struct QuantityResult {
     /// True if `values` hold simulated and measured values; false where a metric gives one number for the two signals.
     pub has_sides: bool,
     pub statistics: Vec<StatisticResult>,
+    /// Number of sites that the values are of.
+    pub n: usize,
     pub values: Vec<PairValue>,
     /// All statistics hold; `None` if not assessable.
     pub holds: Option<bool>,
@@ -224,21 +242,37 @@ pub struct StatisticResult {
     pub title: String,
     /// Pairs it is taken over: `all`, `zone 1`.
     pub scope: String,
+    /// Number of pairs.
     pub count: usize,
+    /// Number of sites that the pairs are of. Pairs of one site (its positions, its repeats) are not independent of each other.
+    pub n: usize,
     /// Unit of value and limit.
     pub unit: String,
     pub value: Option<f64>,
-    /// 95 % confidence interval under independent normal pairs (mean: Student t, standard deviation: chi-square), where defined.
+    /// 95 % confidence interval where defined, with sites independent of each other and n - 1 degrees of freedom (mean: Student t,
+    /// standard deviation: chi-square).
     pub interval: Option<(f64, f64)>,
+    /// The interval has the limit inside: another choice of sites could well have met it, or not.
+    pub marginal: bool,
     pub limit: Option<f64>,
     /// |value| / limit.
     pub normalised: Option<f64>,
     pub holds: Option<bool>,
+    /// Factors that are in the limit because of vehicle data.
+    pub factors: Vec<LimitFactor>,
     /// The limit as the protocol words it: `2/3 of std`.
     pub limit_text: String,
     pub reason: Option<String>,
     /// Where the protocol states the limit.
     pub rule: RulePlace,
+}
+
+/// A factor by which vehicle data multiply a limit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LimitFactor {
+    pub by: f64,
+    /// `vehicle category is freight`
+    pub because: String,
 }
 
 /// One section and signal.
@@ -259,6 +293,8 @@ pub struct PairValue {
 #[derive(Clone, Debug, Serialize)]
 pub struct SectionResult {
     pub section: String,
+    /// The first section of its site: repeats have the same.
+    pub site: String,
     pub zone: Option<String>,
     pub used: bool,
     pub reason: Option<String>,
@@ -289,7 +325,10 @@ pub struct ZoneResult {
     pub title: String,
     /// The zone's condition in words.
     pub condition: String,
+    /// Sections used.
     pub used: usize,
+    /// Sites that these are of: repeats do not count twice.
+    pub sites: usize,
     pub given: usize,
     pub minimum: usize,
     pub holds: bool,

@@ -1,22 +1,36 @@
 //! Vehicle data as the protocol names them, and what names of expressions stand for while running.
 
+use super::told::is_dimensioned;
 use crate::check::evaluate::Values;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
 use crate::data::Campaign;
 use crate::problem::{Problem, Problems};
 use crate::result::DataItem;
+use crate::units::{self, number::Refused};
 
 /// Values of the vehicle, one for each [`Plan::vehicle`].
 #[derive(Clone, Debug)]
 pub struct Facts {
     pub vehicle: Vec<Scalar>,
+    /// For each of them whether it is a number that the vehicle file gives without a unit.
+    pub assumed: Vec<bool>,
 }
 
 impl Facts {
     /// Reads every vehicle datum the protocol declares; a missing or ill-formed one is a problem.
     pub fn read(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Self {
-        let vehicle = plan.vehicle.iter().map(|datum| vehicle_datum(datum, campaign, problems).unwrap_or(Scalar::Number(0.0))).collect();
-        Self { vehicle }
+        let read = |datum| vehicle_datum(datum, campaign, problems).unwrap_or((Scalar::Number(0.0), false));
+        let (vehicle, assumed) = plan.vehicle.iter().map(read).unzip();
+        Self { vehicle, assumed }
+    }
+
+    /// The values as a report prints them.
+    pub fn items(&self, plan: &Plan) -> Vec<DataItem> {
+        let of = |(datum, (value, assumed)): (&Datum, (&Scalar, &bool))| {
+            let unit_assumed = *assumed && is_dimensioned(&datum.kind);
+            DataItem { unit_assumed, ..item(datum, Some(value)) }
+        };
+        plan.vehicle.iter().zip(self.vehicle.iter().zip(&self.assumed)).map(of).collect()
     }
 }
 
@@ -29,7 +43,7 @@ pub fn item(datum: &Datum, value: Option<&Scalar>) -> DataItem {
         Some(Scalar::Flag(flag)) => flag.to_string(),
         None => String::new(),
     };
-    DataItem { name: datum.title.clone(), value, unit: unit.map(|unit| unit.text.clone()), used: true }
+    DataItem { name: datum.title.clone(), value, unit: unit.map(|unit| unit.text.clone()), used: true, unit_assumed: false }
 }
 
 /// A number of a table without the tail that conversion between units leaves: `56.3`, not `56.300000000000004`.
@@ -38,10 +52,10 @@ pub fn trimmed(value: f64) -> String {
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
-fn vehicle_datum(datum: &Datum, campaign: &Campaign, problems: &mut Problems) -> Option<Scalar> {
+fn vehicle_datum(datum: &Datum, campaign: &Campaign, problems: &mut Problems) -> Option<(Scalar, bool)> {
     let Some(node) = campaign.vehicle.lookup(&datum.key) else {
         if let Some(default) = &datum.default {
-            return Some(default.clone());
+            return Some((default.clone(), false));
         }
         let known: Vec<&str> = campaign.vehicle.entries().iter().map(|(key, _)| key.text.as_str()).collect();
         problems.push(
@@ -52,15 +66,42 @@ fn vehicle_datum(datum: &Datum, campaign: &Campaign, problems: &mut Problems) ->
         );
         return None;
     };
-    let text = node.scalar_text().unwrap_or("").trim().to_string();
-    match scalar(&datum.kind, &text) {
-        Ok(value) => Some(value),
-        Err(says) => {
-            problems
-                .push(Problem::error("vehicle-data", format!("`{}`: {says}", datum.key)).at(&node.span).also(&datum.span, "declared here"));
-            None
-        }
+    let text = node.scalar_text().unwrap_or("").trim();
+    let read = match &datum.kind {
+        DatumKind::Number(unit) => units::number::read(text, unit).map(|read| (Scalar::Number(read.si), !read.unit_stated)),
+        kind => scalar(kind, text).map(|value| (value, false)).map_err(|says| Refused { says, help: None }),
+    };
+    let refused = match read {
+        Ok((value, assumed)) => match out_of_range(datum, &value, assumed) {
+            None => return Some((value, assumed)),
+            Some(refused) => refused,
+        },
+        Err(refused) => refused,
+    };
+    let problem = Problem::error("vehicle-data", format!("`{}`: {}", datum.key, refused.says)).at(&node.span);
+    let problem = problem.also(datum.range.as_ref().map_or(&datum.span, |range| &range.span), "declared here");
+    problems.push(match refused.help {
+        Some(help) => problem.help(help),
+        None => problem,
+    });
+    None
+}
+
+/// Why a number is none that the protocol takes. Where its unit was assumed, one in which it would be is named.
+fn out_of_range(datum: &Datum, value: &Scalar, assumed: bool) -> Option<Refused> {
+    let (Some(range), Scalar::Number(si), DatumKind::Number(unit)) = (&datum.range, value, &datum.kind) else { return None };
+    if (range.low..=range.high).contains(si) {
+        return None;
     }
+    let number = unit.from_si(*si);
+    let shown = trimmed(number);
+    let says = format!("{shown}{} is outside the range of the protocol, {}", unit.suffix(), range.words);
+    let other = if assumed { units::number::units_within(number, unit, (range.low, range.high)) } else { Vec::new() };
+    let help = match other.first() {
+        Some(other) => format!("a number without a unit is read in {unit}; write `{shown} {other}` if that is meant"),
+        None => format!("{}: give its value with the unit", datum.title),
+    };
+    Some(Refused { says, help: Some(help) })
 }
 
 /// A text as a value of the declared kind; numbers are in the declared unit.

@@ -1,5 +1,7 @@
 //! From the pairs of all sections to results of quantities and the verdict.
 
+use std::collections::BTreeSet;
+
 use super::facts::Facts;
 use super::limits::{self, Member};
 use super::pairs::SectionValues;
@@ -20,10 +22,11 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
     let mut missing = Vec::new();
     let zones: Vec<ZoneResult> = plan.zones.iter().map(|zone| zone_result(zone, units)).collect();
     for zone in zones.iter().filter(|zone| !zone.holds) {
-        missing.push(format!("zone {} has {}; at least {} required", zone.zone, count(zone.used, "usable section"), zone.minimum));
+        missing.push(format!("zone {} has {}; at least {} required", zone.zone, usable(zone.used, zone.sites), zone.minimum));
     }
-    if used.len() < plan.sections.minimum {
-        missing.push(format!("{}; at least {} required", count(used.len(), "usable section"), plan.sections.minimum));
+    let sites = sites(used.iter().map(|(unit, _)| *unit));
+    if sites < plan.sections.minimum {
+        missing.push(format!("{}; at least {} required", usable(used.len(), sites), plan.sections.minimum));
     }
     missing.extend(not_plausible(plan, findings, missing.is_empty()));
     let mut quantities = Vec::new();
@@ -60,6 +63,20 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
     Judged { verdict: Verdict::NotValidated, reasons, quantities, zones }
 }
 
+/// How many different sites sections are of.
+fn sites<'a>(units: impl Iterator<Item = &'a Unit>) -> usize {
+    units.map(|unit| unit.site).collect::<BTreeSet<_>>().len()
+}
+
+/// `2 usable sections`; where some of them are repeats, `3 usable sections of 2 sites (a repeat is no further section)`
+fn usable(sections: usize, sites: usize) -> String {
+    let sections_in_words = count(sections, "usable section");
+    if sections == sites {
+        return sections_in_words;
+    }
+    format!("{sections_in_words} of {} (a repeat is no further section)", count(sites, "site"))
+}
+
 /// One reason for each plausibility rule that makes the campaign not assessable; where sections are missing, also for each that took
 /// sections away.
 fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<String> {
@@ -90,15 +107,17 @@ fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<Strin
 
 fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
     let given: Vec<&Unit> = units.iter().filter(|unit| unit.zone.as_deref() == Some(zone.name.as_str())).collect();
-    let used = given.iter().filter(|unit| unit.fault.is_none()).count();
+    let used: Vec<&Unit> = given.iter().copied().filter(|unit| unit.fault.is_none()).collect();
+    let sites = sites(used.iter().copied());
     ZoneResult {
         zone: zone.name.clone(),
         title: zone.title.clone(),
         condition: zone.condition_words.clone(),
-        used,
+        used: used.len(),
+        sites,
         given: given.len(),
         minimum: zone.minimum_sections,
-        holds: used >= zone.minimum_sections,
+        holds: sites >= zone.minimum_sections,
     }
 }
 
@@ -120,11 +139,13 @@ fn quantity_result(
             }
         }
     }
+    let pairs = members.iter().map(|(unit, signal, _)| (unit.site, *signal)).collect::<BTreeSet<_>>().len();
     let recorded = signals.iter().filter(|recorded| **recorded).count();
     let reason = if recorded < quantity.minimum_signals {
         Some(format!("{} recorded; at least {} required", count(recorded, "signal"), quantity.minimum_signals))
-    } else if members.len() < quantity.minimum_pairs {
-        Some(format!("{} of section and signal; at least {} required", count(members.len(), "pair"), quantity.minimum_pairs))
+    } else if pairs < quantity.minimum_pairs {
+        let of = if pairs == members.len() { "section and signal" } else { "site and signal (a repeat is no further section)" };
+        Some(format!("{} of {of}; at least {} required", count(pairs, "pair"), quantity.minimum_pairs))
     } else {
         None
     };
@@ -151,6 +172,7 @@ fn quantity_result(
         notes: quantity.notes.clone(),
         has_sides: matches!(quantity.evaluation, Evaluation::Sides { .. }),
         statistics,
+        n: limits::independent(&members),
         values: members
             .iter()
             .map(|(unit, signal, pair)| PairValue {

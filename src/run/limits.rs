@@ -1,8 +1,11 @@
 //! Statistics over the pairs of a quantity, and their limits.
 
+use std::collections::BTreeSet;
+
 use super::facts::{Facts, Known};
 use super::pairs::PairSi;
 use super::sections::Unit;
+use super::told::factors;
 use crate::catalog::Statistic;
 use crate::check::evaluate::{Values, flag, number};
 use crate::check::plan::{Limit, Plan, Quantity, Scalar, Scope};
@@ -33,7 +36,7 @@ pub fn compare(plan: &Plan, facts: &Facts, quantity: &Quantity, members: &[Membe
                 all.extend(parts(plan, limit, members).into_iter().map(|part| of_part(plan, facts, quantity, limit, &part, members)))
             }
             Err(reason) => {
-                let mut result = empty(quantity, limit, "all".into(), 0);
+                let mut result = empty(quantity, limit, "all".into(), &[]);
                 result.reason = Some(format!("it cannot be determined whether the limit applies: {reason}"));
                 all.push(Compared { result, fails: None });
             }
@@ -114,18 +117,21 @@ pub fn rule_place(span: &Span) -> RulePlace {
     RulePlace { file: span.source.file_name(), line: span.line() }
 }
 
-fn empty(quantity: &Quantity, limit: &Limit, scope: String, count: usize) -> StatisticResult {
+fn empty(quantity: &Quantity, limit: &Limit, scope: String, members: &[Member<'_>]) -> StatisticResult {
     StatisticResult {
         name: limit.statistic.name(),
         title: limit.statistic.title(limit.ddof),
         scope,
-        count,
+        count: members.len(),
+        n: independent(members),
         unit: quantity.unit.text.clone(),
         value: None,
         interval: None,
+        marginal: false,
         limit: None,
         normalised: None,
         holds: None,
+        factors: Vec::new(),
         limit_text: limit.words.clone(),
         reason: None,
         rule: rule_place(&limit.span),
@@ -139,13 +145,14 @@ fn of_part(plan: &Plan, facts: &Facts, quantity: &Quantity, limit: &Limit, part:
             Ok(true) => inside.push(*member),
             Ok(false) => {}
             Err(reason) => {
-                let mut result = empty(quantity, limit, part.in_words(), 0);
+                let mut result = empty(quantity, limit, part.in_words(), &[]);
                 result.reason = Some(reason);
                 return Compared { result, fails: None };
             }
         }
     }
-    let mut result = empty(quantity, limit, part.in_words(), inside.len());
+    let mut result = empty(quantity, limit, part.in_words(), &inside);
+    result.factors = factors(plan, facts, limit);
     let outcome = if inside.is_empty() {
         Err("no value is available".into())
     } else if limit.statistic == Statistic::Each {
@@ -222,10 +229,13 @@ fn pooled(
     result: &mut StatisticResult,
 ) -> Result<bool, String> {
     let differences: Vec<f64> = members.iter().map(|(_, _, pair)| pair.difference).collect();
+    let sites: Vec<usize> = members.iter().map(|(unit, _, _)| unit.site).collect();
     let show = |value: f64| quantity.unit.from_si(value);
     let (value, interval) = match limit.statistic {
         Statistic::Percentile(percent) => (percentile(&differences, percent, Method::Linear).ok(), None),
-        Statistic::Named(entry) => ((entry.run)(&differences, limit.ddof), entry.interval.and_then(|interval| interval(&differences))),
+        Statistic::Named(entry) => {
+            ((entry.run)(&differences, limit.ddof), entry.interval.and_then(|interval| interval(&differences, &sites)))
+        }
         Statistic::Each => (None, None),
     };
     let value = value
@@ -237,7 +247,20 @@ fn pooled(
     result.limit = Some(show(bound));
     let (normalised, holds) = against(value, bound, limit.at_least);
     result.normalised = normalised;
+    result.marginal = interval.is_some_and(|interval| spans(interval, bound, limit.at_least));
     Ok(holds)
+}
+
+/// Whether values on both sides of a limit lie in an interval, so that the data do not decide. Where a magnitude is limited,
+/// minus the limit is one, too.
+fn spans((low, high): (f64, f64), bound: f64, at_least: bool) -> bool {
+    let inside = |bound: f64| low < bound && bound < high;
+    inside(bound) || !at_least && inside(-bound)
+}
+
+/// How many sites some pairs are of: pairs of one site are not independent of each other.
+pub fn independent(members: &[Member<'_>]) -> usize {
+    members.iter().map(|(unit, _, _)| unit.site).collect::<BTreeSet<_>>().len()
 }
 
 fn no_limit(reason: &str) -> String {
@@ -385,5 +408,16 @@ mod tests {
         assert_eq!(against(0.9, 0.9, true), (Some(1.0), true));
         assert_eq!(against(-0.2, 0.9, true), (None, false));
         assert_eq!(against(-0.2, -0.2, true), (None, true));
+    }
+
+    #[test]
+    fn an_interval_with_the_limit_inside_decides_nothing() {
+        assert!(spans((0.9, 1.1), 1.0, false));
+        assert!(spans((-1.1, -0.9), 1.0, false));
+        assert!(spans((-2.0, 2.0), 1.0, false));
+        assert!(!spans((-0.9, 0.9), 1.0, false));
+        assert!(!spans((1.1, 2.0), 1.0, false));
+        assert!(spans((0.8, 0.95), 0.9, true));
+        assert!(!spans((-0.95, -0.8), 0.9, true));
     }
 }

@@ -16,6 +16,7 @@ mod sections;
 mod signal;
 pub mod single;
 mod synchronisation;
+mod told;
 mod traces;
 
 use indexmap::IndexMap;
@@ -84,6 +85,8 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
     let evaluated = prepared.evaluate(&Shifts::NONE, progress)?.swap_remove(0);
     let Evaluated { units, values, findings, notes, files, .. } = &evaluated;
     let judged = judge::judge(plan, &evaluated.facts, units, values, findings);
+    let mut findings = findings.clone();
+    findings.extend(told::findings(plan, &evaluated.facts, &judged.quantities));
     let (mut traces, mut notes) = (Vec::new(), notes.clone());
     for trace in traces::traces(&prepared.work(), units, &judged.quantities, settings.traces) {
         match trace {
@@ -100,7 +103,7 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
         domain,
         traces,
         vehicle: evaluated.vehicle(plan),
-        findings: findings.clone(),
+        findings,
         notes,
         files: files.clone(),
         sections: sections::results(plan, evaluated.units),
@@ -134,7 +137,7 @@ impl Evaluated {
 
     /// Vehicle data that the protocol reads.
     pub fn vehicle(&self, plan: &Plan) -> Vec<DataItem> {
-        plan.vehicle.iter().zip(&self.facts.vehicle).map(|(datum, value)| facts::item(datum, Some(value))).collect()
+        self.facts.items(plan)
     }
 
     /// Remarks that do not change the verdict.

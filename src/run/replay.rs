@@ -9,7 +9,7 @@ use super::sections::Unit;
 use crate::check::evaluate::number;
 use crate::check::plan::{Evaluation, Plan, Scalar};
 use crate::graph::{Graph, NodeId};
-use crate::result::Finding;
+use crate::result::{Consequence, Finding};
 use crate::source::{Source, Spanned};
 
 /// What a result says of the data that rules read. All texts are as results have them, in the units that the protocol declares.
@@ -20,13 +20,14 @@ pub struct Recorded {
     pub sections: Vec<RecordedSection>,
     /// One for each [`Plan::quantities`].
     pub values: Vec<Vec<RecordedValue>>,
-    /// What was not plausible in the records.
     pub findings: Vec<Finding>,
 }
 
 #[derive(Clone, Debug)]
 pub struct RecordedSection {
     pub name: String,
+    /// The first section of its site; its own name where the result does not say.
+    pub site: String,
     pub zone: Option<String>,
     /// Why it is not used.
     pub fault: Option<String>,
@@ -98,6 +99,7 @@ pub fn replay(plan: &Plan, recorded: &Recorded) -> Result<Replayed, String> {
         }
     }
     contradictions.extend(refused(plan, &facts, &units));
+    contradictions.extend(barred(&units, &recorded.findings));
     for unit in &mut units {
         unit.faulty = unit.fault.is_some();
     }
@@ -110,12 +112,14 @@ fn facts(plan: &Plan, recorded: &Recorded) -> Result<Facts, String> {
     }
     let read = plan.vehicle.iter().zip(&recorded.vehicle);
     let vehicle = read.map(|(datum, text)| scalar(&datum.kind, text).map_err(|says| format!("`{}`: {says}", datum.key)));
-    Ok(Facts { vehicle: vehicle.collect::<Result<_, _>>()? })
+    let vehicle: Vec<Scalar> = vehicle.collect::<Result<_, _>>()?;
+    Ok(Facts { assumed: vec![false; vehicle.len()], vehicle })
 }
 
 fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
     let axis = &plan.axis.unit;
     let nowhere = Source::new("results.json", "").whole();
+    let place = |name: &str| recorded.sections.iter().position(|other| other.name == name);
     let one = |section: &RecordedSection| {
         if section.columns.len() != plan.columns.len() {
             let (asked, found) = (plan.columns.len(), section.columns.len());
@@ -128,6 +132,7 @@ fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
             name: section.name.clone(),
             cell: Spanned::new(section.name.clone(), nowhere.clone()),
             zone: section.zone.clone(),
+            site: place(&section.site).or_else(|| place(&section.name)).unwrap_or_default(),
             extent: (!plan.sections.whole_records).then(|| (axis.to_si(section.start), axis.to_si(section.end))),
             covered: None,
             columns: plan.columns.iter().zip(&section.columns).map(column).collect(),
@@ -161,6 +166,16 @@ fn refused(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
     requirements::check_data(plan, facts, &mut again);
     let says = |unit: &Unit| unit.fault.as_ref().map(|fault| format!("section {} is used: {fault}", unit.name));
     again.iter().filter_map(says).collect()
+}
+
+/// Sections that are used though a finding says that they are not.
+fn barred(units: &[Unit], findings: &[Finding]) -> Vec<String> {
+    let of = |finding: &Finding, unit: &Unit| finding.consequence == Consequence::NotUsed && finding.section.as_deref() == Some(&unit.name);
+    let says = |unit: &Unit| {
+        let finding = findings.iter().find(|finding| of(finding, unit)).filter(|_| unit.fault.is_none())?;
+        Some(format!("section {} is used: {}", unit.name, finding.says))
+    };
+    units.iter().filter_map(says).collect()
 }
 
 /// The operations that one value of a result came out of, in the order in which they run.

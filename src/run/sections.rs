@@ -4,6 +4,7 @@ use super::facts::{Facts, Known, item, scalar};
 use super::signal::Extent;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
 use crate::data::Campaign;
+use crate::data::sites::sites;
 use crate::data::table::{Cell, Table};
 use crate::problem::{Problem, Problems};
 use crate::result::{CheckResult, SectionResult};
@@ -17,6 +18,8 @@ pub struct Unit {
     /// The name where it is written, which is also that of its records.
     pub cell: Cell,
     pub zone: Option<String>,
+    /// Number of its site: sections of the same stretch of track have the same.
+    pub site: usize,
     /// `None` for a whole record.
     pub extent: Option<Extent>,
     /// What a report says it covers: the section, or the measured record.
@@ -49,7 +52,7 @@ impl Unit {
 /// Reads the sections as the protocol declares their columns.
 pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<Unit> {
     if plan.sections.whole_records {
-        return campaign.names.iter().map(|name| whole_record(plan, name)).collect();
+        return campaign.names.iter().enumerate().map(|(site, name)| whole_record(plan, name, site)).collect();
     }
     let Some(table) = &campaign.sections else {
         problems.push(
@@ -66,6 +69,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
         key: name.into(),
         kind: DatumKind::Number(axis.clone()),
         default: None,
+        range: None,
         span: plan.columns.first().map_or_else(|| crate::source::Source::new("", "").whole(), |datum| datum.span.clone()),
     };
     let (start, end) = (extent_datum("start"), extent_datum("end"));
@@ -76,6 +80,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
     if missing {
         return Vec::new();
     }
+    let sites = sites(table, problems);
     let mut units = Vec::new();
     for row in 0..table.rows.len() {
         let row = Row { table, row, file: campaign.inside(&table.columns[0].span.source.name) };
@@ -91,6 +96,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
                 Ok(Scalar::Word(word)) => Some(word.clone()),
                 _ => None,
             }),
+            site: sites[row.row],
             extent: None,
             covered: None,
             columns,
@@ -112,7 +118,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
     units
 }
 
-fn whole_record(plan: &Plan, name: &Cell) -> Unit {
+fn whole_record(plan: &Plan, name: &Cell, site: usize) -> Unit {
     let columns = plan
         .columns
         .iter()
@@ -122,6 +128,7 @@ fn whole_record(plan: &Plan, name: &Cell) -> Unit {
         name: name.value.clone(),
         cell: name.clone(),
         zone: None,
+        site,
         extent: None,
         covered: None,
         columns,
@@ -198,11 +205,13 @@ impl Row<'_> {
 
 pub fn results(plan: &Plan, units: Vec<Unit>) -> Vec<SectionResult> {
     let axis = &plan.axis.unit;
+    let names: Vec<String> = units.iter().map(|unit| unit.name.clone()).collect();
     units
         .into_iter()
         .map(|unit| {
             let (start, end) = unit.covered.or(unit.extent).unwrap_or((0.0, 0.0));
             SectionResult {
+                site: names.get(unit.site).unwrap_or(&unit.name).clone(),
                 section: unit.name,
                 zone: unit.zone,
                 used: unit.fault.is_none(),

@@ -8,9 +8,12 @@ use crate::data::table::Cell;
 use crate::data::{Campaign, RecordKind};
 use crate::disk;
 use crate::effects::{Channel, Signals};
-use crate::model::{self, CHANNELS, PARAMETERS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, VehicleFault, Window};
+use crate::model::{
+    self, CHANNELS, PARAMETERS, Parameter, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, VehicleFault, Window,
+};
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Spanned};
+use crate::units::number::{self, Refused};
 use crate::units::{Dimension, Unit};
 use crate::yaml::Node;
 
@@ -115,13 +118,35 @@ fn made(setup: &Setup<'_>, window: Window) -> Result<Signals, Problem> {
     Ok(Signals { axis: record.distance, over_time: false, rate: SAMPLING_RATE, channels: channels.collect() })
 }
 
-/// The vehicle of a vehicle file.
+/// The vehicle of a vehicle file. Numbers may carry their unit; without one they are in the unit of the parameter.
 pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
-    let number = |key: &str| {
-        let node = tree.lookup(key)?;
-        let word = || SIDES.iter().find(|(word, _)| node.scalar_text() == Some(word)).map(|(_, value)| *value);
-        node.number().or_else(word)
-    };
+    let before = problems.errors();
+    let mut values: Vec<(&str, f64)> = Vec::new();
+    for parameter in PARAMETERS {
+        let Some(node) = tree.lookup(parameter.key) else { continue };
+        let Some(text) = node.scalar_text() else { continue };
+        if let Some((_, side)) = SIDES.iter().find(|(word, _)| *word == text) {
+            values.push((parameter.key, *side));
+        } else if let Some(number) = number_of(node, parameter.key) {
+            values.push((parameter.key, number));
+        } else {
+            match stated(parameter, text) {
+                Ok(number) => values.push((parameter.key, number)),
+                Err(refused) => {
+                    let says = format!("`{}` ({}): {}", parameter.key, parameter.meaning, refused.says);
+                    let problem = Problem::error("wrong-kind", says).at(&node.span);
+                    problems.push(match refused.help {
+                        Some(help) => problem.help(help),
+                        None => problem,
+                    });
+                }
+            }
+        }
+    }
+    if problems.errors() > before {
+        return None;
+    }
+    let number = |key: &str| values.iter().find(|(known, _)| *known == key).map(|(_, value)| *value);
     match Vehicle::from_values(number) {
         Ok(vehicle) => Some(vehicle),
         Err(faults) => {
@@ -147,6 +172,18 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
             None
         }
     }
+}
+
+/// A number of a vehicle file in the unit of the model's parameter of that key; a number that the model does not know has no unit.
+#[must_use]
+pub fn number_of(node: &Node, key: &str) -> Option<f64> {
+    node.number().or_else(|| stated(model::parameter(key)?, node.scalar_text()?).ok())
+}
+
+/// A text as a number in the unit of a parameter.
+fn stated(parameter: &Parameter, text: &str) -> Result<f64, Refused> {
+    let unit = Unit::parse(parameter.unit).unwrap_or_else(|_| Unit::one());
+    number::read(text, &unit).map(|read| unit.from_si(read.si))
 }
 
 /// Where a key is missing, a key beside it that no parameter has and that looks like it is shown.

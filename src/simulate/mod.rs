@@ -7,14 +7,16 @@ mod builtin;
 mod campaign;
 mod compare;
 mod external;
+mod origin;
 mod section;
 mod write;
 
 pub use add::{Plan, Simulated, check_confined, incremented, simulate};
-pub use builtin::{Builtin, model_parameters, single};
+pub use builtin::{Builtin, model_parameters, number_of, single};
 pub use campaign::{Units, in_units, read_signals, record_text, recorded};
 pub use compare::{Deviation, baseline_warning, deviations};
 pub use external::{Cache, External, Program, read_program};
+pub use origin::{Made, effects_of_origin};
 pub use section::{Fact, Section, sections};
 pub use write::write_campaign;
 

@@ -1,10 +1,16 @@
 //! A simulated campaign as a folder.
 
+use super::origin::Made;
+use crate::data::origin::{ORIGIN_FILE, ORIGIN_KEY};
 use crate::data::write::{Entry, Outputs, campaign_yaml};
 use crate::data::{Campaign, RecordKind};
 use crate::problem::Problem;
 
-/// A campaign like another, with other simulated records. Everything that the other has is copied beside them.
+/// Keys of `campaign.yaml` that are another campaign's.
+const OWN: [&str; 4] = ["name", "simulation", "simulation_ran_on", ORIGIN_KEY];
+
+/// A campaign like another, with other simulated records. Everything that the other has is copied beside them, and an origin says
+/// how they were made; without it for copies that are evaluated and thrown away.
 ///
 /// # Errors
 /// Of reading the other, and of writing; nothing is in its place before [`Outputs::commit`].
@@ -12,17 +18,35 @@ pub fn write_campaign(
     outputs: &mut Outputs,
     campaign: &Campaign,
     records: impl Iterator<Item = (impl AsRef<str>, String)>,
+    made: Option<&Made<'_>>,
 ) -> Result<(), Problem> {
     for (name, text) in records {
         outputs.add(&format!("simulation/{}.csv", name.as_ref()), text.as_bytes())?;
     }
-    let entries = campaign.tree.entries().iter().filter(|(key, _)| !["simulation", "simulation_ran_on"].contains(&key.text.as_str()));
-    let mut lines: Vec<(&str, Entry<'_>)> = entries.map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
+    let copied = campaign.other_files(RecordKind::Simulation)?;
+    let mut name = campaign.name.clone();
+    let mut origin = None;
+    if let Some(made) = made {
+        let whole = made.origin(campaign, &copied)?;
+        // What is not in the new simulation any more leaves its name, too.
+        name.clone_from(&whole.campaign);
+        if !whole.effects.is_empty() {
+            name = format!("{name}, with {}", whole.effects_in_words(" "));
+        }
+        origin = Some(whole);
+    }
+    let entries = campaign.tree.entries().iter().filter(|(key, _)| !OWN.contains(&key.text.as_str()));
+    let mut lines: Vec<(&str, Entry<'_>)> = vec![("name", Entry::Text(&name))];
+    lines.extend(entries.map(|(key, node)| (key.text.as_str(), Entry::Node(node))));
     lines.push(("simulation", Entry::Text("simulation")));
     lines.push(("simulation_ran_on", Entry::Text("measured track")));
+    if let Some(origin) = &origin {
+        lines.push((ORIGIN_KEY, Entry::Text(ORIGIN_FILE)));
+        outputs.add(ORIGIN_FILE, origin.text().as_bytes())?;
+    }
     outputs.add("campaign.yaml", campaign_yaml(&lines).as_bytes())?;
-    for (inside, bytes) in campaign.other_files(RecordKind::Simulation)? {
-        outputs.add(&inside, &bytes)?;
+    for (inside, bytes) in copied.iter().filter(|(inside, _)| inside != ORIGIN_FILE) {
+        outputs.add(inside, bytes)?;
     }
     Ok(())
 }

@@ -128,6 +128,7 @@ pub const KINDS: &[Kind] = &[
             phrase("in", "Its unit, if it is a number.", "kN"),
             phrase("one of", "Its possible words, if it is one.", "passenger, locomotive, freight"),
             phrase("key", "Where it stands in the vehicle file, if not under its own name.", "static_wheel_load"),
+            phrase("range", "The smallest and largest value allowed, if it is a number.", "10 kN to 200 kN"),
             phrase("default", "Its value where the file has none; without a default it must be there.", "140 km/h"),
             NOTE,
         ],

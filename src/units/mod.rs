@@ -3,6 +3,7 @@
 //! Inside the program every number is in SI base units; conversion happens where text becomes a number and back.
 
 mod dimension;
+pub mod number;
 mod parse;
 mod table;
 

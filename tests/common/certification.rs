@@ -80,6 +80,7 @@ pub fn certification() -> Certification {
         protocol: protocol(),
         campaign: campaign(&sections),
         verdict: Verdict::NotValidated,
+        verdict_note: None,
         reasons,
         quantities,
         zones: zones(&sections),
@@ -133,8 +134,16 @@ pub fn empty() -> Certification {
             graph_svg: String::new(),
             verdict_rule: String::new(),
         },
-        campaign: CampaignInfo { name: String::new(), files: Vec::new(), vehicle: Vec::new(), facts: Vec::new(), report: Vec::new() },
+        campaign: CampaignInfo {
+            name: String::new(),
+            files: Vec::new(),
+            vehicle: Vec::new(),
+            facts: Vec::new(),
+            report: Vec::new(),
+            origin: None,
+        },
         verdict: Verdict::NotAssessable,
+        verdict_note: None,
         reasons: Vec::new(),
         quantities: Vec::new(),
         sections: Vec::new(),
@@ -167,9 +176,16 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
             let start = 1200.0 + 431.7 * at as f64;
             let used = at != 5 && at != 18;
             let radius = ["", "3200", "512.5", "287"][at % 4];
-            let column = |name: &str, value: String, unit: &str| DataItem { name: name.into(), value, unit: Some(unit.into()), used: true };
+            let column = |name: &str, value: String, unit: &str| DataItem {
+                name: name.into(),
+                value,
+                unit: Some(unit.into()),
+                used: true,
+                unit_assumed: false,
+            };
             SectionResult {
                 section: if at == 12 { "S13_Brescia-Verona_up_line_2023-05-04_run07".into() } else { format!("S{:02}", at + 1) },
+                site: String::new(),
                 zone: Some(zone.to_string()),
                 used,
                 reason: match at {
@@ -245,12 +261,15 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         title: title.into(),
         scope: "all".into(),
         count: values.len(),
+        n: values.len() / 2,
         unit: kind.unit.into(),
         value: Some(value),
         interval: Some((value - 0.1 * limit, value + 0.1 * limit)),
+        marginal: false,
         limit: Some(limit),
         normalised: Some(value.abs() / limit),
         holds: Some(value.abs() <= limit),
+        factors: Vec::new(),
         limit_text: text.into(),
         reason: None,
         rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
@@ -274,6 +293,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         has_sides: true,
         holds: Some(statistics.iter().all(|one| one.holds == Some(true))),
         statistics,
+        n: values.len() / 2,
         values,
         reason: None,
         rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
@@ -287,6 +307,7 @@ fn make_unassessable(quantity: &mut QuantityResult) {
     for statistic in &mut quantity.statistics {
         *statistic = StatisticResult {
             count: 0,
+            n: 0,
             value: None,
             interval: None,
             normalised: None,
@@ -299,7 +320,7 @@ fn make_unassessable(quantity: &mut QuantityResult) {
 
 /// A quantity of another kind: one number for two signals, judged zone by zone.
 fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
-    let values = sections
+    let values: Vec<PairValue> = sections
         .iter()
         .filter(|section| section.used)
         .flat_map(|section| {
@@ -321,12 +342,15 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
             title: "95 % value".into(),
             scope: format!("zone {zone}"),
             count: 16,
+            n: 8,
             unit: "-".into(),
             value: Some(0.2 + 0.01 * f64::from(zone)),
             interval: None,
+            marginal: false,
             limit: Some(0.3),
             normalised: Some((0.2 + 0.01 * f64::from(zone)) / 0.3),
             holds: Some(true),
+            factors: Vec::new(),
             limit_text: "0.3".into(),
             reason: None,
             rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
@@ -346,6 +370,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         notes: Vec::new(),
         has_sides: false,
         statistics,
+        n: values.len() / 2,
         values,
         holds: Some(true),
         reason: None,
@@ -370,6 +395,7 @@ fn zones(sections: &[SectionResult]) -> Vec<ZoneResult> {
             title: (*title).into(),
             condition: (*condition).into(),
             used,
+            sites: used,
             given: own.len(),
             minimum: 3,
             holds: used >= 3,
@@ -427,6 +453,7 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
         value: value.into(),
         unit: unit.map(Into::into),
         used,
+        unit_assumed: false,
     };
     let hash = |at: usize| format!("{:064x}", (at as u128 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835));
     let mut files: Vec<FileHash> = ["campaign.yaml", "vehicle.yaml", "sections.csv"]
@@ -445,6 +472,7 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
         }
     }
     CampaignInfo {
+        origin: None,
         name: "On-track tests of the coach, spring 2023".into(),
         files,
         vehicle: vec![

@@ -61,6 +61,7 @@ pub fn certification() -> Certification {
         protocol: protocol(),
         campaign: campaign(),
         verdict: Verdict::NotValidated,
+        verdict_note: None,
         reasons: vec![
             "ÿ*_max: standard deviation above its limit".into(),
             "z̈*_max: not assessable, channel `az_I` is missing in 33 records".into(),
@@ -119,6 +120,7 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
             let name = if number == 12 { BREAKOUT.to_owned() } else { format!("S{number:02}") };
             sections.push(SectionResult {
                 section: name,
+                site: String::new(),
                 zone: Some(zone.to_string()),
                 used,
                 reason: (!used).then(|| "record of the measurement has a gap of 0.31 s at 20041.5 m".to_owned()),
@@ -158,7 +160,7 @@ fn check(name: &str, title: &str, holds: Option<bool>, says: &str) -> CheckResul
 }
 
 fn item(name: &str, value: &str, unit: Option<&str>) -> DataItem {
-    DataItem { name: name.into(), value: value.into(), unit: unit.map(str::to_owned), used: true }
+    DataItem { name: name.into(), value: value.into(), unit: unit.map(str::to_owned), used: true, unit_assumed: false }
 }
 
 fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
@@ -197,6 +199,7 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
         notes: if id == "Y_max" { vec![format!("Assumed: {EXPRESSION}")] } else { Vec::new() },
         has_sides: true,
         statistics,
+        n: values.len() / 2,
         values,
         holds,
         reason: missing.then(|| "channel `az_I` is missing in 33 records".to_owned()),
@@ -213,12 +216,15 @@ fn statistics(values: &[PairValue], unit: &str, limit: f64) -> Vec<StatisticResu
         title: title.into(),
         scope: "all".into(),
         count: values.len(),
+        n: values.len() / 2,
         unit: unit.into(),
         value: Some(value),
         interval: Some((value - half, value + half)),
+        marginal: false,
         limit: Some(limit),
         normalised: Some(value.abs() / limit),
         holds: Some(value.abs() <= limit),
+        factors: Vec::new(),
         limit_text: text.into(),
         reason: None,
         rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
@@ -245,6 +251,7 @@ fn zones(sections: &[SectionResult]) -> Vec<ZoneResult> {
             title: title.into(),
             condition: condition.into(),
             used,
+            sites: used,
             given: given.len(),
             minimum: 3,
             holds: used >= 3,
@@ -330,6 +337,7 @@ fn campaign() -> CampaignInfo {
         });
     }
     CampaignInfo {
+        origin: None,
         name: "Coach, line tests".into(),
         files,
         vehicle: vec![

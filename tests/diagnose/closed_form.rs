@@ -344,13 +344,36 @@ fn a_cell_tells_mean_and_root_mean_square_of_its_differences() {
     let (found, settings) = found_by(EFFECTS, Truth { jump: -2.0, ..NOTHING }, &[]);
     let places = fishplate::diagnose::gap::locate::locate(&settings, &found, &Vec::new());
     let [place] = &places[..] else { panic!("{places:?}") };
-    assert!((place.difference + 2.0 / 8.0).abs() < 1e-9, "{}", place.difference);
+    assert!((place.difference - 2.0 / 8.0).abs() < 1e-9, "{}", place.difference);
     assert!((place.difference_rms - 2.0 / 8.0_f64.sqrt()).abs() < 1e-9, "{}", place.difference_rms);
     assert!((place.share_of_gap - 1.0).abs() < 1e-12);
     let (column, v) = (&found.alone.covariance.shared[0], LEVEL_SD * LEVEL_SD);
     let chi = 4.0 * (1.0 - column[ALONE].powi(2) / (v + column.iter().map(|c| c * c).sum::<f64>())) / v;
     let wanted = ChiSquared::new(8.0).unwrap().sf(chi);
     assert!((place.p_value / wanted - 1.0).abs() < 1e-6 && place.significant, "{} for {wanted}", place.p_value);
+}
+
+/// What was measured is half a newton more than was simulated, everywhere: both say -0.5 N, simulated - measured.
+#[test]
+fn diagnosis_and_certification_tell_a_difference_with_the_same_sign() {
+    const PROTOCOL: &str = "protocol sign \"Sign\"\n  axis distance in m\n  time time in s\nchannel F \"Force\"\n  in N\n\
+        sections\n  use sections\nquantity F_mean \"Mean force\"\n  of F\n  value mean\n  difference signed\n  limit mean 9 N\n\
+        verdict\n  validated when every limit holds\n";
+    let truth = Truth { lift: 0.5, ..NOTHING };
+    let (found, settings) = found_by(EFFECTS, truth, &[]);
+    let places = fishplate::diagnose::gap::locate::locate(&settings, &found, &Vec::new());
+    let [place] = &places[..] else { panic!("{places:?}") };
+    let folder = tempfile::tempdir().unwrap();
+    campaign(folder.path(), truth);
+    let mut problems = Problems::default();
+    let family = fishplate::check::family::read(&Source::new("sign.fp", PROTOCOL), &library::parent, &mut problems);
+    let compiled = fishplate::certify::compile(family, &fishplate::check::Overrides::new(), &mut problems);
+    let opened = Campaign::open(folder.path(), &mut problems);
+    let (Some(compiled), Some(opened)) = (compiled, opened) else { panic!("{}", problems.render(false)) };
+    let run = fishplate::run::Settings { traces: 0 };
+    let certified = fishplate::certify::certify(&compiled, &opened, run, &|_| {}).unwrap_or_else(|all| panic!("{}", all.render(false)));
+    let mean = certified.quantities[0].statistics[0].value.expect("a mean");
+    assert!((mean + 0.5).abs() < 1e-9 && (place.difference - mean).abs() < 1e-9, "{mean} and {}", place.difference);
 }
 
 /// A stiffness of 1.2 times what is assumed lifts the force by 0.2 (1 - slack) stiffness times the load: 1.26 N from the least load to
@@ -362,9 +385,10 @@ fn a_difference_that_grows_with_a_column_is_told_with_its_slope() {
     let (trends, together) = fishplate::diagnose::gap::trends::trends(&settings, &found, &Vec::new());
     let over = |name: &str| trends.iter().find(|trend| trend.covariate == name).unwrap_or_else(|| panic!("no trend over {name}"));
     let load = over("load");
-    let wanted = 0.2 * (1.0 - SLACK) * STIFFNESS * (LOADS[7] - LOADS[0]);
+    // Simulated - measured.
+    let wanted = -0.2 * (1.0 - SLACK) * STIFFNESS * (LOADS[7] - LOADS[0]);
     assert!((load.before.change - wanted).abs() < 1e-6, "{} for {wanted}", load.before.change);
-    assert!((load.before.correlation - 1.0).abs() < 1e-9);
+    assert!((load.before.correlation + 1.0).abs() < 1e-9);
     assert_eq!((load.from.as_str(), load.to.as_str()), ("1", "4.5"));
     // Of the matrix X' C^-1 X, X = [1, scaled load], the lower right of the inverse.
     let column = &found.alone.covariance.shared[0];
@@ -385,7 +409,7 @@ fn a_difference_that_grows_with_a_column_is_told_with_its_slope() {
     let no_effects = format!("{}effects: {{}}\n{}", &EFFECTS[..head], &EFFECTS[tail..]);
     for (stiffness, sure) in [(1.26, false), (1.28, true)] {
         let (found, settings) = found_by(&no_effects, Truth { stiffness, ..NOTHING }, &[]);
-        let errors = (stiffness - 1.0) / 0.2 * wanted / error;
+        let errors = (stiffness - 1.0) / 0.2 * -wanted / error;
         assert!(found.chosen.members.is_empty() && (errors > 4.79) == sure, "{errors}");
         assert_eq!(certain(&fishplate::diagnose::gap::trends::trends(&settings, &found, &Vec::new()).0), sure);
     }

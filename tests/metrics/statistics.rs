@@ -13,14 +13,45 @@ fn intervals_agree_with_scipy() {
         let values = record(number(&case["n"]) as i64, 3.0);
         close(mean(&values).expect("defined"), number(&case["mean"]), 1e-14);
         close(standard_deviation(&values, Divisor::Sample).expect("defined"), number(&case["std"]), 1e-13);
-        let of_mean = mean_interval(&values, CONFIDENCE).expect("defined");
-        let of_deviation = standard_deviation_interval(&values, CONFIDENCE).expect("defined");
+        let each: Vec<usize> = (0..values.len()).collect();
+        let of_mean = mean_interval(&values, &each, CONFIDENCE).expect("defined");
+        let of_deviation = standard_deviation_interval(&values, &each, CONFIDENCE).expect("defined");
         for (interval, key) in [(of_mean, "mean_interval"), (of_deviation, "std_interval")] {
             let ends = numbers(&case[key]);
             close(interval.low, ends[0], 1e-9);
             close(interval.high, ends[1], 1e-9);
         }
     }
+}
+
+/// NumPy and SciPy, `tests/cases/sites/make.py`: differences of eight sites, four of them measured twice, several signals each.
+#[test]
+fn intervals_of_sites_agree_with_numpy() {
+    for case in json("sites/intervals.json").as_array().expect("a list") {
+        let (values, site) = (numbers(&case["difference"]), numbers(&case["site"]));
+        let site: Vec<usize> = site.iter().map(|site| *site as usize).collect();
+        let of_mean = mean_interval(&values, &site, CONFIDENCE).expect("defined");
+        let of_deviation = standard_deviation_interval(&values, &site, CONFIDENCE).expect("defined");
+        for (interval, key) in [(of_mean, "mean_interval"), (of_deviation, "std_interval")] {
+            let ends = numbers(&case[key]);
+            close(interval.low, ends[0], 1e-9);
+            close(interval.high, ends[1], 1e-9);
+        }
+    }
+}
+
+/// A site measured again and again says no more of the others: the interval of the mean stays, but for rounding.
+#[test]
+fn repeats_do_not_narrow_an_interval() {
+    let (values, site) = ([1.0, 2.0, 4.0, 4.5], [0, 1, 2, 3]);
+    let (twice, of_twice) = ([values, values].concat(), [site, site].concat());
+    let (once, again) = (mean_interval(&values, &site, CONFIDENCE), mean_interval(&twice, &of_twice, CONFIDENCE));
+    let (once, again) = (once.expect("defined"), again.expect("defined"));
+    close(again.low, once.low, 1e-14);
+    close(again.high, once.high, 1e-14);
+    let as_if_apart: Vec<usize> = (0..8).collect();
+    let apart = mean_interval(&twice, &as_if_apart, CONFIDENCE).expect("defined");
+    assert!(apart.high - apart.low < 0.7 * (once.high - once.low));
 }
 
 /// scipy.stats.linregress.
@@ -75,9 +106,12 @@ fn none_where_not_defined() {
     assert_eq!(regression(&[0.1; 3], &[1.0, 2.0, 3.0]), None);
     assert_eq!(correlation(&[1.0, 2.0, 3.0], &[0.1; 3]), None);
     assert_eq!(correlation(&[1.0, 2.0, 3.0], &[0.1; 2]), None);
-    assert_eq!(mean_interval(&[1.0], CONFIDENCE), None);
-    assert_eq!(mean_interval(&[1.0, 2.0], 1.0), None);
-    assert_eq!(standard_deviation_interval(&[1.0, 2.0], f64::NAN), None);
+    assert_eq!(mean_interval(&[1.0], &[0], CONFIDENCE), None);
+    assert_eq!(mean_interval(&[1.0, 2.0], &[0, 1], 1.0), None);
+    assert_eq!(mean_interval(&[1.0, 2.0], &[0, 0], CONFIDENCE), None, "one site");
+    assert_eq!(mean_interval(&[1.0, 2.0], &[0], CONFIDENCE), None);
+    assert_eq!(standard_deviation_interval(&[1.0, 2.0], &[3, 3], CONFIDENCE), None, "one site");
+    assert_eq!(standard_deviation_interval(&[1.0, 2.0], &[0, 1], f64::NAN), None);
     for broken in [[1.0, f64::NAN], [f64::NAN, 1.0], [f64::INFINITY, 1.0]] {
         for statistic in [mean, rms, median, minimum, maximum, peak_magnitude, range, interquartile_range] {
             assert_eq!(statistic(&broken), None);

@@ -24,7 +24,7 @@ fn steady(vehicle: &Vehicle, profile: &Profile, table: &TrackTable, speed: f64) 
     let settled = if vehicle.primary_friction_z > 0.0 { 2500.0 } else { 1000.0 };
     let samples = ((settled - from) / speed / SAMPLE) as usize;
     let mut last = Steady { state: State::default(), y: [0.0; 8], q: [0.0; 8] };
-    run(&equations, &track, equations.at_rest(), from, samples, steps_per_sample(&equations).unwrap(), |_, state, outputs| {
+    run(&equations, &track, equations.at_rest(), from, samples, steps_per_sample(&equations).expect("few steps"), |_, state, outputs| {
         last = Steady { state: *state, y: outputs.y, q: outputs.q };
     })
     .unwrap();

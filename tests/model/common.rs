@@ -175,7 +175,7 @@ pub fn free_run(equations: &Equations<'_>, from: State, seconds: f64, divided: u
     let table = even(&[(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)]);
     let track = Track::new(&table, equations.vehicle);
     let samples = (seconds / SAMPLE).round() as usize + 1;
-    let divided = if divided == 0 { steps_per_sample(equations).expect("a step") } else { divided };
+    let divided = if divided == 0 { steps_per_sample(equations).expect("few steps") } else { divided };
     let mut states = Vec::with_capacity(samples);
     run(equations, &track, from, 10.0, samples, divided, |_, state, _| states.push(*state)).unwrap();
     states

@@ -44,7 +44,7 @@ fn halving_the_step_changes_nothing_that_matters() {
         let vehicle = vehicle(campaign, &[]);
         let profile = profile(campaign, &vehicle);
         let setup = Setup { vehicle: &vehicle, profile: &profile, track: &section.track, speed: section.speed };
-        let steps = steps_per_sample(&Equations::new(&vehicle, &profile, section.speed)).unwrap();
+        let steps = steps_per_sample(&Equations::new(&vehicle, &profile, section.speed)).expect("few steps");
         let records = [steps, 2 * steps].map(|steps| simulate_with(&setup, section.window(), Some(steps)).unwrap());
         for (i, (channel, _)) in CHANNELS.iter().enumerate() {
             let [coarse, fine] = records.each_ref().map(|record| {

@@ -80,6 +80,6 @@ fn written() -> &'static Written {
 /// The line of a check and those of its details.
 #[track_caller]
 fn check<'a>(ran: &'a Ran, name: &str) -> &'a str {
-    let found = ran.stdout.lines().find(|line| line.get(12..).is_some_and(|rest| rest.starts_with(&format!("{name} "))));
+    let found = ran.stdout.lines().find(|line| line.get(13..).is_some_and(|rest| rest.starts_with(&format!("{name} "))));
     found.unwrap_or_else(|| panic!("no check `{name}`:\n{}{}", ran.stdout, ran.stderr))
 }

@@ -49,14 +49,16 @@ fn results_alone_find_their_protocol_by_its_hash() {
     let results = bare.path().join("results.json");
     fs::copy(written.results(), &results).expect("copied");
     let ran = verify(&results, None, &[]);
-    assert_eq!(ran.code, 0, "{}", ran.stdout);
-    assert!(check(&ran, "protocol text").contains("--protocol"), "{}", ran.stdout);
+    assert_eq!(ran.code, 3, "{}", ran.stdout);
+    assert!(check(&ran, "protocol text").contains("--protocol") && ran.stdout.contains("Result: could not be finished"), "{}", ran.stdout);
+    let ran = verify(&results, Some(&written.campaign()), &[]);
+    assert!(ran.code == 3 && check(&ran, "input files").starts_with("agrees"), "{}", ran.stdout);
     let given = text(&written.campaign().join("rules/p.fp"));
     let ran = verify(&results, Some(&written.campaign()), &["--protocol", &given]);
     assert_eq!(ran.code, 0, "{}{}", ran.stdout, ran.stderr);
     assert!(check(&ran, "run again").starts_with("agrees"), "{}", ran.stdout);
     let other = verify(&results, None, &["--protocol", "sprague-geers"]);
-    assert!(check(&other, "protocol text").starts_with("not checked"), "{}", other.stdout);
+    assert!(check(&other, "protocol text").starts_with("NOT POSSIBLE"), "{}", other.stdout);
 }
 
 /// Metrics without sides, whole records without sections: every kind of protocol can be replayed and run again.
@@ -96,6 +98,7 @@ fn a_changed_campaign_is_told_by_file_and_number() {
     // A byte that changes no number.
     let out = changed(&|campaign| lines(&campaign.join("sections.csv"), |lines| lines.push(String::new())));
     assert!(out.contains("changed: sections.csv") && out.contains("all 2"), "{out}");
+    assert!(out.contains("not checked  pages"), "what differs already is not told twice: {out}");
     // A record gone.
     let out = changed(&|campaign| fs::remove_file(campaign.join("simulation/S01.csv")).expect("removed"));
     assert!(out.contains("missing: simulation/S01.csv") && out.contains("no longer read: simulation/S01.csv"), "{out}");

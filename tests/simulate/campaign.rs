@@ -79,3 +79,34 @@ fn sections_without_speed() {
     assert_eq!(ran.code, 3);
     assert!(SECTIONS.iter().all(|name| ran.stderr.contains(&format!("section `{name}` has no speed"))), "{}", ran.stderr);
 }
+
+/// The new campaign says what it is, and with `--increment` what was in the simulation before as well.
+#[test]
+fn what_was_added_stands_in_the_origin_and_in_the_name() {
+    let place = Place::new();
+    place.simulated("one", &["--effect", "friction=0.23"]);
+    assert!(place.text("one/campaign.yaml").starts_with("name: Coach C44, on-track test, second series, with friction 0.23\n"));
+    assert!(place.text("one/campaign.yaml").contains("\norigin: origin.yaml\n"));
+    let origin = place.text("one/origin.yaml");
+    for part in ["command: simulate\n", "- effect: friction\n", "    value: 0.23\n", "fitted to: []\n", "- path: track/S13.csv\n"] {
+        assert!(origin.contains(part), "{part}\n{origin}");
+    }
+    let hash = fishplate::data::hash::sha256(&fs::read(place.path("small/measurement/S13.csv")).expect("readable"));
+    assert!(origin.contains(&hash), "{origin}");
+    let two = place.path("two");
+    let call = |more: &[&str]| {
+        let arguments = ["simulate", "one", "--out", "two", "--effect", "payload=2 t"];
+        assert_eq!(ran(program().current_dir(place.path("")).args(arguments).args(more)).code, 0);
+        (place.text("two/campaign.yaml"), place.text("two/origin.yaml"))
+    };
+    let (name, added) = call(&["--increment"]);
+    assert!(name.starts_with("name: Coach C44, on-track test, second series, with friction 0.23 and payload 2"), "{name}");
+    assert!(added.contains("- effect: friction\n") && added.contains("- effect: payload\n"), "{added}");
+    // Made anew, nothing of what was there is in it.
+    let (name, anew) = call(&[]);
+    assert!(name.starts_with("name: Coach C44, on-track test, second series, with payload 2"), "{name}");
+    assert!(!anew.contains("- effect: friction\n") && anew.contains("- effect: payload\n"), "{anew}");
+    let report = place.path("report");
+    let ran = ran_certify(&two.display().to_string(), &report.display().to_string());
+    assert!(ran.stdout.contains(", simulation with effect payload = 2"), "{}", ran.stdout);
+}

@@ -122,6 +122,13 @@ fn push_node(text: &mut String, node: &Node, depth: usize) {
     }
 }
 
+/// A text as a YAML scalar that is read back as the same text.
+pub fn yaml_text(value: &str) -> String {
+    let mut text = String::new();
+    push_text(&mut text, value);
+    text
+}
+
 /// Plain where that is surely read back as the same text, else in double quotes.
 fn push_text(text: &mut String, value: &str) {
     const WORDS: [&str; 10] = ["true", "false", "null", "yes", "no", "on", "off", "y", "n", "~"];

@@ -111,7 +111,8 @@ fn differing<'a>(own: &'a Node, other: Option<&'a Node>, path: &str) -> Vec<(Str
     let of = |(key, node): &'a (Key, Node)| {
         let (path, there) = (format!("{path}{}", key.text), other.and_then(|other| other.get(&key.text)));
         let below = differing(node, there, &format!("{path}."));
-        let differs = node.number().is_some() && node.number() != there.and_then(Node::number);
+        let number = |node| crate::simulate::number_of(node, &path);
+        let differs = number(node).is_some() && number(node) != there.and_then(number);
         differs.then_some((path, node, there)).into_iter().chain(below)
     };
     own.entries().iter().flat_map(of).collect()

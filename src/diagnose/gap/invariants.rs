@@ -24,7 +24,7 @@ impl Covariance {
     }
 }
 
-/// All invariants of the catalogue whose channels are there, measured - simulated, before and after the causes.
+/// All invariants of the catalogue whose channels are there, simulated - measured, before and after the causes.
 #[must_use]
 pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Invariant> {
     let seen = &found.seen;
@@ -59,8 +59,8 @@ pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Inva
                 name: name.clone(),
                 parity,
                 unit: unit.map_or_else(|| "-".into(), |(_, unit)| unit.text.clone()),
-                before: mean(&found.alone.difference),
-                after: mean(&rest),
+                before: -mean(&found.alone.difference),
+                after: -mean(&rest),
                 allowed: found.alone.covariance.variance(&weights).sqrt(),
                 allowed_after: beside.variance(&weights).sqrt(),
             });

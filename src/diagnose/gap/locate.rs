@@ -13,7 +13,8 @@ use crate::simulate::Units;
 pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
     use rayon::prelude::*;
     let cells = map(settings, found);
-    let tested: Vec<Tested> = cells.par_iter().map(|cell| test(found, cell)).collect();
+    let measured = found.seen.all(false, |observed| &observed.measured);
+    let tested: Vec<Tested> = cells.par_iter().map(|cell| test(found, &measured, cell)).collect();
     let total: f64 = tested.iter().map(|test| test.excess.max(0.0)).sum::<f64>().max(1e-300);
     let limit = significant_up_to(&tested.iter().map(|test| test.p_value).collect::<Vec<f64>>());
     let place = |(cell, test): (&Cell, &Tested)| Where {
@@ -70,24 +71,26 @@ struct Tested {
     /// Of chi-squared over what noise and tolerances give.
     excess: f64,
     p_value: f64,
-    /// Of levels in their unit, of bands as a ratio less one.
+    /// Simulated - measured: levels in their unit, bands as the ratio of simulated to measured less one.
     mean: f64,
     rms: f64,
 }
 
-fn test(found: &Found, cell: &Cell) -> Tested {
+/// `measured` are the features of what was measured, whose side levels count towards.
+fn test(found: &Found, measured: &[f64], cell: &Cell) -> Tested {
     let values: Vec<f64> =
         cell.members.iter().map(|(section, feature)| found.alone.difference[found.seen.place(*section, *feature)]).collect();
-    // Levels count towards the side of the simulated one, so that left and right curves do not cancel.
+    // What is told is simulated - measured, as the protocol's quantities do; `difference` is measured - simulated. Levels count towards
+    // the side of the measured one, so that left and right curves do not cancel.
     let side = |(section, feature): &(usize, usize)| match cell.kind {
-        Kind::Level => found.ground.simulated[found.seen.place(*section, *feature)].signum(),
-        _ => 1.0,
+        Kind::Level => -measured[found.seen.place(*section, *feature)].signum(),
+        _ => -1.0,
     };
     let freedom = values.len() as f64;
     let mean = cell.members.iter().zip(&values).map(|(member, value)| side(member) * value).sum::<f64>() / freedom;
     // Bands are logarithms of ratios.
     let relative = |value: f64| if cell.kind == Kind::Level { value } else { value.exp() - 1.0 };
-    let rms = (values.iter().map(|value| relative(*value).powi(2)).sum::<f64>() / freedom).sqrt();
+    let rms = (values.iter().map(|value| relative(-value).powi(2)).sum::<f64>() / freedom).sqrt();
     let chi = found.alone.covariance.among(&cell.members).chi_squared(&values);
     let p_value = statrs::distribution::ChiSquared::new(freedom).map_or(1.0, |law| statrs::distribution::ContinuousCDF::sf(&law, chi));
     Tested { excess: chi - freedom, p_value, mean: relative(mean), rms }

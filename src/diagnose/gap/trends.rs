@@ -126,7 +126,8 @@ fn slopes(
     (covariance, rest): (&Covariance, &[f64]),
 ) -> Vec<Option<Slope>> {
     let place = |(section, feature): &(usize, usize)| found.seen.place(*section, *feature);
-    let values: Vec<f64> = cell.members.iter().map(|member| rest[place(member)]).collect();
+    // What is left is measured - simulated; told is the opposite, as the protocol's quantities have it.
+    let values: Vec<f64> = cell.members.iter().map(|member| -rest[place(member)]).collect();
     let among = covariance.among(&cell.members);
     let of = |covariate: &Covariate| {
         let x: Vec<f64> = cell.members.iter().map(|(section, _)| covariate.values[*section]).collect();

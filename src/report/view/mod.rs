@@ -13,7 +13,7 @@ mod summary;
 use serde::Serialize;
 
 use crate::report::{findings, number};
-use crate::result::{CampaignInfo, Certification, DataItem, Verdict};
+use crate::result::{CampaignInfo, Certification, DataItem, QuantityResult, StatisticResult, Verdict};
 
 pub use identity::{IdentityRow, ReportHead};
 pub use notation::{ChannelRow, NotationView, SymbolRow, Term};
@@ -33,6 +33,10 @@ pub struct ReportData {
     /// Program and version that made it.
     pub program: String,
     pub verdict: Finding,
+    /// What belongs beside the verdict's word.
+    pub verdict_note: Option<String>,
+    /// Who answers for the simulation states this.
+    pub simulation_statement: String,
     /// The verdict as a sentence.
     pub verdict_sentence: String,
     /// Why the model is not validated or cannot be assessed.
@@ -89,6 +93,23 @@ impl Finding {
         Self { class, sign, word: word.to_owned() }
     }
 
+    /// Of a statistic: marginal where the interval of the statistic has its limit inside.
+    pub(crate) fn of_statistic(statistic: Option<&StatisticResult>) -> Self {
+        Self::of(statistic.and_then(|one| one.holds)).marginal(statistic.is_some_and(|one| one.marginal))
+    }
+
+    /// Of a quantity: marginal where one of its statistics is.
+    pub(crate) fn of_quantity(quantity: &QuantityResult) -> Self {
+        Self::of(quantity.holds).marginal(quantity.holds.is_some() && quantity.statistics.iter().any(|one| one.marginal))
+    }
+
+    fn marginal(mut self, marginal: bool) -> Self {
+        if marginal {
+            self.word.push_str(", marginal");
+        }
+        self
+    }
+
     /// Of an acceptance criterion or a requirement: `met`, `not met`, `not assessed`.
     pub(crate) fn of(holds: Option<bool>) -> Self {
         Self::new(holds, "met", "not met", "not assessed")
@@ -115,6 +136,8 @@ pub struct CampaignView {
     pub name: String,
     pub report: ReportHead,
     pub facts: Vec<DataRow>,
+    /// What made the simulated records, as a sentence.
+    pub origin: Option<String>,
     /// Data of the vehicle that a rule reads.
     pub vehicle_used: Vec<DataRow>,
     /// All other data of the vehicle.
@@ -169,6 +192,8 @@ pub fn view(found: &Certification) -> ReportData {
             Verdict::NotValidated.in_words(),
             Verdict::NotAssessable.in_words(),
         ),
+        verdict_note: found.verdict_note.clone(),
+        simulation_statement: simulation_statement(found),
         verdict_sentence: sentence(found.verdict).to_owned(),
         cover_reasons: reasons.iter().take(REASONS_ON_COVER).cloned().collect(),
         reasons,
@@ -219,6 +244,15 @@ fn sentence(verdict: Verdict) -> &'static str {
         Verdict::NotAssessable => {
             "The campaign does not contain the data that the protocol requires. The simulation model cannot be assessed."
         }
+    }
+}
+
+/// That nothing was changed after the comparison is stated only where no program says that it was.
+fn simulation_statement(found: &Certification) -> String {
+    let obtained = "The simulation results named in this report were obtained with the model and the settings described";
+    match &found.campaign.origin {
+        None => format!("{obtained}, and were not changed after the comparison with the measurement."),
+        Some(origin) => format!("{obtained}. {}.", origin.says),
     }
 }
 
@@ -305,6 +339,7 @@ pub fn campaign(campaign: &CampaignInfo) -> CampaignView {
         name: campaign.name.clone(),
         report: identity::head(&campaign.report),
         facts: campaign.facts.iter().map(data_row).collect(),
+        origin: campaign.origin.as_ref().map(|origin| format!("{}.", origin.says)),
         vehicle_used: of(true),
         vehicle_other: of(false),
         files: campaign
@@ -320,7 +355,7 @@ fn data_row(item: &DataItem) -> DataRow {
     DataRow {
         name: item.name.clone(),
         value: number::in_text(&item.value),
-        unit: item.unit.as_deref().map(number::unit).unwrap_or_default(),
+        unit: item.unit.as_deref().map(number::unit).unwrap_or_default() + if item.unit_assumed { " (unit assumed)" } else { "" },
         numeric: number::is_number(&item.value),
     }
 }

@@ -49,6 +49,7 @@ pub struct StatisticView {
     pub title: String,
     pub scope: String,
     pub unit: String,
+    /// Pairs / n: `48 / 12`, n being the number of sites.
     pub count: String,
     pub value: String,
     /// 95 % confidence interval, lower end.
@@ -110,7 +111,7 @@ pub(super) fn view(at: usize, quantity: &QuantityResult, work: Option<&str>) -> 
         source: quantity.source.as_deref().map(|source| super::with_work(source, work)),
         rule: format!("{}, line {}", quantity.rule.file, quantity.rule.line),
         notes: quantity.notes.clone(),
-        holds: Finding::of(quantity.holds),
+        holds: Finding::of_quantity(quantity),
         reason: quantity.reason.clone(),
         has_sides: quantity.has_sides,
         statistics: quantity.statistics.iter().map(statistic).collect(),
@@ -128,14 +129,14 @@ fn statistic(found: &StatisticResult) -> StatisticView {
         title: found.title.clone(),
         scope: found.scope.clone(),
         unit: number::unit(&found.unit),
-        count: number::count(found.count as u64),
+        count: summary::pairs_and_n(found.count, found.n),
         value: summary::value(Some(found)),
         low: number::optional(found.interval.map(|interval| interval.0), decimals),
         high: number::optional(found.interval.map(|interval| interval.1), decimals),
         limit: summary::limit(Some(found)),
         limit_text: number::formula(&found.limit_text),
         normalised: summary::normalised(Some(found)),
-        holds: Finding::of(found.holds),
+        holds: Finding::of_statistic(Some(found)),
         reason: found.reason.clone(),
     }
 }

@@ -20,6 +20,7 @@ pub struct SummaryRow {
     pub processing: String,
     pub limit_std: String,
     pub limit_mean: String,
+    /// Pairs / n: `48 / 12`, n being the number of sites.
     pub count: String,
     pub mean: String,
     pub std: String,
@@ -43,6 +44,7 @@ pub struct FurtherRow {
     pub comparison: String,
     pub statistic: String,
     pub scope: String,
+    /// Pairs / n: `48 / 12`, n being the number of sites.
     pub count: String,
     pub value: String,
     pub limit: String,
@@ -86,14 +88,14 @@ fn summary_row(quantity: &QuantityResult, mean: Option<&StatisticResult>, std: O
         processing: quantity.processing.clone(),
         limit_std: limit(std),
         limit_mean: limit(mean),
-        count: number::count(either.map_or(quantity.values.len(), |statistic| statistic.count) as u64),
+        count: either.map_or_else(|| pairs_and_n(quantity.values.len(), quantity.n), |one| pairs_and_n(one.count, one.n)),
         mean: value(mean),
         std: value(std),
         normalised_mean: normalised(mean),
         normalised_std: normalised(std),
-        mean_finding: Finding::of(mean.and_then(|statistic| statistic.holds)),
-        std_finding: Finding::of(std.and_then(|statistic| statistic.holds)),
-        holds: Finding::of(quantity.holds),
+        mean_finding: Finding::of_statistic(mean),
+        std_finding: Finding::of_statistic(std),
+        holds: Finding::of_quantity(quantity),
         reason: quantity.reason.clone(),
     }
 }
@@ -110,13 +112,18 @@ fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> Furthe
         comparison: quantity.comparison.clone(),
         statistic: statistic.title.clone(),
         scope: statistic.scope.clone(),
-        count: number::count(statistic.count as u64),
+        count: pairs_and_n(statistic.count, statistic.n),
         value: value(one),
         limit: limit(one),
         normalised: normalised(one),
-        holds: Finding::of(statistic.holds),
+        holds: Finding::of_statistic(one),
         reason: statistic.reason.clone(),
     }
+}
+
+/// Pairs, and the number of sites that they are of.
+pub(super) fn pairs_and_n(pairs: usize, n: usize) -> String {
+    format!("{} / {}", number::count(pairs as u64), number::count(n as u64))
 }
 
 /// The limit with the decimals of the value it stands beside.

@@ -1,0 +1,243 @@
+//! What made the records of a campaign that a program wrote: `origin.yaml` beside `campaign.yaml`, named by its key `origin`.
+
+use super::write::yaml_text;
+use crate::problem::{Problem, Problems};
+use crate::yaml::{Node, Value};
+
+/// The file that a program writes.
+pub const ORIGIN_FILE: &str = "origin.yaml";
+/// The key of `campaign.yaml`.
+pub const ORIGIN_KEY: &str = "origin";
+
+/// Where the simulated records of a campaign come from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Origin {
+    /// Program and version.
+    pub program: String,
+    /// `simulate` or `diagnose`.
+    pub command: String,
+    /// Name of the campaign whose simulation was changed first.
+    pub campaign: String,
+    pub simulator: Option<String>,
+    /// Effects in the simulated records, in the order in which they were added.
+    pub effects: Vec<OriginEffect>,
+    /// Measured records that the sizes of effects were fitted to.
+    pub fitted_to: Vec<OriginFile>,
+    /// What the records were made from.
+    pub sources: Vec<OriginFile>,
+}
+
+/// An effect with its size.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OriginEffect {
+    pub effect: String,
+    /// Name, value, unit.
+    pub parameters: Vec<(String, f64, String)>,
+    /// Channels that it acts on; empty for an effect on the vehicle.
+    pub channels: Vec<String>,
+    /// Where it acts, if not everywhere: `zone 3, 4`.
+    pub confined_to: Option<String>,
+}
+
+/// A file by its path in the campaign that it was read from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OriginFile {
+    pub path: String,
+    pub sha256: String,
+}
+
+impl OriginEffect {
+    /// `friction = 0.23`, `sensor_gain: gain = 0.8 on Y_3R`, `payload: payload.mass = 3500 kg in zone 4`
+    pub fn in_words(&self, equals: &str) -> String {
+        let value = |value: f64, unit: &str| format!("{}{}", short(value), if unit == "-" { String::new() } else { format!(" {unit}") });
+        let mut words = match &self.parameters[..] {
+            [(_, one, unit)] => format!("{}{equals}{}", self.effect, value(*one, unit)),
+            [] => self.effect.clone(),
+            several => {
+                let all: Vec<String> = several.iter().map(|(name, one, unit)| format!("{name}{equals}{}", value(*one, unit))).collect();
+                format!("{} ({})", self.effect, all.join(", "))
+            }
+        };
+        if !self.channels.is_empty() {
+            words = format!("{words} on {}", self.channels.join(", "));
+        }
+        self.confined_to.as_ref().map_or(words.clone(), |place| format!("{words} in {place}"))
+    }
+}
+
+/// Three digits are enough to be told; the file has all of them.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    format!("{rounded}")
+}
+
+impl Origin {
+    /// Effects as they stand in a sentence: `friction = 0.23 and payload = 3500 kg`.
+    pub fn effects_in_words(&self, equals: &str) -> String {
+        self.effects.iter().map(|effect| effect.in_words(equals)).collect::<Vec<_>>().join(" and ")
+    }
+
+    /// Reads what a file, or the map in `campaign.yaml`, says. Keys of other programs are left alone.
+    ///
+    /// Problems: `wrong-kind`.
+    pub fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        if !matches!(node.value, Value::Map(_)) {
+            let says = format!("an origin is a map of keys and values; this is {}", node.kind_in_words());
+            problems.push(Problem::error("wrong-kind", says).at(&node.span));
+            return None;
+        }
+        let before = problems.errors();
+        let text = |key: &str| node.get(key).and_then(Node::scalar_text).map(str::to_string);
+        let origin = Self {
+            program: text("program").unwrap_or_default(),
+            command: text("command").unwrap_or_default(),
+            campaign: text("campaign").unwrap_or_default(),
+            simulator: text("simulator"),
+            effects: items(node, "effects", problems).into_iter().filter_map(|node| effect(node, problems)).collect(),
+            fitted_to: items(node, "fitted to", problems).into_iter().filter_map(|node| file(node, problems)).collect(),
+            sources: items(node, "sources", problems).into_iter().filter_map(|node| file(node, problems)).collect(),
+        };
+        (problems.errors() == before).then_some(origin)
+    }
+
+    /// The text of `origin.yaml`.
+    pub fn text(&self) -> String {
+        let mut out = format!(
+            "program: {}\ncommand: {}\ncampaign: {}\n",
+            yaml_text(&self.program),
+            yaml_text(&self.command),
+            yaml_text(&self.campaign)
+        );
+        if let Some(simulator) = &self.simulator {
+            out += &format!("simulator: {}\n", yaml_text(simulator));
+        }
+        out += if self.effects.is_empty() { "effects: []\n" } else { "effects:\n" };
+        for effect in &self.effects {
+            out += &format!("- effect: {}\n", yaml_text(&effect.effect));
+            out += if effect.parameters.is_empty() { "  parameters: []\n" } else { "  parameters:\n" };
+            for (name, value, unit) in &effect.parameters {
+                out += &format!("  - name: {}\n    value: {value}\n    unit: {}\n", yaml_text(name), yaml_text(unit));
+            }
+            if !effect.channels.is_empty() {
+                out += "  channels:\n";
+                out.extend(effect.channels.iter().map(|channel| format!("  - {}\n", yaml_text(channel))));
+            }
+            if let Some(place) = &effect.confined_to {
+                out += &format!("  confined to: {}\n", yaml_text(place));
+            }
+        }
+        for (key, files) in [("fitted to", &self.fitted_to), ("sources", &self.sources)] {
+            out += &format!("{key}:{}\n", if files.is_empty() { " []" } else { "" });
+            for file in files {
+                out += &format!("- path: {}\n  sha256: {}\n", yaml_text(&file.path), yaml_text(&file.sha256));
+            }
+        }
+        out
+    }
+}
+
+/// The items of a list that may be missing.
+fn items<'a>(node: &'a Node, key: &str, problems: &mut Problems) -> Vec<&'a Node> {
+    match node.get(key) {
+        None => Vec::new(),
+        Some(list) => match &list.value {
+            Value::List(items) => items.iter().collect(),
+            Value::Null => Vec::new(),
+            _ => {
+                let says = format!("`{key}` is a list; this is {}", list.kind_in_words());
+                problems.push(Problem::error("wrong-kind", says).at(&list.span));
+                Vec::new()
+            }
+        },
+    }
+}
+
+fn text(node: &Node, key: &str, problems: &mut Problems) -> Option<String> {
+    let found = node.get(key).and_then(Node::scalar_text).map(str::to_string);
+    if found.is_none() {
+        problems.push(Problem::error("wrong-kind", format!("`{key}` must be here, as text")).at(&node.span));
+    }
+    found
+}
+
+fn file(node: &Node, problems: &mut Problems) -> Option<OriginFile> {
+    Some(OriginFile { path: text(node, "path", problems)?, sha256: text(node, "sha256", problems)? })
+}
+
+fn effect(node: &Node, problems: &mut Problems) -> Option<OriginEffect> {
+    let effect = text(node, "effect", problems)?;
+    let mut parameters = Vec::new();
+    for one in items(node, "parameters", problems) {
+        let Some(value) = one.get("value").and_then(Node::number) else {
+            problems.push(Problem::error("wrong-kind", "a parameter has a `value`, which is a number").at(&one.span));
+            continue;
+        };
+        parameters.push((text(one, "name", problems)?, value, text(one, "unit", problems)?));
+    }
+    let channels = items(node, "channels", problems).iter().filter_map(|one| one.scalar_text().map(str::to_string)).collect();
+    let confined_to = node.get("confined to").and_then(Node::scalar_text).map(str::to_string);
+    Some(OriginEffect { effect, parameters, channels, confined_to })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+    use crate::yaml;
+
+    fn read(text: &str) -> (Option<Origin>, Problems) {
+        let mut problems = Problems::default();
+        let node = yaml::load(&Source::new("origin.yaml", text), &mut problems).expect("YAML");
+        (Origin::read(&node, &mut problems), problems)
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let effect = |name: &str, parameters: &[(&str, f64, &str)]| OriginEffect {
+            effect: name.into(),
+            parameters: parameters.iter().map(|(name, value, unit)| ((*name).into(), *value, (*unit).into())).collect(),
+            ..OriginEffect::default()
+        };
+        let gain = OriginEffect {
+            channels: vec!["Y_3R".into()],
+            confined_to: Some("zone 3, 4".into()),
+            ..effect("sensor_gain", &[("gain: \"odd\"", 0.812_345, "-")])
+        };
+        let file = |path: &str| OriginFile { path: path.into(), sha256: "00ff".repeat(16) };
+        let origin = Origin {
+            program: "fishplate 0.1.0".into(),
+            command: "diagnose".into(),
+            campaign: "Coach: first".into(),
+            simulator: Some("x: y".into()),
+            effects: vec![
+                effect("friction", &[("friction", 0.230_417, "-")]),
+                gain,
+                effect("payload", &[("a", 3500.0, "kg"), ("b", -0.1, "m")]),
+            ],
+            fitted_to: vec![file("measurement/S01.csv")],
+            sources: vec![file("campaign.yaml"), file("track/S01.csv")],
+        };
+        let (found, problems) = read(&origin.text());
+        assert_eq!((found.as_ref(), problems.0.len()), (Some(&origin), 0), "{}", problems.render(false));
+        assert_eq!(
+            origin.effects_in_words(" = "),
+            "friction = 0.23 and sensor_gain = 0.812 on Y_3R in zone 3, 4 and payload (a = 3500 kg, b = -0.1 m)"
+        );
+        assert_eq!(read(&Origin::default().text()).0, Some(Origin::default()));
+    }
+
+    #[test]
+    fn what_is_no_origin_is_told() {
+        for text in [
+            "- 1\n",
+            "effects: friction\n",
+            "effects:\n- 1\n",
+            "fitted to:\n- path: a\n",
+            "effects:\n- effect: a\n  parameters:\n  - name: a\n",
+        ] {
+            let (found, problems) = read(text);
+            assert!(found.is_none() && problems.0.iter().all(|problem| problem.code == "wrong-kind" && problem.at.is_some()), "{text}");
+        }
+        assert!(read("mapping: map.yaml\n").0.is_some());
+    }
+}

@@ -1,0 +1,167 @@
+//! Which sections are of one site: the same stretch of track measured more than once. Sites are independent of each other,
+//! sections of one site are not.
+
+use super::table::{Cell, Table};
+use crate::problem::{Problem, Problems};
+
+/// Columns of the section table that tell the site of a section.
+const SITE: &str = "site";
+const REPEAT_OF: &str = "repeat of";
+const TRACK: &str = "track";
+const START: &str = "start";
+const END: &str = "end";
+/// Two sections of one track are one site where they share at least this part of the shorter one. Sections that follow each
+/// other may touch or share a few metres; two that have most of their irregularities in common do not count twice.
+const SHARED: f64 = 0.5;
+
+/// For each row the row that stands for its site: the first of it.
+///
+/// Rows are of one site where the column `site` says so, where one is the other's `repeat of`, or where a column `track` names
+/// the same track for both and they overlap by half. `site` is believed before the others.
+///
+/// Problems: `unknown-section` where `repeat of` names no other row.
+pub fn sites(table: &Table, problems: &mut Problems) -> Vec<usize> {
+    let rows = table.rows.len();
+    let site = Column::of(table, SITE);
+    let mut sets = Sets((0..rows).collect());
+    for later in 0..rows {
+        if let Some(first) = site.text(later).and_then(|name| (0..later).find(|row| site.text(*row) == Some(name))) {
+            sets.join(first, later);
+        }
+    }
+    let apart = |a: usize, b: usize| matches!((site.text(a), site.text(b)), (Some(a), Some(b)) if a != b);
+    let repeat = Column::of(table, REPEAT_OF);
+    for row in 0..rows {
+        let Some(cell) = repeat.cell(row) else { continue };
+        match table.row_named(&cell.value) {
+            Some(other) if other != row => {
+                if !apart(row, other) {
+                    sets.join(other, row);
+                }
+            }
+            _ => problems.push(no_repeat(table, row, cell)),
+        }
+    }
+    for (a, b) in overlaps(table) {
+        if !apart(a, b) {
+            sets.join(a, b);
+        }
+    }
+    (0..rows).map(|row| sets.first(row)).collect()
+}
+
+fn no_repeat(table: &Table, row: usize, cell: &Cell) -> Problem {
+    let says = format!("`{REPEAT_OF}` names `{}`, which is no other section", cell.value);
+    let others = table.names().enumerate().filter(|(other, _)| *other != row).map(|(_, name)| name.value.as_str());
+    let problem = Problem::error("unknown-section", says).at(&cell.span).suggest(&cell.value, others);
+    match problem.help {
+        Some(_) => problem,
+        None => problem.help(format!("name the section that was measured before, or use a column `{SITE}`")),
+    }
+}
+
+/// Pairs of rows on the same named track that share at least [`SHARED`] of the shorter one.
+fn overlaps(table: &Table) -> Vec<(usize, usize)> {
+    let (track, start, end) = (Column::of(table, TRACK), Column::of(table, START), Column::of(table, END));
+    let extent = |row| Some((track.text(row)?, start.number(row)?, end.number(row)?));
+    let mut known: Vec<(usize, (&str, f64, f64))> = (0..table.rows.len()).filter_map(|row| Some((row, extent(row)?))).collect();
+    known.sort_by(|(_, a), (_, b)| a.0.cmp(b.0).then(a.1.total_cmp(&b.1)));
+    let mut found = Vec::new();
+    for (at, (row, (name, low, high))) in known.iter().enumerate() {
+        let behind = known[at + 1..].iter().take_while(|(_, (other, start, _))| other == name && start < high);
+        found.extend(
+            behind
+                .filter(|(_, (_, start, end))| high.min(*end) - start >= SHARED * (high - low).min(end - start))
+                .map(|(other, _)| (*row.min(other), *row.max(other))),
+        );
+    }
+    found
+}
+
+/// A column that may be missing.
+struct Column<'a> {
+    table: &'a Table,
+    index: Option<usize>,
+}
+
+impl<'a> Column<'a> {
+    fn of(table: &'a Table, name: &str) -> Self {
+        Self { table, index: table.column(name) }
+    }
+
+    /// A cell that is not empty.
+    fn cell(&self, row: usize) -> Option<&'a Cell> {
+        self.table.cell(row, self.index?).filter(|cell| !cell.value.trim().is_empty())
+    }
+
+    fn text(&self, row: usize) -> Option<&'a str> {
+        self.cell(row).map(|cell| cell.value.trim())
+    }
+
+    fn number(&self, row: usize) -> Option<f64> {
+        self.text(row)?.parse().ok().filter(|number: &f64| number.is_finite())
+    }
+}
+
+/// Disjoint sets of rows, each named by its first row.
+struct Sets(Vec<usize>);
+
+impl Sets {
+    fn first(&self, mut row: usize) -> usize {
+        while self.0[row] != row {
+            row = self.0[row];
+        }
+        row
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.first(a), self.first(b));
+        self.0[a.max(b)] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+
+    fn of(text: &str) -> (Vec<usize>, Problems) {
+        let mut problems = Problems::default();
+        let table = Table::parse(Source::new("sections.csv", text), String::new(), Some("section"), &mut problems).expect("a table");
+        let found = sites(&table, &mut problems);
+        (found, problems)
+    }
+
+    #[test]
+    fn without_a_column_for_it_each_section_is_a_site() {
+        assert_eq!(of("section,start [m],end [m]\nA,0,9\nB,0,9\n").0, [0, 1]);
+    }
+
+    #[test]
+    fn repeats_of_repeats_are_of_one_site() {
+        let (found, problems) = of("section,repeat of\nA,B\nB,C\nC,\nD,\nE,D\n");
+        assert_eq!((found, problems.0.len()), (vec![0, 0, 0, 3, 3], 0));
+        // Each the repeat of the other: one site all the same.
+        assert_eq!(of("section,repeat of\nA,B\nB,A\n").0, [0, 0]);
+    }
+
+    #[test]
+    fn the_column_site_is_believed_before_the_others() {
+        assert_eq!(of("section,site,repeat of\nA,x,\nB,y,A\nC,x,\nD,,B\n").0, [0, 1, 0, 1]);
+    }
+
+    #[test]
+    fn sections_of_one_track_that_share_half_are_one_site() {
+        let rows = "section,track,start [m],end [m]\nA,up,0,100\nB,up,50,200\nC,up,190,290\nD,down,0,100\nE,,0,100\n";
+        assert_eq!(of(rows).0, [0, 0, 2, 3, 4]);
+    }
+
+    #[test]
+    fn a_repeat_of_no_section_is_told() {
+        for (text, help) in [("section,repeat of\nS01,\nS02,S10\n", "did you mean `S01`?"), ("section,repeat of\nS01,S01\n", "name the")] {
+            let problem = &of(text).1.0[0];
+            assert_eq!(problem.code, "unknown-section");
+            assert!(problem.help.as_ref().is_some_and(|found| found.starts_with(help)), "{problem:?}");
+        }
+    }
+}

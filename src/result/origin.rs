@@ -1,0 +1,59 @@
+//! Where simulated records come from, as a report tells it.
+
+use serde::Serialize;
+
+/// What made the simulated records of a campaign, where the campaign says so.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OriginInfo {
+    /// `fishplate 0.1.0, diagnose`
+    pub made_by: String,
+    /// The same and the effects as a sentence without a full stop, complete by itself.
+    pub says: String,
+    /// `friction = 0.23`, one for each effect.
+    pub effects: Vec<String>,
+    /// Measured records that the simulation was fitted to: path and SHA-256.
+    pub fitted_to: Vec<FittedTo>,
+    /// How many of them are measured records of this campaign, byte by byte.
+    pub fitted_to_these: usize,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct FittedTo {
+    pub path: String,
+    pub sha256: String,
+}
+
+impl OriginInfo {
+    /// What follows the verdict, after a comma.
+    pub fn note(&self) -> Option<String> {
+        if self.fitted_to_these > 0 {
+            return Some("with a simulation fitted to the same measurements".into());
+        }
+        let effects = match self.effects.len() {
+            0 => return None,
+            1 => format!("effect {}", self.effects[0]),
+            _ => format!("effects {}", self.effects.join(" and ")),
+        };
+        let fitted = if self.fitted_to.is_empty() { "" } else { ", fitted to other measurements" };
+        Some(format!("simulation with {effects}{fitted}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_follows_the_verdict() {
+        let file = FittedTo { path: "measurement/S01.csv".into(), sha256: String::new() };
+        let of = |effects: &[&str], fitted_to: &[FittedTo], fitted_to_these| {
+            let effects = effects.iter().map(|effect| (*effect).to_string()).collect();
+            OriginInfo { made_by: String::new(), says: String::new(), effects, fitted_to: fitted_to.to_vec(), fitted_to_these }.note()
+        };
+        assert_eq!(of(&[], &[], 0), None);
+        assert_eq!(of(&["friction = 0.23"], &[], 0).as_deref(), Some("simulation with effect friction = 0.23"));
+        let other = "simulation with effects a = 1 and b = 2, fitted to other measurements";
+        assert_eq!(of(&["a = 1", "b = 2"], std::slice::from_ref(&file), 0).as_deref(), Some(other));
+        assert_eq!(of(&["a = 1"], &[file], 1).as_deref(), Some("with a simulation fitted to the same measurements"));
+    }
+}

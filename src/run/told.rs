@@ -1,0 +1,124 @@
+//! What a run tells of the vehicle's data: units that were assumed, and limits that these data multiply.
+
+use super::facts::{Facts, Known, item};
+use crate::check::evaluate::{flag, number};
+use crate::check::plan::{DatumKind, Expr, Kind, Limit, Operator, Plan};
+use crate::result::{Finding, LimitFactor, QuantityResult};
+use crate::units::Dimension;
+
+/// Code of the finding about units that the vehicle file does not state.
+const UNIT_ASSUMED: &str = "unit-assumed";
+/// Code of the finding about limits that vehicle data multiply.
+const LIMIT_FACTOR: &str = "limit-factor";
+
+/// Findings about the vehicle's data; none of them changes the verdict.
+pub fn findings(plan: &Plan, facts: &Facts, quantities: &[QuantityResult]) -> Vec<Finding> {
+    assumed(plan, facts).into_iter().chain(multiplied(quantities)).collect()
+}
+
+/// One finding for all numbers without a unit whose size depends on one.
+fn assumed(plan: &Plan, facts: &Facts) -> Option<Finding> {
+    let bare: Vec<String> = plan
+        .vehicle
+        .iter()
+        .zip(facts.vehicle.iter().zip(&facts.assumed))
+        .filter(|(datum, (_, assumed))| **assumed && is_dimensioned(&datum.kind))
+        .map(|(datum, (value, _))| {
+            let item = item(datum, Some(value));
+            format!("{} = {}{}", datum.key, item.value, item.unit.map_or(String::new(), |unit| format!(" {unit}")))
+        })
+        .collect();
+    (!bare.is_empty()).then(|| {
+        let says = format!("the vehicle file states no unit; read in the unit of the protocol: {}", bare.join(", "));
+        Finding::note(UNIT_ASSUMED, says)
+    })
+}
+
+/// Whether the size of such a number depends on its unit.
+pub fn is_dimensioned(kind: &DatumKind) -> bool {
+    matches!(kind, DatumKind::Number(unit) if unit.dimension != Dimension::ONE)
+}
+
+/// One finding for each factor and its reason, with the quantities whose limits it multiplies.
+fn multiplied(quantities: &[QuantityResult]) -> Vec<Finding> {
+    let mut found: Vec<(&LimitFactor, Vec<&str>)> = Vec::new();
+    for quantity in quantities {
+        for factor in quantity.statistics.iter().flat_map(|statistic| &statistic.factors) {
+            match found.iter_mut().find(|(known, _)| *known == factor) {
+                Some((_, of)) if of.last() == Some(&quantity.id.as_str()) => {}
+                Some((_, of)) => of.push(&quantity.id),
+                None => found.push((factor, vec![&quantity.id])),
+            }
+        }
+    }
+    let finding = |(factor, of): (&LimitFactor, Vec<&str>)| {
+        let says = format!("the limits of {} are {}, because {}", of.join(", "), times(factor.by), factor.because);
+        Finding { value: Some(factor.by), ..Finding::note(LIMIT_FACTOR, says) }
+    };
+    found.into_iter().map(finding).collect()
+}
+
+fn times(by: f64) -> String {
+    if by == 2.0 { "doubled".into() } else { format!("multiplied by {by}") }
+}
+
+/// The factors of a limit that the vehicle's data alone switch on, each with its reason.
+pub fn factors(plan: &Plan, facts: &Facts, limit: &Limit) -> Vec<LimitFactor> {
+    let known = Known::vehicle(facts);
+    let of = |(factor, condition): &(Expr, Expr)| {
+        let on = flag(condition, &known).ok()?;
+        let by = number(factor, &known).ok()?;
+        let mut because = Vec::new();
+        reasons(plan, facts, condition, true, &mut because);
+        (on && !because.is_empty()).then(|| LimitFactor { by, because: because.join(" and ") })
+    };
+    limit.factors.iter().filter_map(of).collect()
+}
+
+/// The parts of a condition that make it what it is, in words: `vehicle category is freight`.
+fn reasons(plan: &Plan, facts: &Facts, condition: &Expr, wanted: bool, found: &mut Vec<String>) {
+    match &condition.kind {
+        Kind::Not(inner) => reasons(plan, facts, inner, !wanted, found),
+        Kind::Binary(Operator::And | Operator::Or, a, b) => {
+            for side in [a, b] {
+                if flag(side, &Known::vehicle(facts)) == Ok(wanted) {
+                    reasons(plan, facts, side, wanted, found);
+                }
+            }
+        }
+        _ => {
+            let mut read = Vec::new();
+            vehicle_data(condition, &mut read);
+            for index in read {
+                let item = item(&plan.vehicle[index], facts.vehicle.get(index));
+                let unit = item.unit.filter(|unit| unit != "-").map_or(String::new(), |unit| format!(" {unit}"));
+                let says = format!("{} is {}{unit}", item.name.to_lowercase(), item.value);
+                if !found.contains(&says) {
+                    found.push(says);
+                }
+            }
+        }
+    }
+}
+
+/// Vehicle data that an expression reads, in the order in which it names them.
+fn vehicle_data(expr: &Expr, found: &mut Vec<usize>) {
+    match &expr.kind {
+        Kind::Vehicle(index) => found.push(*index),
+        Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => vehicle_data(inner, found),
+        Kind::Binary(_, a, b) => [a, b].into_iter().for_each(|side| vehicle_data(side, found)),
+        Kind::Call(_, arguments) => arguments.iter().for_each(|argument| vehicle_data(argument, found)),
+        Kind::Cases(cases, otherwise) => {
+            let parts = cases.iter().flat_map(|(when, then)| [when, then]).chain(otherwise.as_deref());
+            parts.for_each(|part| vehicle_data(part, found));
+        }
+        Kind::Constant(_)
+        | Kind::Column(_)
+        | Kind::Start
+        | Kind::End
+        | Kind::Input(_)
+        | Kind::Simulated
+        | Kind::Measured
+        | Kind::LimitOf(_) => {}
+    }
+}
