@@ -60,7 +60,9 @@ parameter maximum_side "Side of the distribution that a maximum is read from"
   one of   own, measurement, curve
   note     "Own: the larger magnitude, for simulation and measurement each by itself. Measurement: the side"
            "that is larger in the measurement, for both. Curve: 0.15 % in right-hand and 99.85 % in left-hand"
-           "curves, the side of the outer wheel."
+           "curves for the sum of guiding forces, the other way round for the lateral acceleration, and for a"
+           "single wheel the side of its quasi-static value in the measurement; on straight track and for the"
+           "vertical acceleration as own."
 
 parameter variance_divisor "Divisor of the variance"
   default  n-1
@@ -76,10 +78,13 @@ parameter sections_per_zone "Sections needed in each test zone"
   range    1 to 100
   source   "Section 3.2"
 
-parameter admissible_speed "Admissible speed of the vehicle, which decides the length of sections"
-  default  140 km/h
-  range    20 km/h to 400 km/h
-  note     "On-track tests run up to 1.1 times this speed."
+parameter evaluated_wheelsets "Wheelsets whose forces are compared"
+  default  1, 3
+  at       wheelset
+  source   "Section 3.2: at least two signals of each quantity"
+  note     "1 and 3 lead the two bogies, where guiding forces are largest; this is the protocol's own choice."
+           "The paper also speaks for trailing wheelsets (2 and 4), and in practice both wheelsets of one"
+           "bogie are often instrumented: set it to the wheelsets that were measured."
 
 place wheelset
   members  1, 2, 3, 4
@@ -108,6 +113,11 @@ vehicle Q0 "Static vertical wheel force"
   range  10 kN to 200 kN
   note   "Of one wheel. The range is that of axle loads from 2 t to 41 t; beyond it another unit, or the load"
          "of an axle or of the vehicle, is likely."
+
+vehicle admissible_speed "Admissible speed, which decides the length of sections"
+  in       km/h
+  default  not stated
+  note     "On-track tests run up to 1.1 times this speed."
 
 section zone "Test zone"
   one of  zones
@@ -218,13 +228,41 @@ filter RATIO_WINDOW "Sliding mean 2 m, step 0.5 m, of a ratio"
   step    sliding mean 2 m every 0.5 m, window_ends
   source  "Table 1"
 
-define extreme_value "The 0.15 % or 99.85 % value, as a magnitude"
-  is      larger of |p0.15|, |p99.85| when maximum_side is own,
-          |p99.85| when maximum_side is measurement and |measured(p99.85)| >= |measured(p0.15)|,
-          |p0.15| when maximum_side is measurement or direction is right,
-          |p99.85| when direction is left,
-          otherwise larger of |p0.15|, |p99.85|
+define larger_side "Of both ends of the distribution, the larger as a magnitude"
+  is  larger of |p0.15|, |p99.85|
+
+define measured_side "The end of the distribution that is larger in the measurement, as a magnitude"
+  is  |p99.85| when |measured(p99.85)| >= |measured(p0.15)|, otherwise |p0.15|
+
+define extreme_value "The 0.15 % or 99.85 % value of a single wheel, as a magnitude"
+  is      larger_side when maximum_side is own or (maximum_side is curve and direction is straight),
+          measured_side when maximum_side is measurement,
+          |p99.85| when sign(measured(median)) > 0,
+          otherwise |p0.15|
   source  "Table 1 and its footnote *"
+  note    "In a curve, the force of an outer and of an inner wheel are of opposite sense: the quasi-static"
+          "value tells the end."
+
+define extreme_sum "The 0.15 % or 99.85 % value of the sum of guiding forces, as a magnitude"
+  is      larger_side when maximum_side is own or (maximum_side is curve and direction is straight),
+          measured_side when maximum_side is measurement,
+          |p0.15| when direction is right,
+          otherwise |p99.85|
+  source  "Table 1 and its footnote *"
+  note    "Guiding forces are positive to the right and act to the outside of a curve."
+
+define extreme_lateral "The 0.15 % or 99.85 % value of the lateral acceleration, as a magnitude"
+  is      larger_side when maximum_side is own or (maximum_side is curve and direction is straight),
+          measured_side when maximum_side is measurement,
+          |p99.85| when direction is right,
+          otherwise |p0.15|
+  source  "Table 1 and its footnote *"
+  note    "The lateral acceleration is positive to the right: to the inside of a right-hand curve."
+
+define extreme_vertical "The 0.15 % or 99.85 % value of the vertical acceleration, as a magnitude"
+  is      measured_side when maximum_side is measurement, otherwise larger_side
+  source  "Table 1 and its footnote *"
+  note    "Curves have no side of the vertical acceleration."
 
 define lighter_requirements "Vehicles whose acceleration limits are doubled"
   is      vehicle.category is freight or vehicle.running_gear_type is single_axles
@@ -239,11 +277,12 @@ define unbalanced_acceleration "Lateral acceleration in the plane of the track, 
   note  "1500 mm: distance of the contact points."
 
 zone 1 "Straight track and very large radius curves"
-  where             direction is straight or (radius > 600 m and cant_deficiency <= 40 mm)
+  where             direction is straight or (radius > 600 m and |cant_deficiency| <= 40 mm)
   minimum sections  sections_per_zone
   minimum length    250 m when admissible_speed <= 220 km/h, otherwise 500 m
-  source            "Section 3.1; lengths and ranges: common statement of EN 14363, to be checked against the"
-                    "edition used"
+  source            "Zone and lengths of 70 m to 500 m in all: section 3.1. Radius, 40 mm and length of this"
+                    "zone: from memory of EN 14363, in no source at hand; to be checked against the edition"
+                    "used"
 
 zone 2 "Large radius curves"
   where             radius > 600 m
@@ -251,19 +290,23 @@ zone 2 "Large radius curves"
   minimum length    100 m when admissible_speed <= 140 km/h,
                     250 m when admissible_speed <= 220 km/h,
                     otherwise 500 m
-  source            "As zone 1"
+  source            "Zone: section 3.1. Radius and length: from memory of EN 14363, in no source at hand; to"
+                    "be checked against the edition used"
+  note              "No range of cant deficiency is asked for."
 
 zone 3 "Small radius curves"
   where             400 m <= radius <= 600 m
   minimum sections  sections_per_zone
   minimum length    100 m
-  source            "As zone 1"
+  source            "Zone: section 3.1. Radii and length: from memory of EN 14363, in no source at hand; to"
+                    "be checked against the edition used"
 
 zone 4 "Very small radius curves"
   where             250 m <= radius < 400 m
   minimum sections  sections_per_zone
   minimum length    70 m
-  source            "As zone 1"
+  source            "Zone and length of 70 m: section 3.1. Radii: from memory of EN 14363, in no source at"
+                    "hand; to be checked against the edition used"
 
 check full_curve "Section lies in full curve or on straight track"
   require  range of curvature <= 2 % * |mean of curvature| + 0.00001 1/m
@@ -459,7 +502,7 @@ sections
 
 quantity Y_qst "Quasi-static guiding force"
   symbol      "Y_qst"
-  of          Y at wheelsets 1, 3
+  of          Y at wheelsets evaluated_wheelsets
   filter      LP20
   value       median
   difference  quasi_static_difference
@@ -469,7 +512,7 @@ quantity Y_qst "Quasi-static guiding force"
 
 quantity Q_qst "Quasi-static vertical wheel force"
   symbol      "Q_qst"
-  of          Q at wheelsets 1, 3
+  of          Q at wheelsets evaluated_wheelsets
   filter      LP20
   value       median
   difference  quasi_static_difference
@@ -479,7 +522,7 @@ quantity Q_qst "Quasi-static vertical wheel force"
 
 quantity YQ_qst "Quasi-static ratio Y/Q"
   symbol      "(Y/Q)_qst"
-  of          YQ at wheelsets 1, 3
+  of          YQ at wheelsets evaluated_wheelsets
   filter      RATIO
   value       median
   difference  quasi_static_difference
@@ -489,7 +532,7 @@ quantity YQ_qst "Quasi-static ratio Y/Q"
 
 quantity SigmaY_qst "Quasi-static sum of guiding forces"
   symbol      "ΣY_qst"
-  of          SigmaY at wheelsets 1, 3
+  of          SigmaY at wheelsets evaluated_wheelsets
   filter      LP20
   value       median
   difference  quasi_static_difference
@@ -499,7 +542,7 @@ quantity SigmaY_qst "Quasi-static sum of guiding forces"
 
 quantity Y_max "Guiding force, maximum"
   symbol      "Y_max"
-  of          Y at wheelsets 1, 3
+  of          Y at wheelsets evaluated_wheelsets
   filter      LP20
   value       extreme_value
   difference  magnitudes
@@ -510,7 +553,7 @@ quantity Y_max "Guiding force, maximum"
 
 quantity Q_max "Vertical wheel force, maximum"
   symbol      "Q_max"
-  of          Q at wheelsets 1, 3
+  of          Q at wheelsets evaluated_wheelsets
   filter      LP20
   value       p99.85
   difference  magnitudes
@@ -521,7 +564,7 @@ quantity Q_max "Vertical wheel force, maximum"
 
 quantity YQ_max "Ratio Y/Q, maximum"
   symbol      "(Y/Q)_max"
-  of          YQ at wheelsets 1, 3
+  of          YQ at wheelsets evaluated_wheelsets
   filter      RATIO_WINDOW
   value       extreme_value
   difference  magnitudes
@@ -532,9 +575,9 @@ quantity YQ_max "Ratio Y/Q, maximum"
 
 quantity SigmaY_max "Sum of guiding forces, maximum"
   symbol      "ΣY_max"
-  of          SigmaY at wheelsets 1, 3
+  of          SigmaY at wheelsets evaluated_wheelsets
   filter      WINDOW
-  value       extreme_value
+  value       extreme_sum
   difference  magnitudes
   limit       std 9 kN
   limit       mean mean_limit_share of std
@@ -565,7 +608,7 @@ quantity ay_max "Car body lateral acceleration, maximum"
   symbol      "ÿ*_max"
   of          ay at running gears I, II
   filter      BP
-  value       extreme_value
+  value       extreme_lateral
   difference  magnitudes
   limit       std 0.40 m/s^2, doubled when lighter_requirements
   limit       mean mean_limit_share of std
@@ -576,7 +619,7 @@ quantity az_max "Car body vertical acceleration, maximum"
   symbol      "z̈*_max"
   of          az at running gears I, II
   filter      BP
-  value       extreme_value
+  value       extreme_vertical
   difference  magnitudes
   limit       std 0.40 m/s^2, doubled when lighter_requirements
   limit       mean mean_limit_share of std

@@ -77,7 +77,7 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
         domain: outcome.domain,
         traces: outcome.traces,
         findings: outcome.findings,
-        notes,
+        notes: parameters_set(&compiled.plan).into_iter().chain(notes).collect(),
     })
 }
 
@@ -172,6 +172,17 @@ fn channel_info(block: &Block) -> ChannelInfo {
         unit: block.field("in").map_or_else(String::new, |field| field.value.text.clone()),
         note: notes.join(" "),
     }
+}
+
+/// A remark on the parameters that are not at their default, since the verdict rests on them.
+fn parameters_set(plan: &Plan) -> Option<String> {
+    let set = |parameter: &&Parameter| parameter.set_by != SetBy::Default && parameter.value != parameter.default;
+    let one = |parameter: &Parameter| {
+        let info = parameter_info(parameter);
+        format!("`{}` {} (default {}, set by the {})", info.name, info.value, info.default, info.set_by)
+    };
+    let all: Vec<String> = plan.parameters.iter().filter(set).map(one).collect();
+    (!all.is_empty()).then(|| format!("Parameters not at their default: {}.", all.join("; ")))
 }
 
 fn parameter_info(parameter: &Parameter) -> ParameterInfo {

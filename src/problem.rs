@@ -169,20 +169,40 @@ impl Problems {
     }
 }
 
-/// The candidate nearest to a word, if near enough to be what was meant.
+/// The candidate that a word most likely was meant as: the only one it begins, or one that differs by a slip.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    /// A shorter beginning fits too much: `max` for `maximum`, but `Y` for nothing.
+    const SHORTEST_BEGINNING: usize = 3;
     let lower = word.to_lowercase();
-    candidates
-        .into_iter()
-        .filter(|candidate| *candidate != word)
-        .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
-        .filter(|(distance, candidate)| {
-            let longer = word.chars().count().max(candidate.chars().count());
-            // A word of which nothing is left is another word: zone 7 is no slip for zone 1.
-            *distance <= 1 + longer / 4 && *distance < longer
-        })
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
+    let candidates: Vec<&str> = candidates.into_iter().filter(|candidate| *candidate != word).collect();
+    let slips = candidates.iter().filter_map(|candidate| {
+        let longer = word.chars().count().max(candidate.chars().count());
+        let distance = strsim::damerau_levenshtein(&lower, &candidate.to_lowercase());
+        // A word of which nothing is left is another word: zone 7 is no slip for zone 1. One letter in three may differ.
+        let near = distance <= longer.max(SHORTEST_BEGINNING) / 3 && distance < longer && !other_position(word, candidate);
+        near.then_some((distance, *candidate))
+    });
+    let slip = slips.min_by_key(|(distance, _)| *distance);
+    if let Some((1, slip)) = slip {
+        return Some(slip);
+    }
+    let mut begun = candidates.iter().filter(|candidate| {
+        let rest = candidate.to_lowercase().strip_prefix(&lower).map(str::to_string);
+        lower.chars().count() >= SHORTEST_BEGINNING && rest.is_some_and(|rest| rest.starts_with(char::is_alphabetic))
+    });
+    match (begun.next(), begun.next()) {
+        (Some(only), None) => Some(only),
+        _ => slip.map(|(_, slip)| slip),
+    }
+}
+
+/// Whether two names are of one channel at different positions: `Y_1L` is not what was meant by `Y_1R`.
+fn other_position(a: &str, b: &str) -> bool {
+    let position = |end: &str| !end.is_empty() && end.chars().all(|c| c.is_ascii_digit() || c.is_ascii_uppercase());
+    match (a.rsplit_once('_'), b.rsplit_once('_')) {
+        (Some((stem, end)), Some((other, its))) => stem == other && end != its && position(end) && position(its),
+        _ => false,
+    }
 }
 
 #[cfg(test)]
@@ -195,6 +215,10 @@ mod tests {
         assert_eq!(nearest("SigmaY_mx", ["Y_max", "SigmaY_max"]), Some("SigmaY_max"));
         assert_eq!(nearest("friction", ["Y_max", "SigmaY_max"]), None);
         assert_eq!(nearest("7", ["1", "2"]), None);
+        assert_eq!(nearest("max", ["mean", "median", "maximum"]), Some("maximum"));
+        assert_eq!(nearest("Y_1R", ["Y_1L", "Y_2R", "Q_1R"]), Some("Q_1R"));
+        assert_eq!(nearest("ay_I", ["ay_II"]), None);
+        assert_eq!(nearest("min", ["minimum", "minimum pairs"]), None);
     }
 
     #[test]

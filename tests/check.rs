@@ -342,9 +342,9 @@ fn the_same_meaning_is_no_difference() {
     for text in [
         "quantity ay_max\n  limit  std 0.4 m/s², doubled when lighter_requirements\n",
         "quantity ay_max\n  limit  std 400 mm/s^2 doubled when lighter_requirements\n",
-        "quantity Y_max\n  of  Y at wheelset 1, 3\n",
+        "quantity Y_max\n  of  Y at wheelset evaluated_wheelsets\n",
         "parameter lowpass_frequency\n  default  0.02 kHz\n",
-        "parameter admissible_speed\n  range  20 km/h  to 4e2 km/h\n",
+        "parameter mean_limit_share\n  range  0.010  to 1e1\n",
         "filter BP\n  step  band-pass 0.40 Hz to 10.0 Hz, order bandpass_order, filter_phase, filter_edge\n",
         "channel ay\n  in  m/s²\n",
         "zone 3\n  where  400 m ≤ radius ≤ 0.6 km\n",

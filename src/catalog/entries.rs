@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{DIFFERENCES, FUNCTIONS, Form, METRICS, REDUCERS, STATISTICS, STEPS, Signature};
+use super::{Best, DIFFERENCES, FUNCTIONS, Form, METRICS, REDUCERS, STATISTICS, STEPS, Signature};
 use crate::units::Dimension;
 
 /// One thing the language can do with signals or numbers.
@@ -15,6 +15,8 @@ pub struct Entry {
     /// What it takes and gives; `D` is any dimension.
     pub signature: &'static str,
     pub about: String,
+    /// Which values are good, where that is known: `1, larger is better`.
+    pub best: Option<String>,
     /// Words and numbers that may follow a comma, each with its default.
     pub options: Vec<String>,
     /// Where it is published, if it is.
@@ -23,12 +25,15 @@ pub struct Entry {
 
 impl Entry {
     fn new(kind: &'static str, wording: impl Into<String>, signature: &'static str, about: impl Into<String>) -> Self {
-        Self { kind, wording: wording.into(), signature, about: about.into(), options: Vec::new(), source: None }
+        Self { kind, wording: wording.into(), signature, about: about.into(), best: None, options: Vec::new(), source: None }
     }
 
     /// All that is said about it, in one line.
     pub fn in_words(&self) -> String {
         let mut text = self.about.clone();
+        if let Some(best) = &self.best {
+            let _ = write!(text, " Best value {best}.");
+        }
         for option in &self.options {
             let _ = write!(text, " Option {option}.");
         }
@@ -63,13 +68,17 @@ pub fn entries() -> Vec<Entry> {
             Dimension::LENGTH => "(signal<D>, signal<D>) -> axis",
             _ => "(signal<D>, signal<D>) -> plain number",
         };
-        all.push(Entry { source: Some(entry.source), ..Entry::new("metric", entry.form.in_words(), signature, entry.about) });
+        let best = Some(entry.best.in_words());
+        all.push(Entry { source: Some(entry.source), best, ..Entry::new("metric", entry.form.in_words(), signature, entry.about) });
     }
     for (name, expression) in DIFFERENCES {
-        all.push(Entry::new("difference", name, "(D, D) -> D", format!("`{expression}`")));
+        let best = Some(Best::Near(0.0).in_words());
+        all.push(Entry { best, ..Entry::new("difference", name, "(D, D) -> D", format!("`{expression}`")) });
     }
     for entry in STATISTICS {
-        all.push(Entry::new("statistic", entry.name, "pairs of D -> D", format!("The {} of all pairs.", entry.title)));
+        let best = entry.of_scatter.then(|| Best::Least(0.0).in_words());
+        let about = format!("The {} of all pairs.", entry.title);
+        all.push(Entry { best, ..Entry::new("statistic", entry.name, "pairs of D -> D", about) });
     }
     all.push(Entry::new("statistic", "p<number>", "pairs of D -> D", "A percentile of all pairs, linear between two of them."));
     all.push(Entry::new("statistic", "each", "each pair of D", "Every pair by itself; the worst decides."));

@@ -14,7 +14,7 @@ pub use forms::{Choice, Form, Part};
 pub use functions::{FUNCTIONS, Function, Signature};
 pub use reducers::{REDUCERS, Reducer, ReducerEntry, STATISTICS, Statistic, StatisticEntry};
 pub use steps::{STEPS, StepEntry, StepKind};
-pub use two_signals::{METRICS, Metric, MetricEntry, Pair};
+pub use two_signals::{Best, METRICS, Metric, MetricEntry, Pair};
 
 /// Comparisons of a simulated and a measured value with a name, so that protocols need not spell them out.
 pub const DIFFERENCES: [(&str, &str); 3] = [

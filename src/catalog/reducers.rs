@@ -111,6 +111,8 @@ pub type Interval = fn(&[f64], &[usize]) -> Option<(f64, f64)>;
 pub struct StatisticEntry {
     pub name: &'static str,
     pub title: &'static str,
+    /// Whether it tells how far values differ from each other, so that 0 is best whatever they are.
+    pub of_scatter: bool,
     /// From the differences and the divisor's n - `ddof`.
     pub run: fn(&[f64], usize) -> Option<f64>,
     /// 95 % confidence interval for normal values that are independent between sites, where there is one.
@@ -124,19 +126,21 @@ impl PartialEq for StatisticEntry {
 }
 
 const fn plain(name: &'static str, title: &'static str, run: fn(&[f64], usize) -> Option<f64>) -> StatisticEntry {
-    StatisticEntry { name, title, run, interval: None }
+    StatisticEntry { name, title, of_scatter: false, run, interval: None }
 }
 
 pub const STATISTICS: &[StatisticEntry] = &[
     StatisticEntry {
         name: "mean",
         title: "mean",
+        of_scatter: false,
         run: |x, _| statistics::mean(x),
         interval: Some(|x, site| mean_interval(x, site, CONFIDENCE).map(|interval| (interval.low, interval.high))),
     },
     StatisticEntry {
         name: "std",
         title: "standard deviation",
+        of_scatter: true,
         run: |x, ddof| statistics::standard_deviation(x, if ddof == 0 { Divisor::Population } else { Divisor::Sample }),
         interval: Some(|x, site| standard_deviation_interval(x, site, CONFIDENCE).map(|interval| (interval.low, interval.high))),
     },
@@ -145,7 +149,7 @@ pub const STATISTICS: &[StatisticEntry] = &[
     plain("minimum", "smallest value", |x, _| statistics::minimum(x)),
     plain("maximum", "largest value", |x, _| statistics::maximum(x)),
     plain("peak", "largest magnitude", |x, _| statistics::peak_magnitude(x)),
-    plain("range", "range", |x, _| statistics::range(x)),
+    StatisticEntry { of_scatter: true, ..plain("range", "range", |x, _| statistics::range(x)) },
 ];
 
 impl Statistic {
@@ -166,6 +170,11 @@ impl Statistic {
             Self::Percentile(percent) => format!("p{percent}"),
             Self::Named(entry) => entry.name.into(),
         }
+    }
+
+    /// Whether it tells how far values differ from each other.
+    pub fn of_scatter(self) -> bool {
+        matches!(self, Self::Named(entry) if entry.of_scatter)
     }
 
     pub fn title(self, ddof: usize) -> String {

@@ -15,6 +15,35 @@ pub struct Pair<'a> {
     pub over: Option<(&'a [f64], &'a [f64])>,
 }
 
+/// Which values are good: what a limit has to leave in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Best {
+    /// The nearer to this, from either side, the better.
+    Near(f64),
+    /// No value is below this; the smaller the better.
+    Least(f64),
+    /// No value is above this; the larger the better.
+    Greatest(f64),
+}
+
+impl Best {
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Near(value) | Self::Least(value) | Self::Greatest(value) => value,
+        }
+    }
+
+    /// `1, larger is better`
+    pub fn in_words(self) -> String {
+        let way = match self {
+            Self::Near(_) => "nearer",
+            Self::Least(_) => "smaller",
+            Self::Greatest(_) => "larger",
+        };
+        format!("{}, {way} is better", self.value())
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
 pub struct Metric(pub &'static MetricEntry);
 
@@ -42,6 +71,7 @@ pub struct MetricEntry {
     pub gives: fn(Dimension, Dimension) -> Dimension,
     /// Whether the simulated signal is brought onto the points of the measured one before.
     pub common_points: bool,
+    pub best: Best,
     pub about: &'static str,
     pub source: &'static str,
     /// The reason where it is not defined.
@@ -53,11 +83,12 @@ const fn form(head: &'static [Part]) -> Form {
 }
 
 macro_rules! ratio {
-    ($head:expr, $about:expr, $source:expr, $run:path) => {
+    ($head:expr, $best:expr, $about:expr, $source:expr, $run:path) => {
         MetricEntry {
             form: form($head),
             gives: |_, _| Dimension::ONE,
             common_points: true,
+            best: $best,
             about: $about,
             source: $source,
             run: |p| $run(p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
@@ -67,7 +98,7 @@ macro_rules! ratio {
 
 macro_rules! of_signal {
     ($head:expr, $common:expr, $about:expr, $source:expr, $run:path) => {
-        MetricEntry { gives: |signal, _| signal, common_points: $common, ..ratio!($head, $about, $source, $run) }
+        MetricEntry { gives: |signal, _| signal, common_points: $common, ..ratio!($head, Best::Least(0.0), $about, $source, $run) }
     };
 }
 
@@ -77,40 +108,58 @@ const RUSSELL: &str = "Russell 1997";
 pub const METRICS: &[MetricEntry] = &[
     ratio!(
         &[Part::Word("sprague-geers"), Part::Word("magnitude")],
+        Best::Near(0.0),
         "Root of the ratio of the integrals of the squares, less 1; negative where the simulation is smaller.",
         SG,
         pair::sprague_geers_magnitude
     ),
     ratio!(
         &[Part::Word("sprague-geers"), Part::Word("phase")],
+        Best::Least(0.0),
         "Angle between the two signals as vectors, over pi: 0 alike, 0.5 unrelated, 1 inverted.",
         SG,
         pair::sprague_geers_phase
     ),
     ratio!(
         &[Part::Word("sprague-geers"), Part::Word("comprehensive")],
+        Best::Least(0.0),
         "Root of the sum of the squares of magnitude and phase.",
         SG,
         pair::sprague_geers_comprehensive
     ),
-    ratio!(&[Part::Word("russell"), Part::Word("magnitude")], "Logarithmic magnitude error.", RUSSELL, pair::russell_magnitude),
-    ratio!(&[Part::Word("russell"), Part::Word("phase")], "As Sprague & Geers.", RUSSELL, pair::russell_phase),
-    ratio!(&[Part::Word("russell"), Part::Word("comprehensive")], "Magnitude and phase together.", RUSSELL, pair::russell_comprehensive),
+    ratio!(
+        &[Part::Word("russell"), Part::Word("magnitude")],
+        Best::Near(0.0),
+        "Logarithmic magnitude error.",
+        RUSSELL,
+        pair::russell_magnitude
+    ),
+    ratio!(&[Part::Word("russell"), Part::Word("phase")], Best::Least(0.0), "As Sprague & Geers.", RUSSELL, pair::russell_phase),
+    ratio!(
+        &[Part::Word("russell"), Part::Word("comprehensive")],
+        Best::Least(0.0),
+        "Magnitude and phase together.",
+        RUSSELL,
+        pair::russell_comprehensive
+    ),
     ratio!(
         &[Part::Word("theil"), Part::Word("inequality")],
+        Best::Least(0.0),
         "Root mean square difference over the sum of the root mean squares: 0 to 1.",
         "Theil 1966",
         pair::theil_u1
     ),
     ratio!(
         &[Part::Word("weighted"), Part::Word("integrated"), Part::Word("factor")],
+        Best::Greatest(1.0),
         "WIFac: 1 where the signals are alike, 0 where they have nothing in common.",
         "Ray et al., NCHRP 22-24",
         pair::weighted_integrated_factor
     ),
-    ratio!(&[Part::Word("correlation")], "Pearson correlation of the samples.", "Pearson 1895", pair::correlation),
+    ratio!(&[Part::Word("correlation")], Best::Greatest(1.0), "Pearson correlation of the samples.", "Pearson 1895", pair::correlation),
     ratio!(
         &[Part::Word("mirrored_correlation")],
+        Best::Least(0.0),
         "Pearson correlation with the simulated samples read from the end: near 1 where a record is mirrored.",
         "definition",
         pair::mirrored_correlation
@@ -119,6 +168,7 @@ pub const METRICS: &[MetricEntry] = &[
         form: form(&[Part::Word("shift")]),
         gives: |_, axis| axis,
         common_points: true,
+        best: Best::Near(0.0),
         about: "What is to be added to the measured axis for the best correlation, up to a quarter of the section.",
         source: "definition",
         run: |p| pair::shift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
@@ -127,18 +177,21 @@ pub const METRICS: &[MetricEntry] = &[
         form: form(&[Part::Word("drift")]),
         gives: |signal, _| signal,
         common_points: true,
+        best: Best::Near(0.0),
         about: "Rise of the regression line of measured less simulated samples over the section.",
         source: "definition",
         run: |p| pair::drift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
     },
     ratio!(
         &[Part::Word("misfit")],
+        Best::Least(0.0),
         "Sum of the squared differences over the smaller of the sums of squares.",
         "Kraft et al. 2013, as described by Goetz & Polach",
         pair::kraft_misfit
     ),
     ratio!(
         &[Part::Word("matching"), Part::Word("probability")],
+        Best::Greatest(1.0),
         "Probability of equal variances (F test) times the agreement of the means.",
         "Bogojevic & Lucanin 2014, as described by Goetz & Polach",
         pair::bogojevic
@@ -161,6 +214,7 @@ pub const METRICS: &[MetricEntry] = &[
         form: form(&[Part::Word("hysteresis"), Part::Word("maximum"), Part::Word("over"), Part::Signal("axis")]),
         gives: |signal, _| signal,
         common_points: false,
+        best: Best::Least(0.0),
         about: "Largest matching error of the loop the signal draws over another: simulated against measured on the same branch.",
         source: "EN 15273-2, stationary sway test",
         run: |p| loop_error(p).map(|error| error.maximum),
@@ -169,6 +223,7 @@ pub const METRICS: &[MetricEntry] = &[
         form: form(&[Part::Word("hysteresis"), Part::Word("mean"), Part::Word("over"), Part::Signal("axis")]),
         gives: |signal, _| signal,
         common_points: false,
+        best: Best::Least(0.0),
         about: "Mean matching error of the loop the signal draws over another: simulated against measured on the same branch.",
         source: "EN 15273-2, stationary sway test",
         run: |p| loop_error(p).map(|error| error.mean),

@@ -10,6 +10,8 @@ use crate::syntax::phrase::{At, Pick};
 
 /// Most positions of a place: the wheels of a train of sixty vehicles. Signals at several places have as many positions as their product.
 const MOST_MEMBERS: usize = 500;
+/// In place of the default of a vehicle datum: the file may be without it.
+const NOT_STATED: &str = "not stated";
 
 impl Checker<'_> {
     pub(super) fn place(&mut self, name: &str, block: &Block) -> Option<Place> {
@@ -84,7 +86,8 @@ impl Checker<'_> {
             }
         };
         let key = block.field(key).map_or(standard_key, |field| field.value.text.trim().to_string());
-        Some(Datum { name: name.to_string(), title, key, kind, default: None, range: None, span: block.span().clone() })
+        let (range, may_be_absent) = (None, false);
+        Some(Datum { name: name.to_string(), title, key, kind, default: None, range, may_be_absent, span: block.span().clone() })
     }
 
     /// The range of a number of the vehicle, in its unit.
@@ -115,6 +118,9 @@ impl Checker<'_> {
         }
         let Some(field) = block.field("default") else { return Some(()) };
         let word = field.value.text.trim();
+        if normalised(word) == NOT_STATED {
+            return self.may_be_absent(index, block, field);
+        }
         let default = match data_kind {
             DatumKind::Number(unit) => {
                 let (value, dimension) = self.constant(&field.value)?;
@@ -147,6 +153,18 @@ impl Checker<'_> {
         let data = if block.kind.text == "vehicle" { &mut self.names.vehicle } else { &mut self.names.columns };
         data[index].default = Some(default);
         Some(())
+    }
+
+    /// A vehicle datum without a default that may be absent. An empty cell of the table of sections needs no such word.
+    fn may_be_absent(&mut self, index: usize, block: &Block, field: &Field) -> Option<()> {
+        if block.kind.text == "vehicle" {
+            self.names.vehicle[index].may_be_absent = true;
+            return Some(());
+        }
+        let says = format!("`{NOT_STATED}` is for vehicle data");
+        let problem = Problem::error("unknown-choice", says).at(&field.value.span);
+        self.problems.push(problem.help("leave the line out: without a default, an empty cell is a missing value"));
+        None
     }
 
     pub(super) fn channel(&mut self, name: &str, block: &Block) -> Option<()> {

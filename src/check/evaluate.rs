@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 
 use super::plan::{Expr, Kind, Operator, Scalar};
+use super::possible::possible;
 
 /// What the names of an expression stand for. Each answer may be missing, with the reason.
 pub trait Values {
@@ -84,9 +85,19 @@ impl<V: Values> Values for Watched<'_, V> {
     }
 }
 
+/// The value of an expression. Where names have no value, it is that which the expression has whatever they are.
+///
 /// # Errors
 /// The name that has no value, or the operation that is not defined (a division by zero).
 pub fn evaluate(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
+    match exactly(expr, values) {
+        // A leaf that has no value cannot be decided by the others.
+        Err(reason) if matches!(expr.kind, Kind::Binary(..) | Kind::Not(_) | Kind::Cases(..)) => possible(expr, values).one().ok_or(reason),
+        found => found,
+    }
+}
+
+fn exactly(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
     let result = match &expr.kind {
         Kind::Constant(value) => value.clone(),
         Kind::Vehicle(index) => values.vehicle(*index)?,

@@ -1,11 +1,12 @@
 //! Checks limits: statistic, bound, factors, conditions, and to which sections each applies.
 
-use super::evaluate::words;
+use super::evaluate::{Nothing, Values, number, words};
 use super::names::normalised;
 use super::plan::{Expr, Kind, Limit, Scalar, Scope as LimitScope, Type};
 use super::scalars::{Scope, in_words};
 use super::{Checker, overlap};
-use crate::catalog::{STATISTICS, Statistic};
+use crate::catalog::{Best, STATISTICS, Statistic};
+use crate::metrics::rounded;
 use crate::problem::{Problem, Problems};
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
@@ -18,17 +19,19 @@ struct Common<'a> {
     block: &'a Block,
     /// Unit of the compared values and where their dimension comes from, if these were understood.
     unit: Option<(&'a Unit, &'a Span)>,
+    /// Which values are good and what says so, where that can be told.
+    best: Option<&'a (Best, Span)>,
     /// Statistics that have a limit.
     names: Vec<String>,
 }
 
 impl Checker<'_> {
     /// The limits of a quantity; of values that were not understood (no `unit`), all but the dimension is checked.
-    pub(super) fn limits(&mut self, block: &Block, unit: Option<(&Unit, &Span)>) -> Option<Vec<Limit>> {
+    pub(super) fn limits(&mut self, block: &Block, unit: Option<(&Unit, &Span)>, best: Option<&(Best, Span)>) -> Option<Vec<Limit>> {
         let fields: Vec<&Field> = block.fields_named("limit").collect();
         // A quiet first look for the names that other limits may refer to.
         let quiet = |field: &&Field| from_pest::limit(&field.value, &mut Problems::default()).map(|limit| limit.statistic.node);
-        let common = Common { block, unit, names: fields.iter().filter_map(quiet).collect() };
+        let common = Common { block, unit, best, names: fields.iter().filter_map(quiet).collect() };
         let mut limits = Vec::new();
         let mut ok = true;
         for field in fields {
@@ -41,6 +44,7 @@ impl Checker<'_> {
         overlap::find(&limits, zone.as_ref(), block, self.problems);
         if ok {
             self.references(&limits);
+            self.amounts(&limits, common.unit.map(|(unit, _)| unit));
         }
         ok.then_some(limits)
     }
@@ -102,6 +106,7 @@ impl Checker<'_> {
         let mut of_bound = scope();
         of_bound.limits = Some((dimension.unwrap_or(Dimension::ONE), names));
         let bound = self.expr(&written.bound, text, &mut of_bound).and_then(|bound| self.suitable_bound(bound, written.at_least, common));
+        let bound = bound.and_then(|bound| self.on_its_side(bound, written, statistic, text, common));
         let mut factors = Vec::new();
         let mut ok = true;
         for (factor, condition) in &written.factors {
@@ -137,7 +142,7 @@ impl Checker<'_> {
     }
 
     /// The words of a limit with the values of parameters in place of their names: `2/3 of std`, not `share of std`.
-    fn with_values(&self, words: &str) -> String {
+    pub(super) fn with_values(&self, words: &str) -> String {
         let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
         let mut out = String::new();
         let mut rest = words;
@@ -181,6 +186,50 @@ impl Checker<'_> {
             }
             _ => Some(bound),
         }
+    }
+
+    /// A limit leaves the best value in, and what it keeps out is worse.
+    fn on_its_side(&mut self, bound: Expr, written: &Written, statistic: Statistic, text: &Text, common: &Common<'_>) -> Option<Expr> {
+        let scatter = statistic.of_scatter();
+        let (best, from) = match common.best {
+            _ if scatter => (Best::Least(0.0), None),
+            Some((best, from)) => (*best, Some(from)),
+            None => return Some(bound),
+        };
+        let constant = if let Kind::Constant(Scalar::Number(value)) = bound.kind { Some(value) } else { None };
+        let keeps_best = |value: f64| if written.at_least { best.value() >= value } else { best.value().abs() <= value };
+        let wrong = match (best, written.at_least) {
+            (Best::Least(_), true) | (Best::Greatest(_), false) => true,
+            _ => constant.is_some_and(|value| !keeps_best(value)),
+        };
+        if !wrong {
+            return Some(bound);
+        }
+        let (name, words) = (&written.statistic.node, words(&bound));
+        let (of, is) = if scatter {
+            (format!("the {}", statistic.title(self.ddof)), best.in_words())
+        } else {
+            (format!("the values of `{}`", common.block.name_text()), best.in_words())
+        };
+        let says = format!("this limit is on the wrong side: of {of}, the best is {is}");
+        let problem = Problem::error("wrong-side", says).at(&text.place(written.statistic.range.start..written.bound.range.end));
+        let problem = match from {
+            Some(from) => problem.also(from, format!("best value {is}")),
+            None => problem,
+        };
+        self.problems.push(match (best, written.at_least) {
+            (Best::Greatest(best), true) => problem.help(format!("no value is above {best}: the limit must not be")),
+            (Best::Greatest(_), false) => problem.help(format!("write `limit {name} at least {words}`")),
+            (Best::Least(_), _) => problem.help(format!("write `limit {name} {words}`: values up to it hold")),
+            (Best::Near(best), true) if constant.is_some_and(|value| value > 0.0) && best == 0.0 => {
+                problem.help(format!("write `limit {name} {words}`: magnitudes up to it hold"))
+            }
+            (Best::Near(best), at_least) => {
+                let side = if at_least { "not above" } else { "not below" };
+                problem.help(format!("the best value must hold too: let the limit be {side} {best}"))
+            }
+        });
+        None
     }
 
     fn plain_factor(&mut self, factor: Expr) -> Option<Expr> {
@@ -231,6 +280,23 @@ impl Checker<'_> {
         }
     }
 
+    /// A limit that refers to others and follows from constants must come to something above zero.
+    fn amounts(&mut self, limits: &[Limit], unit: Option<&Unit>) {
+        for limit in limits.iter().filter(|limit| !limit.at_least) {
+            let mut names = Vec::new();
+            referred(&limit.bound, &mut names);
+            let Some((name, place)) = names.first() else { continue };
+            let Ok(value) = number(&limit.bound, &Others { limits, of: limit, depth: 0 }) else { continue };
+            if value > 0.0 {
+                continue;
+            }
+            let shown = unit.map_or_else(|| value.to_string(), |unit| format!("{}{}", rounded(unit.from_si(value)), unit.suffix()));
+            let says = format!("a limit is above zero, `{}` comes to {shown}", words(&limit.bound));
+            let help = format!("in a limit, `{name}` stands for the limit of the {name}, not for the value that is found");
+            self.problems.push(Problem::error("out-of-range", says).at(&limit.bound.span).also(place, "a limit").help(help));
+        }
+    }
+
     /// Every limit that a limit refers to must be there for the same sections, and none may refer to itself in the end.
     fn references(&mut self, limits: &[Limit]) {
         let refers = |limit: &Limit| {
@@ -238,14 +304,9 @@ impl Checker<'_> {
             referred(&limit.bound, &mut names);
             names
         };
-        let same = |a: &LimitScope, b: &LimitScope| match (a, b) {
-            (LimitScope::All, _) => true,
-            (LimitScope::Zones(a), LimitScope::Zones(b)) => a == b,
-            (LimitScope::Where(_, a), LimitScope::Where(_, b)) => a == b,
-            _ => false,
+        let target = |limit: &Limit, name: &str| {
+            limits.iter().position(|other| other.statistic.name() == name && same_sections(&other.scope, &limit.scope))
         };
-        let target =
-            |limit: &Limit, name: &str| limits.iter().position(|other| other.statistic.name() == name && same(&other.scope, &limit.scope));
         for limit in limits {
             for (name, span) in refers(limit) {
                 if target(limit, &name).is_none() {
@@ -278,6 +339,52 @@ impl Checker<'_> {
     }
 }
 
+/// Limits that others refer to, as far as they follow from constants.
+struct Others<'a> {
+    limits: &'a [Limit],
+    of: &'a Limit,
+    depth: usize,
+}
+
+impl Values for Others<'_> {
+    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
+        Nothing.vehicle(index)
+    }
+    fn column(&self, index: usize) -> Result<Scalar, String> {
+        Nothing.column(index)
+    }
+    fn extent(&self) -> Result<(f64, f64), String> {
+        Nothing.extent()
+    }
+    fn input(&self, index: usize) -> Result<f64, String> {
+        Nothing.input(index)
+    }
+    fn sides(&self) -> Result<(f64, f64), String> {
+        Nothing.sides()
+    }
+    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
+        let unknown = || format!("the limit of {statistic} is not known here");
+        let mut found =
+            self.limits.iter().filter(|limit| limit.statistic.name() == statistic && same_sections(&limit.scope, &self.of.scope));
+        // Of several, or of one with a factor or a condition, the vehicle decides.
+        let (Some(limit), None) = (found.next(), found.next()) else { return Err(unknown()) };
+        if self.depth > self.limits.len() || !limit.factors.is_empty() || limit.only_when.is_some() {
+            return Err(unknown());
+        }
+        number(&limit.bound, &Others { limits: self.limits, of: limit, depth: self.depth + 1 })
+    }
+}
+
+/// Whether a limit of the first scope is one for the sections of the second, too.
+fn same_sections(a: &LimitScope, b: &LimitScope) -> bool {
+    match (a, b) {
+        (LimitScope::All, _) => true,
+        (LimitScope::Zones(a), LimitScope::Zones(b)) => a == b,
+        (LimitScope::Where(_, a), LimitScope::Where(_, b)) => a == b,
+        _ => false,
+    }
+}
+
 /// The limits between one and itself, if it can be reached from itself.
 fn way_back(from: usize, next: &[Vec<usize>]) -> Option<Vec<usize>> {
     let mut before: Vec<Option<usize>> = vec![None; next.len()];
@@ -305,23 +412,9 @@ fn way_back(from: usize, next: &[Vec<usize>]) -> Option<Vec<usize>> {
 
 /// The statistics whose limits an expression refers to, and where.
 fn referred(expr: &Expr, names: &mut Vec<(String, Span)>) {
-    match &expr.kind {
-        Kind::LimitOf(name) => names.push((name.clone(), expr.span.span.clone())),
-        Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => referred(inner, names),
-        Kind::Binary(_, left, right) => {
-            referred(left, names);
-            referred(right, names);
+    expr.visit(&mut |part| {
+        if let Kind::LimitOf(name) = &part.kind {
+            names.push((name.clone(), part.span.span.clone()));
         }
-        Kind::Call(_, arguments) => arguments.iter().for_each(|argument| referred(argument, names)),
-        Kind::Cases(arms, otherwise) => {
-            for (value, condition) in arms {
-                referred(value, names);
-                referred(condition, names);
-            }
-            if let Some(value) = otherwise {
-                referred(value, names);
-            }
-        }
-        _ => {}
-    }
+    });
 }

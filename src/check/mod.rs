@@ -16,6 +16,7 @@ mod parameters;
 pub mod plan;
 mod plausibility;
 mod positions;
+pub mod possible;
 mod quantities;
 mod rules;
 mod scalar_names;
@@ -303,11 +304,13 @@ impl Checker<'_> {
         for (name, given) in self.overrides {
             if !self.names.parameter_blocks.contains_key(name) {
                 let known: Vec<String> = self.names.parameter_blocks.keys().cloned().collect();
-                self.problems.push(
-                    Problem::error("unknown-parameter", format!("protocol `{}` has no parameter `{name}`", head.name_text()))
-                        .at(&given.text.span)
-                        .suggest(name, known.iter().map(String::as_str)),
-                );
+                let problem = Problem::error("unknown-parameter", format!("protocol `{}` has no parameter `{name}`", head.name_text()))
+                    .at(&given.text.span);
+                let datum = self.names.vehicle.iter().find(|datum| datum.name == *name);
+                self.problems.push(match datum {
+                    Some(datum) => problem.help(format!("it is a value of the vehicle: write `{}` in the vehicle file", datum.key)),
+                    None => problem.suggest(name, known.iter().map(String::as_str)),
+                });
             }
         }
     }

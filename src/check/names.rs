@@ -29,6 +29,8 @@ pub struct ParameterDef {
     pub value_words: String,
     pub default_words: String,
     pub set_by: SetBy,
+    /// The place and its positions that it selects, where it is a selection.
+    pub selects: Option<(String, Vec<String>)>,
 }
 
 #[derive(Clone, Debug)]

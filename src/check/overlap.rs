@@ -33,7 +33,12 @@ pub(super) fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problem
                 )
                 .at(&limit.span)
                 .also(&other.span, "also applies")
-                .help("give them different zones (`for zones ...`) or conditions that exclude each other (`only when ...`)"),
+                .help(format!(
+                    "give them different zones (`for zones ...`) or conditions that exclude each other (`only when ...`); one that a \
+                     variant inherits goes away by `limit {} {}` in its `remove` block",
+                    block.name_text(),
+                    limit.statistic.name()
+                )),
             );
         }
     }

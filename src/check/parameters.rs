@@ -32,6 +32,12 @@ impl Checker<'_> {
             Some(Override { text, set_by }) => (text.clone(), *set_by),
             None => (default.value.clone(), SetBy::Default),
         };
+        if let Some(place) = block.field("at") {
+            let selects = self.selection(name, place, &default.value, &source)?;
+            let (value, ty) = (Scalar::Word(selects.1.join(", ")), Type::Word(Vec::new()));
+            let value_words = normalised(&source.text);
+            return Some(ParameterDef { title, value, ty, value_words, default_words, set_by, selects: Some(selects) });
+        }
         let (value, ty) = match block.field("one of") {
             Some(choices) => {
                 if let Some(range) = block.field("range") {
@@ -43,7 +49,7 @@ impl Checker<'_> {
             }
             None => self.number(name, block, &default.value, given.is_some().then_some(&source))?,
         };
-        Some(ParameterDef { title, value, ty, value_words: normalised(&source.text), default_words, set_by })
+        Some(ParameterDef { title, value, ty, value_words: normalised(&source.text), default_words, set_by, selects: None })
     }
 
     fn choice(&mut self, name: &str, choices: &Field, default: &Text, source: &Text) -> Option<(Scalar, Type)> {
@@ -61,6 +67,35 @@ impl Checker<'_> {
             }
         }
         ok.then(|| (Scalar::Word(source.text.trim().to_string()), Type::Word(choices)))
+    }
+
+    /// A list of positions of a place: of the default and of what is set.
+    fn selection(&mut self, name: &str, place: &Field, default: &Text, source: &Text) -> Option<(String, Vec<String>)> {
+        let written = normalised(&place.value.text);
+        let Some(place_name) = self.place_called(&written) else {
+            let known: Vec<String> = self.names.places.keys().cloned().collect();
+            let problem = Problem::error("unknown-place", format!("`{written}` is no place")).at(&place.value.span);
+            self.problems.push(problem.suggest(&written, known.iter().map(String::as_str)));
+            return None;
+        };
+        let members = self.names.places.get(&place_name)?.members.clone();
+        let mut chosen = None;
+        for text in [default, source] {
+            let mut positions: Vec<String> = Vec::new();
+            for word in from_pest::list(text, self.problems)? {
+                if !members.contains(&word.node) {
+                    let says = format!("`{}` is no {place_name}, and `{name}` selects of these", word.node);
+                    let problem = Problem::error("unknown-place", says).at(&text.place(word.range.clone()));
+                    self.problems.push(problem.suggest(&word.node, members.iter().map(String::as_str)));
+                    return None;
+                }
+                if !positions.contains(&word.node) {
+                    positions.push(word.node);
+                }
+            }
+            chosen = Some(positions);
+        }
+        Some((place_name, chosen?))
     }
 
     fn number(&mut self, name: &str, block: &Block, default: &Text, given: Option<&Text>) -> Option<(Scalar, Type)> {

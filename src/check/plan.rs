@@ -76,6 +76,8 @@ pub struct Datum {
     pub key: String,
     pub kind: DatumKind,
     pub default: Option<Scalar>,
+    /// The vehicle file may be without it; rules that depend on it are then decided as far as they hold whatever its value.
+    pub may_be_absent: bool,
     /// What a number may be; none where the protocol does not say.
     pub range: Option<DatumRange>,
     pub span: Span,
@@ -170,6 +172,31 @@ pub enum Kind {
     Call(&'static Function, Vec<Expr>),
     /// The first whose condition holds, else the last.
     Cases(Vec<(Expr, Expr)>, Option<Box<Expr>>),
+}
+
+impl Expr {
+    /// Shows every part, the whole first.
+    pub fn visit(&self, see: &mut impl FnMut(&Expr)) {
+        see(self);
+        match &self.kind {
+            Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => inner.visit(see),
+            Kind::Binary(_, left, right) => {
+                left.visit(see);
+                right.visit(see);
+            }
+            Kind::Call(_, arguments) => arguments.iter().for_each(|argument| argument.visit(see)),
+            Kind::Cases(arms, otherwise) => {
+                for (value, condition) in arms {
+                    value.visit(see);
+                    condition.visit(see);
+                }
+                if let Some(value) = otherwise {
+                    value.visit(see);
+                }
+            }
+            _ => {}
+        }
+    }
 }
 
 pub use crate::syntax::phrase::Operator;

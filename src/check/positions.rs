@@ -176,6 +176,12 @@ impl Checker<'_> {
         Some(all)
     }
 
+    /// The positions that a parameter of this name selects of the place.
+    fn selected(&mut self, name: &str, place: &str, at: &Span) -> Option<Vec<String>> {
+        let (of, positions) = self.parameter(name, at)?.selects?;
+        (of == place).then_some(positions)
+    }
+
     fn one_pick(
         &mut self,
         pick: &Pick,
@@ -213,7 +219,13 @@ impl Checker<'_> {
         }
         let mut ok = true;
         for member in members {
-            if !known.members.contains(&member.node) && known.alias(&member.node).is_none() {
+            if let Some(selected) = self.selected(&member.node, &place, &text.place(member.range.clone())) {
+                selected.into_iter().for_each(|member| {
+                    if !found.contains(&member) {
+                        found.push(member)
+                    }
+                });
+            } else if !known.members.contains(&member.node) && known.alias(&member.node).is_none() {
                 self.unknown_member(member, &place, text);
                 ok = false;
             } else if !found.contains(&member.node) {

@@ -1,11 +1,11 @@
 //! Checks quantities: positions, chain, value, difference or metric, limits.
 
 use super::Checker;
-use super::evaluate::words;
+use super::evaluate::{Nothing, Values, number, words};
 use super::names::{Assignment, bare_word, normalised};
-use super::plan::{Axis, DatumKind, Evaluation, Expr, Input, InputSide, Kind, Quantity, QuantityWords, Signal, Step};
+use super::plan::{Axis, DatumKind, Evaluation, Expr, Input, InputSide, Kind, Quantity, QuantityWords, Scalar, Signal, Step};
 use super::scalars::Scope;
-use crate::catalog::DIFFERENCES;
+use crate::catalog::{Best, DIFFERENCES};
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
@@ -19,6 +19,8 @@ struct Compared {
     dimension: Dimension,
     processing: String,
     comparison: String,
+    /// Which values are good and what says so, where that can be told.
+    best: Option<(Best, Span)>,
     /// What the dimension comes from, where it is not that of the signal.
     from: Option<Span>,
 }
@@ -56,12 +58,22 @@ impl Checker<'_> {
         let result = compared.as_ref().map(|compared| compared.dimension);
         let unit = result.zip(of.as_ref()).and_then(|(result, of)| self.quantity_unit(block, of, result));
         let from = compared.as_ref().and_then(|compared| compared.from.as_ref()).or_else(|| of.as_ref().map(|of| &of.span));
-        let limits = self.limits(block, unit.as_ref().zip(from));
+        let best = compared.as_ref().and_then(|compared| compared.best.as_ref());
+        let limits = self.limits(block, unit.as_ref().zip(from), best);
         if block.field("limit").is_none() {
             self.problems.push(
                 Problem::warning("no-limit", format!("quantity `{}` has no limit: it is reported, and decides nothing", block.name_text()))
                     .at(block.span()),
             );
+        }
+        if let (Some(only), None, 2..) = (block.field("where"), block.field("minimum pairs"), self.minimum_pairs) {
+            let says = format!(
+                "quantity `{}` takes only some of the sections and needs {} pairs all the same",
+                block.name_text(),
+                self.minimum_pairs
+            );
+            let problem = Problem::warning("minimum-inherited", says).at(&only.value.span);
+            self.problems.push(problem.help("say how many it needs itself: `minimum pairs ...`"));
         }
         let minimum_signals = self.count(block, "minimum signals", self.minimum_signals);
         let minimum_pairs = self.count(block, "minimum pairs", self.minimum_pairs);
@@ -75,7 +87,12 @@ impl Checker<'_> {
             id: block.name_text().to_string(),
             title: block.title.as_ref().map_or_else(|| block.name_text().to_string(), |title| title.text.clone()),
             symbol: text("symbol").unwrap_or_else(|| block.name_text().to_string()),
-            words: QuantityWords { of: normalised(&of.text), filter, processing: compared.processing, comparison: compared.comparison },
+            words: QuantityWords {
+                of: self.with_values(&normalised(&of.text)),
+                filter,
+                processing: compared.processing,
+                comparison: compared.comparison,
+            },
             clause: text("clause"),
             source: text("source"),
             notes: block.fields_named("note").map(|note| note.value.text.clone()).collect(),
@@ -128,6 +145,7 @@ impl Checker<'_> {
             dimension: (metric.0.gives)(first.dimension, self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension)),
             processing: words.clone(),
             comparison: words,
+            best: Some((metric.0.best, field.value.span.clone())),
             from: Some(field.value.span.clone()),
         })
     }
@@ -169,7 +187,10 @@ impl Checker<'_> {
         let (processing, comparison) = (words(&value), words(&difference));
         let key = if compared != result { "difference" } else { "value" };
         let from = block.field(key).filter(|_| Some(compared) != dimension).map(|field| field.value.span.clone());
-        Some(Compared { evaluation: Evaluation::Sides { value, inputs, difference }, dimension: compared, processing, comparison, from })
+        let span = block.field("difference").map(|field| field.value.span.clone());
+        let best = of_equal_sides(&difference).map(Best::Near).zip(span);
+        let evaluation = Evaluation::Sides { value, inputs, difference };
+        Some(Compared { evaluation, dimension: compared, processing, comparison, best, from })
     }
 
     fn value(&mut self, field: &Field, dimension: Option<Dimension>) -> Option<(Expr, Vec<Input>, Dimension)> {
@@ -200,7 +221,9 @@ impl Checker<'_> {
                 let source = crate::source::Source::new(format!("difference `{name}`"), *expression);
                 text = Text { text: (*expression).to_string(), span: source.whole(), exact: true };
                 phrase = from_pest::expression(&text, self.problems)?;
-            } else if choice != word || !(self.names.defines.contains_key(word) || self.is_failed(word)) {
+            } else if choice != word
+                || !(matches!(word, "simulated" | "measured") || self.names.defines.contains_key(word) || self.is_failed(word))
+            {
                 let differences = DIFFERENCES.iter().map(|(name, _)| *name);
                 let problem =
                     Problem::error("unknown-difference", format!("`{choice}` is no way to compare two values")).at(&field.value.span);
@@ -280,6 +303,39 @@ impl Checker<'_> {
             return None;
         }
         Some(value as usize)
+    }
+}
+
+/// What a comparison comes to where both sides are alike: 0 of a difference, 1 of a ratio; `None` where that depends on the side.
+fn of_equal_sides(difference: &Expr) -> Option<f64> {
+    /// Values of both signs and of no round ratio.
+    const TRIED: [f64; 3] = [1.0, -1.7, 2.9];
+    let mut found = TRIED.iter().map(|&side| number(difference, &Alike(side)));
+    let first = found.next()?.ok()?;
+    found.all(|other| other == Ok(first)).then_some(first)
+}
+
+/// Both sides of a pair have this value, and nothing else is known.
+struct Alike(f64);
+
+impl Values for Alike {
+    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
+        Nothing.vehicle(index)
+    }
+    fn column(&self, index: usize) -> Result<Scalar, String> {
+        Nothing.column(index)
+    }
+    fn extent(&self) -> Result<(f64, f64), String> {
+        Nothing.extent()
+    }
+    fn input(&self, index: usize) -> Result<f64, String> {
+        Nothing.input(index)
+    }
+    fn sides(&self) -> Result<(f64, f64), String> {
+        Ok((self.0, self.0))
+    }
+    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
+        Nothing.limit_of(statistic)
     }
 }
 

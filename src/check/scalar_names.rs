@@ -115,7 +115,11 @@ impl Checker<'_> {
         }
         if let Some(statistic) = Statistic::named(path).filter(|_| scope.limits.is_some()) {
             let says = format!("there is no other limit of the {} that this could refer to", statistic.title(self.ddof));
-            self.problems.push(Problem::error("no-such-limit", says).at(span));
+            self.problems.push(
+                Problem::error("no-such-limit", says)
+                    .at(span)
+                    .help("in a limit, the name of a statistic stands for the limit of that statistic, not for its value"),
+            );
             return None;
         }
         if let Some(reducer) = Reducer::named(path) {

@@ -80,7 +80,7 @@ impl Checker<'_> {
     fn expr_inside(&mut self, phrase: &Phrase, text: &Text, span: Origin, scope: &mut Scope) -> Option<Expr> {
         let (kind, ty) = match &phrase.node {
             Node::Number { value, .. } if !value.is_finite() => {
-                let says = format!("`{}` is larger than any number that can be computed with", span.words);
+                let says = format!("`{}` is more than a number can be", span.words);
                 self.problems.push(Problem::error("not-finite", says).at(&span));
                 return None;
             }
@@ -120,6 +120,7 @@ impl Checker<'_> {
                 let (left, right) = (self.expr(left, text, scope), self.expr(right, text, scope));
                 let (left, right) = (left?, right?);
                 let ty = self.binary_type(*operator, &left, &right)?;
+                self.divided_by_zero(*operator, &right, &span)?;
                 let found = self.folded(Expr { kind: Kind::Binary(*operator, Box::new(left), Box::new(right)), ty, span })?;
                 if matches!(found.kind, Kind::Constant(_)) {
                     // `false and p0.15 > p99.85` asks nothing of the records.
@@ -170,6 +171,14 @@ impl Checker<'_> {
             self.problems.push(Problem::error("power", "this power is beyond any unit").at(span));
         }
         found
+    }
+
+    fn divided_by_zero(&mut self, operator: Operator, right: &Expr, span: &Span) -> Option<()> {
+        if operator != Operator::Divide || !matches!(right.kind, Kind::Constant(Scalar::Number(0.0))) {
+            return Some(());
+        }
+        self.problems.push(Problem::error("not-finite", "this is a division by zero").at(span).also(&right.span, "zero"));
+        None
     }
 
     /// `2/3 of std` is two thirds of it, but `2/share of std` could be either.
@@ -314,6 +323,8 @@ impl Checker<'_> {
                         return None;
                     }
                 };
+                // A choice stands for its word, unless a word of that name is meant.
+                let word = if choices.contains(&word) { word } else { self.choice_word(&word, &right_span)? };
                 if !choices.contains(&word) {
                     self.problems.push(
                         Problem::error("unknown-choice", format!("`{}` is never `{word}`", words(&left)))

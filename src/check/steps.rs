@@ -41,6 +41,9 @@ impl Filled {
     }
 }
 
+/// Windows and grids of less [m or s] are slips: no record has so many samples, and no memory so many points.
+const SMALLEST_EXTENT: f64 = 1e-6;
+
 impl StepSpec {
     /// Whether every sample of the record has a value after the step.
     pub fn keeps_samples(&self) -> bool {
@@ -219,6 +222,7 @@ impl Checker<'_> {
         what: &'static str,
         forms: impl Iterator<Item = &'f Form> + Clone,
     ) -> Option<usize> {
+        let all = forms.clone();
         let items: &[At<Item>] = step.parts.first().map_or(&[], Vec::as_slice);
         let fits = |form: &Form| {
             form.head.len() == items.len()
@@ -243,17 +247,13 @@ impl Checker<'_> {
             .map(|form| format!("`{}`", form.in_words()))
             .collect();
         let filters: Vec<String> = self.names.filters.keys().cloned().collect();
-        let problem = Problem::error("unknown-step", format!("these words are no {what}")).at(span);
+        let code = if what == "metric" { "unknown-metric" } else { "unknown-step" };
+        let problem = Problem::error(code, format!("these words are no {what}")).at(span);
         self.problems.push(if wordings.is_empty() {
-            let known: Vec<&str> =
-                if what == "step" { heads.iter().copied().chain(filters.iter().map(String::as_str)).collect() } else { heads };
-            let mut known_once: Vec<&str> = Vec::new();
-            for word in known {
-                if !known_once.contains(&word) {
-                    known_once.push(word);
-                }
-            }
-            problem.suggest(first, known_once)
+            let wordings: Vec<String> = all.map(Form::in_words).collect();
+            let filters = filters.iter().map(String::as_str).filter(|_| what == "step");
+            let known: Vec<&str> = wordings.iter().map(String::as_str).chain(filters).collect();
+            problem.help(format!("known here: {}", known.join(", ")))
         } else {
             problem.help(format!("the wording is {}", wordings.join(" or ")))
         });
@@ -281,6 +281,12 @@ impl Checker<'_> {
                     let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
                     self.suits(name, matches!(found, Dimension::LENGTH | Dimension::TIME), "a length or a time", found, &place)?;
                     self.positive(name, value, &place)?;
+                    if value < SMALLEST_EXTENT {
+                        let unit = if found == Dimension::TIME { "µs" } else { "µm" };
+                        let says = format!("the {name} is below 1 {unit}, finer than any record");
+                        self.problems.push(Problem::error("out-of-range", says).at(&place));
+                        return None;
+                    }
                     filled.numbers.push((value, found, place));
                 }
                 Part::Frequency(name) => {

@@ -12,7 +12,7 @@ use super::identification::{self, REPORT_KEY, Stated};
 use super::origin::{ORIGIN_KEY, Origin};
 use super::record::{Record, Wanted, read_record};
 use super::table::{Cell, Table};
-use super::text::{read_any, read_text};
+use super::text::{other_format, read_any, read_text};
 use crate::disk;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span, Spanned};
@@ -140,6 +140,7 @@ impl Campaign {
         if name.is_none() && tree.get("name").is_none() {
             opening.problems.push(Problem::error("key-missing", "the campaign has no `name`").at(&tree.span.part(0..0)));
         }
+        opening.misspelt(&tree);
         let vehicle = opening.vehicle(&tree);
         let sections = opening.sections(&tree);
         let record_folders = RecordKind::ALL.into_iter().filter_map(|kind| Some((kind, opening.text(&tree, kind.key())?))).collect();
@@ -202,6 +203,13 @@ impl Campaign {
             .filter(|name| !name.starts_with('.'))
             .collect();
         if names.is_empty() {
+            let mut others: Vec<String> = std::fs::read_dir(&place.path)
+                .map(|entries| entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect())
+                .unwrap_or_default();
+            others.sort();
+            if let Some(problem) = others.iter().find_map(|name| other_format(Path::new(name), &format!("{}/{name}", place.inside))) {
+                return Err(problem.at(span));
+            }
             return Err(Problem::error("no-records", format!("there is no CSV file in `{}`", place.shown)).at(span));
         }
         names.sort();
@@ -237,6 +245,13 @@ impl Campaign {
             return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside)).at(span));
         }
         let others = self.strangers[kind as usize].get_or_init(|| self.strangers(&folder.path));
+        let in_other_format = |name: &String| {
+            let same = Path::new(name).file_stem().and_then(|stem| stem.to_str()) == Some(&section.value);
+            other_format(Path::new(name), &format!("{}/{name}", folder.inside)).filter(|_| same)
+        };
+        if let Some(problem) = others.iter().find_map(in_other_format) {
+            return Err(problem.at(&section.span));
+        }
         let problem = Problem::error("file-missing", format!("there is no file `{}`", place.inside)).at(&section.span);
         if others.len().saturating_mul(self.names.len()) > MOST_COMPARISONS {
             return Err(problem);
@@ -399,6 +414,21 @@ impl Opening<'_> {
         }
     }
 
+    /// A key of the layout that is one letter off would be printed as a fact and otherwise ignored.
+    fn misspelt(&mut self, tree: &Node) {
+        let layout = || LAYOUT.into_iter().chain(RecordKind::ALL.into_iter().map(RecordKind::key));
+        for (key, _) in tree.entries() {
+            let off = |known: &&str| strsim::damerau_levenshtein(&key.text.to_lowercase(), known) <= 1;
+            if layout().any(|known| known == key.text) {
+                continue;
+            }
+            if let Some(near) = layout().find(off) {
+                let problem = Problem::error("unknown-key", format!("a campaign has no key `{}`", key.text)).at(&key.span);
+                self.problems.push(problem.help(format!("did you mean `{near}`?")));
+            }
+        }
+    }
+
     fn vehicle(&mut self, tree: &Node) -> Option<Node> {
         let written = self.text(tree, "vehicle")?;
         let place = self.folder.place(&written.value, &written.span);
@@ -456,9 +486,11 @@ impl Opening<'_> {
     }
 }
 
+/// Keys of `campaign.yaml` beside those of the records.
+const LAYOUT: [&str; 7] = ["name", "vehicle", "sections", "parameters", "protocol", ORIGIN_KEY, REPORT_KEY];
+
 /// Scalars at the top and one map below it, in the order written.
 fn facts(tree: &Node) -> Vec<Fact> {
-    const LAYOUT: [&str; 7] = ["name", "vehicle", "sections", "parameters", "protocol", ORIGIN_KEY, REPORT_KEY];
     let layout = |key: &str| LAYOUT.contains(&key) || RecordKind::ALL.iter().any(|kind| kind.key() == key);
     let mut facts = Vec::new();
     for (key, node) in tree.entries().iter().filter(|(key, _)| !layout(&key.text)) {

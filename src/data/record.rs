@@ -125,7 +125,8 @@ fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -
     read_large(path, shown, bytes).map_err(|problem| vec![problem])?;
     let text = decode(bytes, shown).map_err(|problem| vec![problem])?;
     let (headings, body) = header(text, shown)?;
-    let mut columns = find_columns(&headings, wanted, shown)?;
+    let found = find_columns(&headings, wanted, shown);
+    let mut columns = found.map_err(|problems| units_in_row(text, body, &headings, shown).map_or(problems, |problem| vec![problem]))?;
     let rows = rows::read(text, body, headings.len(), &mut columns, shown)?;
     let channels = headings.into_iter().map(|heading| heading.name).collect();
     Ok(Record { shown: shown.to_string(), columns, channels, rows, sha256: sha256(bytes), bytes: bytes.len(), path: path.to_path_buf() })
@@ -158,10 +159,11 @@ fn header(text: &str, shown: &str) -> Result<(Vec<Heading>, usize), Vec<Problem>
 fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<Vec<Column>, Vec<Problem>> {
     let mut columns: Vec<Column> = Vec::with_capacity(wanted.len());
     let mut faults = Faults::new(shown);
+    let mut lacking: Vec<&str> = Vec::new();
     for wanted in wanted {
         let Some(position) = headings.iter().position(|heading| heading.name == wanted.name) else {
             if wanted.required {
-                faults.push(|| missing(headings, wanted, shown));
+                lacking.push(&wanted.name);
             }
             continue;
         };
@@ -172,12 +174,60 @@ fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<
             Err(problem) => faults.push(|| problem),
         }
     }
+    if !lacking.is_empty() {
+        faults.push(|| missing(headings, &lacking, shown));
+    }
     faults.finish(columns)
 }
 
-fn missing(headings: &[Heading], wanted: &Wanted, shown: &str) -> Problem {
-    let problem = Problem::error("unknown-channel", format!("`{shown}` has no column `{}`", wanted.name))
-        .suggest(&wanted.name, headings.iter().map(|heading| heading.name.as_str()).filter(|name| !name.is_empty()));
+/// Units in a row of their own below the names, which no heading has.
+fn units_in_row(text: &str, body: usize, headings: &[Heading], shown: &str) -> Option<Problem> {
+    let line = text[body..].lines().next().filter(|_| headings.iter().all(|heading| heading.unit.is_none()))?;
+    let cells = cells::split(line).ok()?;
+    let unit = |text: &str| Unit::parse(text.trim_matches(['[', ']', '(', ')'])).is_ok();
+    if cells.len() != headings.len() || !cells.iter().all(|cell| unit(&cell.text) && cell.text.parse::<f64>().is_err()) {
+        return None;
+    }
+    let (name, unit) = (&headings.first()?.name, cells.first()?.text.trim_matches(['[', ']', '(', ')']));
+    Some(
+        Problem::error("units-in-row", "the units stand in a row of their own")
+            .at(&Source::excerpt(shown, line, 2).whole())
+            .help(format!("write each unit behind its name, in one header line: `{name} [{unit}]`")),
+    )
+}
+
+/// `Y_1R (kN)`, `Y_1R_kN`, `Y_1R/kN` for a column `Y_1R`: the unit.
+fn unit_otherwise<'a>(heading: &'a str, name: &str) -> Option<&'a str> {
+    let rest = heading.strip_prefix(name)?;
+    let unit = rest.trim_matches(|c: char| c.is_whitespace() || "()<>{}_/-,".contains(c));
+    (unit.len() < rest.len() && !unit.is_empty() && Unit::parse(unit).is_ok()).then_some(unit)
+}
+
+/// One problem for all columns that the header lacks: it is shown once.
+fn missing(headings: &[Heading], names: &[&str], shown: &str) -> Problem {
+    let known = || headings.iter().map(|heading| heading.name.as_str()).filter(|name| !name.is_empty());
+    let problem = match names {
+        [name] => {
+            let problem = Problem::error("unknown-channel", format!("`{shown}` has no column `{name}`"));
+            match known().find_map(|heading| Some((heading, unit_otherwise(heading, name)?))) {
+                Some((heading, unit)) => problem.help(format!("the unit of `{heading}` goes into square brackets: `{name} [{unit}]`")),
+                None => problem.suggest(name, known()),
+            }
+        }
+        _ => {
+            let list = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+            let problem = Problem::error("unknown-channel", format!("`{shown}` has no columns {list}"));
+            let slips = names.iter().filter_map(|name| {
+                let otherwise = known().find_map(|heading| Some((heading, unit_otherwise(heading, name)?)));
+                match otherwise {
+                    Some((heading, unit)) => Some(format!("`{name} [{unit}]` for `{heading}`")),
+                    None => crate::problem::nearest(name, known()).map(|near| format!("`{near}` for `{name}`")),
+                }
+            });
+            let slips: Vec<String> = slips.collect();
+            if slips.is_empty() { problem } else { problem.help(format!("did you mean {}?", slips.join(", "))) }
+        }
+    };
     match headings {
         [first, .., last] => problem.at(&first.span.to(&last.span)),
         [only] => problem.at(&only.span),

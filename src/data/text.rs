@@ -123,6 +123,9 @@ pub fn read_bytes(path: &Path, shown: &str, limit: u64, buffer: &mut Vec<u8>) ->
 
 /// With a longest line, a file is not read beyond a longer one.
 fn read_bounded(path: &Path, shown: &str, limit: u64, longest: Option<usize>, buffer: &mut Vec<u8>) -> Result<(), Problem> {
+    if let Some(problem) = other_format(path, shown) {
+        return Err(problem);
+    }
     let unreadable = |error: std::io::Error| unreadable(shown, &error);
     let size = size(path, shown, limit)?;
     buffer.clear();
@@ -157,6 +160,32 @@ fn read_bounded(path: &Path, shown: &str, limit: u64, longest: Option<usize>, bu
         return Err(Problem::error("file-too-large", format!("`{shown}` grew beyond {} MB while it was read", limit >> 20)));
     }
     if buffer.is_empty() { Err(empty(shown)) } else { Ok(()) }
+}
+
+/// Formats that measuring systems and simulation programs write and that are not read.
+const OTHER_FORMATS: [(&str, &str); 12] = [
+    ("mat", "a MATLAB file"),
+    ("xlsx", "an Excel workbook"),
+    ("xls", "an Excel workbook"),
+    ("ods", "a spreadsheet"),
+    ("parquet", "a Parquet file"),
+    ("feather", "a Feather file"),
+    ("mf4", "an ASAM MDF file"),
+    ("mdf", "an ASAM MDF file"),
+    ("tdms", "a LabVIEW file"),
+    ("h5", "an HDF5 file"),
+    ("hdf5", "an HDF5 file"),
+    ("nc", "a NetCDF file"),
+];
+
+/// A problem for a file whose name says that it is of a format that is not read.
+pub(super) fn other_format(path: &Path, shown: &str) -> Option<Problem> {
+    let ending = path.extension()?.to_str()?.to_lowercase();
+    let (_, what) = OTHER_FORMATS.iter().find(|(known, _)| *known == ending)?;
+    Some(
+        Problem::error("format-not-read", format!("`{shown}` is {what}; records and tables are read as CSV"))
+            .help("export it as CSV in UTF-8: one header line `name [unit]`, commas between columns, points in numbers"),
+    )
 }
 
 fn empty(shown: &str) -> Problem {

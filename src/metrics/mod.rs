@@ -30,3 +30,8 @@ pub mod statistics;
 mod sum;
 pub mod synchronise;
 pub mod window;
+
+/// A number of a message: six digits, so that a conversion between units leaves no tail.
+pub fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::rounded;
+
 /// Most points of a grid: 50 km at a centimetre, 40 MB for each signal. A step mistyped by orders of magnitude is refused before it
 /// fills the memory.
 const MOST_POINTS: f64 = 5e6;
@@ -110,8 +112,12 @@ impl fmt::Display for ResampleError {
             Self::Empty => f.write_str("the signal has no samples"),
             Self::Lengths { axis, signal } => write!(f, "the axis has {axis} samples, the signal {signal}"),
             Self::Axis { sample } => write!(f, "the axis does not increase at sample {}", sample + 1),
-            Self::Outside { point, first, last } => write!(f, "the point {point} lies outside the record, {first} to {last}"),
-            Self::Grid { start, end, step } => write!(f, "no grid leads from {start} to {end} in steps of {step}"),
+            Self::Outside { point, first, last } => {
+                write!(f, "the point {} lies outside the record, {} to {}", rounded(point), rounded(first), rounded(last))
+            }
+            Self::Grid { start, end, step } => {
+                write!(f, "no grid leads from {} to {} in steps of {}", rounded(start), rounded(end), rounded(step))
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{resample::not_increasing, sum::RunningSums};
+use super::{resample::not_increasing, rounded, sum::RunningSums};
 
 /// A sample this near to the edge of a window, in units of the axis, lies on it.
 const ON_THE_EDGE: f64 = 1e-6;
@@ -220,21 +220,32 @@ pub enum SlidingError {
     },
 }
 
+impl SlidingError {
+    /// The fact with rounded numbers in the unit of the axis.
+    pub fn in_words(&self, unit: &str) -> String {
+        let shown = |value: f64| format!("{} {unit}", rounded(value)).trim_end().to_string();
+        match *self {
+            Self::Window { width, step } => format!("no window slides with a width of {} in steps of {}", shown(width), shown(step)),
+            Self::Section { start, end } => format!("a section from {} to {} has no length", shown(start), shown(end)),
+            Self::SectionTooShort { length, width } => {
+                format!("the section is {} long, shorter than one window of {}", shown(length), shown(width))
+            }
+            Self::Lengths { axis, signal } => format!("the axis has {axis} samples, the signal {signal}"),
+            Self::Axis { sample } => format!("the axis does not increase at sample {}", sample + 1),
+            Self::TooFewSamples { samples } => format!("the record has {samples} samples, fewer than two"),
+            Self::Record { first, last, start, end } => {
+                let (record, section) = ((shown(first), shown(last)), (shown(start), shown(end)));
+                format!("the record from {} to {} does not cover the section from {} to {}", record.0, record.1, section.0, section.1)
+            }
+            Self::Empty { from, width } => format!("the window from {} to {} holds no sample", shown(from), shown(from + width)),
+            Self::NotFinite { from } => format!("the window from {} holds a value that is not finite", shown(from)),
+        }
+    }
+}
+
 impl fmt::Display for SlidingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::Window { width, step } => write!(f, "no window slides with a width of {width} in steps of {step}"),
-            Self::Section { start, end } => write!(f, "a section from {start} to {end} has no length"),
-            Self::SectionTooShort { length, width } => write!(f, "the section of length {length} is shorter than one window of {width}"),
-            Self::Lengths { axis, signal } => write!(f, "the axis has {axis} samples, the signal {signal}"),
-            Self::Axis { sample } => write!(f, "the axis does not increase at sample {}", sample + 1),
-            Self::TooFewSamples { samples } => write!(f, "the record has {samples} samples, fewer than two"),
-            Self::Record { first, last, start, end } => {
-                write!(f, "the record from {first} to {last} does not cover the section from {start} to {end}")
-            }
-            Self::Empty { from, width } => write!(f, "the window from {from} to {} holds no sample", from + width),
-            Self::NotFinite { from } => write!(f, "the window from {from} holds a value that is not finite"),
-        }
+        f.write_str(&self.in_words(""))
     }
 }
 

@@ -11,7 +11,8 @@ use crate::units::{self, number::Refused};
 /// Values of the vehicle, one for each [`Plan::vehicle`].
 #[derive(Clone, Debug)]
 pub struct Facts {
-    pub vehicle: Vec<Scalar>,
+    /// Why there is no value, for a datum that may be absent.
+    pub vehicle: Vec<Result<Scalar, String>>,
     /// For each of them whether it is a number that the vehicle file gives without a unit.
     pub assumed: Vec<bool>,
 }
@@ -19,16 +20,16 @@ pub struct Facts {
 impl Facts {
     /// Reads every vehicle datum the protocol declares; a missing or ill-formed one is a problem.
     pub fn read(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Self {
-        let read = |datum| vehicle_datum(datum, campaign, problems).unwrap_or((Scalar::Number(0.0), false));
+        let read = |datum| vehicle_datum(datum, campaign, problems).unwrap_or((Ok(Scalar::Number(0.0)), false));
         let (vehicle, assumed) = plan.vehicle.iter().map(read).unzip();
         Self { vehicle, assumed }
     }
 
     /// The values as a report prints them.
     pub fn items(&self, plan: &Plan) -> Vec<DataItem> {
-        let of = |(datum, (value, assumed)): (&Datum, (&Scalar, &bool))| {
+        let of = |(datum, (value, assumed)): (&Datum, (&Result<Scalar, String>, &bool))| {
             let unit_assumed = *assumed && is_dimensioned(&datum.kind);
-            DataItem { unit_assumed, ..item(datum, Some(value)) }
+            DataItem { unit_assumed, ..vehicle_item(datum, value) }
         };
         plan.vehicle.iter().zip(self.vehicle.iter().zip(&self.assumed)).map(of).collect()
     }
@@ -46,16 +47,35 @@ pub fn item(datum: &Datum, value: Option<&Scalar>) -> DataItem {
     DataItem { name: datum.title.clone(), value, unit: unit.map(|unit| unit.text.clone()), used: true, unit_assumed: false }
 }
 
+/// Why a datum that may be absent has no value.
+pub fn absent(datum: &Datum) -> String {
+    format!("the vehicle file does not state `{}`", datum.key)
+}
+
+/// In place of a value that the vehicle file need not state and does not.
+pub const NOT_STATED: &str = "not stated";
+
+/// As [`item`], of the vehicle; a value that is not stated is said to be so.
+pub fn vehicle_item(datum: &Datum, value: &Result<Scalar, String>) -> DataItem {
+    match value {
+        Ok(value) => item(datum, Some(value)),
+        Err(_) => DataItem { name: datum.title.clone(), value: NOT_STATED.into(), unit: None, used: true, unit_assumed: false },
+    }
+}
+
 /// A number of a table without the tail that conversion between units leaves: `56.3`, not `56.300000000000004`.
 pub fn trimmed(value: f64) -> String {
     let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
-fn vehicle_datum(datum: &Datum, campaign: &Campaign, problems: &mut Problems) -> Option<(Scalar, bool)> {
+fn vehicle_datum(datum: &Datum, campaign: &Campaign, problems: &mut Problems) -> Option<(Result<Scalar, String>, bool)> {
     let Some(node) = campaign.vehicle.lookup(&datum.key) else {
         if let Some(default) = &datum.default {
-            return Some((default.clone(), false));
+            return Some((Ok(default.clone()), false));
+        }
+        if datum.may_be_absent {
+            return Some((Err(absent(datum)), false));
         }
         let known: Vec<&str> = campaign.vehicle.entries().iter().map(|(key, _)| key.text.as_str()).collect();
         problems.push(
@@ -73,7 +93,7 @@ fn vehicle_datum(datum: &Datum, campaign: &Campaign, problems: &mut Problems) ->
     };
     let refused = match read {
         Ok((value, assumed)) => match out_of_range(datum, &value, assumed) {
-            None => return Some((value, assumed)),
+            None => return Some((Ok(value), assumed)),
             Some(refused) => refused,
         },
         Err(refused) => refused,
@@ -150,7 +170,7 @@ impl<'a> Known<'a> {
 
 impl Values for Known<'_> {
     fn vehicle(&self, index: usize) -> Result<Scalar, String> {
-        Ok(self.facts.vehicle[index].clone())
+        self.facts.vehicle[index].clone()
     }
 
     fn column(&self, index: usize) -> Result<Scalar, String> {

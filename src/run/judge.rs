@@ -40,6 +40,9 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
         quantities.push(result);
         reasons.extend(fails);
     }
+    if quantities.iter().all(|quantity| quantity.statistics.is_empty()) {
+        missing.push(without_criterion(plan).into());
+    }
     if !missing.is_empty() {
         return Judged { verdict: Verdict::NotAssessable, reasons: missing, quantities, zones };
     }
@@ -105,6 +108,29 @@ fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<Strin
     reasons
 }
 
+/// Why a quantity cannot be had of some of the sections: the first of them in full.
+fn impossible(index: usize, used: &[(&Unit, &SectionValues)]) -> Option<String> {
+    let of_section =
+        |values: &SectionValues| values.impossible.iter().find(|(quantity, _)| *quantity == index).map(|(_, says)| says.clone());
+    let mut found = used.iter().filter_map(|(unit, values)| Some((&unit.name, of_section(values)?)));
+    let (name, says) = found.next()?;
+    let more = match found.count() {
+        0 => String::new(),
+        1 => "; so is 1 other section".into(),
+        more => format!("; so are {more} other sections"),
+    };
+    Some(format!("it cannot be evaluated in section {name}, {says}{more}"))
+}
+
+/// Why nothing decides: a verdict needs at least one limit that applies.
+fn without_criterion(plan: &Plan) -> &'static str {
+    if plan.quantities.iter().all(|quantity| quantity.limits.is_empty()) {
+        "the protocol states no acceptance criterion"
+    } else {
+        "no acceptance criterion of the protocol applies to this vehicle and its sections"
+    }
+}
+
 fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
     let given: Vec<&Unit> = units.iter().filter(|unit| unit.zone.as_deref() == Some(zone.name.as_str())).collect();
     let used: Vec<&Unit> = given.iter().copied().filter(|unit| unit.fault.is_none()).collect();
@@ -140,8 +166,11 @@ fn quantity_result(
         }
     }
     let pairs = members.iter().map(|(unit, signal, _)| (unit.site, *signal)).collect::<BTreeSet<_>>().len();
+    let impossible = impossible(index, used);
     let recorded = signals.iter().filter(|recorded| **recorded).count();
-    let reason = if recorded < quantity.minimum_signals {
+    let reason = if impossible.is_some() {
+        impossible
+    } else if recorded < quantity.minimum_signals {
         Some(format!("{} recorded; at least {} required", count(recorded, "signal"), quantity.minimum_signals))
     } else if pairs < quantity.minimum_pairs {
         let of = if pairs == members.len() { "section and signal" } else { "site and signal (a repeat is no further section)" };

@@ -32,9 +32,9 @@ pub fn compare(plan: &Plan, facts: &Facts, quantity: &Quantity, members: &[Membe
     for limit in &quantity.limits {
         match applies(limit, facts) {
             Ok(false) => {}
-            Ok(true) => {
-                all.extend(parts(plan, limit, members).into_iter().map(|part| of_part(plan, facts, quantity, limit, &part, members)))
-            }
+            Ok(true) => all.extend(
+                parts(plan, quantity, limit, members).into_iter().map(|part| of_part(plan, facts, quantity, limit, &part, members)),
+            ),
             Err(reason) => {
                 let mut result = empty(quantity, limit, "all".into(), &[]);
                 result.reason = Some(format!("it cannot be determined whether the limit applies: {reason}"));
@@ -57,9 +57,11 @@ pub enum Part<'a> {
     Where(&'a Scope),
 }
 
-/// A limit of zones that need no section and have none is left out.
-pub fn parts<'a>(plan: &Plan, limit: &'a Limit, members: &[Member<'_>]) -> Vec<Part<'a>> {
-    let needed = |name: &str| plan.zones.iter().any(|zone| zone.name == name && zone.minimum_sections > 0);
+/// A limit of zones that need no section and have none is left out; so is that of zones that the quantity leaves out by its own
+/// condition, unless it leaves out all.
+pub fn parts<'a>(plan: &Plan, quantity: &Quantity, limit: &'a Limit, members: &[Member<'_>]) -> Vec<Part<'a>> {
+    let selective = quantity.only.is_some() && !members.is_empty();
+    let needed = |name: &str| !selective && plan.zones.iter().any(|zone| zone.name == name && zone.minimum_sections > 0);
     let filled = |zone: &str| members.iter().any(|(unit, _, _)| unit.zone.as_deref() == Some(zone));
     match &limit.scope {
         Scope::All => vec![Part::All],

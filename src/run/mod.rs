@@ -86,6 +86,7 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
     let Evaluated { units, values, findings, notes, files, .. } = &evaluated;
     let judged = judge::judge(plan, &evaluated.facts, units, values, findings);
     let mut findings = findings.clone();
+    findings.extend(requirements::findings(plan, &evaluated.facts, units));
     findings.extend(told::findings(plan, &evaluated.facts, &judged.quantities));
     let (mut traces, mut notes) = (Vec::new(), notes.clone());
     for trace in traces::traces(&prepared.work(), units, &judged.quantities, settings.traces) {
@@ -216,7 +217,7 @@ impl<'a> Prepared<'a> {
     fn at(&self, values: Vec<SectionValues>, needed: bool) -> Result<Evaluated, Problems> {
         let (mut units, mut notes) = (self.units.clone(), self.notes.clone());
         let copies = copies::find(self.plan, &units, &values);
-        requirements::take_over(self.plan, &mut units, &values, &copies, &mut notes)?;
+        requirements::take_over(self.plan, &self.facts, &mut units, &values, &copies, &mut notes)?;
         stop_on_fault(self.plan, &units, &values)?;
         let findings: Vec<Finding> = values.iter().flat_map(|values| values.findings.iter().cloned()).chain(copies).collect();
         // Sections that are not plausible say why in the findings of a report.

@@ -25,6 +25,8 @@ use crate::units::Dimension;
 pub struct SectionValues {
     /// For each quantity and signal, SI; `None` where the position was not recorded or the quantity leaves the section out.
     pub pairs: Vec<Vec<Option<PairSi>>>,
+    /// Quantities that cannot be had of this section, with the signal and the reason.
+    pub impossible: Vec<(usize, String)>,
     pub checks: Vec<CheckResult>,
     /// What is not plausible in this section alone.
     pub findings: Vec<Finding>,
@@ -102,10 +104,10 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
         let mut values = common.clone();
         let filled = measured.map_err(Fault::new).and_then(|measured| {
             let sides = Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent };
-            quantities(work, &sides, &active, &mut values)?;
+            quantities(work, &sides, &active, &mut values);
             record_checks(work, &sides, &mut values);
             plausibility::look(work, unit, &sides, &track, &mut values);
-            Ok(())
+            Ok::<(), Fault>(())
         });
         if let Err(fault) = filled {
             values.fault = Some(fault.says);
@@ -138,7 +140,8 @@ fn shifted(
     Ok((all, opened.extent))
 }
 
-fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &[bool], values: &mut SectionValues) -> Result<(), Fault> {
+/// A pair that cannot be had is the matter of its quantity: the section serves the others.
+fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &[bool], values: &mut SectionValues) {
     for (index, quantity) in work.plan.quantities.iter().enumerate() {
         let mut pairs = Vec::new();
         for (number, nodes) in work.graph.quantities[index].signals.iter().enumerate() {
@@ -146,12 +149,16 @@ fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &[bool], values: &mut 
                 pairs.push(None);
                 continue;
             }
-            let pair = sides.pair(work, quantity, nodes);
-            pairs.push(Some(pair.map_err(|says| Fault::new(format!("{} {}: {says}", quantity.id, quantity.signals[number].0)))?));
+            match sides.pair(work, quantity, nodes) {
+                Ok(pair) => pairs.push(Some(pair)),
+                Err(says) => {
+                    pairs.push(None);
+                    values.impossible.push((index, format!("{}: {says}", quantity.signals[number].0)));
+                }
+            }
         }
         values.pairs.push(pairs);
     }
-    Ok(())
 }
 
 /// Nodes whose values are needed of both records.
@@ -268,6 +275,7 @@ fn note_margins(work: &Work<'_>, unit: &Unit, needed: &BTreeSet<NodeId>, opened:
 pub fn number_of(found: &Evaluated, node: NodeId) -> Result<f64, String> {
     match found.iter().find(|(id, _)| *id == node) {
         Some((_, Found::Number(value, _))) => Ok(*value),
+        Some((_, Found::Failed(reason))) => Err(reason.clone()),
         _ => Err("a value is missing".into()),
     }
 }
@@ -275,6 +283,7 @@ pub fn number_of(found: &Evaluated, node: NodeId) -> Result<f64, String> {
 fn samples_of(found: &Evaluated, node: NodeId) -> Result<&Samples, String> {
     match found.iter().find(|(id, _)| *id == node) {
         Some((_, Found::Samples(samples))) => Ok(samples),
+        Some((_, Found::Failed(reason))) => Err(reason.clone()),
         _ => Err("a signal is missing".into()),
     }
 }
@@ -347,7 +356,7 @@ impl Sides<'_> {
         match found {
             Some((_, Found::Number(_, samples))) => *samples,
             Some((_, Found::Samples(samples))) => samples.values.len(),
-            None => 0,
+            Some((_, Found::Failed(_))) | None => 0,
         }
     }
 }

@@ -105,9 +105,11 @@ fn pooled(plan: &Plan, facts: &Facts, quantity: &Quantity, index: usize, units: 
         .filter(|(unit, _)| unit.fault.is_none())
         .flat_map(|(unit, values)| values.pairs.get(index).into_iter().flatten().flatten().map(move |pair| (unit, "", *pair)))
         .collect();
+    let impossible =
+        units.iter().zip(values).any(|(unit, values)| unit.fault.is_none() && values.impossible.iter().any(|(at, _)| *at == index));
     let mut limits = Vec::new();
     for limit in quantity.limits.iter().filter(|limit| applies(limit, facts) == Ok(true)) {
-        for part in parts(plan, limit, &members) {
+        for part in parts(plan, quantity, limit, &members) {
             limits.extend(of_part(plan, facts, quantity, limit, &part, units));
         }
     }
@@ -118,7 +120,8 @@ fn pooled(plan: &Plan, facts: &Facts, quantity: &Quantity, index: usize, units: 
         unit: quantity.unit.text.clone(),
         values: units.iter().zip(values).map(of_section).collect(),
         minimum_signals: quantity.minimum_signals,
-        minimum_pairs: quantity.minimum_pairs,
+        // One that cannot be had of some section is not assessable, however many pairs the others give.
+        minimum_pairs: if impossible { usize::MAX } else { quantity.minimum_pairs },
         limits,
     }
 }

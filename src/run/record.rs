@@ -73,6 +73,8 @@ pub enum Found {
     /// A reduced signal, and of how many samples or windows.
     Number(f64, usize),
     Samples(Samples),
+    /// What the rules ask for cannot be had of this record: the reason.
+    Failed(String),
 }
 
 /// All nodes that the wanted ones need in one section: of the cases of a signal, the one that applies.
@@ -229,6 +231,8 @@ struct State<'a> {
     known: &'a Known<'a>,
     method: Method,
     values: Vec<Option<Signal>>,
+    /// Why a node has no value: it, and what is made of it, has none, and the others run on.
+    failed: Vec<Option<String>>,
     /// How many nodes still need a value.
     uses: Vec<usize>,
     cutter: Cutter,
@@ -247,6 +251,7 @@ impl<'a> State<'a> {
             known,
             method,
             values: vec![None; nodes],
+            failed: vec![None; nodes],
             uses: vec![0; nodes],
             cutter,
             extent: opened.extent,
@@ -278,15 +283,19 @@ impl<'a> State<'a> {
             self.filters(&here)?;
             self.reducers(&here)?;
             for &id in &here {
-                if self.values[id].is_none() && !matches!(self.graph.nodes[id].operation, Operation::Reduce(_)) {
-                    let value = self.one(id).map_err(|error| format!("{} ({})", error, self.graph.nodes[id].label))?;
-                    self.values[id] = Some(value);
+                if self.values[id].is_none() && self.failed[id].is_none() && !matches!(self.graph.nodes[id].operation, Operation::Reduce(_))
+                {
+                    self.value(id)?;
                 }
             }
             for &id in &here {
-                if wanted.contains(&id) && self.values[id].is_some() {
-                    let samples = self.samples(id)?;
-                    self.found.push((id, Found::Samples(samples)));
+                if wanted.contains(&id) {
+                    if let Some(reason) = &self.failed[id] {
+                        self.found.push((id, Found::Failed(reason.clone())));
+                    } else if self.values[id].is_some() {
+                        let samples = self.samples(id)?;
+                        self.found.push((id, Found::Samples(samples)));
+                    }
                 }
                 self.release(id);
             }
@@ -309,7 +318,35 @@ impl State<'_> {
     }
 
     fn signal(&self, id: NodeId) -> Result<&Signal, String> {
-        self.values[id].as_ref().ok_or_else(|| "an input is missing".to_string())
+        self.values[id].as_ref().ok_or_else(|| self.failed[id].clone().unwrap_or_else(|| "an input is missing".to_string()))
+    }
+
+    /// Whether an input has no value; then neither has this node, for the same reason.
+    fn without_input(&mut self, id: NodeId) -> bool {
+        let reason = self.graph.nodes[id].inputs.iter().find_map(|&input| self.failed[input].clone());
+        let failed = reason.is_some();
+        if failed {
+            self.failed[id] = reason;
+        }
+        failed
+    }
+
+    fn fail(&mut self, id: NodeId, reason: &str) {
+        self.failed[id] = Some(format!("{reason} ({})", self.graph.nodes[id].label));
+    }
+
+    /// What a step asks for may be impossible, which is the matter of who asks; samples that combine to no number are a fault of the
+    /// record.
+    fn value(&mut self, id: NodeId) -> Result<(), String> {
+        if self.without_input(id) {
+            return Ok(());
+        }
+        match self.one(id) {
+            Ok(value) => self.values[id] = Some(value),
+            Err(reason) if matches!(self.graph.nodes[id].operation, Operation::Step(_) | Operation::Window(_)) => self.fail(id, &reason),
+            Err(reason) => return Err(format!("{reason} ({})", self.graph.nodes[id].label)),
+        }
+        Ok(())
     }
 
     fn samples(&self, id: NodeId) -> Result<Samples, String> {
@@ -328,6 +365,9 @@ impl State<'_> {
         for &id in here {
             let node = &self.graph.nodes[id];
             let Operation::Step(spec @ StepSpec::Butterworth { .. }) = &node.operation else { continue };
+            if self.without_input(id) {
+                continue;
+            }
             let samples = self.samples(node.inputs[0])?;
             let same = groups.iter_mut().find(|(known, members)| {
                 known == spec && members[0].1.along.rate == samples.along.rate && members[0].1.values.len() == samples.values.len()
@@ -338,10 +378,16 @@ impl State<'_> {
             }
         }
         for (spec, members) in groups {
-            let label = &self.graph.nodes[members[0].0].label;
-            let filter = members[0].1.designed(&spec).map_err(|error| format!("{error} ({label})"))?;
             let signals: Vec<&[f64]> = members.iter().map(|(_, samples)| samples.values.as_slice()).collect();
-            let filtered = filter.apply_many(&signals).map_err(|error| format!("{error} ({label})"))?;
+            let designed = members[0].1.designed(&spec);
+            let filtered = designed.and_then(|filter| filter.apply_many(&signals).map_err(|error| error.to_string()));
+            let filtered = match filtered {
+                Ok(filtered) => filtered,
+                Err(reason) => {
+                    members.iter().for_each(|(id, _)| self.fail(*id, &reason));
+                    continue;
+                }
+            };
             for ((id, samples), values) in members.iter().zip(filtered) {
                 self.values[*id] = Some(Signal::Samples(samples.with(values)));
             }
@@ -355,14 +401,21 @@ impl State<'_> {
         for &id in here {
             let node = &self.graph.nodes[id];
             let Operation::Reduce(reducer) = &node.operation else { continue };
+            if self.without_input(id) {
+                continue;
+            }
             let percent = match reducer {
                 Reducer::Percentile(percent) => *percent,
                 Reducer::Named(_) => {
                     let samples = self.samples(node.inputs[0])?;
                     let value = reducer.run(&samples.along.axis, &samples.values, self.method).filter(|value| value.is_finite());
-                    let value =
-                        value.ok_or_else(|| format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len()))?;
-                    self.found.push((id, Found::Number(value, samples.values.len())));
+                    match value {
+                        Some(value) => self.found.push((id, Found::Number(value, samples.values.len()))),
+                        None => {
+                            let says = format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len());
+                            self.failed[id] = Some(says);
+                        }
+                    }
                     continue;
                 }
             };
@@ -374,7 +427,13 @@ impl State<'_> {
         for (input, members) in sorted {
             let samples = self.samples(input)?;
             let percents: Vec<f64> = members.iter().map(|(_, percent)| *percent).collect();
-            let values = percentiles(&samples.values, &percents, self.method).map_err(|error| error.to_string())?;
+            let values = match percentiles(&samples.values, &percents, self.method) {
+                Ok(values) => values,
+                Err(error) => {
+                    members.iter().for_each(|(id, _)| self.failed[*id] = Some(error.to_string()));
+                    continue;
+                }
+            };
             self.found.extend(members.iter().zip(values).map(|((id, _), value)| (*id, Found::Number(value, samples.values.len()))));
         }
         Ok(())

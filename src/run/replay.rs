@@ -1,6 +1,6 @@
 //! A verdict once more, from values that were recorded in a result: for who has no records and asks whether it follows from them.
 
-use super::facts::{Facts, Known, scalar};
+use super::facts::{Facts, Known, NOT_STATED, absent, scalar};
 use super::judge::{Judged, judge};
 use super::pairs::{PairSi, SectionValues};
 use super::record::needed;
@@ -111,8 +111,11 @@ fn facts(plan: &Plan, recorded: &Recorded) -> Result<Facts, String> {
         return Err(format!("the protocol reads {} vehicle data, the result has {}", plan.vehicle.len(), recorded.vehicle.len()));
     }
     let read = plan.vehicle.iter().zip(&recorded.vehicle);
-    let vehicle = read.map(|(datum, text)| scalar(&datum.kind, text).map_err(|says| format!("`{}`: {says}", datum.key)));
-    let vehicle: Vec<Scalar> = vehicle.collect::<Result<_, _>>()?;
+    let vehicle = read.map(|(datum, text)| match text.as_str() {
+        NOT_STATED if datum.may_be_absent => Ok(Err(absent(datum))),
+        text => scalar(&datum.kind, text).map(Ok).map_err(|says| format!("`{}`: {says}", datum.key)),
+    });
+    let vehicle: Vec<Result<Scalar, String>> = vehicle.collect::<Result<_, _>>()?;
     Ok(Facts { assumed: vec![false; vehicle.len()], vehicle })
 }
 

@@ -4,9 +4,13 @@ use super::facts::{Facts, item, trimmed};
 use super::pairs::SectionValues;
 use super::sections::Unit;
 use crate::check::evaluate::{Watched, flag, number};
-use crate::check::plan::{Expr, OnFault, Plan, Zone};
+use crate::check::plan::{Expr, Kind, OnFault, Plan, Zone};
+use crate::check::possible::{Possible, possible};
 use crate::problem::{Problem, Problems};
 use crate::result::{CheckResult, Consequence, Finding};
+
+/// By so much, relative, may a length fall short of its minimum: what two decimals lose of a section's ends.
+const ROUNDING: f64 = 1e-9;
 
 /// Requirements that need no record: the protocol's selection, the zone's condition, the length.
 pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
@@ -29,7 +33,12 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
             checks.extend(length(plan, facts, unit, zone));
         }
         for check in checks {
-            if check.holds != Some(true) {
+            // What the vehicle file does not state is no fault of a section: it is used, and a finding tells it.
+            let untold = check.name == "length" && check.holds.is_none() && {
+                let minimum = asked(plan, unit, &check);
+                minimum.is_some_and(|minimum| !not_stated(minimum, facts).is_empty())
+            };
+            if check.holds != Some(true) && !untold {
                 let subject = match (check.name.as_str(), check.holds) {
                     ("zone", Some(_)) => format!("does not meet the condition of zone {}", unit.zone.as_deref().unwrap_or_default()),
                     ("zone", None) => format!(
@@ -69,14 +78,69 @@ fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckR
     let (minimum, (start, end)) = (zone.minimum_length.as_ref()?, unit.extent?);
     let axis = &plan.axis.unit;
     let shown = |length: f64| format!("{} {axis}", trimmed(axis.from_si(length)));
-    let (holds, says) = match number(minimum, &unit.known(facts)) {
-        // A length written with two decimals may fall short of the minimum by rounding alone.
-        Ok(minimum) => {
-            (Some(end - start >= minimum * (1.0 - 1e-9)), format!("{}; at least {} required", shown(end - start), shown(minimum)))
-        }
-        Err(reason) => (None, reason),
+    let known = unit.known(facts);
+    // A length written with two decimals may fall short of the minimum by rounding alone.
+    let reaches = |minimum: f64| end - start >= minimum * (1.0 - ROUNDING);
+    let found = |minimum: f64| format!("{}; at least {} required", shown(end - start), shown(minimum));
+    let (holds, says) = match number(minimum, &known) {
+        Ok(minimum) => (Some(reaches(minimum)), found(minimum)),
+        // Long enough or too short whatever the values that are not known, or not told by what is known.
+        Err(reason) => match possible(minimum, &known) {
+            Possible::Number(_, most) if reaches(most) => (Some(true), format!("{}; at most {} required", shown(end - start), shown(most))),
+            Possible::Number(least, _) if least.is_finite() && !reaches(least) => (Some(false), found(least)),
+            _ => (None, format!("not checked: {reason}")),
+        },
     };
     Some(CheckResult { name: "length".into(), title: "Minimum length".into(), holds, says })
+}
+
+/// Vehicle data that an expression depends on and that the vehicle file does not state.
+fn not_stated(expr: &Expr, facts: &Facts) -> Vec<usize> {
+    let mut found = Vec::new();
+    expr.visit(&mut |part| match part.kind {
+        Kind::Vehicle(index) if facts.vehicle[index].is_err() && !found.contains(&index) => found.push(index),
+        _ => {}
+    });
+    found
+}
+
+/// One finding for each vehicle datum that is not stated and each requirement that could therefore not be checked.
+pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
+    let mut found: Vec<(usize, &str, Vec<&str>)> = Vec::new();
+    for unit in units.iter().filter(|unit| unit.fault.is_none()) {
+        for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
+            for index in asked(plan, unit, check).map_or_else(Vec::new, |expr| not_stated(expr, facts)) {
+                match found.iter_mut().find(|(known, title, _)| *known == index && *title == check.title) {
+                    Some((_, _, names)) => names.push(&unit.name),
+                    None => found.push((index, &check.title, vec![&unit.name])),
+                }
+            }
+        }
+    }
+    let finding = |(index, title, names): (usize, &str, Vec<&str>)| {
+        let key = &plan.vehicle[index].key;
+        let of = sections_in_words(&names, units.len());
+        let says = format!("the vehicle file does not state `{key}`: {} not checked ({of})", title.to_lowercase());
+        Finding { channel: Some(key.clone()), ..Finding::note("vehicle-data-not-stated", says) }
+    };
+    found.into_iter().map(finding).collect()
+}
+
+/// The rule behind a requirement that may be left unchecked.
+fn asked<'a>(plan: &'a Plan, unit: &Unit, check: &CheckResult) -> Option<&'a Expr> {
+    if check.name == "length" {
+        let zone = plan.zones.iter().find(|zone| Some(&zone.name) == unit.zone.as_ref())?;
+        return zone.minimum_length.as_ref();
+    }
+    plan.checks.iter().find(|rule| rule.name == check.name).map(|rule| &rule.require)
+}
+
+fn sections_in_words(names: &[&str], of: usize) -> String {
+    match names {
+        all if all.len() == of => "all sections".to_string(),
+        [one] => format!("section {one}"),
+        _ => format!("sections {}", names.join(", ")),
+    }
 }
 
 /// Results of the records back to the sections: faults, and the protocol's own checks.
@@ -85,6 +149,7 @@ fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckR
 /// `section-check` for each check that is not met and says `otherwise stop`.
 pub fn take_over(
     plan: &Plan,
+    facts: &Facts,
     units: &mut [Unit],
     values: &[SectionValues],
     copies: &[Finding],
@@ -116,30 +181,27 @@ pub fn take_over(
             unit.refuse(fault.clone(), true);
         }
     }
-    notes.extend(unchecked(units));
+    notes.extend(unchecked(plan, facts, units));
     let used = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).map(|(_, values)| values);
     notes.extend(super::pairs::margin_note(used));
     if stop.any_error() { Err(stop) } else { Ok(()) }
 }
 
 /// One note for each requirement that could not be checked on sections that are used all the same.
-fn unchecked(units: &[Unit]) -> Vec<String> {
+fn unchecked(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
     let mut found: Vec<(&str, &str, Vec<&str>)> = Vec::new();
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
         for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
+            // What the vehicle file does not state is told by a finding.
+            if asked(plan, unit, check).is_some_and(|rule| !not_stated(rule, facts).is_empty()) {
+                continue;
+            }
             match found.iter_mut().find(|(title, says, _)| *title == check.title && *says == check.says) {
                 Some((_, _, names)) => names.push(&unit.name),
                 None => found.push((&check.title, &check.says, vec![&unit.name])),
             }
         }
     }
-    let sentence = |(title, says, names): (&str, &str, Vec<&str>)| {
-        let of = match names.len() {
-            all if all == units.len() => "all sections".to_string(),
-            1 => format!("section {}", names[0]),
-            _ => format!("sections {}", names.join(", ")),
-        };
-        format!("{title}: {says} ({of}).")
-    };
+    let sentence = |(title, says, names): (&str, &str, Vec<&str>)| format!("{title}: {says} ({}).", sections_in_words(&names, units.len()));
     found.into_iter().map(sentence).collect()
 }

@@ -70,6 +70,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
         kind: DatumKind::Number(axis.clone()),
         default: None,
         range: None,
+        may_be_absent: false,
         span: plan.columns.first().map_or_else(|| crate::source::Source::new("", "").whole(), |datum| datum.span.clone()),
     };
     let (start, end) = (extent_datum("start"), extent_datum("end"));

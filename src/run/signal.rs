@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::check::plan::{Operator, StepSpec};
 use crate::metrics::filter::Filter;
-use crate::metrics::resample;
 use crate::metrics::window::{Kind, Sliding};
+use crate::metrics::{resample, rounded};
 
 /// What samples run along, in SI; axis and time increase strictly.
 #[derive(Debug)]
@@ -96,7 +96,7 @@ impl Cutter {
             None => {
                 let range = samples.along.inside(self.extent);
                 if range.is_empty() {
-                    return Err(format!("no sample lies between {} and {}", self.extent.0, self.extent.1));
+                    return Err(format!("no sample lies between {} and {}", rounded(self.extent.0), rounded(self.extent.1)));
                 }
                 let part = Arc::new(samples.along.part(range.clone()));
                 self.known.push((Arc::clone(&samples.along), range, part));
@@ -161,7 +161,8 @@ impl Samples {
             StepSpec::Window { rms, width, step, over_time, ends } => {
                 let sliding = Sliding { width: *width, step: *step, kind: if *rms { Kind::Rms } else { Kind::Mean }, ends: *ends };
                 let (over, (start, end)) = self.window_axis(*over_time, extent)?;
-                let values = sliding.over(over, &self.values, start, end).map_err(|error| error.to_string())?;
+                let values =
+                    sliding.over(over, &self.values, start, end).map_err(|error| error.in_words(if *over_time { "s" } else { "m" }))?;
                 let starts = sliding.starts(start, end).map_err(|error| error.to_string())?;
                 let middle: Vec<f64> = starts.iter().map(|start| start + width / 2.0).collect();
                 let along = if *over_time {

@@ -63,7 +63,7 @@ pub fn single(
     let side = |(found, opened): (Vec<(usize, Found)>, Opened), value: Option<f64>| {
         let reduced = found.iter().filter_map(|(node, found)| match found {
             Found::Number(value, samples) => Some((*node, *value, *samples)),
-            Found::Samples(_) => None,
+            Found::Samples(_) | Found::Failed(_) => None,
         });
         let (inside, last) = opened.rows();
         Side { reduced: reduced.collect(), inside, last, value: value.map(|value| of.from_si(value)), file: opened.file }

@@ -1,6 +1,6 @@
 //! What a run tells of the vehicle's data: units that were assumed, and limits that these data multiply.
 
-use super::facts::{Facts, Known, item};
+use super::facts::{Facts, Known, vehicle_item};
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{DatumKind, Expr, Kind, Limit, Operator, Plan};
 use crate::result::{Finding, LimitFactor, QuantityResult};
@@ -24,7 +24,7 @@ fn assumed(plan: &Plan, facts: &Facts) -> Option<Finding> {
         .zip(facts.vehicle.iter().zip(&facts.assumed))
         .filter(|(datum, (_, assumed))| **assumed && is_dimensioned(&datum.kind))
         .map(|(datum, (value, _))| {
-            let item = item(datum, Some(value));
+            let item = vehicle_item(datum, value);
             format!("{} = {}{}", datum.key, item.value, item.unit.map_or(String::new(), |unit| format!(" {unit}")))
         })
         .collect();
@@ -90,7 +90,7 @@ fn reasons(plan: &Plan, facts: &Facts, condition: &Expr, wanted: bool, found: &m
             let mut read = Vec::new();
             vehicle_data(condition, &mut read);
             for index in read {
-                let item = item(&plan.vehicle[index], facts.vehicle.get(index));
+                let item = vehicle_item(&plan.vehicle[index], &facts.vehicle[index]);
                 let unit = item.unit.filter(|unit| unit != "-").map_or(String::new(), |unit| format!(" {unit}"));
                 let says = format!("{} is {}{unit}", item.name.to_lowercase(), item.value);
                 if !found.contains(&says) {

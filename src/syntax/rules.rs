@@ -83,7 +83,9 @@ impl<'a> Reader<'a> {
         let near = near_key(kind, words).filter(|(_, count)| other.as_ref().is_none_or(|(_, other)| count > other));
         // A key of YAML is one as a whole.
         let near = near.filter(|(_, count)| self.form == Form::Lines || *count == words.len());
-        let other = other.map(|(owners, _)| owners).unwrap_or_default();
+        // `minimum total length` of a zone, which has a `minimum length`, is not the `minimum` of `sections`.
+        let begins = |key: &Key| words.len() > 1 && key.word.split(' ').count() > 1 && key.word.split(' ').next() == words.first().copied();
+        let other = other.filter(|(_, count)| *count > 1 || !kind.keys.iter().any(begins)).map(|(owners, _)| owners).unwrap_or_default();
         let count = near.map_or(1, |(_, count)| count);
         let written = if self.form == Form::Yaml { words.join(" ") } else { words[..count.min(words.len())].join(" ") };
         let problem = Problem::error("unknown-field", format!("a `{}` has no field `{written}`", kind.word)).at(at);

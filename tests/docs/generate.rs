@@ -102,15 +102,21 @@ fn registry(kind: &str) -> String {
     let entries: Vec<_> = catalog::entries().into_iter().filter(|entry| entry.kind == kind).collect();
     assert!(!entries.is_empty(), "nothing in the registry is a {kind}");
     let sourced = entries.iter().any(|entry| entry.source.is_some());
+    let directed = entries.iter().any(|entry| entry.best.is_some());
     let rows = entries.iter().map(|entry| {
         let mut row = vec![code(&entry.wording), code(entry.signature), entry.about.clone()];
+        if directed {
+            row.push(entry.best.clone().unwrap_or_else(|| "that of its values".into()));
+        }
         if sourced {
             row.push(entry.source.unwrap_or_default().to_string());
         }
         row
     });
-    let header = [kind, "takes and gives", "what it is", "source"];
-    table(&header[..if sourced { 4 } else { 3 }], rows)
+    let mut header = vec![kind, "takes and gives", "what it is"];
+    header.extend(directed.then_some("best value"));
+    header.extend(sourced.then_some("source"));
+    table(&header, rows)
 }
 
 /// Units that measure the same in one row.

@@ -8,6 +8,7 @@ mod sweep;
 
 use std::fmt;
 
+use super::rounded;
 use section::Section;
 
 /// What passes, with the edges in Hz.
@@ -189,7 +190,7 @@ impl fmt::Display for DesignError {
             Self::Frequency { frequency, sampling_rate } => write!(
                 f,
                 "the filter's frequency {frequency} Hz does not lie between 0 and half the sampling rate, {} Hz",
-                sampling_rate / 2.0
+                rounded(sampling_rate / 2.0)
             ),
             Self::Edges { low, high } => write!(f, "the band's lower edge {low} Hz is not below its upper edge {high} Hz"),
             Self::Degenerate { order, sampling_rate } => {

@@ -21,6 +21,9 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     };
     let (before, rest) = text.text.split_at(at.min(text.text.len()));
     let found = first_word(rest);
+    if let Some(problem) = decimal_comma(at, text) {
+        return problem;
+    }
     if let Some(problem) = unknown_unit(before, found, at, text) {
         return problem;
     }
@@ -50,6 +53,9 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     if rule == Rule::expression && joins_places(before) {
         return problem.help("in an expression places follow one another without `and`: `Y at wheelset 1 side R`");
     }
+    if rule == Rule::limit && found == "where" && (before.contains("for zone") || before.contains("for each zone")) {
+        return problem.help("zones and other conditions go into one: `for sections where zone is ... and ...`");
+    }
     match expected.as_slice() {
         [] => problem,
         [..] if expected.len() <= 6 => problem.help(format!("expected {}", one_of(&expected))),
@@ -57,9 +63,25 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     }
 }
 
+/// `0,5`: a comma between two digits where none can stand.
+fn decimal_comma(at: usize, text: &Text) -> Option<Problem> {
+    let bytes = text.text.as_bytes();
+    let digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
+    // The comma itself, or, where one could stand, what follows it.
+    let comma = [Some(at), at.checked_sub(1)].into_iter().flatten().find(|&at| bytes.get(at) == Some(&b','))?;
+    if comma == 0 || !digit(comma - 1) || !digit(comma + 1) {
+        return None;
+    }
+    let start = (0..comma).rev().take_while(|&at| digit(at)).last()?;
+    let end = (comma + 1..bytes.len()).take_while(|&at| digit(at)).last()? + 1;
+    let number = &text.text[start..end];
+    let problem = Problem::error("decimal-comma", format!("`{number}` has a decimal comma")).at(&text.place(start..end));
+    Some(problem.help(format!("write numbers with a point: `{}`", number.replace(',', "."))))
+}
+
 /// `4 kn`: what follows a number and is no word of the language was meant as its unit.
 fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Problem> {
-    const FOLLOW: [&str; 17] = [
+    const FOLLOW: [&str; 21] = [
         "and",
         "or",
         "not",
@@ -77,6 +99,10 @@ fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Pro
         "to",
         "every",
         "quantities",
+        "where",
+        "each",
+        "hold",
+        "holds",
     ];
     let last = before.trim_end().rsplit(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.'))).next().unwrap_or("");
     if last.parse::<f64>().is_err() || FOLLOW.contains(&found) || !found.starts_with(char::is_alphabetic) {

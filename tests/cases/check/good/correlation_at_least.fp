@@ -51,4 +51,3 @@ quantity likeness "Correlation of the time histories"
   metric  correlation
   limit   minimum at least 0.8
   limit   mean at least 0.9
-  limit   mean 1.0
