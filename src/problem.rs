@@ -112,7 +112,8 @@ impl Problem {
         let renderer = if color { Renderer::styled() } else { Renderer::plain() };
         let mut text = renderer.render(&[group]).to_string();
         text.push('\n');
-        text
+        // The renderer replaces control characters of ASCII only; a terminal takes U+009B for the start of a command.
+        text.replace(|c: char| matches!(c, '\u{80}'..='\u{9f}'), "\u{fffd}")
     }
 }
 

@@ -237,8 +237,9 @@ fn what_lies_far_beyond_has_an_arrow_and_its_number() {
 
 /// Writes the figures and both reports to the folder named by FISHPLATE_FIGURES, to be looked at.
 #[test]
+#[ignore = "skipped: asked for with --ignored, where FISHPLATE_FIGURES names a folder"]
 fn figures_can_be_looked_at() {
-    let Ok(folder) = std::env::var("FISHPLATE_FIGURES") else { return };
+    let folder = std::env::var("FISHPLATE_FIGURES").expect("FISHPLATE_FIGURES names a folder");
     for (prefix, found) in [("coach", coach::certification()), ("odd", odd::certification())] {
         let figures = figure::figures(&found);
         let page = fishplate::report::html::html(&view::view(&found), &figures).expect("a page");

@@ -6,15 +6,16 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fishplate::certify::{certify, compile};
+use fishplate::certify::{Compiled, certify, compile};
 use fishplate::check::{Override, Overrides, family, plan::SetBy};
 use fishplate::data::Campaign;
 use fishplate::library;
 use fishplate::problem::Problems;
 use fishplate::result::{Certification, QuantityResult, StatisticResult, Verdict};
-use fishplate::run::Settings;
+use fishplate::run::{Settings, Shifts, evaluate};
 use fishplate::source::Source;
 use fishplate::syntax::document::Text;
+use tempfile::TempDir;
 
 struct Section {
     name: &'static str,
@@ -95,7 +96,8 @@ fn write_campaign(folder: &Path) {
     write("sections.csv", table);
 }
 
-fn run(protocol: &str, set: &[(&str, &str)]) -> Certification {
+/// A test protocol and the campaign of straight lines, in a folder that must outlive it.
+fn prepared(protocol: &str, set: &[(&str, &str)]) -> (Compiled, Campaign, TempDir) {
     let folder = tempfile::tempdir().expect("a folder");
     write_campaign(folder.path());
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/cases/check/good").join(protocol);
@@ -111,6 +113,11 @@ fn run(protocol: &str, set: &[(&str, &str)]) -> Certification {
         .collect();
     let compiled = compile(family, &overrides, &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
     let campaign = Campaign::open(folder.path(), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+    (compiled, campaign, folder)
+}
+
+fn run(protocol: &str, set: &[(&str, &str)]) -> Certification {
+    let (compiled, campaign, _folder) = prepared(protocol, set);
     certify(&compiled, &campaign, Settings { traces: 0 }, &|_| {}).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
 }
 
@@ -265,4 +272,33 @@ fn spatial_filters_and_sliding_windows_run() {
     let rms = quantity(&found, "SigmaY_rms");
     assert_eq!(rms.values.len(), 8);
     near(statistic(&found, "SigmaY_rms", "std", "all").limit, 0.1 * (10.0 + 2.0 / 3.0 * 60.0));
+}
+
+/// An offset d is added to the axis of the measurement: at a place x it has what it had at x - d. On lines
+/// that rise by `SLOPE`, every measured value falls by `SLOPE` d, and the simulation stays.
+#[test]
+fn an_offset_moves_the_measurement_forward_along_the_axis() {
+    const OFFSETS: [f64; 4] = [-4.0, 0.0, 2.0, 10.0];
+    let (compiled, campaign, _folder) = prepared("limits_by_zone.fp", &[]);
+    let shifts = Shifts { offsets: &OFFSETS, farthest: None, correct: false };
+    let found = evaluate(&compiled.plan, &compiled.graph, &campaign, &shifts, &|_| {})
+        .unwrap_or_else(|problems| panic!("{}", problems.render(false)));
+    assert_eq!(found.len(), OFFSETS.len());
+    let judged: Vec<_> = found.iter().map(|found| found.judge(&compiled.plan)).collect();
+    let mut compared = 0;
+    for (judged, offset) in judged.iter().zip(OFFSETS) {
+        let table = judged.quantities.iter().find(|quantity| quantity.id == "table").expect("there");
+        for value in &table.values {
+            let section = SECTIONS.iter().find(|section| section.name == value.section);
+            let section = section.expect("a section");
+            let (start, more) = if value.signal == "Y_1R" { section.right } else { section.left };
+            // The median of a line is its value in the middle of the section.
+            let middle = start + SLOPE * (END - START) / 2.0;
+            near(value.measured, middle - SLOPE * offset);
+            near(value.simulated, middle + more);
+            near(Some(value.difference), more + SLOPE * offset);
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, OFFSETS.len() * 2 * SECTIONS.len());
 }

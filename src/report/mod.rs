@@ -12,6 +12,7 @@ pub mod json;
 pub mod number;
 pub mod study;
 pub mod tables;
+#[cfg_attr(not(feature = "typeset"), path = "no_typesetter.rs")]
 pub mod typst;
 pub mod view;
 pub mod visible;
