@@ -189,7 +189,9 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     }
     let mut begun = candidates.iter().filter(|candidate| {
         let rest = candidate.to_lowercase().strip_prefix(&lower).map(str::to_string);
-        lower.chars().count() >= SHORTEST_BEGINNING && rest.is_some_and(|rest| rest.starts_with(char::is_alphabetic))
+        lower.chars().count() >= SHORTEST_BEGINNING
+            && rest.is_some_and(|rest| rest.starts_with(char::is_alphabetic))
+            && !other_position(word, candidate)
     });
     match (begun.next(), begun.next()) {
         (Some(only), None) => Some(only),

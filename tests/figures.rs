@@ -50,8 +50,8 @@ fn overview_puts_statistics_at_their_share_of_the_limit() {
     let svg = named(&found, "overview");
     // Two statistics for each of the eleven quantities that could be assessed.
     assert_eq!(marks(&svg), 22);
-    assert_eq!(svg.matches(">holds</text>").count(), 10);
-    assert_eq!(svg.matches(">fails</text>").count(), 1);
+    assert_eq!(svg.matches(">met</text>").count(), 10);
+    assert_eq!(svg.matches(">not met</text>").count(), 1);
     assert_eq!(svg.matches(">not assessed</text>").count(), 1);
     let limits: Vec<f64> = tags(&svg).iter().filter(|tag| tag.content == "limit").map(|tag| tag.number("x")).collect();
     assert_eq!(limits.len(), 2);

@@ -208,7 +208,7 @@ fn lower_limits_hold_from_above() {
     let found = run("correlation_at_least.fp", &[]);
     // Parallel lines are fully correlated.
     let quantity = quantity(&found, "likeness");
-    assert_eq!(quantity.statistics.len(), 3);
+    assert_eq!(quantity.statistics.len(), 2);
     for statistic in &quantity.statistics {
         near(statistic.value, 1.0);
         assert_eq!(statistic.holds, Some(true));

@@ -71,15 +71,15 @@ fn faults_are_told_by_section_and_channel() {
 
 #[test]
 fn a_finding_says_what_was_found_what_was_expected_and_why() {
-    let found = with(|folder| folder.vehicle("static_wheel_load", |_| "54546".into()));
+    let found = with(|folder| folder.vehicle("static_wheel_load", |_| "109.092".into()));
     assert_eq!(found.verdict, Verdict::NotAssessable);
     let finding = found.findings.iter().find(|finding| finding.code == "static_load").expect("told");
     assert_eq!((finding.section.as_deref(), finding.channel.as_deref()), (Some("S01"), Some("SigmaQ_1")));
     assert_eq!((finding.record.as_deref(), finding.unit.as_deref()), (Some("simulation"), Some("kN")));
-    // Twice the load of 54.546 kN that the file means, and twice that it says.
+    // The load of the axle in place of that of the wheel, 54.546 kN: twice that of a wheel was found, four times that is expected.
     assert!((finding.value.expect("a number") - 109.092).abs() < 5.0, "{finding:?}");
-    assert!((finding.expected.expect("a number") - 109_092.0).abs() < 1e-6, "{finding:?}");
-    assert!(finding.cause.as_deref().is_some_and(|cause| cause.contains("N in place of kN")), "{finding:?}");
+    assert!((finding.expected.expect("a number") - 218.184).abs() < 1e-6, "{finding:?}");
+    assert!(finding.cause.as_deref().is_some_and(|cause| cause.starts_with("a factor of 2")), "{finding:?}");
     assert!(found.reasons.iter().any(|reason| reason.contains("Vertical wheel force against the static load")), "{:?}", found.reasons);
 }
 

@@ -27,7 +27,7 @@ fn chapters_come_in_the_order_of_an_assessor() {
         ids.iter().chain(&more).map(|id| page.find(&format!("id=\"{id}\"")).unwrap_or_else(|| panic!("no {id}"))).collect();
     assert!(places.is_sorted(), "{places:?}");
     assert_eq!(page.matches("<svg").count(), 1 + 11 + 2 + 1, "overview, quantities with values, traces, domain");
-    assert!(page.contains("not validated") && page.contains("10 of 12 hold, 1 fails, 1 not assessed"));
+    assert!(page.contains("not validated") && page.contains("10 of 12 met, 1 not met, 1 not assessed"));
     assert!(page.contains("Rules that differ in meaning") && page.contains("limit std 0.40 m&#x2f;s^2"));
 }
 

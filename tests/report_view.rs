@@ -31,7 +31,7 @@ fn the_summary_has_a_row_for_each_quantity_and_the_rest_stands_apart() {
     assert_eq!(data.summary.len(), 12);
     assert_eq!(data.further.len(), 4, "one for each zone of the metric");
     let guiding = &data.summary[0];
-    assert_eq!((guiding.limit_std.as_str(), guiding.limit_mean.as_str(), guiding.count.as_str()), ("5.00", "3.33", "124"));
+    assert_eq!((guiding.limit_std.as_str(), guiding.limit_mean.as_str(), guiding.count.as_str()), ("5.00", "3.33", "124 / 62"));
     let fails: Vec<&str> = data.summary.iter().filter(|row| row.holds.class == "bad").map(|row| row.id.as_str()).collect();
     assert_eq!(fails, ["Y_max"]);
     let open = &data.summary[9];

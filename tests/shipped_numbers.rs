@@ -1,8 +1,8 @@
 //! The numbers of the shipped protocol, by what they do: each limit, and each edge from both sides.
 //!
-//! Sources of the table: Goetz & Polach, "Verification and validation of simulations in a rail vehicle
-//! certification context", Table 1 and section 3.1 f. (limits, pairs, sections, full curve); lengths and
-//! radii of the test zones as in EN 14363:2016, 7.5.3 f. Written down apart from the protocol.
+//! Source of the table: Goetz & Polach, "Verification and validation of simulations in a rail vehicle
+//! certification context", Table 1 and sections 3.1 f. (limits, pairs, sections, full curve, 70 m). Radii and the
+//! other lengths of the zones have no source at hand, as the protocol says: here they only cannot change unseen.
 
 mod common {
     pub mod campaign;
@@ -20,12 +20,33 @@ use fishplate::library;
 use fishplate::problem::Problems;
 use fishplate::result::{Certification, SectionResult, Verdict};
 use fishplate::run::{Shifts, evaluate};
+use fishplate::source::Source;
 use fishplate::study::case::Case;
 
 const ANNEX_T: &str = "en14363-2016-annex-t";
 
+/// The protocol without its plausibility rules, which the made-up signals of [`tiny`] do not satisfy.
+fn numbers_alone() -> String {
+    numbers_and("")
+}
+
+/// As [`numbers_alone`], with one of the rules.
+fn numbers_and(kept: &str) -> String {
+    let shipped = library::shipped(ANNEX_T).expect("the protocol");
+    let rules = shipped.text.lines().filter_map(|line| line.strip_prefix("plausibility "));
+    let names = rules.map(|rule| rule.split(' ').next().unwrap_or_default());
+    let removed: String = names.filter(|name| *name != kept).map(|name| format!("  plausibility  {name}\n")).collect();
+    format!("protocol numbers-alone \"Numbers alone\"\n  extends  {ANNEX_T}\n\nremove\n{removed}")
+}
+
 fn run(folder: &Path, set: &[&str]) -> Certification {
-    certified(folder, ANNEX_T, set).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
+    run_by(&numbers_alone(), folder, set)
+}
+
+fn run_by(text: &str, folder: &Path, set: &[&str]) -> Certification {
+    let protocol = folder.join("protocol.fp");
+    fs::write(&protocol, text).expect("written");
+    certified(folder, &protocol.display().to_string(), set).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
 }
 
 /// Row of the first section of each zone in the table of [`tiny`], and its name.
@@ -147,10 +168,10 @@ fn full_curves() {
             let cells: Vec<&str> = row.split(',').collect();
             // Radius in the fifth column; straight track has none.
             let radius: f64 = cells[4].parse().unwrap_or(f64::INFINITY);
-            let mut record = "distance [m],curvature [1/m]\n".to_string();
+            let mut record = "distance [m],curvature [1/m],cant [mm]\n".to_string();
             for x in (0..=400).step_by(10) {
                 let wave = if at == 6 { range / 2.0 * f64::from(x / 10 % 2 * 2 - 1) } else { 0.0 };
-                let _ = writeln!(record, "{x},{:.9}", 1.0 / radius + wave);
+                let _ = writeln!(record, "{x},{:.9},100", 1.0 / radius + wave);
             }
             let name = format!("{}.csv", cells[0]);
             fs::write(folder.path().join("track").join(name), record).expect("written");
@@ -164,15 +185,17 @@ fn full_curves() {
     }
 }
 
-/// Values of a section that is refused are in no statistic, neither of the verdict nor of a study.
+/// Values of a section that is refused are in no statistic, neither of the verdict nor of a study: not even where it is
+/// refused for what its record holds, when its values are known already.
 #[test]
 fn refused_sections_are_not_pooled() {
     let folder = tiny();
     let path = folder.path();
-    let all = run(path, &[]);
-    // Another section of zone 4, as the first of it but with forces that nobody could miss, and too short.
+    let protocol = numbers_and("static_load");
+    let all = run_by(&protocol, path, &[]);
+    // Another section of zone 4, as the first of it but with forces that nobody could miss.
     lines(&path.join("sections.csv"), |lines| {
-        let row = lines[10].replacen("S10", "S13", 1).replacen(",110,", ",100,", 1);
+        let row = lines[10].replacen("S10", "S13", 1);
         lines.push(row);
     });
     for (kind, factor) in [("measurement", 1.0), ("simulation", 100.0)] {
@@ -186,7 +209,7 @@ fn refused_sections_are_not_pooled() {
         });
         fs::write(path.join(kind).join("S13.csv"), scaled.collect::<String>()).expect("written");
     }
-    let found = run(path, &[]);
+    let found = run_by(&protocol, path, &[]);
     let last = found.sections.last().expect("a section");
     assert!(last.section == "S13" && !last.used, "{:?}", last.reason);
     assert_eq!(found.verdict, all.verdict);
@@ -199,7 +222,7 @@ fn refused_sections_are_not_pooled() {
     assert!(found.domain.iter().all(|range| range.count <= 12));
 
     let mut problems = Problems::default();
-    let source = library::shipped(ANNEX_T).expect("the protocol");
+    let source = Source::new("protocol.fp", protocol);
     let family = family::read(&source, &library::parent, &mut problems);
     let compiled = compile(family, &Overrides::new(), &mut problems).expect("a plan");
     let campaign = Campaign::open(path, &mut problems).expect("a campaign");

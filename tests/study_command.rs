@@ -50,7 +50,7 @@ fn sections_are_counted_and_written() {
     assert_eq!(found["quantities"].as_array().map(Vec::len), Some(12));
     // Without scatter of choice the spread holds the value of all sections.
     let html = fs::read_to_string(one.join("report.html")).expect("a page");
-    assert!(html.contains("Which sections matter") && !html.contains("NaN"));
+    assert!(html.contains("Influence of individual sections") && !html.contains("NaN"));
 }
 
 #[test]

@@ -48,7 +48,7 @@ fn in_section(
 ) -> Fault {
     fault(name, move |folder| {
         let section = folder.sections(zone)[1].clone();
-        folder.channels(side, &[section.clone()], &[channel], &change);
+        folder.channels(side, std::slice::from_ref(&section), &[channel], &change);
         Told { sections: vec![section], channels: own(channel) }
     })
 }

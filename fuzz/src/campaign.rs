@@ -19,7 +19,8 @@ use super::promise;
 use super::records::{folder, write};
 
 pub const CAMPAIGN: &str = "name: Fuzzed\nvehicle: vehicle.yaml\nsections: sections.csv\n\
-    measurement: measurement\nsimulation: simulation\nline: Somewhere\nparameters:\n  share: 0.5\n";
+    measurement: measurement\nsimulation: simulation\nline: Somewhere\n\
+    report:\n  number: R1\n  customer: Somebody\nparameters:\n  share: 0.5\n";
 pub const VEHICLE: &str = "name: Wagon\ncategory: passenger\nsuspension: true\nstatic_wheel_load: 50\n";
 pub const SECTIONS: &str = "section,zone [-],start [m],end [m],radius [m],direction\nS1,1,1,9,700,right\nS2,2,1,9,500,left\n";
 

@@ -12,8 +12,11 @@ mod records;
 pub mod seeds;
 mod simulators;
 
+/// What a target does with an input.
+type Try = fn(&[u8]);
+
 /// Every target: its name and what it is given.
-pub const TARGETS: [(&str, fn(&[u8])); 13] = [
+pub const TARGETS: [(&str, Try); 13] = [
     ("protocol_text", language::protocol_text),
     ("protocol_yaml", language::protocol_yaml),
     ("check", language::check),

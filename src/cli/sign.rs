@@ -1,11 +1,11 @@
 //! `fishplate keygen` and `fishplate sign`.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::output::{Console, Exit};
+use crate::disk;
 use crate::problem::Problem;
 use crate::provenance::signature::{PASSWORD, beside, content, new_keys, secret_key, sign};
 
@@ -41,7 +41,7 @@ impl Keygen {
             PathBuf::from(name)
         };
         let (secret, public) = (with(".key"), with(".pub"));
-        if let Some(there) = [&secret, &public].into_iter().find(|path| path.exists()) {
+        if let Some(there) = [&secret, &public].into_iter().find(|path| disk::may_exist(path)) {
             let problem = Problem::error("key-exists", format!("`{}` is there already; a key is never overwritten", there.display()));
             return console.fail(problem.help("choose another name, or move the old key away"), Exit::Wrong);
         }
@@ -52,7 +52,7 @@ impl Keygen {
         let written = create(&secret, keys.0.as_bytes(), true).and_then(|()| {
             create(&public, keys.1.as_bytes(), false).inspect_err(|_| {
                 // A secret key whose public key nobody has is of no use.
-                let _ = std::fs::remove_file(&secret);
+                let _ = disk::remove(&secret);
             })
         });
         match written {
@@ -67,18 +67,8 @@ impl Keygen {
 
 /// A new file, which must not exist; a secret one only its owner can read.
 fn create(path: &Path, bytes: &[u8], secret: bool) -> Result<(), Problem> {
-    let mut options = std::fs::OpenOptions::new();
-    options.write(true).create_new(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, if secret { 0o600 } else { 0o644 });
-    #[cfg(not(unix))]
-    let _ = secret;
-    let failed = |error: std::io::Error| Problem::error("write-failed", format!("`{}` cannot be written: {error}", path.display()));
-    let mut file = options.open(path).map_err(failed)?;
-    file.write_all(bytes).and_then(|()| file.sync_all()).map_err(|error| {
-        let _ = std::fs::remove_file(path);
-        failed(error)
-    })
+    disk::create_new(path, bytes, secret)
+        .map_err(|error| Problem::error("write-failed", format!("`{}` cannot be written: {error}", path.display())))
 }
 
 impl Sign {

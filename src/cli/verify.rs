@@ -9,6 +9,7 @@ use super::inputs::progress_bar;
 use super::output::{Console, Exit};
 use super::protocols::load;
 use crate::check::family::Family;
+use crate::disk;
 use crate::problem::Problems;
 use crate::provenance::carried::{self, Carried};
 use crate::provenance::signature;
@@ -51,7 +52,7 @@ impl Verify {
             // Fails only if the pool was made before, which nothing does before here.
             let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
         }
-        if let Some(folder) = self.campaign.as_ref().filter(|folder| !folder.exists()) {
+        if let Some(folder) = self.campaign.as_ref().filter(|folder| !disk::may_exist(folder)) {
             let says = format!("there is no campaign `{}`", folder.display());
             return console.fail(crate::problem::Problem::error("folder-missing", says), Exit::Wrong);
         }

@@ -196,17 +196,14 @@ impl Campaign {
     fn measured(&self) -> Result<Vec<Cell>, Problem> {
         let kind = RecordKind::Measurement;
         let (place, span) = self.record_folder(kind)?;
-        let mut names: Vec<String> = disk::names(&place.path)
-            .map_err(|error| no_folder(&error, &place.shown).at(span))?
+        let entries = disk::names(&place.path).map_err(|error| no_folder(&error, &place.shown).at(span))?;
+        let mut names: Vec<String> = entries
             .iter()
             .filter_map(|name| Some(name.to_str()?.strip_suffix(".csv")?.to_string()))
             .filter(|name| !name.starts_with('.'))
             .collect();
         if names.is_empty() {
-            let mut others: Vec<String> = std::fs::read_dir(&place.path)
-                .map(|entries| entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect())
-                .unwrap_or_default();
-            others.sort();
+            let others: Vec<String> = entries.into_iter().filter_map(|name| name.into_string().ok()).collect();
             if let Some(problem) = others.iter().find_map(|name| other_format(Path::new(name), &format!("{}/{name}", place.inside))) {
                 return Err(problem.at(span));
             }

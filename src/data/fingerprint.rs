@@ -1,6 +1,5 @@
 //! Files of a campaign as they lie on the disk now, for who compares them with what a report says of them.
 
-use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
@@ -8,6 +7,7 @@ use sha2::{Digest, Sha256};
 
 use super::folder::Folder;
 use super::hash::hexadecimal;
+use crate::disk::{self, Kind};
 use crate::problem::Problem;
 use crate::source::Source;
 
@@ -21,13 +21,13 @@ const BLOCK: usize = 1 << 16;
 pub fn fingerprint(campaign: &Path, inside: &str) -> Result<Option<(String, u64)>, Problem> {
     let place = Folder::open(campaign)?.place(inside, &Source::new("", "").whole())?;
     let unreadable = |why: &dyn std::fmt::Display| Problem::error("file-unreadable", format!("`{inside}` cannot be read: {why}"));
-    match std::fs::metadata(&place.path) {
-        Ok(meta) if meta.is_file() => {}
-        Ok(_) => return Err(unreadable(&"it is no plain file")),
-        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(None),
+    match disk::kind(&place.path) {
+        Ok(Some(Kind::File(_))) => {}
+        Ok(Some(_)) => return Err(unreadable(&"it is no plain file")),
+        Ok(None) => return Ok(None),
         Err(error) => return Err(unreadable(&error)),
     }
-    let mut file = File::open(&place.path).map_err(|error| unreadable(&error))?;
+    let mut file = disk::open(&place.path).map_err(|error| unreadable(&error))?;
     let (mut hash, mut bytes, mut block) = (Sha256::new(), 0_u64, vec![0_u8; BLOCK]);
     loop {
         match file.read(&mut block) {

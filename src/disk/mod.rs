@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 use faults::{Op, pass, passed};
 pub use set::{Set, SetKind, UNFINISHED};
-pub use single::{keep, write_whole};
+pub use single::{create_new, keep, remove, write_whole};
 
 /// What stands at a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +67,11 @@ pub fn is_file(path: &Path) -> io::Result<bool> {
 /// Whether a plain file is there, or the system cannot say: who reads it then tells why.
 pub fn may_be_file(path: &Path) -> bool {
     is_file(path).unwrap_or(true)
+}
+
+/// Whether something is there, or the system cannot say.
+pub fn may_exist(path: &Path) -> bool {
+    kind(path).map_or(true, |kind| kind.is_some())
 }
 
 /// Whether a folder is there.

@@ -1,10 +1,11 @@
 //! One file, whole or not at all.
 
-use std::io;
+use std::fs;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::{Writer, create, names, remove_file, rename, sync_folder};
+use super::{Op, Writer, create, names, pass, remove_file, rename, sync_folder};
 
 /// How files begin that are on their way to their place.
 const BEGINS: &str = ".fishplate-";
@@ -30,6 +31,33 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// As [`write_whole`].
 pub fn keep(path: &Path, bytes: &[u8]) -> io::Result<()> {
     put(path, folder_of(path), bytes, false)
+}
+
+/// Writes a file that must not exist; a secret one only its owner can read. On return it is on the disk.
+///
+/// # Errors
+/// What the system says; there is then no file.
+pub fn create_new(path: &Path, bytes: &[u8], secret: bool) -> io::Result<()> {
+    pass(Op::Create, path)?;
+    let mut options = fs::OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, if secret { 0o600 } else { 0o644 });
+    #[cfg(not(unix))]
+    let _ = secret;
+    let mut file = options.open(path)?;
+    let written = file.write_all(bytes).and_then(|()| file.sync_all());
+    written.inspect_err(|_| {
+        let _ = remove_file(path);
+    })
+}
+
+/// Removes a file.
+///
+/// # Errors
+/// What the system says.
+pub fn remove(path: &Path) -> io::Result<()> {
+    remove_file(path)
 }
 
 fn folder_of(path: &Path) -> &Path {

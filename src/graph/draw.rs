@@ -39,11 +39,25 @@ pub fn svg(graph: &Graph) -> String {
     draw(&cards, &stages, width, height)
 }
 
+/// What the verdict and the section checks are made from. Plausibility rules look at every channel in many ways: with them, nothing
+/// could be made out.
+fn drawn(graph: &Graph) -> Vec<bool> {
+    let mut drawn = vec![false; graph.nodes.len()];
+    let mut open: Vec<NodeId> = graph.checks.iter().flatten().map(|input| input.node).chain([graph.verdict]).collect();
+    while let Some(id) = open.pop() {
+        if !std::mem::replace(&mut drawn[id], true) {
+            open.extend(&graph.nodes[id].inputs);
+        }
+    }
+    drawn
+}
+
 /// Nodes of one class, and all statistics or limits of one quantity, become one card.
 fn cards(graph: &Graph) -> Vec<Card> {
     let mut card_of_class: Vec<Option<usize>> = vec![None; graph.nodes.iter().map(|node| node.class + 1).max().unwrap_or(0)];
     let mut members: Vec<Vec<NodeId>> = Vec::new();
-    for (id, node) in graph.nodes.iter().enumerate() {
+    let drawn = drawn(graph);
+    for (id, node) in graph.nodes.iter().enumerate().filter(|(id, _)| drawn[*id]) {
         match card_of_class[node.class] {
             Some(card) => members[card].push(id),
             None => {

@@ -12,6 +12,7 @@ use crate::check::family::{self, Family};
 use crate::check::{Override, Overrides, plan::SetBy};
 use crate::data::hash::sha256;
 use crate::data::text::{decode, read_bytes};
+use crate::disk;
 use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::report::attached;
@@ -56,19 +57,19 @@ pub struct Carried {
 /// `file-missing` and its kin, `pdf-unreadable`, `no-results`, `results-unreadable`.
 pub fn open(path: &Path) -> Result<Carried, Problem> {
     let shown = path.display().to_string();
-    if path.is_dir() {
+    if disk::is_folder(path).unwrap_or(false) {
         let pdf = path.join(REPORT_PDF);
         let results = path.join(attached::RESULTS);
-        if !pdf.is_file() && !results.is_file() {
+        if !disk::may_be_file(&pdf) && !disk::may_be_file(&results) {
             let says = format!("there is neither `{REPORT_PDF}` nor `{}` in `{shown}`", attached::RESULTS);
             return Err(Problem::error("no-results", says).help("give the folder that `certify` wrote, a report, or results.json"));
         }
-        if !pdf.is_file() {
+        if !disk::may_be_file(&pdf) {
             return beside(&results, &shown, Some(path));
         }
         let mut carried = of_pdf(&pdf, &pdf.display().to_string())?;
         carried.folder = Some(path.to_path_buf());
-        carried.other_results = results.is_file() && file(&results, RESULTS as u64)? != carried.text.as_bytes();
+        carried.other_results = disk::may_be_file(&results) && file(&results, RESULTS as u64)? != carried.text.as_bytes();
         return Ok(carried);
     }
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
@@ -88,7 +89,7 @@ fn beside(path: &Path, shown: &str, folder: Option<&Path>) -> Result<Carried, Pr
     let bytes = file(path, RESULTS as u64)?;
     let (text, value, results) = read(&bytes, shown)?;
     let pdf = path.parent().unwrap_or(Path::new("")).join(REPORT_PDF);
-    let carried = if pdf.is_file() { of_pdf(&pdf, shown).ok().filter(|carried| carried.text == text) } else { None };
+    let carried = if disk::may_be_file(&pdf) { of_pdf(&pdf, shown).ok().filter(|carried| carried.text == text) } else { None };
     let protocol = carried.map_or_else(|| results.protocol.files.iter().map(|_| None).collect(), |carried| carried.protocol);
     Ok(Carried {
         shown: shown.into(),

@@ -9,6 +9,7 @@ pub use minisign::{PublicKey, SecretKey};
 use super::verify::Check;
 use crate::data::hash::sha256;
 use crate::data::text::read_bytes;
+use crate::disk;
 use crate::problem::Problem;
 
 /// Where a password may be given; without it, it is asked for on the terminal. Never on the command line, which others can see.
@@ -91,7 +92,7 @@ pub fn public_key(given: &str) -> Result<PublicKey, Problem> {
         let problem = Problem::error("key-unreadable", format!("`{given}` is no public key: {error}"));
         problem.help("give the file ending in `.pub` that was made with the secret key, or the key as one word beginning with `RW`")
     };
-    if path.is_file() {
+    if disk::may_be_file(path) {
         let text = text(path)?;
         let key = PublicKeyBox::from_string(&text).and_then(|key| key.into_public_key());
         return key.or_else(|_| PublicKey::from_base64(text.trim())).map_err(unreadable);
@@ -126,7 +127,7 @@ pub fn check(path: &Path, signature: Option<&Path>, key: Option<&PublicKey>) -> 
     const NAME: &str = "signature";
     let own = beside(path);
     let at = signature.unwrap_or(&own);
-    if signature.is_none() && !at.is_file() {
+    if signature.is_none() && !disk::may_be_file(at) {
         return Ok(match key {
             None => Check::not_checked(NAME, "there is none beside the report"),
             Some(_) => Check::differs(NAME, format!("there is no signature `{}`", at.display()), Vec::new()),

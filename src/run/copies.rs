@@ -91,6 +91,11 @@ pub fn find(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Vec<Findin
         }
         done.push(&rule.name);
         for ((later, kind, earlier, of), channels) in shared(&rule.name, distinct, values) {
+            // A section measured again may be compared with the simulation there is.
+            let again = later != earlier && units[later].site == units[earlier].site;
+            if again && (kind, of) == (RecordKind::Simulation, RecordKind::Simulation) {
+                continue;
+            }
             findings.push(finding(rule, (&units[later].name, kind), (&units[earlier].name, of), &channels));
         }
     }

@@ -102,16 +102,14 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
     common.extent = Some(extent);
     let one = |measured: Result<Evaluated, String>| {
         let mut values = common.clone();
-        let filled = measured.map_err(Fault::new).and_then(|measured| {
-            let sides = Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent };
-            quantities(work, &sides, &active, &mut values);
-            record_checks(work, &sides, &mut values);
-            plausibility::look(work, unit, &sides, &track, &mut values);
-            Ok::<(), Fault>(())
-        });
-        if let Err(fault) = filled {
-            values.fault = Some(fault.says);
-            values.problems = fault.problems;
+        match measured {
+            Ok(measured) => {
+                let sides = Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent };
+                quantities(work, &sides, &active, &mut values);
+                record_checks(work, &sides, &mut values);
+                plausibility::look(work, unit, &sides, &track, &mut values);
+            }
+            Err(says) => values.fault = Some(says),
         }
         values
     };

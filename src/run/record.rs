@@ -474,7 +474,8 @@ pub type Seen = Vec<(RecordKind, BTreeSet<String>)>;
 /// Reads the headings of every record.
 pub fn seen_columns(campaign: &Campaign, units: &[Unit]) -> Seen {
     let mut seen = Seen::new();
-    for kind in [RecordKind::Measurement, RecordKind::Simulation] {
+    let kinds = RecordKind::ALL.into_iter().filter(|kind| *kind != RecordKind::Track || campaign.has(*kind));
+    for kind in kinds {
         let mut columns = BTreeSet::new();
         for unit in units {
             // A record that cannot be read is a fault of its section, told when it is opened.
@@ -486,11 +487,12 @@ pub fn seen_columns(campaign: &Campaign, units: &[Unit]) -> Seen {
     seen
 }
 
-/// Positions of plausibility rules that both kinds of record have; others are passed over.
+/// Positions of plausibility rules whose columns the records have; others are passed over.
 pub fn recorded_positions(graph: &Graph, seen: &Seen, facts: &Facts, units: &[Unit]) -> Vec<Vec<bool>> {
     let there = |node: NodeId| {
         let track = graph.nodes[node].track;
-        track || reads(graph, node, facts, units).iter().all(|column| seen.iter().all(|(_, columns)| columns.contains(column)))
+        let of_kind = || seen.iter().filter(|(kind, _)| (*kind == RecordKind::Track) == track);
+        reads(graph, node, facts, units).iter().all(|column| of_kind().all(|(_, columns)| columns.contains(column)))
     };
     graph
         .plausibility
@@ -516,7 +518,7 @@ pub fn present_columns(graph: &Graph, seen: &Seen, facts: &Facts, units: &[Unit]
                 .map(|signal| {
                     let mut missing: Vec<(String, RecordKind)> = Vec::new();
                     for column in reads(graph, signal.compare, facts, units) {
-                        for (kind, columns) in seen {
+                        for (kind, columns) in seen.iter().filter(|(kind, _)| *kind != RecordKind::Track) {
                             if !columns.contains(&column) {
                                 missing.push((column.clone(), *kind));
                             }

@@ -3,8 +3,12 @@
 use crate::data::hash::sha256;
 use crate::data::origin::{Origin, OriginEffect, OriginFile};
 use crate::data::{Campaign, RecordKind};
+use crate::disk;
 use crate::effects::{Applied, Catalogue};
 use crate::problem::Problem;
+
+/// Largest record that is fingerprinted [bytes]: what any record may have.
+const LARGEST: u64 = 1 << 30;
 
 /// How simulated records were made.
 #[derive(Clone, Debug)]
@@ -40,7 +44,7 @@ impl Made<'_> {
             if self.added {
                 let place = campaign.record_place(RecordKind::Simulation, name)?;
                 let bytes =
-                    std::fs::read(&place.path).map_err(|error| Problem::error("unreadable", format!("{}: {error}", place.shown)))?;
+                    disk::read(&place.path, LARGEST).map_err(|error| Problem::error("unreadable", format!("{}: {error}", place.shown)))?;
                 sources.push(OriginFile { path: place.inside, sha256: sha256(&bytes) });
             }
             if self.fitted {

@@ -87,7 +87,7 @@ impl Case {
     /// # Errors
     /// A zone with fewer usable sections than a selection takes; a protocol that asks for none.
     pub fn of(pool: &Pool, take: Option<usize>) -> Result<Self, Refusal> {
-        if pool.quantities.iter().all(|quantity| quantity.limits.is_empty()) {
+        if !pool.quantities.is_empty() && pool.quantities.iter().all(|quantity| quantity.limits.is_empty()) {
             return Err("no acceptance criterion applies: there is no verdict that sections could change".into());
         }
         let mut strata = Vec::new();

@@ -168,9 +168,16 @@ pub fn columns(text: &str) -> usize {
     text.chars().count()
 }
 
-/// A comment line or the end of a line.
+/// A comment line or the end of a line. What YAML allows nowhere (YAML 1.2.2, section 5.1) is replaced in both forms.
 pub fn comment(text: &str) -> String {
-    let text: String = text.chars().map(|c| if matches!(c, '\n' | '\r') { ' ' } else { c }).collect();
+    let shown = |c: char| match c {
+        '\n' | '\r' => ' ',
+        '\t' => c,
+        '\u{feff}' | '\u{2028}' | '\u{2029}' | '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
+        c if c.is_control() => '\u{fffd}',
+        c => c,
+    };
+    let text: String = text.chars().map(shown).collect();
     match text.chars().next() {
         None | Some('#') => format!("#{text}"),
         Some(_) => format!("# {text}"),

@@ -89,11 +89,14 @@ pub const RATE: f64 = 100.0;
 /// Record on both sides of a section [m].
 const MARGIN: f64 = 40.0;
 
-/// A section of [`tiny`]: zone, length [m], radius [m], cant deficiency [mm], speed [km/h].
+/// A section of [`tiny`]: zone, length [m], radius [m], cant [mm], speed [km/h].
 const KINDS: [(u8, f64, f64, f64, f64); 4] =
-    [(1, 250.0, 0.0, 0.0, 144.0), (2, 100.0, 1000.0, 90.0, 108.0), (3, 100.0, 500.0, 100.0, 90.0), (4, 70.0, 300.0, 110.0, 72.0)];
+    [(1, 250.0, 0.0, 0.0, 144.0), (2, 100.0, 1000.0, 50.0, 108.0), (3, 100.0, 500.0, 90.0, 90.0), (4, 70.0, 300.0, 95.0, 72.0)];
+/// Standard gravity [m/s^2].
+const G: f64 = 9.806_65;
 
-/// Three sections in each of four zones, S01 to S12, that validate; without track records. The signals are sums of waves.
+/// Three sections in each of four zones, S01 to S12, that validate and are plausible; without track records. The signals are sums of
+/// waves about the values that the curve asks for.
 pub fn tiny() -> TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     write_tiny(folder.path());
@@ -109,25 +112,30 @@ pub fn write_tiny(folder: &Path) {
     write("vehicle.yaml", "name: Wagon\ncategory: passenger\nrunning_gear: bogies\nsecondary_suspension: true\nstatic_wheel_load: 50\n");
     let mut sections =
         String::from("section,zone [-],start [m],end [m],radius [m],direction,cant [mm],cant deficiency [mm],speed [km/h]\n");
-    for (number, (zone, length, radius, deficiency, speed)) in KINDS.iter().flat_map(|kind| [kind; 3]).enumerate() {
+    for (number, (zone, length, radius, cant, speed)) in KINDS.iter().flat_map(|kind| [kind; 3]).enumerate() {
         let name = format!("S{:02}", number + 1);
         let direction = if *zone == 1 { "straight" } else { ["right", "left"][number % 2] };
-        let radius = if *zone == 1 { String::new() } else { radius.to_string() };
-        let end = MARGIN + length;
-        let _ = writeln!(sections, "{name},{zone},{MARGIN},{end},{radius},{direction},100,{deficiency},{speed}");
-        let side = match direction {
-            "right" => -1.0,
-            "left" => 1.0,
+        let turn = match direction {
+            "right" => 1.0,
+            "left" => -1.0,
             _ => 0.0,
         };
-        write(&format!("measurement/{name}.csv"), &record(number, end + MARGIN, speed / 3.6, side, 1.0, 0.0));
-        write(&format!("simulation/{name}.csv"), &record(number, end + MARGIN, speed / 3.6, side, 1.02, 0.3));
+        let metres_per_second: f64 = speed / 3.6;
+        let deficiency = if *zone == 1 { 0.0 } else { 1500.0 * metres_per_second.powi(2) / (G * radius) - cant };
+        let radius = if *zone == 1 { String::new() } else { radius.to_string() };
+        let end = MARGIN + length;
+        let _ = writeln!(sections, "{name},{zone},{MARGIN},{end},{radius},{direction},{cant},{deficiency:.1},{speed}");
+        let unbalanced = turn * G * deficiency / 1500.0;
+        let of = |gain, phase| record(number, end + MARGIN, metres_per_second, (turn, unbalanced), gain, phase);
+        write(&format!("measurement/{name}.csv"), &of(1.0, 0.0));
+        write(&format!("simulation/{name}.csv"), &of(1.02, 0.1));
     }
     write("sections.csv", &sections);
 }
 
-/// `gain` and `phase` set simulation and measurement apart.
-fn record(number: usize, length: f64, speed: f64, side: f64, gain: f64, phase: f64) -> String {
+/// `gain` and `phase` set simulation and measurement apart. `turn` is 1 in right-hand curves, `unbalanced` the lateral acceleration in
+/// the plane of the track.
+fn record(number: usize, length: f64, speed: f64, (turn, unbalanced): (f64, f64), gain: f64, phase: f64) -> String {
     let channels: Vec<String> =
         ["Y", "Q"].iter().flat_map(|name| ["1R", "1L", "3R", "3L"].map(|wheel| format!("{name}_{wheel}"))).collect();
     let mut text = String::from("time [s],distance [m]");
@@ -140,15 +148,18 @@ fn record(number: usize, length: f64, speed: f64, side: f64, gain: f64, phase: f
         let time = f64::from(row) / RATE;
         let _ = write!(text, "{time:.2},{:.3}", time * speed);
         let wave = |nth: usize| {
-            let at = 6.3 * time + 0.7 * nth as f64 + 0.4 * number as f64 + phase;
+            // Waves that grow shorter: read from its end, a record is another.
+            let at = 6.3 * time + 0.4 * time.powi(2) + 0.7 * nth as f64 + 0.4 * number as f64 + phase;
             gain * (at.sin() + 0.5 * (2.3 * at).sin() + 0.1 * (9.1 * at).sin())
         };
         for (nth, channel) in channels.iter().enumerate() {
-            let (mean, size) = if channel.starts_with('Y') { (12.0 * side, 3.0) } else { (50.0, 5.0) };
+            let outward = if channel.ends_with('L') { turn } else { -turn };
+            let (mean, size) = if channel.starts_with('Y') { (-12.0 * turn, 3.0) } else { (50.0 + 5.0 * outward, 5.0) };
             let _ = write!(text, ",{:.3}", gain * mean + size * wave(nth));
         }
         for nth in 0..4 {
-            let _ = write!(text, ",{:.5}", 0.3 * wave(20 + nth));
+            let mean = if nth < 2 { 1.2 * unbalanced } else { 0.0 };
+            let _ = write!(text, ",{:.5}", mean + 0.3 * wave(20 + nth));
         }
         text.push('\n');
     }

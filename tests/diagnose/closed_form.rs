@@ -249,7 +249,7 @@ fn what_may_as_well_be_nothing_is_not_named() {
     for (low, ordinary) in [(0.15, false), (0.07, true)] {
         found.stability[0].sizes.0 = low;
         let says = nothing_out_of_the_ordinary(&found, &settings).map(|(_, says)| says);
-        assert_eq!(says.is_some_and(|says| says.contains("declared standard deviations off")), ordinary, "{low}");
+        assert_eq!(says.is_some_and(|says| says.contains("declared standard deviations away")), ordinary, "{low}");
     }
     found.candidates[candidate].tolerance = None;
     found.stability[0].sizes = sizes;
@@ -258,7 +258,7 @@ fn what_may_as_well_be_nothing_is_not_named() {
     assert_eq!((found.stability[0].first, nothing_out_of_the_ordinary(&found, &settings)), (1.0, None));
     found.stability[0].first = 0.9;
     let (at, says) = nothing_out_of_the_ordinary(&found, &settings).expect("an interval from nothing on");
-    assert!(at == 0 && says.contains("holds 0, which changes nothing"), "{says}");
+    assert!(at == 0 && says.contains("includes 0, at which the effect has no influence"), "{says}");
 }
 
 /// The force was recorded with the wrong sign: beside that, more rise lowers what is recorded as much as it raised it before.

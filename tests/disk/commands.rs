@@ -99,13 +99,13 @@ fn every_point(name: &str, case: &Case<'_>) {
                 assert_eq!(files(&temp.path().join("in")), inputs, "{what}");
             }
             // Nothing hinders the next run, where something was changed by this one.
-            if run.ops.iter().any(|op| *op == Op::Create) {
+            if run.ops.contains(&Op::Create) {
                 call(case.now, temp.path());
                 assert!(outputs(temp.path()) == new, "after {what}");
             }
         }
     }
-    println!("{tried} points of {name}, of {} operations", run.ops.len());
+    eprintln!("{tried} points of {name}, of {} operations", run.ops.len());
 }
 
 /// Each folder holds a set of its own; one of two may be the new one already when the other fails, which is told.

@@ -49,7 +49,7 @@ fn killed_at_any_moment() {
         assert_eq!(files(temp.path()), new);
         assert!(crate::injector::leftovers(temp.path()).is_empty());
     }
-    println!("40 points: old {}, new {}, between {}", ends[0], ends[1], ends[2]);
+    eprintln!("40 points: old {}, new {}, between {}", ends[0], ends[1], ends[2]);
 }
 
 /// With ever less memory, the program does its work, or says why not, or is ended by the system; the old results stay whole.
@@ -82,7 +82,7 @@ fn short_of_memory() {
         }
         assert_eq!(files(temp.path()), old, "{limit} kB: {status}");
     }
-    println!("{} points of memory: {done} done, {ended} not", done + ended);
+    eprintln!("{} points of memory: {done} done, {ended} not", done + ended);
     assert!(done > 0 && ended > 0);
 }
 

@@ -127,7 +127,7 @@ fn old_or_new_whole_at_every_operation() {
             }
         }
     }
-    println!("{points} points of the commit of a set");
+    eprintln!("{points} points of the commit of a set");
     assert!(points > 300);
 }
 
@@ -173,5 +173,5 @@ fn a_second_fault_is_told_and_mended() {
             assert_eq!(files(&folder), new);
         }
     }
-    println!("{points} points with all operations after them");
+    eprintln!("{points} points with all operations after them");
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 
 // The fuzzer is a package of its own; its promises are compiled into this test as they stand there.
 #[path = "../../fuzz/src/lib.rs"]
+#[allow(dead_code, reason = "the fuzzer's own programs use the rest")]
 mod targets;
 
 fn root() -> &'static Path {
@@ -32,7 +33,7 @@ fn inputs_that_once_failed_do_so_no_more() {
     for entry in fs::read_dir(&folder).expect("a folder").flatten() {
         let target = entry.file_name().to_string_lossy().into_owned();
         for input in fs::read_dir(entry.path()).expect("a target's folder").flatten() {
-            println!("{target}: {}", input.file_name().display());
+            eprintln!("{target}: {}", input.file_name().display());
             targets::run(&target, &fs::read(input.path()).expect("readable"));
             tried += 1;
         }

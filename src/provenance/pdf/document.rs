@@ -182,7 +182,8 @@ impl<'a> Document<'a> {
         let first = dict.get("First").and_then(Object::integer).ok_or(Broken("a group of objects is damaged"))?;
         let mut header = Parser { bytes: data, at: 0, budget: &self.budget };
         for _ in 0..index {
-            (header.integer()?, header.integer()?);
+            header.integer()?;
+            header.integer()?;
         }
         let (_, at) = (header.integer()?, header.integer()?);
         let at = first.checked_add(at).ok_or(Broken("a group of objects is damaged"))?;

@@ -34,7 +34,7 @@ impl<'a> Attachments<'a> {
     /// # Errors
     /// `pdf-unreadable`: no PDF, damaged, or encrypted.
     pub fn of(bytes: &'a [u8], shown: &str) -> Result<Self, Problem> {
-        if !bytes.get(..1024.min(bytes.len())).is_some_and(|head| memchr::memmem::find(head, b"%PDF-").is_some()) {
+        if bytes.get(..1024.min(bytes.len())).is_none_or(|head| memchr::memmem::find(head, b"%PDF-").is_none()) {
             return Err(Problem::error("pdf-unreadable", format!("`{shown}` is no PDF")));
         }
         let broken = |broken: Broken| {

@@ -84,7 +84,7 @@ pub fn view(protocol: &ProtocolInfo) -> ProtocolView {
         graph_nodes: protocol.graph_nodes,
         graph: (!protocol.graph_svg.trim().is_empty()).then(|| FigureView {
             name: "graph".into(),
-            caption: format!("Processing graph, {} operations", protocol.graph_nodes),
+            caption: format!("Processing graph, {} operations; those of plausibility rules alone are not drawn", protocol.graph_nodes),
             alt: format!("Processing graph of the protocol with {} operations, from the channels to the statistics.", protocol.graph_nodes),
         }),
     }
