@@ -136,8 +136,8 @@ fn protocol(name: &str, bytes: Vec<u8>, seeds: &mut Vec<Seed>) {
     seeds.push(("protocol_text", bytes));
 }
 
-/// Writes the seeds of a target below `corpus`, inputs that once failed among them, and `words.dict`: the
-/// words of the language for the fuzzer to put together.
+/// Writes the seeds of a target below `corpus`, inputs that once failed among them, and `TARGET.dict`:
+/// the words of the language for the fuzzer to put together. Each target has its own, as several start at a time.
 ///
 /// # Errors
 /// A file cannot be written.
@@ -160,7 +160,7 @@ pub fn write(root: &Path, corpus: &Path, target: &str) -> io::Result<()> {
     }
     words.extend(catalog::FUNCTIONS.iter().map(|function| function.name));
     let lines = words.into_iter().map(|word| format!("\"{}\"\n", word.escape_default()));
-    fs::write(corpus.join("words.dict"), lines.collect::<String>())
+    fs::write(corpus.join(format!("{target}.dict")), lines.collect::<String>())
 }
 
 /// Words of phrases, of campaigns and of descriptions of simulators.

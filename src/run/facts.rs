@@ -80,7 +80,7 @@ fn vehicle_datum(datum: &Datum, campaign: &Campaign, problems: &mut Problems) ->
         let known: Vec<&str> = campaign.vehicle.entries().iter().map(|(key, _)| key.text.as_str()).collect();
         problems.push(
             Problem::error("missing-vehicle-data", format!("the vehicle file has no `{}` ({})", datum.key, datum.title))
-                .at(&campaign.vehicle.span.part(0..1))
+                .at(&campaign.vehicle.span.part(0..0))
                 .also(&datum.span, "the protocol needs it")
                 .suggest(&datum.key, known),
         );

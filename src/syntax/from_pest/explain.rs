@@ -24,11 +24,16 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     if let Some(problem) = decimal_comma(at, text) {
         return problem;
     }
+    let at = at + (rest.len() - after_blanks(rest).len());
     if let Some(problem) = unknown_unit(before, found, at, text) {
         return problem;
     }
+    // Pasted text brings blanks that look like a space, or like nothing.
+    let odd_blank = found.chars().next().filter(|c| c.is_whitespace() || matches!(c, '\u{200b}' | '\u{feff}'));
     let says = if found.is_empty() {
         format!("{} ends too early", in_words(rule))
+    } else if let Some(blank) = odd_blank {
+        format!("the blank U+{:04X} does not fit here in {}", u32::from(blank), in_words(rule))
     } else {
         format!("`{found}` does not fit here in {}", in_words(rule))
     };
@@ -50,6 +55,9 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     let last = text.text[..end].rfind(char::is_whitespace).map_or(0, |at| at + 1);
     let range = if found.is_empty() { last..end } else { at..at + found.len() };
     let problem = Problem::error("syntax", says).at(&text.place(range));
+    if odd_blank.is_some() {
+        return problem.help("write an ordinary space");
+    }
     if rule == Rule::expression && joins_places(before) {
         return problem.help("in an expression places follow one another without `and`: `Y at wheelset 1 side R`");
     }
@@ -122,9 +130,13 @@ fn joins_places(before: &str) -> bool {
     matches!(words.as_slice(), [.., "and", _]) && words.contains(&"at")
 }
 
-/// The word or sign a text begins with.
+fn after_blanks(text: &str) -> &str {
+    text.trim_start_matches([' ', '\t', '\r', '\n'])
+}
+
+/// The word or sign a text begins with, after blanks of the grammar; a blank that the grammar does not know is such a sign.
 fn first_word(text: &str) -> &str {
-    let text = text.split_whitespace().next().unwrap_or("");
+    let text = after_blanks(text);
     let of_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '/' | '^' | '-');
     let mut end = text.find(|c| !of_word(c)).unwrap_or(text.len());
     if end == 0 || !text.starts_with(char::is_alphanumeric) {

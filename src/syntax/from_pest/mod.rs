@@ -161,6 +161,17 @@ mod tests {
         Text { text: words.to_string(), span: Source::new("test", words).whole(), exact: true }
     }
 
+    #[test]
+    fn a_blank_that_is_no_space_is_named_and_underlined() {
+        for (words, place) in [("e\u{c}\u{2212}ove", 1..2), ("2 \u{a0}kN", 2..4), ("a + \u{feff}b", 4..7)] {
+            let mut problems = Problems::default();
+            assert!(expression(&text(words), &mut problems).is_none(), "{words:?}");
+            let at = problems.0[0].at.as_ref().expect("a place");
+            assert_eq!((at.start..at.end, problems.0[0].help.as_deref()), (place, Some("write an ordinary space")), "{words:?}");
+            assert!(problems.0[0].says.starts_with("the blank U+"), "{}", problems.0[0].says);
+        }
+    }
+
     /// The numbers alone, which are in SI.
     fn without_units(meaning: &str) -> String {
         meaning
