@@ -8,7 +8,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use common::pools::{every, limit, quantity, sections, sorted, zones};
-use fishplate::metrics::interval::wilson;
 use fishplate::result::Verdict;
 use fishplate::result::study::Spread;
 use fishplate::run::pool::{Pool, Rule, Section};
@@ -221,16 +220,6 @@ fn what_is_drawn_agrees_with_what_is_counted() {
     }
     let again = sampling::some(&case, &Settings { most: 0.0, width: 0.01, seed: 3 });
     assert_eq!(drawn.share, again.share);
-}
-
-/// Wilson 1927; Newcombe 1998 (Statistics in Medicine 17:857), table I: 81 of 263 gives 0.2553 to 0.3662.
-#[test]
-fn wilson_interval_as_published() {
-    let (low, high) = wilson(81, 263);
-    assert!((low - 0.2553).abs() < 5e-5 && (high - 0.3662).abs() < 5e-5, "{low} {high}");
-    assert_eq!(wilson(0, 10).0, 0.0);
-    assert!((wilson(10, 10).1 - 1.0).abs() < 1e-12);
-    assert_eq!(wilson(0, 0), (0.0, 1.0));
 }
 
 #[test]

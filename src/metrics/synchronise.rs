@@ -310,6 +310,47 @@ mod tests {
         }
     }
 
+    /// Shifts of half a metre: the parabola finds what lies between them.
+    #[test]
+    fn the_best_shift_lies_between_those_looked_at() {
+        let axis: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.05).collect();
+        let simulated: Vec<f64> = axis.iter().map(|x| wave(*x)).collect();
+        let shifts: Vec<f64> = (-8..=8).map(|k| 0.5 * f64::from(k)).collect();
+        for shift in [-1.37, 0.21, 0.9] {
+            let measured: Vec<f64> = axis.iter().map(|x| wave(x + shift)).collect();
+            let pairs = [Pair { simulated: (&axis, &simulated), measured: (&axis, &measured), group: 0 }];
+            let best = Searched::new(&pairs, &axis[400..1600], shifts.clone(), false).best(|_, _| false).expect("found");
+            assert!((best.shift - shift).abs() < 0.02, "{shift}: {}", best.shift);
+        }
+    }
+
+    /// A signal of which one record does not vary says nothing of the shift, and nothing of how well the others follow.
+    #[test]
+    fn a_signal_that_does_not_vary_changes_nothing() {
+        let axis: Vec<f64> = (0..1500).map(|k| f64::from(k) * 0.2).collect();
+        let (s, m): (Vec<f64>, Vec<f64>) = axis.iter().map(|x| (wave(*x), wave(x + 1.3))).unzip();
+        let still = vec![2.0; axis.len()];
+        let follows = Pair { simulated: (&axis, &s), measured: (&axis, &m), group: 0 };
+        let search = Search { start: 100.0, end: 200.0, farthest: 5.0, step: 0.2 };
+        let alone = estimate(&[follows], &search).expect("found");
+        for (simulated, measured) in [(&s, &still), (&still, &m)] {
+            let other = Pair { simulated: (&axis, simulated), measured: (&axis, measured), group: 1 };
+            assert_eq!(estimate(&[follows, other], &search), Some(alone));
+        }
+    }
+
+    #[test]
+    fn sums_of_parts_are_those_of_the_whole() {
+        let (x, y) = ([1.0, 2.0, 4.0, 7.0, 11.0], [3.0, 1.0, 4.0, 1.0, 5.0]);
+        let parts = |sums: Sums| [sums.n, sums.x, sums.y, sums.xx, sums.yy, sums.xy];
+        let both = Sums::of(&x[..2], &y[..2]).plus(&Sums::of(&x[2..], &y[2..]));
+        assert_eq!(parts(both), [5.0, 25.0, 14.0, 191.0, 52.0, 83.0]);
+        assert_eq!(parts(both), parts(Sums::of(&x, &y)));
+        // Squares about the means 66 and 12.8, products 13.
+        assert!((both.correlation() - 13.0 / (66.0_f64 * 12.8).sqrt()).abs() < 1e-14);
+        assert!((both.left() - (66.0 - 169.0 / 12.8)).abs() < 1e-12, "{}", both.left());
+    }
+
     /// Signals that lie wrong by a phase of their own, with waves that only one record has: the interval holds what was
     /// imposed about as often as it says, whether all signals follow as closely or some hardly at all.
     #[test]

@@ -105,6 +105,15 @@ fn common_input_only() {
     close(result.mean, (1.69 + 0.49) / 4.0, 1e-3);
 }
 
+/// A measured output that does not move has no range to give a share of.
+#[test]
+fn a_share_of_no_range_is_none() {
+    let simulated = parallelogram(1, 0.3, 50);
+    let still = vec![0.0; simulated.0.len()];
+    let result = matching(of(&simulated), Loop { x: &simulated.0, y: &still }, THRESHOLD).expect("comparable");
+    assert_eq!((result.range, result.relative_maximum(), result.relative_mean()), (0.0, None, None));
+}
+
 #[test]
 fn refuses_with_the_reason() {
     let good = parallelogram(1, 0.3, 50);

@@ -1,5 +1,5 @@
 use fishplate::metrics::{
-    interval::{CONFIDENCE, mean_interval, standard_deviation_interval},
+    interval::{CONFIDENCE, mean_interval, standard_deviation_interval, wilson},
     statistics::*,
 };
 
@@ -119,4 +119,19 @@ fn none_where_not_defined() {
         assert_eq!(standard_deviation(&broken, Divisor::Sample), None);
         assert_eq!(correlation(&broken, &[1.0, 2.0]), None);
     }
+}
+
+/// Wilson 1927; Newcombe 1998 (Statistics in Medicine 17:857), table I, method 3.
+#[test]
+fn wilson_intervals_as_published() {
+    for (good, all, low, high) in [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)] {
+        let found = wilson(good, all);
+        // Four decimals are printed.
+        assert!((found.0 - low).abs() < 5e-5 && (found.1 - high).abs() < 5e-5, "{good} of {all}: {found:?}");
+        let other = wilson(all - good, all);
+        close(other.0, 1.0 - found.1, 1e-12);
+        close(other.1, 1.0 - found.0, 1e-12);
+    }
+    // The ends themselves, without rounding.
+    assert_eq!((wilson(0, 10).0, wilson(10, 10).1, wilson(0, 0)), (0.0, 1.0, (0.0, 1.0)));
 }
