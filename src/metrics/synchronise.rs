@@ -356,12 +356,15 @@ mod tests {
     #[test]
     fn the_interval_holds_the_imposed_shift() {
         for noise in [[1.0; 6], [0.1, 0.3, 1.0, 2.0, 0.5, 3.0]] {
-            let (held, all) = held(noise);
+            let (held, all, width) = held(noise);
             assert!(all >= 95 && held * 100 >= all * 91, "{held} of {all}");
+            // An interval as wide as the search holds everything; these are 0.55 and 0.86 m wide in the mean.
+            assert!(width < 1.0, "{width}");
         }
     }
 
-    fn held(noise: [f64; 6]) -> (usize, usize) {
+    /// How many intervals hold the shift, of how many, and their mean width.
+    fn held(noise: [f64; 6]) -> (usize, usize, f64) {
         let mut state = 11_u64;
         let mut uniform = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -369,7 +372,7 @@ mod tests {
         };
         let axis: Vec<f64> = (0..800).map(|k| k as f64 * 0.2).collect();
         let search = Search { start: 30.0, end: 130.0, farthest: 4.0, step: 0.2 };
-        let (mut held, mut all) = (0, 0);
+        let (mut held, mut all, mut width) = (0, 0, 0.0);
         for _ in 0..100 {
             let shift = 3.0 * (2.0 * uniform() - 1.0);
             let mut signals = Vec::new();
@@ -393,10 +396,11 @@ mod tests {
                 signals.iter().map(|(group, s, m)| Pair { simulated: (&axis, s), measured: (&axis, m), group: *group }).collect();
             if let Some(found) = estimate(&pairs, &search) {
                 all += 1;
+                width += found.high - found.low;
                 held += usize::from((found.low..=found.high).contains(&shift));
             }
         }
-        (held, all)
+        (held, all, width / all as f64)
     }
 
     #[test]
