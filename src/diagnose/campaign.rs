@@ -1,4 +1,4 @@
-//! The diagnosis of a campaign: find, add, run the protocol again, say.
+//! Diagnosis of a campaign: identification of effects, the corrected simulation, and the protocol evaluated again.
 
 use super::allowed::whiten::{dot, less};
 use super::answer::shrink::{applied, compare, folds, improved, shares, trained};
@@ -20,31 +20,31 @@ use crate::run::Settings as RunSettings;
 use crate::simulate::{Made, Section, Simulator, Units, effects_of_origin, record_text, recorded, write_campaign};
 use crate::units::Unit;
 
-/// The answer with what it was made of.
+/// The diagnosis and the data it was derived from.
 #[derive(Debug)]
 pub struct Outcome {
     pub diagnosis: Diagnosis,
     pub found: Found,
-    /// The protocol on the campaign as it is.
+    /// The protocol evaluated on the campaign as it is.
     pub before: Certification,
-    /// With the effects added to sections that the fit did not see; absent where no effect is named.
+    /// The same with the effects added, by cross-validation; absent where no effect is named.
     pub after: Option<Certification>,
-    /// Records with the effects as all sections ask for them, one per section of `found`.
+    /// Records with the effects at the sizes fitted to all sections, one per section of `found`.
     pub improved: Vec<Signals>,
-    /// Units of their channels.
+    /// Units of the channels of `improved`.
     pub units: Units,
-    /// The effects in `improved`, with the sizes that all sections ask for.
+    /// The effects in `improved` and their sizes.
     pub added: Vec<OriginEffect>,
-    /// What simulated them, if anything did.
+    /// Name of the simulator, if one was used.
     pub simulator: Option<String>,
-    /// What could not be taken into account.
+    /// Data that could not be taken into account.
     pub warnings: Problems,
 }
 
 /// Diagnoses a campaign with a protocol.
 ///
 /// # Errors
-/// The campaign cannot be compared or evaluated; a simulation fails.
+/// The campaign cannot be compared or evaluated, or a simulation fails.
 pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Section>) -> Result<Outcome, Problems> {
     let compiled = &compiled.only_telling();
     let mut problems = Problems::default();
@@ -62,7 +62,7 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     let one = |problem: Problem| Problems(vec![problem]);
     let settings = RunSettings { traces: 0 };
     let before = certify(compiled, inputs.campaign, settings, &quiet)?;
-    // The records were read a moment ago: what is compared must be the same sections.
+    // The records were read before by `find`: both must compare the same sections.
     let unread = |section: &&crate::result::SectionResult| section.reason.as_ref().is_some_and(|reason| reason.contains(UNREADABLE));
     if let Some(section) = before.sections.iter().find(unread) {
         let says = format!("section {} could not be read again: {}", section.section, section.reason.as_deref().unwrap_or_default());
@@ -98,7 +98,7 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     Ok(Outcome { diagnosis, found, before, after, improved: records, units, added, simulator, warnings: problems })
 }
 
-/// Records with the effects, each section with the sizes that the others ask for; a member may be left out.
+/// Records with the effects. The sizes for a section are fitted to the other folds. `without` excludes one member.
 fn unseen(inputs: &Inputs<'_>, found: &Found, without: Option<usize>) -> Result<Vec<Signals>, Problems> {
     let folds = folds(&found.strata);
     let effects = |fold: &Vec<usize>| {
@@ -111,7 +111,7 @@ fn unseen(inputs: &Inputs<'_>, found: &Found, without: Option<usize>) -> Result<
     improved(found, inputs.catalogue, inputs.simulator, &of).map_err(|problem| Problems(vec![problem]))
 }
 
-/// What was measured with the declared white noise once more; nothing where none is declared.
+/// The measured records with the declared white noise added once more; nothing where no noise is declared.
 fn noisy(found: &Found, seed: u64) -> Option<Vec<Signals>> {
     let seen = &found.seen;
     seen.noise.iter().any(|sd| *sd > 0.0).then(|| {
@@ -130,8 +130,8 @@ fn noisy(found: &Found, seed: u64) -> Option<Vec<Signals>> {
 
 type Evaluate<'a> = &'a dyn Fn(&Found, &[Signals]) -> Result<Certification, Problems>;
 
-/// The member that removes least of the gap on sections that the fit did not see, if that is nothing to speak of, and what it does
-/// instead. Effects that the protocol does not see at all are not judged by it.
+/// The member that removes the smallest share of the gap on sections excluded from the fit, if that share is too small, and the reason.
+/// Effects that change no quantity of the protocol are not judged.
 fn idle(
     inputs: &Inputs<'_>,
     found: &Found,
@@ -145,10 +145,10 @@ fn idle(
         let without = if count == 1 { before.clone() } else { evaluate(found, &unseen(inputs, found, Some(member))?)? };
         let earned = compare(&without, after, None, inputs.seed, Vec::new());
         let Some(touched) = earned.touched else { continue };
-        // Means over signals may hide what single values show.
+        // Means over signals may hide a change of single values.
         let by_value = 1.0 - (1.0 - touched.variance_explained).max(0.0).sqrt();
         let most = touched.fraction_removed.max(earned.fraction_removed).max(by_value);
-        // The protocol judges few numbers: what the features say strongly, it must contradict to be heard.
+        // The protocol has few numbers. An effect with strong evidence is therefore refused only if it increases the gap.
         let member_of = &found.chosen.members[member];
         let strength = member_of.evidence / (STRONG * found.bars.first);
         let least = if strength >= 1.0 && !member_of.doubtful { -EARNED * strength } else { EARNED };
@@ -161,26 +161,26 @@ fn idle(
     }))
 }
 
-/// Share of the gap that an effect must remove, at least in the quantities that it changes.
+/// Least share of the gap that an effect must remove in the quantities that it changes.
 const EARNED: f64 = 0.05;
-/// Evidence, in thresholds, from which it need only not do harm: no more than as much again of the gap as it must remove else, and the
-/// more the louder the features speak, since a gap that another one hides grows when one of the two is mended.
+/// Evidence, in thresholds, from which an effect need not reduce the gap. It may then increase the gap by [`EARNED`] times the evidence
+/// in these units, since a gap masked by a second effect increases when one of the two is corrected.
 const STRONG: f64 = 4.0 / 3.0;
 
-/// What effects that are known to be true would have done.
+/// Influence of effects that are known to be true.
 #[derive(Clone, Debug)]
 pub struct Really {
-    /// Whitened size, in standard deviations.
+    /// Length of the whitened change, in standard deviations.
     pub detectability: f64,
-    /// Of several: the least that one of them adds which no size of the others would, in standard deviations.
+    /// With several effects: the smallest part of one effect that no size of the others reproduces, in standard deviations.
     pub weakest: Option<f64>,
-    /// Share of the gap that they remove.
+    /// Share of the gap that the effects remove.
     pub removed: f64,
-    /// Cells of the map that they move.
+    /// Cells of the map that the effects change.
     pub cells: Vec<String>,
 }
 
-/// Effects that are known to be true, added to the simulation. Nothing if they cannot be.
+/// Influence of effects that are known to be true, added to the simulation. Nothing if they cannot be added.
 #[must_use]
 pub fn effect_of_truth(
     campaign: &Campaign,
@@ -215,13 +215,13 @@ pub fn effect_of_truth(
     })
 }
 
-/// Length of the part of a whitened change that is at right angles to another.
+/// Length of the component of a whitened change that is orthogonal to another.
 fn across(change: &[f64], other: &[f64]) -> f64 {
     let along = dot(change, other) / dot(other, other).max(f64::MIN_POSITIVE);
     change.iter().zip(other).map(|(change, other)| (change - along * other).powi(2)).sum::<f64>().sqrt()
 }
 
-/// The protocol on a copy of the campaign with other simulated records.
+/// The protocol evaluated on a copy of the campaign with other simulated records.
 fn evaluated(
     campaign: &Campaign,
     compiled: &Compiled,
@@ -239,11 +239,11 @@ fn evaluated(
     certify(compiled, &copy, settings, &|_| {})
 }
 
-/// Writes the campaign with the named effects added to its simulation, and with an origin that says so; without any, its simulation
-/// as it was read. Nothing is in its place before the commit.
+/// Writes the campaign with the named effects added to its simulation, and with an origin that states them. Without a named effect, the
+/// simulation is written as it was read. No file is in place before the outputs are committed.
 ///
 /// # Errors
-/// Of writing.
+/// A file cannot be written.
 pub fn write_improved(outputs: &mut Outputs, campaign: &Campaign, outcome: &Outcome) -> Result<(), Problem> {
     let as_read = || outcome.found.seen.sections.iter().map(|observed| observed.simulated.clone()).collect();
     let records = if outcome.improved.is_empty() { as_read() } else { outcome.improved.clone() };
@@ -257,7 +257,7 @@ pub fn write_improved(outputs: &mut Outputs, campaign: &Campaign, outcome: &Outc
     write_records(outputs, campaign, &outcome.found, &records, &outcome.units, Some(&made))
 }
 
-/// Writes a campaign like another with other simulated records.
+/// Writes a copy of a campaign with other simulated records.
 fn write_records(
     outputs: &mut Outputs,
     campaign: &Campaign,
@@ -279,7 +279,7 @@ fn write_records(
 
 #[cfg(test)]
 mod tests {
-    /// 3 along another change and 4 across it; a change along it alone has nothing across.
+    /// A change with components 3 along and 4 across another has the orthogonal length 4; a parallel change has 0.
     #[test]
     fn what_no_size_of_another_adds_is_across_it() {
         assert!((super::across(&[3.0, 4.0, 0.0], &[2.0, 0.0, 0.0]) - 4.0).abs() < 1e-12);

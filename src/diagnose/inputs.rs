@@ -1,4 +1,4 @@
-//! What a diagnosis is made of.
+//! Inputs of a diagnosis.
 
 use super::observe::cache::Cache;
 use super::settings::Settings;
@@ -7,10 +7,10 @@ use crate::effects::Catalogue;
 use crate::model::parameter;
 use crate::simulate::Simulator;
 
-/// Called with what is being tried.
+/// Progress callback: called with the name of the current step.
 pub type Trying<'a> = &'a (dyn Fn(&str) + Sync);
 
-/// A campaign whose state is known, and what simulates it.
+/// A campaign of known state, and its simulator.
 pub struct Reference<'a> {
     pub campaign: &'a Campaign,
     pub simulator: Option<&'a dyn Simulator>,
@@ -23,14 +23,14 @@ impl std::fmt::Debug for Reference<'_> {
     }
 }
 
-/// What a diagnosis is made of.
+/// Inputs of a diagnosis.
 pub struct Inputs<'a> {
     pub campaign: &'a Campaign,
     pub catalogue: &'a Catalogue,
     pub settings: &'a Settings,
     pub simulator: Option<&'a dyn Simulator>,
     pub cache: Option<Cache>,
-    /// Campaigns whose state is known.
+    /// Campaigns of known state.
     pub references: &'a [Reference<'a>],
     pub seed: u64,
     pub trying: Trying<'a>,
@@ -42,7 +42,7 @@ impl std::fmt::Debug for Inputs<'_> {
     }
 }
 
-/// The value of a simulator's parameter without any effect: of the vehicle file, or neutral.
+/// The value of a simulator parameter without any effect: from the vehicle file, else its neutral value.
 #[must_use]
 pub fn value_of(campaign: &Campaign, key: &str) -> Option<f64> {
     campaign.vehicle.lookup(key).and_then(|node| crate::simulate::number_of(node, key)).or_else(|| parameter(key)?.neutral)

@@ -1,4 +1,4 @@
-//! Diagnosis: where simulation and measurement differ, which effect causes it, how far the gap shrinks once it is added.
+//! Diagnosis: where simulation and measurement differ, which effect is the cause, and how far the gap decreases with the effect added.
 
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap)]
 

@@ -26,38 +26,38 @@ use crate::model::parameter;
 use crate::problem::{Problem, Problems};
 use crate::simulate::Section;
 
-/// What was found, before it is put in words.
+/// Numerical results of a diagnosis.
 #[derive(Debug)]
 pub struct Found {
     pub seen: Observations,
     pub candidates: Vec<Candidate>,
     pub masks: Vec<Mask>,
-    /// Beside no effect.
+    /// The weighing without effects.
     pub alone: Arc<Place>,
-    /// Where the answer is: what is left is judged there.
+    /// The weighing with the tolerances simulated together with the answer. Residuals are judged by it.
     pub beside: Arc<Place>,
-    /// The same without what stands out in a section alone: what the sizes are fitted by.
+    /// The same without outlying sections. Sizes are fitted by it.
     pub settled: Arc<Place>,
-    /// All that were looked at.
+    /// All weighings that were computed.
     pub places: Places,
-    /// Noise and tolerances alone.
+    /// Covariance of noise and tolerances alone.
     pub tolerated: Covariance,
     pub ground: Ground,
     pub chosen: Chosen,
     pub refused: Vec<Refused>,
-    /// Other candidates in the place of a member: member, fit, how much less evidence.
+    /// Other candidates in place of a member: number of the member, fit, loss of evidence.
     pub rivals: Vec<(usize, Fitted, f64)>,
-    /// What has most evidence for what the members leave, and is not named.
+    /// Candidates with the most evidence for the residual that are not named.
     pub nearest: Vec<Fitted>,
-    /// What no effect of the catalogue moves, where it explains more than the answer.
+    /// A vehicle parameter outside the catalogue that explains more than the answer.
     pub suspect: Option<Suspect>,
-    /// The first member when it was looked for.
+    /// Number of the first member when `suspect` was computed.
     suspected: Option<usize>,
-    /// What views contradict and has more evidence than the answer, for what that leaves.
+    /// A candidate refused for contradictory views that has more evidence for the residual than the answer has; with that evidence.
     pub contradicting: Option<(Refused, f64)>,
-    /// By member: whether it stands when other sections are drawn.
+    /// Stability under resampling of the sections, by member.
     pub stability: Vec<Stability>,
-    /// Channels and kinds where what is left, and what was there, is more than is allowed for.
+    /// Lack of fit by channel and kind of feature, before and after the effects are added.
     pub lack_before: Vec<Lack>,
     pub lack_after: Vec<Lack>,
     pub bars: Bars,
@@ -66,7 +66,7 @@ pub struct Found {
     pub declared: Declared,
 }
 
-/// Tolerances that name a parameter which neither the vehicle file nor the model has cannot be sent through the simulator.
+/// Warns of tolerances whose parameter is in neither the vehicle file nor the model: they cannot be simulated.
 fn check_tolerated(inputs: &Inputs<'_>, problems: &mut Problems) {
     if inputs.simulator.is_none() {
         return;
@@ -80,9 +80,9 @@ fn check_tolerated(inputs: &Inputs<'_>, problems: &mut Problems) {
     }
 }
 
-/// Finds what explains the difference of measurement and simulation.
+/// Finds the effects that explain the difference of measurement and simulation.
 ///
-/// Problems: of reading; nothing to compare.
+/// Problems: records that cannot be read; no section or channel to compare.
 pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems) -> Option<Found> {
     let admitted = Declared::read(inputs.campaign, inputs.settings, problems);
     if problems.errors() > 0 {
@@ -144,18 +144,19 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
 }
 
 impl Found {
-    /// Without a member, what is left settled again.
+    /// Refuses a member, then fits the others again.
     pub fn refuse(&mut self, at: usize, reason: String, inputs: &Inputs<'_>) {
         self.refused.push(Refused::new(self.chosen.members.remove(at), reason));
         alone_again(&mut self.candidates, &self.chosen.members);
         self.settle(inputs, true, Known::new());
     }
 
-    /// The answer where it puts the vehicle: sizes, what is left, and what else may be in its place. `gone` says that a member was refused,
-    /// which may let another in the place of one that was chosen beside it.
+    /// Fits the answer again with the tolerances simulated together with it, and updates residuals and alternatives. `gone` says that a
+    /// member was refused, so that another candidate may replace one that was chosen together with it.
     fn settle(&mut self, inputs: &Inputs<'_>, gone: bool, mut known: Known) {
         let far = |candidate: &Candidate, size: f64| deviations(candidate, size, inputs.settings, &self.declared, false);
-        // What lies between the two takes its part of the difference, so that nothing else does, and is not named.
+        // An effect between the threshold without `besides` and the one with it is fitted but not named, so that no other effect explains
+        // it.
         let further = |candidate: &Candidate, size: f64| deviations(candidate, size, inputs.settings, &self.declared, true);
         let families = families(&self.seen, &self.strata);
         let places = std::mem::take(&mut self.places);
@@ -184,7 +185,7 @@ impl Found {
             let lack_after = drop_what_harms(&fitter, (&beside, &self.seen), &settled.z, &mut chosen, refused, &self.lack_before);
             drop(fitter);
             let first_of = |chosen: &Chosen| chosen.members.first().map(|member| member.candidate);
-            // What may take the place of the first member depends on what that is, and what may take that of all on them.
+            // The suspect depends on the first member, and in place of several members on all of them.
             if !gone || first_of(&chosen) != self.suspected || self.suspect.as_ref().is_some_and(|suspect| suspect.of_all) {
                 self.suspected = first_of(&chosen);
                 self.suspect = suspect(workshop, inputs.settings, alone, (candidates, masks, &chosen), runs);
@@ -196,8 +197,8 @@ impl Found {
         self.weigh(known, inputs.seed);
     }
 
-    /// Evidence, rivals and stability of the answer. A member is weighed with the tolerances as they act beside those before it: one that
-    /// it is the blown form of is free there for its rivals as it is for the member, and so is what else might be in its place.
+    /// Evidence, rivals and stability of the answer. A member is weighed with the tolerances simulated together with the members before it.
+    /// A tolerance of the same parameter is then free for rivals as well as for the member.
     fn weigh(&mut self, known: Known, seed: u64) {
         let sizes = Fitter::of(&self.settled.whitener, &self.candidates, self.masks.clone(), &self.chosen.members);
         let mut known = known;
@@ -238,30 +239,30 @@ impl Found {
     }
 }
 
-/// How many declared standard deviations a size is from neutral, with what may be off `besides` or without; infinitely many for an effect
-/// that is no tolerance.
+/// Distance of a size from neutral in declared standard deviations. `besides` adds the tolerance's further standard deviation. Infinite
+/// for an effect that is not a tolerance.
 #[must_use]
 pub fn deviations(candidate: &Candidate, size: f64, settings: &Settings, declared: &Declared, besides: bool) -> f64 {
     let tolerance = candidate.tolerance.as_ref().and_then(|name| settings.tolerances.iter().find(|one| one.name == *name));
     let (Some(tolerance), Some(neutral)) = (tolerance, candidate.neutral()) else { return f64::INFINITY };
     let sd = declared.get(&tolerance.name).unwrap_or(tolerance.default);
-    // Of what is declared for single sections, what all of them have in common is less.
+    // For a tolerance declared by section, only the share common to all sections counts.
     let sd = if tolerance.shared > 0.0 { sd * tolerance.shared } else { sd };
     let sd = if besides { sd.hypot(tolerance.besides) } else { sd };
-    // What is scaled is declared as a factor to what the vehicle file has: twice as much is as far as half of it.
+    // A scaled parameter is declared by a relative standard deviation: the distance is that of the logarithm.
     let scaled = tolerance.scales.contains(&candidate.size) && neutral != 0.0;
     let away = if scaled { (size / neutral).max(0.0).ln().abs() } else { (size - neutral).abs() };
     if sd > 0.0 { away / sd } else { f64::INFINITY }
 }
 
-/// Whitened size of a change.
+/// Length of the whitened change, in standard deviations.
 #[must_use]
 pub fn length(whitener: &Whitener, change: &[f64]) -> f64 {
     let z = whitener.apply(change);
     dot(&z, &z).sqrt()
 }
 
-/// Chi-squared per feature before and after.
+/// Chi-squared per feature before and after the effects.
 #[must_use]
 pub fn chi(found: &Found) -> (f64, f64) {
     let beside = &found.beside;
@@ -277,9 +278,9 @@ mod tests {
     use crate::diagnose::search::candidates::Node;
     use crate::diagnose::settings::Tolerance;
 
-    /// 0.7 times e^0.2 is 4 standard deviations of a factor of 5 % off, and so is 0.7 over e^0.2, where the tolerance scales the
-    /// parameter; else 0.155 is 3.1 of 0.05. Twice as many where all sections have half of a standard deviation in common, as many where
-    /// they have nothing in common.
+    /// 0.7 e^0.2 is 4 standard deviations from 0.7 for a relative standard deviation of 5 %, and so is 0.7 e^-0.2, where the tolerance
+    /// scales the parameter; otherwise 0.155 is 3.1 of 0.05. With a common share of 0.5 the number doubles; without one (0) it is
+    /// unchanged.
     #[test]
     fn what_is_scaled_is_declared_as_a_factor_to_what_the_vehicle_has() {
         let deviations_of = |scales: &[&str], neutral: f64, shared: f64, besides: f64| {
@@ -311,9 +312,9 @@ mod tests {
         near(deviations_of(&["another"], 0.7, 1.0, 0.0)(0.855), 3.1);
         near(deviations_of(&["another"], 0.7, 0.5, 0.0)(0.855), 6.2);
         near(deviations_of(&["another"], 0.7, 0.0, 0.0)(0.855), 3.1);
-        // 5 % and 12 % besides are 13 %.
+        // 5 % and 12 % combine to 13 %.
         near(deviations_of(&["size"], 0.7, 1.0, 0.12)(more), 0.2 / 0.13);
-        // There is no factor to nothing: it is taken as it stands.
+        // A relative change of zero is not defined: the size is taken as absolute.
         near(deviations_of(&["size"], 0.0, 1.0, 0.0)(0.155), 3.1);
     }
 }

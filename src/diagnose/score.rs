@@ -1,4 +1,4 @@
-//! Scores diagnoses against truths. Nothing here is known to the diagnosis.
+//! Scores of diagnoses against known truths. The diagnosis does not use this module.
 
 use indexmap::IndexMap;
 use serde_json::Value;
@@ -10,7 +10,7 @@ use crate::metrics::interval::wilson;
 use crate::result::blind::{Blind, BySize, Calibration, Case, Places, Score};
 use crate::result::diagnosis::{Cause, Diagnosis, NamedEffect};
 
-/// An effect of a truth.
+/// One effect of a truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct True {
     pub name: String,
@@ -18,7 +18,7 @@ pub struct True {
     pub confined: Option<Confined>,
 }
 
-/// What was done to a measurement.
+/// Known modifications of a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Truth {
     /// `single`, `pair`, `none`, `outside` or `trap`.
@@ -30,7 +30,7 @@ impl Truth {
     /// Reads a `truth.json`.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
+    /// The text is not JSON, or a key is missing; the message says which.
     pub fn read(text: &str) -> Result<Self, String> {
         let json: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let kind = json["kind"].as_str().ok_or("it has no `kind`")?.to_string();
@@ -48,14 +48,14 @@ impl Truth {
         Ok(Self { kind, effects: effects.iter().map(one).collect::<Result<_, String>>()? })
     }
 
-    /// The effects as the catalogue applies them; nothing if it does not know one of them.
+    /// The effects as the catalogue applies them; nothing if the catalogue does not contain one of them.
     #[must_use]
     pub fn applied(&self, catalogue: &Catalogue) -> Option<Vec<Applied>> {
         self.effects.iter().map(|effect| effect.applied(catalogue)).collect()
     }
 }
 
-/// Sections as a truth and an answer write them: a key, and one value or a list.
+/// The sections of an effect as truths and answers write them: a key, and one value or a list.
 fn confined(key: &str, values: &Value) -> Option<Confined> {
     let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_string);
     let column = match key {
@@ -116,7 +116,7 @@ impl True {
         Some(applied)
     }
 
-    /// Whether a named effect is this one: the same name, and for a channel the same channel.
+    /// Whether a named effect is this one: the same name and, where given, the same channel.
     fn is(&self, named: &NamedEffect) -> bool {
         if self.name != named.name {
             return false;
@@ -127,7 +127,7 @@ impl True {
         !by_channel || channels.len() < self.parameters.len()
     }
 
-    /// Where this effect acts, and where it does as it was named; nothing if that is everywhere.
+    /// The sections where this effect acts, and those where it was named; nothing if both are all sections.
     fn sections(&self, named: &NamedEffect, sections: &[Observed]) -> Option<Places> {
         let told = named.confined_to.iter().flatten().find_map(|(key, values)| confined(key, values));
         if self.confined.is_none() && told.is_none() {
@@ -149,7 +149,7 @@ impl True {
     }
 }
 
-/// Cells that are called significant against those that the truth moves; with nothing hidden none is.
+/// Cells called significant against cells that the truth changes. With no effect hidden, no cell is true.
 fn cells(diagnosis: &Diagnosis, truth: &Truth, really: Option<&Really>) -> Option<Places> {
     let moved: &[String] = match really {
         Some(really) => &really.cells,
@@ -160,7 +160,7 @@ fn cells(diagnosis: &Diagnosis, truth: &Truth, really: Option<&Really>) -> Optio
     Some(Places { truly: moved.len(), told: told.len(), both: told.iter().filter(|says| moved.contains(says)).count() })
 }
 
-/// One case: the diagnosis, which is written already, against the truth.
+/// Scores one diagnosis against its truth.
 #[must_use]
 pub fn case(campaign: &str, diagnosis: &Diagnosis, truth: &Truth, really: Option<&Really>, sections: &[Observed]) -> Case {
     let names = |cause: &Cause| cause.effects.iter().map(|effect| effect.name.clone()).collect::<Vec<_>>();
@@ -209,10 +209,10 @@ pub fn case(campaign: &str, diagnosis: &Diagnosis, truth: &Truth, really: Option
     }
 }
 
-/// Detectability from which an effect counts as one that can be named.
+/// Whitened length, in standard deviations, from which an effect counts as detectable.
 const DETECTABLE: f64 = 5.0;
 
-/// All cases together.
+/// Scores of all cases.
 #[must_use]
 pub fn blind(cases: Vec<Case>) -> Blind {
     let good: Vec<&Case> = cases.iter().filter(|case| case.fault.is_none()).collect();
@@ -308,8 +308,8 @@ mod tests {
         assert!(Truth::read("{}").is_err() && Truth::read("no json").is_err());
     }
 
-    /// Cells and sections are counted over all cases: 7 of 8 told are true, 7 of 10 true ones are told. Nothing hidden and one cell
-    /// told is one more that is not true.
+    /// Cells and sections are counted over all cases: 7 of 8 reported cells are true, 7 of 10 true cells are reported. A case without a
+    /// hidden effect and with one reported cell adds one false cell.
     #[test]
     fn places_are_counted_over_all_cases() {
         let places = |truly, told, both| Some(Places { truly, told, both });
@@ -325,7 +325,7 @@ mod tests {
         assert_eq!(of("traps avoided").value, None);
     }
 
-    /// Three pairs, both named in two of them; the weaker effect of one that is missed cannot be seen beside the other.
+    /// Three pairs, both named in two of them. In the third, the weaker effect is not detectable together with the other.
     #[test]
     fn pairs_that_can_be_told_apart_are_counted_by_themselves() {
         let truth = vec!["a".to_string(), "b".to_string()];

@@ -118,7 +118,7 @@ fn a_tolerance_that_cannot_be_used_is_told() {
     };
     let (code, says) = run("  cant [mm]:", "  cnt [mm]:");
     assert!(code.is_some_and(|code| code <= 1), "{says}");
-    assert!(says.contains("the catalogue knows no tolerance `cnt`") && says.contains("did you mean `cant`?"), "{says}");
+    assert!(says.contains("the catalogue has no tolerance `cnt`") && says.contains("did you mean `cant`?"), "{says}");
     assert!(says.contains("campaign.yaml:"), "{says}");
     let (code, says) = run("  cant [mm]:", "  cant [kN]:");
     assert_eq!(code, Some(2), "{says}");
@@ -230,7 +230,7 @@ fn columns_that_are_not_there_and_zones_that_are_none_are_told() {
     let cases = [
         ("strata: zone", "strata: {zone: 1}", "a name or a list of names is needed here"),
         ("mirrored: {direction: left}", "mirrored: left", "`mirrored` is one column and its value"),
-        ("channels: [Y_1L, Y_3L, Q_1L, Q_3L]", "channels: [Y_1X]", "`Y_1X` is no group and no channel of one"),
+        ("channels: [Y_1L, Y_3L, Q_1L, Q_3L]", "channels: [Y_1X]", "`Y_1X` is neither a group nor a channel of a group"),
         ("{channels: [Y_1L,", "{chanels: [Y_1L,", "needs `channels`"),
     ];
     for (from, into, wanted) in cases {

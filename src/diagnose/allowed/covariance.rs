@@ -1,4 +1,4 @@
-//! What may differ without any effect: noise, declared tolerances, and what the simulation is allowed to be wrong in.
+//! Covariance of the residual without any effect: noise, declared tolerances, and the allowed discrepancy of the model.
 
 use super::standing::Standing;
 use super::whiten::Covariance;
@@ -6,37 +6,37 @@ use crate::diagnose::observe::features::Kind;
 use crate::diagnose::observe::observations::Observations;
 use crate::diagnose::settings::{Discrepancy, FeatureKind, Moves, Over, Settings, Times};
 
-/// Variance of what tells nothing.
+/// Variance of a feature that carries no information.
 pub const NOTHING: f64 = 1e12;
 
-/// How the simulated features change with a tolerated parameter, per standard deviation.
+/// Change of the simulated features with a tolerated parameter, per standard deviation.
 #[derive(Clone, Debug)]
 pub struct Sensitivity {
     pub tolerance: String,
     pub column: Vec<f64>,
-    /// How much of it is expected to be there.
+    /// Expected value of the deviation, in standard deviations.
     pub expected: f64,
     pub per_section: bool,
-    /// How much of a standard deviation all sections have in common.
+    /// Share of a standard deviation that is common to all sections.
     pub shared: f64,
 }
 
-/// A column that sections share, by what it stands for.
+/// A column common to all sections, with a key that identifies its discrepancy.
 #[derive(Clone, Debug)]
 pub struct Keyed {
     pub key: String,
     pub values: Vec<f64>,
 }
 
-/// Takes what is expected of the tolerances off a difference.
+/// Subtracts the expected deviation of the tolerances from a difference.
 pub fn expect(sensitivities: &[Sensitivity], difference: &mut [f64]) {
     for sensitivity in sensitivities.iter().filter(|sensitivity| sensitivity.expected != 0.0) {
         difference.iter_mut().zip(&sensitivity.column).for_each(|(difference, column)| *difference -= sensitivity.expected * column);
     }
 }
 
-/// The covariance of `measured - simulated` without any effect. `simulated` are the features of the campaign's simulation; without
-/// `standing`, noise and tolerances alone.
+/// The covariance of `measured - simulated` without any effect. `simulated` are the features of the campaign's simulation. Without
+/// `standing`, noise and tolerances alone are included.
 #[must_use]
 pub fn covariance(
     seen: &Observations,
@@ -74,7 +74,7 @@ pub fn covariance(
 /// A section, and a column of its features.
 type Inside = (usize, Vec<f64>);
 
-/// Columns of all discrepancies: those that sections share, and those inside one.
+/// Columns of all discrepancies: those common to all sections, and those of single sections.
 #[must_use]
 pub fn discrepancies(seen: &Observations, settings: &Settings) -> (Vec<Keyed>, Vec<Inside>) {
     let (mut shared, mut inside) = (Vec::new(), Vec::new());
@@ -84,7 +84,7 @@ pub fn discrepancies(seen: &Observations, settings: &Settings) -> (Vec<Keyed>, V
     (shared, inside)
 }
 
-/// Gain and offset of a channel, as declared.
+/// Columns for gain and offset of the channels, with declared standard deviations.
 fn calibration(
     seen: &Observations,
     settings: &Settings,
@@ -117,7 +117,7 @@ fn calibration(
     columns
 }
 
-/// Scatter of single features.
+/// Variances of the single features.
 fn diagonal(seen: &Observations, settings: &Settings) -> Vec<f64> {
     let mut variances = Vec::with_capacity(seen.len());
     for (at, observed) in seen.sections.iter().enumerate() {
@@ -132,7 +132,8 @@ fn diagonal(seen: &Observations, settings: &Settings) -> Vec<f64> {
             variances.push(match feature.kind {
                 Kind::Level => scatter.level + group.level_sd * group.level_sd,
                 Kind::Band(band) => {
-                    // Of the logarithm of an rms over a band of width B in a time T: 1 / (4 B T) for each of two records, half of it common.
+                    // Variance of ln(rms) over a band of width B and a duration T: 1 / (4 B T) for each record; half of it is common to
+                    // both.
                     let width = seen.layout.edges[band + 1] - seen.layout.edges[band];
                     0.25 / (width * length).max(0.5) + group.band_sd * group.band_sd
                 }
@@ -155,7 +156,7 @@ fn discrepant(
 ) {
     let size = seen.features.len();
     let bands = seen.layout.edges.len().saturating_sub(1);
-    // Kinds that move together.
+    // Kinds of features that are fully correlated.
     let kinds: Vec<Vec<Kind>> = match discrepancy.feature {
         FeatureKind::Level => vec![vec![Kind::Level]],
         FeatureKind::Bands => (0..bands).map(|band| vec![Kind::Band(band)]).collect(),
@@ -214,7 +215,7 @@ pub fn strata(seen: &Observations, settings: &Settings) -> Vec<Vec<usize>> {
     found.into_iter().map(|(_, sections)| sections).collect()
 }
 
-/// Channels that move together, with their weights.
+/// Channels that are fully correlated, with their weights.
 fn members(seen: &Observations, discrepancy: &Discrepancy) -> Vec<Vec<(usize, f64)>> {
     let number = |name: &str| seen.layout.channels.iter().position(|channel| channel.name == name);
     let all: Vec<(usize, f64)> = discrepancy.channels.iter().filter_map(|(name, weight)| Some((number(name)?, *weight))).collect();

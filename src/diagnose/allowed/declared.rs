@@ -1,4 +1,4 @@
-//! What the test engineer admits not to know, as the campaign declares it, in the units that the catalogue reads it in.
+//! Declared tolerances of a campaign, converted to the units of the catalogue.
 
 use std::collections::HashMap;
 
@@ -8,24 +8,24 @@ use crate::diagnose::settings::Settings;
 use crate::problem::{Problem, Problems};
 use crate::units::Unit;
 
-/// The map of `campaign.yaml` that holds them.
+/// The map of `campaign.yaml` with the tolerances.
 const GROUP: &str = "declared_tolerances";
 
-/// One standard deviation each, by name.
+/// Declared standard deviations by name.
 #[derive(Clone, Debug, Default)]
 pub struct Declared {
     values: HashMap<String, f64>,
-    /// Names that the catalogue does not know.
+    /// Names that are not in the catalogue.
     pub unknown: Vec<String>,
-    /// Whether the campaign declares any at all.
+    /// Whether the campaign declares any tolerance.
     pub any: bool,
 }
 
 impl Declared {
-    /// Reads them.
+    /// Reads the declared tolerances.
     ///
-    /// Problems: `wrong-kind` for what is no number or below zero, `unknown-unit`, `unit-mismatch`; a warning for a name that the
-    /// catalogue does not know.
+    /// Problems: `wrong-kind` for a value that is not a number from 0 on, `unknown-unit`, `unit-mismatch`; a warning for a name that is
+    /// not in the catalogue.
     #[must_use]
     pub fn read(campaign: &Campaign, settings: &Settings, problems: &mut Problems) -> Self {
         let known = settings.tolerated();
@@ -33,7 +33,7 @@ impl Declared {
         for fact in campaign.facts.iter().filter(|fact| fact.group == GROUP) {
             declared.any = true;
             let Some((_, unit)) = known.iter().find(|(name, _)| *name == fact.name) else {
-                let says = format!("the catalogue knows no tolerance `{}`: it is not allowed for", fact.name);
+                let says = format!("the catalogue has no tolerance `{}`: the declared value is not used", fact.name);
                 let names = known.iter().map(|(name, _)| *name);
                 problems.push(Problem::warning("unknown-tolerance", says).at(&fact.span).suggest(&fact.name, names));
                 declared.unknown.push(fact.name.clone());

@@ -1,4 +1,4 @@
-//! By what measurement and simulation may differ without any effect: noise, tolerances, what no model has.
+//! Allowed difference of measurement and simulation without any effect: noise, tolerances, model discrepancy.
 
 pub mod covariance;
 pub mod declared;

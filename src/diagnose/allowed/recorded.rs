@@ -1,4 +1,4 @@
-//! The simulation as a measuring chain would have recorded it.
+//! The simulation as the measuring chain would have recorded it.
 
 use rayon::prelude::*;
 
@@ -16,13 +16,13 @@ pub struct Recorded {
     pub features: Vec<f64>,
 }
 
-/// Of the noise: one for all channels and sections, so that neither their order nor a change of sides changes an answer.
+/// Seed of the noise. One seed for all channels and sections, so that their order and a change of sides do not change an answer.
 const SEED: u64 = 0x5EED;
 
-/// The campaign's simulation, section by section, with what is expected of the tolerances and with white noise as declared: an operation
-/// of the measuring chain acts on them as on all else. Where a simulation has next to nothing, as beyond the shortest waves of its track,
-/// they are what there is to act on. `value` is what a parameter has where nothing is set. A section where this cannot be simulated has
-/// the noise alone.
+/// The campaign's simulation, section by section, with the expected deviation of the tolerances and with the declared white noise. An
+/// operation of the measuring chain also acts on these. They matter where the simulation has almost no content, as at wavelengths below
+/// the shortest of its track. `value` gives a parameter's value where no setting changes it. A section for which the expected deviation
+/// cannot be simulated has the noise alone.
 #[must_use]
 pub fn as_recorded(
     seen: &Observations,
@@ -60,7 +60,7 @@ pub fn as_recorded(
     runs.failed
         .extend(made.iter().find_map(|(_, failed)| failed.as_ref().map(|says| format!("what is expected of the tolerances: {says}"))));
     let signals: Vec<Signals> = made.into_iter().map(|(signals, _)| signals).collect();
-    // Their noise is in the signals already.
+    // The signals contain their noise already.
     let features = signals.par_iter().enumerate().flat_map_iter(|(at, signals)| seen.of(at, signals, false)).collect();
     Recorded { signals, features }
 }

@@ -1,14 +1,14 @@
-//! How much the simulated features change with what the test engineer admits not to know.
+//! Sensitivity of the simulated features to the declared tolerances.
 
 use super::covariance::Sensitivity;
 use crate::diagnose::observe::bench::{Bench, Runs};
 use crate::diagnose::settings::Settings;
 
-/// Finite differences are taken over so many standard deviations: beyond the noise of branches, within what is linear.
+/// Step of the finite differences, in standard deviations: large against the scatter of contact solutions, small enough to be linear.
 const STEP: f64 = 1.5;
 
-/// A column per tolerated parameter: the change of all features with one standard deviation of it, `base` being those of the bench as it
-/// is set. `value` is what a parameter has where nothing is set; `wanted` picks columns by their number.
+/// One column per tolerated parameter: the change of all features per standard deviation. `base` are the features of the bench with its
+/// present settings. `value` gives a parameter's value where no setting changes it. `wanted` selects columns by number.
 #[must_use]
 pub fn sensitivities(
     bench: &Bench<'_>,
@@ -23,7 +23,7 @@ pub fn sensitivities(
     let now = |section: usize, key: &str| bench.value(section, key).or_else(|| value(key));
     for tolerance in &settings.tolerances {
         let sd = declared(&tolerance.name).unwrap_or(tolerance.default);
-        // What is moved, and how many standard deviations that is.
+        // The parameters to change, and the step in standard deviations.
         let mut tried: Vec<(Vec<(String, Move)>, f64)> = Vec::new();
         tried.extend(tolerance.scales.iter().map(|key| (vec![(key.clone(), Move::Times(1.0 + STEP * sd))], STEP)));
         tried.extend(tolerance.adds.iter().map(|(key, factor)| (vec![(key.clone(), Move::Plus(STEP * factor * sd))], STEP)));
@@ -58,7 +58,7 @@ pub fn sensitivities(
     columns
 }
 
-/// What is expected of the tolerances, as settings of the simulator. `value` is what a parameter has where nothing is set.
+/// Expected deviations of the tolerances, as settings of the simulator. `value` gives a parameter's value where no setting changes it.
 #[must_use]
 pub fn expected(settings: &Settings, value: &dyn Fn(&str) -> Option<f64>, declared: &dyn Fn(&str) -> Option<f64>) -> Vec<(String, f64)> {
     let mut there = Vec::new();
@@ -71,7 +71,7 @@ pub fn expected(settings: &Settings, value: &dyn Fn(&str) -> Option<f64>, declar
     there
 }
 
-/// How a parameter is moved.
+/// How a parameter is changed.
 enum Move {
     Times(f64),
     Plus(f64),

@@ -1,9 +1,9 @@
-//! What the simulation is wrong in anyway, learnt from campaigns whose state is known.
+//! Standing discrepancy of the simulation, estimated from campaigns of known state.
 //!
-//! Every discrepancy that sections share is a column times a number of unit variance. Of that number a part stands, and is the same in
-//! all campaigns with a vehicle; the rest is each campaign's own. Campaigns of known state say what the standing part is: its mean is
-//! taken off, and what remains of it, with the part that is each campaign's own, stays in the covariance (Gauss-Markov; as in Kennedy and
-//! O'Hagan 2001, with a discrepancy of declared form).
+//! Every discrepancy common to all sections is a column times a random coefficient of unit variance. A part of that coefficient is the
+//! same in all campaigns with a vehicle (the standing part); the rest varies from campaign to campaign. Campaigns of known state estimate
+//! the standing part. Its mean is subtracted; its remaining covariance and the varying part stay in the covariance (Gauss-Markov; as in
+//! Kennedy and O'Hagan 2001, with a discrepancy of declared form).
 
 use std::collections::HashMap;
 
@@ -20,20 +20,20 @@ use crate::problem::{Problem, Problems};
 use crate::yaml::{Key, Node};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// Standard deviation of the part of a discrepancy that is each campaign's own, as a share of the whole: judgement.
+/// Standard deviation of the part of a discrepancy that varies between campaigns, as a share of the whole: engineering judgement.
 const OWN: f64 = 0.5;
 
-/// What is known of the discrepancies that sections share; nothing, without a campaign to learn from.
+/// Posterior of the common discrepancies; empty without a reference campaign.
 #[derive(Clone, Debug, Default)]
 pub struct Standing {
-    /// By column: its place in the two others.
+    /// Index of each column in the mean and in the root.
     places: HashMap<String, usize>,
     mean: Vec<f64>,
-    /// A square root of the covariance of the columns' numbers.
+    /// A square root of the covariance of the coefficients.
     root: Option<DMatrix<f64>>,
 }
 
-/// What a campaign shows: its covariance but for the standing part, the columns, and measured - simulated.
+/// Data of one reference campaign: its covariance without the standing part, the columns, and measured - simulated.
 #[derive(Debug)]
 pub struct Shown {
     pub covariance: Covariance,
@@ -42,7 +42,7 @@ pub struct Shown {
 }
 
 impl Standing {
-    /// Learns from what campaigns show.
+    /// Estimates the standing part from reference campaigns.
     #[must_use]
     pub fn learn(all: &[Shown]) -> Self {
         let mut places = HashMap::new();
@@ -72,14 +72,14 @@ impl Standing {
         Self { places, mean: mean.data.into(), root: Some(root) }
     }
 
-    /// Takes what stands off a difference.
+    /// Subtracts the mean of the standing part from a difference.
     pub fn take_off(&self, columns: &[Keyed], difference: &mut [f64]) {
         for (column, at) in columns.iter().filter_map(|column| Some((column, self.places.get(&column.key)?))) {
             difference.iter_mut().zip(&column.values).for_each(|(difference, value)| *difference -= self.mean[*at] * value);
         }
     }
 
-    /// The columns with what is known of their numbers, so that each is of unit variance and on its own again.
+    /// The columns, recombined so that their coefficients are again independent and of unit variance.
     #[must_use]
     pub fn weighed(&self, columns: Vec<Keyed>) -> Vec<Vec<f64>> {
         let Some(root) = &self.root else { return columns.into_iter().map(|column| column.values).collect() };
@@ -98,15 +98,15 @@ impl Standing {
     }
 }
 
-/// What stands, by all references of a diagnosis.
+/// The standing part, from all references of a diagnosis.
 ///
-/// Problems: of reading; nothing to compare.
+/// Problems: records that cannot be read; no section or channel to compare.
 pub fn learnt(inputs: &Inputs<'_>, runs: &mut Runs, problems: &mut Problems) -> Option<Standing> {
     let shown: Option<Vec<Shown>> = inputs.references.iter().map(|reference| shown(inputs, reference, runs, problems)).collect();
     Some(Standing::learn(&shown?))
 }
 
-/// Numbers of a vehicle that another has not, with what that has, by their paths.
+/// Numbers of a vehicle file that differ from another file, with the other value, by their paths.
 fn differing<'a>(own: &'a Node, other: Option<&'a Node>, path: &str) -> Vec<(String, &'a Node, Option<&'a Node>)> {
     let of = |(key, node): &'a (Key, Node)| {
         let (path, there) = (format!("{path}{}", key.text), other.and_then(|other| other.get(&key.text)));
@@ -118,19 +118,20 @@ fn differing<'a>(own: &'a Node, other: Option<&'a Node>, path: &str) -> Vec<(Str
     own.entries().iter().flat_map(of).collect()
 }
 
-/// What stands is of one vehicle: says where the file of a reference has other numbers than the campaign's.
+/// Warns where the vehicle file of a reference differs from the campaign's: the standing part is a property of one vehicle.
 fn check_vehicle(inputs: &Inputs<'_>, reference: &Campaign, problems: &mut Problems) {
     let found = differing(&inputs.campaign.vehicle, Some(&reference.vehicle), "");
     let Some((path, own, there)) = found.first() else { return };
     let more = if found.len() > 1 { format!(" ({} more numbers differ)", found.len() - 1) } else { String::new() };
     let has = there.map_or("not there".to_string(), |there| there.raw.clone());
     let says = format!("the reference `{}` has another vehicle: `{path}` is {has} there{more}", reference.name);
-    problems
-        .push(Problem::warning("reference", says).at(&own.span).help("what the model is wrong in anyway is learnt as if it were the same"));
+    problems.push(
+        Problem::warning("reference", says).at(&own.span).help("the standing discrepancy is estimated as if the vehicle were the same"),
+    );
 }
 
 fn shown(inputs: &Inputs<'_>, reference: &Reference<'_>, runs: &mut Runs, problems: &mut Problems) -> Option<Shown> {
-    (inputs.trying)(&format!("what stands in `{}`", reference.campaign.name));
+    (inputs.trying)(&format!("standing discrepancy from `{}`", reference.campaign.name));
     let (campaign, settings) = (reference.campaign, inputs.settings);
     check_vehicle(inputs, campaign, problems);
     let admitted = Declared::read(campaign, settings, problems);
@@ -155,7 +156,7 @@ fn shown(inputs: &Inputs<'_>, reference: &Reference<'_>, runs: &mut Runs, proble
     Some(Shown { covariance, columns: discrepancies(&seen, settings).0, difference })
 }
 
-/// The settings with the part of each discrepancy that is a campaign's own; what differs from section to section is that altogether.
+/// The settings with only the part of each discrepancy that varies between campaigns; scatter between sections is kept in full.
 fn own(settings: &Settings) -> Settings {
     let mut own = settings.clone();
     let shared = own.discrepancies.iter_mut().filter(|discrepancy| discrepancy.over != Over::Sections);

@@ -1,11 +1,11 @@
-//! The covariance of what may differ without any effect, and how differences are measured in it.
+//! Factorisation of the covariance, and whitening of differences.
 //!
-//! `C = blockdiag(C_i) + G G'`: a block for every section, and columns that all sections share. A difference `r` is whitened to
+//! `C = blockdiag(C_i) + G G'`: one block per section, and columns `G` common to all sections. A difference `r` is whitened to
 //! `z = (I - U (1 - 1/sqrt(1 + S^2)) U') L^-1 r` with `C_i = L_i L_i'` and `L^-1 G = U S V'`, so that `z'z = r' C^-1 r`.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// The covariance, factored.
+/// The factored covariance.
 #[derive(Clone, Debug)]
 pub struct Whitener {
     blocks: Vec<Cholesky<f64, Dyn>>,
@@ -15,12 +15,12 @@ pub struct Whitener {
     size: usize,
 }
 
-/// What adds up to a covariance.
+/// The components of a covariance.
 #[derive(Clone, Debug)]
 pub struct Covariance {
-    /// Variances, all sections.
+    /// Variances of the features of all sections.
     pub diagonal: Vec<f64>,
-    /// Columns inside a section: section, values.
+    /// Columns of single sections: section, values of its features.
     pub inside: Vec<(usize, Vec<f64>)>,
     /// Columns over all sections.
     pub shared: Vec<Vec<f64>>,
@@ -29,9 +29,9 @@ pub struct Covariance {
 }
 
 impl Covariance {
-    /// Factors it.
+    /// Factors the covariance.
     ///
-    /// Variances are kept above a tiny share of the largest, so that the blocks are positive definite.
+    /// Variances are kept above a small share of the largest one, so that the blocks are positive definite.
     #[must_use]
     pub fn whitener(&self) -> Whitener {
         let sections = self.diagonal.len() / self.size;
@@ -53,7 +53,7 @@ impl Covariance {
 }
 
 impl Covariance {
-    /// The covariance inside a section, without what sections share.
+    /// The covariance of one section, without the common columns.
     fn block(&self, section: usize) -> Cholesky<f64, Dyn> {
         let range = section * self.size..(section + 1) * self.size;
         let columns: Vec<&[f64]> = self.inside.iter().filter(|(of, _)| *of == section).map(|(_, values)| values.as_slice()).collect();
@@ -65,7 +65,7 @@ impl Covariance {
         Cholesky::new_with_substitute(block, 1e-9).expect("a substitute makes every pivot positive")
     }
 
-    /// For inner products alone, of all sections or of all but one: cheaper than a [`Whitener`].
+    /// For inner products alone, over all sections or all but one: cheaper than a [`Whitener`].
     #[must_use]
     pub fn products(&self) -> Products {
         let one = |section: usize| {
@@ -83,7 +83,7 @@ impl Covariance {
     }
 }
 
-/// A section: its block, the columns that sections share whitened by it, and their products.
+/// One section: its factored block, the common columns whitened by it, and their Gram matrix.
 #[derive(Debug)]
 struct Inside {
     block: Cholesky<f64, Dyn>,
@@ -95,13 +95,13 @@ struct Inside {
 #[derive(Debug)]
 pub struct Products {
     sections: Vec<Inside>,
-    /// Unity and the products of all sections.
+    /// The identity plus the Gram matrices of all sections.
     gram: DMatrix<f64>,
     size: usize,
 }
 
 impl Products {
-    /// A column by section, whitened in its block.
+    /// A column, split by section and whitened by each block.
     fn inside(&self, column: &[f64]) -> Vec<DVector<f64>> {
         let one = |(section, inside): (usize, &Inside)| {
             let mut part = DVector::from_column_slice(&column[section * self.size..(section + 1) * self.size]);
@@ -111,7 +111,7 @@ impl Products {
         self.sections.iter().enumerate().map(one).collect()
     }
 
-    /// `a' C^-1 a` and `a' C^-1 b`, of all sections and of all but each.
+    /// `(a' C^-1 a, a' C^-1 b)` over all sections; with `one_out`, then over all but each section in turn.
     #[must_use]
     pub fn of(&self, a: &[f64], b: &[f64], one_out: bool) -> Vec<(f64, f64)> {
         let (a, b) = (self.inside(a), self.inside(b));
@@ -140,7 +140,7 @@ impl Products {
 }
 
 impl Whitener {
-    /// The whitened difference, of the length of `difference`.
+    /// The whitened difference; of the same length as `difference`.
     #[must_use]
     pub fn apply(&self, difference: &[f64]) -> Vec<f64> {
         let mut z = DVector::zeros(difference.len());
@@ -171,7 +171,7 @@ pub fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
 #[inline]
 #[must_use]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    // Several sums at a time, always in the same order.
+    // Eight partial sums, always in the same order, so that the result is reproducible.
     let mut sums = [0.0; 8];
     let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
     let rest: f64 = a8.remainder().iter().zip(b8.remainder()).map(|(x, y)| x * y).sum();

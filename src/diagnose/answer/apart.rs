@@ -1,5 +1,5 @@
-//! Which sections, measured again, would tell two causes apart best: the design that keeps rivals furthest from each other (Atkinson and
-//! Fedorov 1975, T-optimality), among more sections like those of each stratum.
+//! Selection of the sections that, if measured again, would best discriminate two causes: T-optimal design (Atkinson and Fedorov 1975)
+//! among further sections like those of each stratum.
 
 use crate::diagnose::allowed::whiten::{Covariance, dot};
 use crate::diagnose::run::Found;
@@ -7,16 +7,16 @@ use crate::diagnose::search::candidates::Candidate;
 use crate::diagnose::search::fit::{Fitted, Mask};
 use crate::diagnose::search::guards::{View, in_view};
 
-/// How far two causes are from each other, in standard deviations of what is allowed for.
+/// Distance of two causes, in standard deviations of the allowed difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Apart {
     pub now: f64,
-    /// With as many sections again like these, which help most.
+    /// The distance with as many further sections like `sections`, the most effective kind.
     pub then: f64,
     pub sections: Vec<usize>,
 }
 
-/// A member of the answer and its rival.
+/// The distance between a member of the answer and its rival.
 #[must_use]
 pub fn apart(found: &Found, member: &Fitted, rival: &Fitted) -> Option<Apart> {
     let change = member.change(&found.candidates, &found.masks);
@@ -42,8 +42,8 @@ mod tests {
     use super::*;
     use crate::diagnose::search::candidates::Node;
 
-    /// Two features in each of four sections, unit noise: an effect that moves both alike, and a rival that moves both alike in the
-    /// first two sections and against each other in the last two. What the rival cannot follow is there alone.
+    /// Two features in each of four sections, unit noise. The effect changes both features equally. The rival does so in the first two
+    /// sections and changes them in opposite directions in the last two. Only the last two discriminate.
     #[test]
     fn the_sections_in_which_rivals_differ_are_chosen() {
         let covariance = Covariance { diagonal: vec![1.0; 8], inside: Vec::new(), shared: Vec::new(), size: 2 };
@@ -55,7 +55,7 @@ mod tests {
         let rival = Candidate::path("rival", nodes);
         let everywhere = Mask { confined: None, sections: vec![true; 4], asked_by: None };
         let found = best(&covariance, &[0, 1, 2, 3], &[vec![0, 1], vec![2, 3]], &change, (&rival, &everywhere)).expect("both change");
-        // |a|^2 - (a'b)^2 / |b|^2 by hand, with b the rival at size 1.
+        // |a|^2 - (a'b)^2 / |b|^2, with b the rival at size 1.
         assert_eq!(found.sections, [2, 3]);
         assert!((found.now - (32.0_f64 - 16.0 * 16.0 / 32.0).sqrt()).abs() < 1e-9, "{}", found.now);
         assert!((found.then - (48.0_f64 - 16.0 * 16.0 / 48.0).sqrt()).abs() < 1e-9, "{}", found.then);

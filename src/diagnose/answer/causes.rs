@@ -1,4 +1,4 @@
-//! A set of effects as a cause: names, sizes with their intervals, and where it is.
+//! A set of effects as a cause: names, sizes with their intervals, and sections.
 
 use indexmap::IndexMap;
 use serde_json::json;
@@ -33,7 +33,7 @@ fn in_words(effect: &NamedEffect) -> String {
     format!("{}: {}{}", effect.title, values.collect::<Vec<_>>().join(", "), effect.only_in())
 }
 
-/// Four significant digits.
+/// Formats a value with four significant digits.
 pub fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
@@ -42,14 +42,14 @@ pub fn short(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// The 90 % interval of a size: uncertainty of the fit, of what lies between the nodes, and of which sections there are. Nothing for
-/// what has no size.
+/// The 90 % interval of a size: uncertainty of the fit, of the interpolation between simulated sizes, and of the choice of sections.
+/// Nothing for an effect without a size.
 #[must_use]
 pub fn interval(found: &Found, member: &Fitted) -> Option<(f64, f64)> {
     around(found, member, stability_of(found, member).map(|stability| stability.sizes))
 }
 
-/// The error of the fit, and how far sizes that were drawn are from the one that was found.
+/// Combines the standard error of the fit with the spread of the resampled sizes around the fitted one.
 fn around(found: &Found, member: &Fitted, drawn: Option<(f64, f64)>) -> Option<(f64, f64)> {
     let of = &found.candidates[member.candidate];
     if of.discrete || !member.size.is_finite() {
@@ -61,12 +61,12 @@ fn around(found: &Found, member: &Fitted, drawn: Option<(f64, f64)>) -> Option<(
     Some(((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)))
 }
 
-/// Declared standard deviations within which nine tenths of all vehicles are.
+/// Half the width of the 90 % range of vehicles, in declared standard deviations.
 const ORDINARY: f64 = 1.645;
 
-/// The member with least evidence of those whose interval holds the value that changes nothing, or one that is ordinary by what is
-/// declared, and why it is not named: however much the fit falls with it, other sections would have asked for the opposite, for another
-/// effect, or for no more than was admitted.
+/// The member with the least evidence among those whose interval includes the neutral value, or a value within the declared tolerance;
+/// with the reason why it is not named. Other sections might then have given the opposite sign, another effect, or no more than the
+/// declared deviation.
 #[must_use]
 pub fn nothing_out_of_the_ordinary(found: &Found, settings: &Settings) -> Option<(usize, String)> {
     let holds = |(at, member): (usize, &Fitted)| {
@@ -130,13 +130,13 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
     }
 }
 
-/// Of a member of the answer; a rival has none.
+/// The stability of a member of the answer; a rival has none.
 fn stability_of(found: &Found, member: &Fitted) -> Option<Stability> {
     let own = |known: &Fitted| known.candidate == member.candidate && known.mask == member.mask;
     found.chosen.members.iter().position(own).and_then(|at| found.stability.get(at).cloned())
 }
 
-/// `zones` and `sections` are lists, a direction is one word.
+/// The confinement in the form of the report: `zones` and `sections` are lists, a direction is one word.
 fn confined(column: &str, values: &[String]) -> IndexMap<String, serde_json::Value> {
     let numbers: Option<Vec<i64>> = values.iter().map(|value| value.parse().ok()).collect();
     let list = numbers.map_or_else(|| json!(values), |numbers| json!(numbers));

@@ -1,12 +1,12 @@
-//! From which sizes on an effect would have been seen.
+//! Smallest detectable sizes of the effects.
 
 use crate::diagnose::run::{Found, length};
 use crate::result::diagnosis::Detectable;
 
-/// Whitened length of a change that can be identified.
+/// Length of a whitened change that counts as detectable, in standard deviations.
 const SEEN: f64 = 5.0;
 
-/// Per effect and parameter, the smallest sizes that this campaign can show, to either side of neutral.
+/// Per effect and parameter, the smallest detectable sizes to either side of neutral.
 pub fn detectable(found: &Found) -> Vec<Detectable> {
     let mut list: Vec<Detectable> = Vec::new();
     for candidate in found.candidates.iter().filter(|candidate| !candidate.discrete && candidate.fixed.is_empty()) {
@@ -45,8 +45,8 @@ pub fn detectable(found: &Found) -> Vec<Detectable> {
     list
 }
 
-/// Where the whitened change on one side of neutral grows to what can be seen: `nodes` are distances and lengths, in order, linear in
-/// between. Nothing if it does not.
+/// The distance from neutral at which the whitened change reaches [`SEEN`]. `nodes` are distances and lengths in increasing order,
+/// linear in between. Nothing if it does not reach it.
 fn long_enough(nodes: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let mut before = (0.0, 0.0);
     for (away, long) in nodes {
@@ -62,7 +62,7 @@ fn long_enough(nodes: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Lengths 2 at 1 and 6 at 3: five at 1 + 2 * 3 / 4.
+    /// Lengths 2 at distance 1 and 6 at distance 3: length 5 at 1 + 2 * 3 / 4.
     #[test]
     fn what_can_be_seen_lies_between_the_sizes_that_were_tried() {
         assert_eq!(long_enough([(1.0, 2.0), (3.0, 6.0)].into_iter()), Some(2.5));

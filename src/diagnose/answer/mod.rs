@@ -1,4 +1,4 @@
-//! The answer: causes with their intervals and rivals, how far the gap shrinks, in words and pictures.
+//! The answer: causes with their intervals and rivals, the reduction of the gap, text and figures.
 
 pub(super) mod apart;
 pub mod causes;

@@ -1,4 +1,4 @@
-//! Signals of the sections where the gap is widest: measured, simulated, simulated with the effects.
+//! Figures of the sections with the largest gap: measured, simulated, simulated with the effects.
 
 use crate::diagnose::observe::features::Kind;
 use crate::diagnose::run::Found;
@@ -9,17 +9,17 @@ use crate::result::Curve;
 use crate::result::diagnosis::{Panel, Picture};
 use crate::simulate::{Section, Units};
 
-/// Sections shown, and panels of each.
+/// Number of sections, and of panels per section.
 const SECTIONS: usize = 2;
 const PANELS: usize = 4;
-/// Signals are smoothed for the eye, by so many Hz.
+/// Cut-off frequency of the low-pass for display, in Hz.
 const SMOOTH: f64 = 20.0;
 
-/// The worst sections, each with the channels of one group: the four wheels of the bogie where the gap is widest, for forces of a
-/// bogie vehicle.
+/// The sections with the largest gap, each with the channels of one group and position; for forces of a bogie vehicle, the four wheels of
+/// one bogie.
 pub fn pictures(settings: &Settings, found: &Found, improved: &[Signals], units: &Units) -> Vec<Picture> {
     let seen = &found.seen;
-    // How far each channel is off in each section, in standard deviations of what is tolerated.
+    // Deviation of each channel in each section, in standard deviations of noise and tolerances.
     let off = |section: usize, channel: usize| {
         seen.features
             .iter()
@@ -81,7 +81,7 @@ fn picture(settings: &Settings, found: &Found, improved: &[Signals], units: &Uni
     }
 }
 
-/// A channel around its section, smoothed; every second sample.
+/// A channel around its section, low-pass filtered; every second sample.
 fn curve(signals: &Signals, name: &str, section: &Section) -> Curve {
     let Some(channel) = signals.channel(name) else { return Curve::default() };
     let filter = Filter::design(Band::LowPass(SMOOTH), 4, signals.rate, Phase::Zero, Cutoff::AsApplied);

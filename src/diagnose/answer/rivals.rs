@@ -1,4 +1,4 @@
-//! What else may be the cause, how probable each is, and what to measure where the data cannot tell.
+//! Alternative causes, their probabilities, and recommended measurements where the data do not discriminate.
 
 use super::apart::{Apart, apart};
 use super::causes::cause;
@@ -9,19 +9,19 @@ use crate::diagnose::search::fit::Fitted;
 use crate::effects::Effect;
 use crate::result::diagnosis::Cause;
 
-/// Rivals with so much less evidence cannot be told from the answer.
+/// Largest loss of evidence of a rival that the data do not discriminate from the answer.
 const NEAREST: f64 = 8.0;
-/// Evidence is divided by this before it becomes a probability: real discrepancies are not those of the covariance.
+/// Divisor of the evidence before it becomes a probability: real discrepancies deviate from the assumed covariance.
 const TEMPERATURE: f64 = 4.0;
 
-/// Sets in which another effect takes the place of a member, and whether the data can tell them from the answer.
+/// Sets in which another effect replaces one member, and whether the data discriminate them from the answer.
 pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
     let best = found.chosen.evidence();
     let mut causes: Vec<Cause> = Vec::new();
     let own = |at: usize| &found.candidates[found.chosen.members[at].candidate];
     for (at, fit, fall) in &found.rivals {
         let of = &found.candidates[fit.candidate];
-        // The same on another channel is another cause, where the data cannot tell which channel it is.
+        // The same effect on another channel is another cause if the data do not show which channel it is.
         let elsewhere = of.effect == own(*at).effect && of.channels != own(*at).channels && !of.channels.is_empty() && *fall <= NEAREST;
         let named = found.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect);
         if named && !elsewhere {
@@ -30,11 +30,11 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
         if causes.len() >= 5 || causes.iter().any(|cause| cause.effects.iter().any(|effect| effect.name == of.effect)) {
             continue;
         }
-        // What a guard refused is told as such; it is no rival.
+        // Effects refused by a guard are reported separately.
         if found.refused.iter().any(|refused| found.candidates[refused.fitted.candidate].is_like(of)) || !plausible(of, fit.size) {
             continue;
         }
-        // What is within a declared tolerance is allowed for already.
+        // A size within a declared tolerance is part of the covariance already.
         if deviations(of, fit.size, inputs.settings, &found.declared, true) < TOLERANCE_SD {
             continue;
         }
@@ -51,17 +51,17 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
     causes
 }
 
-/// How probable each cause is. `failing` is the least share of the resamples in which a member is first, where that is too few: then
-/// causes are as probable as they are often first, which they have as `probability` before.
+/// Sets the probability of each cause. `failing` is the smallest share of resamples in which a member has the most evidence, where that
+/// share is too small. The probabilities are then these shares, which the causes contain as `probability` on entry.
 pub fn probabilities(causes: &mut [Cause], verdict: &str, suspected: bool, failing: Option<f64>) {
-    // A rival may have more evidence than an answer that was chosen with the tolerances as they act beside it: then it is as probable.
+    // A rival may have more evidence than an answer that was selected with the simulated tolerances: both are then equally probable.
     let best = causes.first().map_or(0.0, |answer| answer.evidence);
     let by_evidence = |cause: &Cause| ((cause.evidence - best).min(0.0) / (2.0 * TEMPERATURE)).exp();
     let weights: Vec<f64> = match failing {
         Some(first) => causes.iter().map(|cause| if cause.rank == 1 { first } else { cause.probability }).collect(),
         None => causes.iter().map(by_evidence).collect(),
     };
-    // Something outside the catalogue is possible as well; more so where something is left.
+    // A cause outside the catalogue is always possible, and more probable where a residual remains.
     let outside = match verdict {
         "unexplained" => 4.0,
         _ if suspected => 1.0,
@@ -88,26 +88,27 @@ pub fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verd
             measurements.push(settled);
         }
     }
-    measurements.extend(found.suspect.as_ref().map(|suspect| format!("`{}` itself, measured", suspect.key)));
+    measurements.extend(found.suspect.as_ref().map(|suspect| format!("a measurement of `{}`", suspect.key)));
     measurements.extend(more_sections(inputs, found, causes));
     (!measurements.is_empty()).then(|| measurements.join("; or "))
 }
 
-/// Standard deviations from which on two causes cannot be taken for each other by chance.
+/// Distance from which two causes are not confused by chance, in standard deviations.
 const TOLD_APART: f64 = 5.0;
 
-/// Causes of which neither can be the whole cause: the data that would tell them apart, were it one of them, are there.
+/// A statement where two possible causes are far apart but neither is preferred: the data would discriminate them if one were the whole
+/// cause.
 pub fn neither(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: &str) -> Option<String> {
     let (names, apart) = nearest(found, causes).filter(|(_, apart)| verdict == "ambiguous" && apart.now >= TOLD_APART)?;
     let [one, other] = names.map(|name| inputs.catalogue.effect(name).map_or(name, |effect| effect.title.as_str()));
     Some(format!(
-        "{one} | {other}: what they change here is {:.1} standard deviations apart. Were one of them the whole cause, these data would say \
-         which: something else acts beside it.",
+        "{one} | {other}: their changes differ by {:.1} standard deviations on these sections. If one of them were the whole cause, these \
+         data would show which one. Therefore a further effect is present.",
         apart.now
     ))
 }
 
-/// A member of the answer and the possible cause that is nearest to it, by name.
+/// A member of the answer and the possible cause closest to it, by name.
 fn nearest<'a>(found: &'a Found, causes: &[Cause]) -> Option<([&'a str; 2], Apart)> {
     let near =
         |name: &str| causes.iter().skip(1).any(|cause| cause.in_ambiguity_set && cause.effects.iter().any(|effect| effect.name == name));
@@ -118,7 +119,7 @@ fn nearest<'a>(found: &'a Found, causes: &[Cause]) -> Option<([&'a str; 2], Apar
     Some(([effect(member), effect(rival)], apart(found, member, rival)?))
 }
 
-/// More sections of the kind that tells the answer from its nearest rival best, where they are not far apart already.
+/// Further sections of the kind that best discriminates the answer from its closest rival, unless the data discriminate them already.
 fn more_sections(inputs: &Inputs<'_>, found: &Found, causes: &[Cause]) -> Option<String> {
     let (_, apart) = nearest(found, causes).filter(|(_, apart)| apart.now < TOLD_APART)?;
     let sections: Vec<&str> = apart.sections.iter().map(|at| found.seen.sections[*at].section.name()).collect();
@@ -127,7 +128,7 @@ fn more_sections(inputs: &Inputs<'_>, found: &Found, causes: &[Cause]) -> Option
     Some(format!(
         "the same number of additional sections like {} ({}); the two closest causes would then differ by {3:.1} standard deviations instead of {2:.1}",
         sections.join(", "),
-        kind.unwrap_or_else(|| "the kind that helps most".into()),
+        kind.unwrap_or_else(|| "the most effective kind".into()),
         apart.now,
         apart.then
     ))

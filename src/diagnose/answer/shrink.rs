@@ -1,4 +1,4 @@
-//! How far the gap shrinks: the effects really added, on sections that the fit did not see, and the protocol run again.
+//! Reduction of the gap by cross-validation: the effects simulated on sections excluded from the fit, and the protocol evaluated again.
 
 use rayon::prelude::*;
 
@@ -12,12 +12,12 @@ use crate::result::diagnosis::{QuantityShrink, Shrink, Touched};
 use crate::result::{Certification, QuantityResult};
 use crate::simulate::{Simulator, simulate};
 
-/// Parts that the sections are dealt into, stratum by stratum.
+/// Number of folds for cross-validation, stratified.
 const FOLDS: usize = 4;
-/// Resamples of the sections.
+/// Bootstrap resamples of the sections.
 const DRAWS: usize = 400;
 
-/// The chosen effects, with the sizes of the members.
+/// The chosen effects with the sizes of the members.
 #[must_use]
 pub fn applied(found: &Found, members: &[Fitted]) -> Vec<Applied> {
     members
@@ -32,7 +32,7 @@ pub fn applied(found: &Found, members: &[Fitted]) -> Vec<Applied> {
         .collect()
 }
 
-/// Sections dealt into folds: one of each stratum after the other.
+/// Distributes the sections to folds, stratum by stratum in turn.
 #[must_use]
 pub fn folds(strata: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut folds = vec![Vec::new(); FOLDS];
@@ -47,7 +47,7 @@ pub fn folds(strata: &[Vec<usize>]) -> Vec<Vec<usize>> {
     folds
 }
 
-/// Sizes of the members as the sections outside a fold ask for them.
+/// The members with sizes fitted to the sections outside a fold.
 #[must_use]
 pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     let kept: Vec<usize> = (0..found.seen.sections.len()).filter(|at| !fold.contains(at)).collect();
@@ -83,10 +83,10 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
         .collect()
 }
 
-/// Records of all sections with the effects added: `members` by section.
+/// Records of all sections with the effects added; `members` by section.
 ///
 /// # Errors
-/// The first section whose simulation fails.
+/// The error of the first section whose simulation fails.
 pub fn improved(
     found: &Found,
     catalogue: &Catalogue,
@@ -108,12 +108,11 @@ pub fn improved(
     (0..found.seen.sections.len()).into_par_iter().map(each).collect()
 }
 
-/// Root mean square change of a quantity's values, as a share of the limit of their standard deviation, from which on an effect
-/// touches it.
+/// An effect touches a quantity if the root mean square change of its values exceeds this share of the limit of their standard deviation.
 const TOUCHED: f64 = 0.1;
 
-/// Before and after, quantity by quantity, with the interval of what is removed. `noise` is the protocol on records that differ by
-/// nothing but the declared noise.
+/// Quantities before and after, with the interval of the removed share. `noise` is the protocol evaluated on records that differ only by
+/// the declared noise.
 #[must_use]
 pub fn compare(
     before: &Certification,
@@ -161,7 +160,7 @@ pub fn compare(
     }
 }
 
-/// What is removed from some quantities, with its interval by resampling sections.
+/// The removed share of some quantities, with its interval by resampling sections.
 fn removed(before: &Certification, after: &Certification, quantities: &[usize], seed: u64) -> Touched {
     let names = sections(before);
     let all: Vec<usize> = (0..names.len()).collect();
@@ -194,7 +193,7 @@ fn squares(quantity: &QuantityResult) -> f64 {
     limit.map_or(0.0, |limit| quantity.values.iter().map(|value| (value.difference / limit).powi(2)).sum())
 }
 
-/// Root mean square of what changes in a quantity's differences, by the limit of their standard deviation.
+/// Root mean square change of a quantity's differences, divided by the limit of their standard deviation.
 fn change(before: &QuantityResult, after: &QuantityResult) -> f64 {
     let Some(limit) = limit_of(before, "std").filter(|limit| *limit > 0.0) else { return 0.0 };
     let squares: f64 = before.values.iter().zip(&after.values).map(|(a, b)| (a.difference - b.difference).powi(2)).sum();
@@ -213,7 +212,7 @@ fn sum_of_squares(quantity: &QuantityResult) -> f64 {
     quantity.values.iter().map(|value| value.difference.powi(2)).sum()
 }
 
-/// Share removed of a sum of squares above a floor.
+/// Removed share of a sum of squares above a floor.
 fn explained(before: f64, after: f64, floor: f64) -> Option<f64> {
     let (from, to) = (before - floor, (after - floor).max(0.0));
     (from > 0.0).then(|| 1.0 - to / from)
@@ -223,7 +222,7 @@ fn sections(of: &Certification) -> Vec<String> {
     of.sections.iter().filter(|section| section.used).map(|section| section.section.clone()).collect()
 }
 
-/// Root mean square of normalised mean and standard deviation over some quantities, of the sections drawn.
+/// Root mean square of the normalised means and standard deviations of some quantities, over the drawn sections.
 fn measure(of: &Certification, quantities: &[usize], names: &[String], drawn: &[usize]) -> f64 {
     let (mut sum, mut count) = (0.0, 0);
     for quantity in quantities.iter().map(|at| &of.quantities[*at]) {
@@ -247,7 +246,7 @@ fn measure(of: &Certification, quantities: &[usize], names: &[String], drawn: &[
     if count == 0 { 0.0 } else { (sum / f64::from(count)).sqrt() }
 }
 
-/// What each member alone takes from the whitened difference, as shares of what all take.
+/// The part of the whitened difference that each member removes alone, as a share of what all remove together.
 #[must_use]
 pub fn shares(found: &Found) -> Vec<(String, f64)> {
     let all: f64 = found.chosen.members.iter().map(|member| dot(&member.whitened, &member.whitened)).sum();
@@ -259,7 +258,8 @@ pub fn shares(found: &Found) -> Vec<(String, f64)> {
 mod tests {
     use super::*;
 
-    /// 25 to 5 is four fifths; above a floor of 5 it is all, above one of 4 it is 20 of 21, and above 25 there is nothing to explain.
+    /// 25 to 5 is a reduction by four fifths; above a floor of 5 by all, above 4 by 20 of 21. With a floor of 25 nothing is to be
+    /// explained.
     #[test]
     fn what_noise_makes_is_not_to_be_explained() {
         assert_eq!(explained(25.0, 5.0, 0.0), Some(0.8));

@@ -1,4 +1,4 @@
-//! Whether an operation on the signals has one size over the whole campaign.
+//! Test whether an operation on the signals has the same size over the whole campaign.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,15 +15,15 @@ use crate::effects::{CHANNEL, Catalogue};
 use crate::result::diagnosis::Drift;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
-/// Of a squared length, what rounding leaves of it.
+/// Share of a squared length below which it counts as rounding error.
 const NOTHING: f64 = 1e-9;
 
-/// What a size follows that differs from section to section in no order.
+/// Covariate name for a size that varies between sections without order.
 const SECTION: &str = "the section alone";
 
-/// How the size of each operation on the signals changes with what the sections differ in, and from section to section: by least squares
-/// beside the sizes of all members, whitened by what may differ beside the answer. What is simulated is not looked at: what the model is wrong in may itself grow
-/// with the curvature. Sizes between which nothing lies, as of a polarity, are the same everywhere or confined.
+/// Trends of the size of each operation on the signals, over each covariate and between sections. Least squares together with the sizes of
+/// all members, whitened by the covariance with the answer. Simulated effects are excluded, since the model error may itself depend on the
+/// curvature. Discrete sizes such as a polarity cannot vary; they are the same everywhere or confined.
 #[must_use]
 pub fn drifts(settings: &Settings, found: &Found) -> Vec<Drift> {
     let exact = |member: &&Fitted| found.candidates[member.candidate].exact && !found.candidates[member.candidate].discrete;
@@ -42,7 +42,7 @@ pub fn drifts(settings: &Settings, found: &Found) -> Vec<Drift> {
         let features = found.seen.features.len();
         growing.iter_mut().enumerate().for_each(|(at, change)| *change *= covariate.values[at / features]);
         let growing = DVector::from(whitener.apply(&growing));
-        // What no size that is the same everywhere can do.
+        // The component that no constant size reproduces.
         let own = &growing - &sizes * sizes.tr_mul(&growing);
         let length = own.norm_squared();
         if length <= NOTHING * growing.norm_squared() {
@@ -89,20 +89,20 @@ fn drift(candidate: &Candidate, (covariate, from, to): (String, String, String),
     }
 }
 
-/// How a size differs from section to section, whatever they differ in: by least squares with a size for each section beside what is the
-/// same everywhere (Cochran's test of homogeneity, with errors that are correlated).
+/// Variation of a size between sections without order: least squares with one size per section in addition to the constant sizes
+/// (Cochran's test of homogeneity, with correlated errors).
 struct Apart {
-    /// The sections with the least and the largest size, as far as they can be told from the size of all; how far those are apart.
+    /// The sections with the smallest and the largest deviation from the common size; their difference and its error.
     from: usize,
     to: usize,
     change: f64,
     error: f64,
-    /// That all are the same.
+    /// Probability of the data if all sizes are the same.
     p_value: f64,
 }
 
 impl Apart {
-    /// `columns` are what sections change by, each alone; `sizes` an orthonormal base of what is the same everywhere.
+    /// `columns` are the changes of single sections; `sizes` an orthonormal basis of the constant sizes.
     fn fit(columns: &[DVector<f64>], sizes: &DMatrix<f64>, rest: &DVector<f64>) -> Option<Self> {
         if columns.len() < 2 {
             return None;
@@ -126,8 +126,8 @@ impl Apart {
     }
 }
 
-/// What may differ beside the answer, with room for what a simulated member has wrong as one; lags that jump with its size do not count.
-/// Sections that stand out alone do: what drifts stands out at its ends.
+/// The covariance with the answer, with the model error of simulated members as one column each. Lags that jump with the size are
+/// excluded. Outlying sections are kept: a drift is largest at its ends.
 fn may_differ(found: &Found) -> Covariance {
     let mut covariance = found.settled.covariance.clone();
     for (at, _) in found.seen.features.iter().enumerate().filter(|(_, feature)| feature.kind != Kind::Lag) {
@@ -138,14 +138,14 @@ fn may_differ(found: &Found) -> Covariance {
     covariance
 }
 
-/// The drift that is least probable, if it is no chance among all that were looked at (Bonferroni).
+/// The trend with the smallest probability, if it is significant among all trends tested (Bonferroni).
 #[must_use]
 pub fn certain(drifts: &[Drift]) -> Option<&Drift> {
     let least = drifts.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value))?;
     (least.p_value * (drifts.len() as f64) < CERTAIN).then_some(least)
 }
 
-/// In words, if it is certain.
+/// A sentence on the significant trend, if there is one.
 #[must_use]
 pub fn worth_a_word(catalogue: &Catalogue, drifts: &[Drift]) -> Option<String> {
     let drift = certain(drifts)?;
@@ -168,14 +168,14 @@ pub fn worth_a_word(catalogue: &Catalogue, drifts: &[Drift]) -> Option<String> {
 mod tests {
     use super::*;
 
-    /// Four sections of one feature each, of unit variance, that change by 5 per unit of the size: with sizes of 0.1, 0.5, 0.3, 0.3 the
-    /// mean is 0.3, chi-squared 5^2 * (0.2^2 + 0.2^2) = 2 with three degrees of freedom, and the difference of two sizes has an error of
-    /// 2^1/2 / 5. The chance is erfc((x / 2)^1/2) + (2 x / pi)^1/2 e^(-x / 2) = 0.1573 + 0.4151 for x = 2.
+    /// Four sections of one feature each, of unit variance, that change by 5 per unit of the size. With sizes of 0.1, 0.5, 0.3, 0.3 the
+    /// mean is 0.3, chi-squared 5^2 * (0.2^2 + 0.2^2) = 2 with three degrees of freedom, and the difference of two sizes has the error
+    /// 2^1/2 / 5. The probability is erfc((x / 2)^1/2) + (2 x / pi)^1/2 e^(-x / 2) = 0.1573 + 0.4151 for x = 2.
     #[test]
     fn sizes_that_differ_from_section_to_section_are_told() {
         let columns: Vec<DVector<f64>> = (0..4).map(|at| DVector::from_fn(5, |row, _| if row == at { 5.0 } else { 0.0 })).collect();
         let sizes = DMatrix::from_column_slice(5, 1, &[0.5, 0.5, 0.5, 0.5, 0.0]);
-        // The last feature is none that the size changes.
+        // The size does not change the last feature.
         let rest = DVector::from_column_slice(&[0.5, 2.5, 1.5, 1.5, 7.0]);
         let apart = Apart::fit(&columns, &sizes, &rest).expect("four sections");
         assert_eq!((apart.from, apart.to), (0, 1));

@@ -1,4 +1,4 @@
-//! The answer in words and numbers.
+//! Text and numbers of the answer.
 
 use super::causes::cause;
 use super::detectable::detectable;
@@ -13,26 +13,26 @@ use crate::diagnose::search::suspects::Suspect;
 use crate::result::diagnosis::{Cause, Diagnosis, Fault, How, Nearest, Shrink, Vetoed};
 use crate::simulate::Units;
 
-/// Trends that are less probable than this are told, be they significant among all or not.
+/// Trends with a probability below this are reported, whether significant or not.
 const TOLD: f64 = 0.05;
 
-/// Puts what was found into an answer.
+/// Converts the results into the diagnosis of the report.
 #[must_use]
 pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Option<Shrink>) -> Diagnosis {
     let (before, after) = chi(found);
     let (unexplained_share, too_much) = unexplained(&found.lack_before, &found.lack_after);
-    // What stands out in a section or two alone makes no answer wrong, but is no agreement either.
+    // An outlying section does not refute an answer, but without an answer it is a significant difference.
     let lacking = found.lack_after.iter().any(|lack| lack.sigma_with_them > LACK);
     let ambiguous = ambiguity(inputs, found);
     let named = !found.chosen.members.is_empty();
     let invariants = crate::diagnose::gap::invariants::invariants(inputs.settings, found, units);
     let (mut trends, together) = crate::diagnose::gap::trends::trends(inputs.settings, found, units);
     let drifts = super::steady::drifts(inputs.settings, found);
-    // No chance, whatever share of the gap it is.
+    // A trend that is certain, however small its share of the gap.
     let left = crate::diagnose::gap::trends::certain(&trends)
         || super::steady::certain(&drifts).is_some()
         || crate::diagnose::gap::invariants::stays(&invariants).is_some();
-    // The least share of the resamples in which a member is first, where that is too few.
+    // The smallest share of resamples in which a member has the most evidence, where that share is too small.
     let least = found.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
     let verdict = match () {
         () if !named && !lacking && !left && found.seen.faults.is_empty() => "no significant gap",
@@ -44,7 +44,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     let mut causes = vec![];
     if named {
         causes.push(cause(inputs, found, &found.chosen.members, 1));
-        // Where the gap stays, what would have more evidence than the answer was refused: it is told there, and is no rival.
+        // Where the gap remains, the candidate with more evidence than the answer was refused. It is reported there and is not a rival.
         let best = causes[0].evidence;
         causes.extend(ambiguous.into_iter().filter(|rival| verdict != "unexplained" || rival.evidence <= best));
         causes.iter_mut().enumerate().for_each(|(at, cause)| cause.rank = at + 1);
@@ -123,13 +123,13 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     }
 }
 
-/// Simulated time in s: what a clock shows would make every answer another text.
+/// Simulated time in s. Wall-clock time would differ from run to run.
 fn simulated_time(found: &Found) -> f64 {
     let all: f64 = (0..found.seen.sections.len()).map(|at| found.seen.extent(at).1).sum();
     all * found.runs.made as f64 / found.seen.sections.len().max(1) as f64
 }
 
-/// Sections that stand out alone beside an answer, with the channels that they do so in.
+/// Outlying sections with the channels concerned.
 fn alone(found: &Found) -> Option<String> {
     let one = |at: usize| {
         let mut channels: Vec<&str> =
@@ -158,7 +158,7 @@ fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
     found.refused.iter().map(one).collect()
 }
 
-/// What would have been named next, and what it wants for that.
+/// The closest candidates that are not named, and the criterion that each does not meet.
 fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
     let one = |fit: &Fitted| {
         let of = &found.candidates[fit.candidate];
@@ -170,7 +170,7 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
             () if away < TOLERANCE_SD => {
                 format!("larger deviation from the declared value: {away:.1} of {TOLERANCE_SD:.1} standard deviations")
             }
-            // One at a time is looked at: what explains most.
+            // Candidates are tested one at a time, by evidence.
             () if found.chosen.members.is_empty() => "more evidence than the effect that was rejected in its place".into(),
             () => "a larger share of the named effects".into(),
         };

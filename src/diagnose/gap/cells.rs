@@ -1,4 +1,4 @@
-//! Cells of quantity, position, band and sections: the places where a gap is looked for.
+//! Cells of quantity, position, band and sections, in which the gap is tested.
 
 use crate::diagnose::allowed::whiten::Covariance;
 use crate::diagnose::observe::features::Kind;
@@ -19,7 +19,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Its channels, in the order in which they come.
+    /// Its channels, in order of first occurrence.
     #[must_use]
     pub fn signals(&self, found: &Found) -> Vec<String> {
         let mut signals: Vec<String> = Vec::new();
@@ -32,7 +32,7 @@ impl Cell {
         signals
     }
 
-    /// The unit of its differences: that of the first channel for levels, none for ratios.
+    /// The unit of its differences: that of the first channel for levels, `-` for ratios.
     #[must_use]
     pub fn unit(&self, found: &Found, units: &Units) -> String {
         let signals = self.signals(found);
@@ -40,7 +40,7 @@ impl Cell {
         unit.map_or_else(|| "-".into(), |(_, unit)| unit.text.clone())
     }
 
-    /// What kind of feature it holds, in words.
+    /// The kind of feature, in words.
     #[must_use]
     pub fn band(&self, found: &Found) -> String {
         let edges = &found.seen.layout.edges;
@@ -53,7 +53,7 @@ impl Cell {
     }
 }
 
-/// Positions of the catalogue; without any, all channels are one.
+/// Positions of the catalogue; if it has none, one position with all channels.
 #[must_use]
 pub fn positions(settings: &Settings) -> Vec<Position> {
     let every = || Position { name: "all".into(), straight: Vec::new(), mirrored: Vec::new() };
@@ -65,7 +65,7 @@ pub fn kinds(found: &Found) -> impl Iterator<Item = Kind> {
     std::iter::once(Kind::Level).chain((0..found.seen.layout.edges.len().saturating_sub(1)).map(Kind::Band))
 }
 
-/// The cells of one kind and position, a group of channels and a set of sections each; those that hold nothing are left out.
+/// The non-empty cells of one kind and position, for each group of channels and each set of sections.
 #[must_use]
 pub fn cells(settings: &Settings, found: &Found, kind: Kind, position: &Position, among: &[Vec<usize>]) -> Vec<Cell> {
     let everywhere = position.straight.is_empty() && position.mirrored.is_empty();
@@ -90,11 +90,10 @@ pub fn cells(settings: &Settings, found: &Found, kind: Kind, position: &Position
     all.map(|(group, sections)| cell(group, sections)).filter(|cell| !cell.members.is_empty()).collect()
 }
 
-/// Share of false cells among those called significant.
+/// False discovery rate among the cells called significant.
 const FALSE_DISCOVERIES: f64 = 0.05;
 
-/// The largest probability that is called significant (Benjamini and Yekutieli 2001: valid whatever depends on what); below zero if
-/// none is.
+/// The largest p-value that is significant (Benjamini and Yekutieli 2001: valid under any dependence); below zero if none is.
 #[must_use]
 pub fn significant_up_to(probabilities: &[f64]) -> f64 {
     let mut order = probabilities.to_vec();
@@ -105,12 +104,12 @@ pub fn significant_up_to(probabilities: &[f64]) -> f64 {
     order.into_iter().enumerate().rev().find(passes).map_or(-1.0, |(_, p)| p)
 }
 
-/// The covariance of a few features, written out.
+/// The factored covariance of a few features.
 #[derive(Debug)]
 pub struct Among(Cholesky<f64, Dyn>);
 
 impl Covariance {
-    /// The covariance of the features that are named, by section and number, whatever the others are.
+    /// The marginal covariance of the listed features, given as section and number.
     #[must_use]
     pub fn among(&self, places: &[(usize, usize)]) -> Among {
         let all =
@@ -137,8 +136,8 @@ impl Among {
         values.dot(&self.0.solve(&values))
     }
 
-    /// Generalised least squares of `values` on two columns: the factor of the second one and its standard error. Nothing if the
-    /// columns are one and the same.
+    /// Generalised least squares of `values` on two columns: coefficient of the second column and its standard error. Nothing if the
+    /// columns are collinear.
     #[must_use]
     pub fn slope(&self, columns: [&[f64]; 2], values: &[f64]) -> Option<(f64, f64)> {
         let [one, two] = columns.map(DVector::from_column_slice);
@@ -171,8 +170,8 @@ mod tests {
         assert!((among.chi_squared(&[x, y]) - by_hand).abs() < 1e-12);
     }
 
-    /// Unit variance and an offset that all share: the slope is that of ordinary least squares, 0.5 with an error of 1 / sqrt(5), since
-    /// the offset is free anyway.
+    /// Unit variance and a common offset: the slope is that of ordinary least squares, 0.5 with the error 1 / sqrt(5), since the offset is
+    /// a free parameter of the fit.
     #[test]
     fn slope_of_a_line() {
         let covariance = Covariance { diagonal: vec![1.0; 4], inside: Vec::new(), shared: vec![vec![2.0; 4]], size: 1 };
@@ -180,11 +179,11 @@ mod tests {
             .among(&[(0, 0), (1, 0), (2, 0), (3, 0)])
             .slope([&[1.0; 4], &[0.0, 1.0, 2.0, 3.0]], &[3.0, 3.6, 4.2, 4.5])
             .expect("the columns differ");
-        // Sum of (x - 1.5) y over the sum of squares, 5: (-1.5 * 3 - 0.5 * 3.6 + 0.5 * 4.2 + 1.5 * 4.5) / 5.
+        // sum (x - 1.5) y / sum (x - 1.5)^2 = (-1.5 * 3 - 0.5 * 3.6 + 0.5 * 4.2 + 1.5 * 4.5) / 5.
         assert!((slope - 0.51).abs() < 1e-9 && (error - 0.2_f64.sqrt()).abs() < 1e-9);
     }
 
-    /// Of ten with the limits 0.05 k / (10 * 2.929): 0.0017, 0.0034, 0.0051.
+    /// Ten p-values with the limits 0.05 k / (10 * 2.929): 0.0017, 0.0034, 0.0051.
     #[test]
     fn false_discoveries_are_kept_rare() {
         let mut p = vec![0.5; 10];

@@ -1,10 +1,10 @@
-//! Left and right curves laid on each other: the outer wheel of one is the inner wheel of the other.
+//! Folding of left and right curves: the outer wheel of one takes the place of the inner wheel of the other.
 
 use crate::diagnose::observe::features::Kind;
 use crate::diagnose::observe::observations::Observations;
 use crate::diagnose::settings::Settings;
 
-/// Which channel takes the place of which in mirrored sections, and which levels turn with the curve.
+/// The channel that replaces each channel in mirrored sections, and the levels that change sign with the curve.
 #[derive(Clone, Debug)]
 pub struct Fold {
     /// By channel of the layout.
@@ -16,7 +16,7 @@ pub struct Fold {
 }
 
 impl Fold {
-    /// As the positions of the catalogue pair the channels; a level turns with the curve if it does so in the simulated features.
+    /// The positions of the catalogue pair the channels. A level changes sign with the curve if its simulated values do.
     #[must_use]
     pub fn new(settings: &Settings, seen: &Observations, simulated: &[f64]) -> Self {
         let number = |name: &String| seen.layout.channels.iter().position(|channel| channel.name == *name);
@@ -27,7 +27,7 @@ impl Fold {
         }
         let side: Vec<f64> = seen.sections.iter().map(|observed| settings.side(&observed.section)).collect();
         let mut fold = Self { turns: vec![false; partner.len()], partner, mirrored: side.iter().map(|side| *side < 0.0).collect() };
-        // Of a channel laid on its partner: what turns with the curve against what stays.
+        // Magnitude of the antisymmetric part of a channel and its partner against the symmetric part.
         let lean = |channel: usize| {
             let level =
                 |at: usize| seen.find(fold.channel(at, channel), Kind::Level).map_or(0.0, |feature| simulated[seen.place(at, feature)]);
@@ -44,12 +44,12 @@ impl Fold {
         fold
     }
 
-    /// The channel that stands at this one's place in a section; and the other way round.
+    /// The channel at this one's position in a section, and vice versa.
     fn channel(&self, section: usize, channel: usize) -> usize {
         if self.mirrored[section] { self.partner[channel] } else { channel }
     }
 
-    /// -1 for a level that turns with the curve, in a mirrored section; 1 otherwise.
+    /// -1 for a level that changes sign with the curve, in a mirrored section; 1 otherwise.
     #[must_use]
     pub fn sign(&self, section: usize, channel: usize, kind: Kind) -> f64 {
         if kind == Kind::Level && self.turns[channel] && self.mirrored[section] { -1.0 } else { 1.0 }
@@ -66,7 +66,7 @@ mod tests {
     use crate::simulate::{Fact, Section};
     use crate::units::Unit;
 
-    /// A right and a left curve: the outer wheel is guided by 10 to the one and the other side, and carries 60 in both.
+    /// A right and a left curve: the guiding force of the outer wheel is 10 and -10, its vertical force is 60 in both.
     #[test]
     fn guiding_forces_turn_with_the_curve_and_vertical_forces_do_not() {
         let section = |direction: &str| {

@@ -1,5 +1,5 @@
-//! Sums and differences of quasi-static values that only some causes can move: a sum of all vertical forces is a weight, whatever the
-//! wheels and rails do.
+//! Sums and differences of quasi-static values that only some causes can change: the sum of all vertical forces is a weight,
+//! independent of wheels and rails.
 
 use crate::diagnose::allowed::whiten::Covariance;
 use crate::diagnose::observe::features::Kind;
@@ -10,7 +10,7 @@ use crate::result::diagnosis::Invariant;
 use crate::simulate::Units;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// To which side an invariant is off: to the same in all sections, or turning with the curve; and whether it is the latter.
+/// Symmetry of a deviation: the same in all sections, or with a sign that changes with the curve; and whether it is the latter.
 const PARITIES: [(&str, bool); 2] = [("alike in all sections", false), ("turns with the curve", true)];
 
 impl Covariance {
@@ -24,7 +24,7 @@ impl Covariance {
     }
 }
 
-/// All invariants of the catalogue whose channels are there, simulated - measured, before and after the causes.
+/// All invariants of the catalogue whose channels were recorded, simulated - measured, before and after the causes are added.
 #[must_use]
 pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Invariant> {
     let seen = &found.seen;
@@ -69,14 +69,13 @@ pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Inva
     all
 }
 
-/// Chance of an invariant that is off as far or further among all that were looked at (Bonferroni), below which it is none: what is allowed
-/// for in sums of forces is small and well known.
+/// Probability of the deviation, among all invariants tested (Bonferroni), below which it is significant. The covariance of sums of
+/// forces is small and well known, so that this level is not stricter.
 const CHANCE: f64 = 0.01;
-/// Of what it is off by, a cause takes more than this share.
+/// Least share of the deviation that the causes must remove.
 const TAKES: f64 = 0.5;
 
-/// The invariant that is off by no chance, and of which the causes take less than half: whatever else they explain, they are not the cause
-/// of that.
+/// The significant invariant of which the causes remove less than half: the causes do not explain that deviation.
 #[must_use]
 pub fn stays(all: &[Invariant]) -> Option<&Invariant> {
     let tested = all.iter().filter(|one| one.allowed_after > 0.0).count() as f64;
@@ -85,15 +84,15 @@ pub fn stays(all: &[Invariant]) -> Option<&Invariant> {
     all.iter().filter(stays).max_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
-/// What is off by more than this many standard deviations is worth a word.
+/// Deviation from which an invariant is reported, in standard deviations.
 const WORTH: f64 = 3.0;
 
-/// How far an invariant is off with the causes added, in standard deviations.
+/// Deviation of an invariant with the causes added, in standard deviations.
 fn off(one: &Invariant) -> f64 {
     if one.allowed_after > 0.0 { one.after.abs() / one.allowed_after } else { 0.0 }
 }
 
-/// The invariant that is off most with the causes added, in words; nothing if none is.
+/// A sentence on the invariant with the largest deviation after the causes; nothing if none is large enough.
 #[must_use]
 pub fn worst(all: &[Invariant]) -> Option<String> {
     let one = all.iter().max_by(|a, b| off(a).total_cmp(&off(b))).filter(|one| off(one) > WORTH)?;
@@ -116,7 +115,7 @@ mod tests {
         assert!((covariance.variance(&[1.0, -1.0]) - (5.0 - 2.0 * 2.0 + 12.0)).abs() < 1e-12);
     }
 
-    /// Of four invariants one is off by 3.02 standard deviations or more with a chance of 4 * 0.0025 = 0.01.
+    /// Of four invariants, a deviation of 3.02 standard deviations has the probability 4 * 0.0025 = 0.01.
     #[test]
     fn what_the_causes_take_less_than_half_of_stays() {
         let one = |before: f64, after: f64| Invariant {
@@ -132,9 +131,9 @@ mod tests {
         assert_eq!(stays(&all(6.1, 6.1)).map(|one| one.after), Some(6.1));
         assert_eq!(stays(&all(-6.1, -6.1)).map(|one| one.after), Some(-6.1));
         assert!(stays(&all(6.0, 6.0)).is_none());
-        // Half of it is taken, or more.
+        // The causes remove just less, and just more, than half.
         assert!(stays(&all(12.3, 6.1)).is_none() && stays(&all(12.1, 6.1)).is_some());
-        // The causes put it off.
+        // The causes create the deviation.
         assert!(stays(&all(0.0, 6.1)).is_some());
         assert!(stays(&[]).is_none());
     }

@@ -1,5 +1,5 @@
-//! Where the gap lies: cells of quantity, position, stratum and band, tested against noise, declared tolerances and what a model of
-//! this kind is allowed to be wrong in.
+//! Location of the gap: cells of quantity, position, stratum and band, tested against noise, declared tolerances and the allowed
+//! model discrepancy.
 
 use super::cells::{Cell, cells, kinds, positions, significant_up_to};
 use crate::diagnose::observe::features::Kind;
@@ -8,7 +8,7 @@ use crate::diagnose::settings::Settings;
 use crate::result::diagnosis::Where;
 use crate::simulate::Units;
 
-/// All cells, the largest share of the gap first.
+/// All cells in decreasing order of their share of the gap.
 #[must_use]
 pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
     use rayon::prelude::*;
@@ -37,8 +37,8 @@ pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
     places
 }
 
-/// The cells that a change of the features moves by more than three standard deviations of all that is allowed for, in the words of the
-/// map: what a diagnosis could have told of its places.
+/// Names of the cells that a change of the features moves by more than three standard deviations: the significant cells expected for a
+/// known effect.
 #[must_use]
 pub fn moved(settings: &Settings, found: &Found, change: &[f64]) -> Vec<String> {
     const MOVED: f64 = 3.0;
@@ -49,14 +49,14 @@ pub fn moved(settings: &Settings, found: &Found, change: &[f64]) -> Vec<String> 
     map(settings, found).into_iter().filter(far).map(|cell| says(settings, found, &cell)).collect()
 }
 
-/// Every cell.
+/// All cells of the map.
 fn map(settings: &Settings, found: &Found) -> Vec<Cell> {
     let positions = positions(settings);
     let of_kind = |kind: Kind| positions.iter().flat_map(move |position| cells(settings, found, kind, position, &found.strata));
     kinds(found).flat_map(of_kind).collect()
 }
 
-/// What the sections of a cell have in common.
+/// The common stratum of the sections of a cell.
 fn stratum<'a>(settings: &Settings, found: &'a Found, cell: &Cell) -> &'a str {
     let of = |(column, at): (&str, &usize)| found.seen.sections[*at].section.fact(column);
     settings.stratum.as_deref().zip(cell.sections.first()).and_then(of).unwrap_or("")
@@ -68,20 +68,20 @@ fn says(settings: &Settings, found: &Found, cell: &Cell) -> String {
 }
 
 struct Tested {
-    /// Of chi-squared over what noise and tolerances give.
+    /// Chi-squared less its expectation from noise and tolerances.
     excess: f64,
     p_value: f64,
-    /// Simulated - measured: levels in their unit, bands as the ratio of simulated to measured less one.
+    /// Simulated - measured: levels in their unit, bands as simulated / measured - 1.
     mean: f64,
     rms: f64,
 }
 
-/// `measured` are the features of what was measured, whose side levels count towards.
+/// Tests a cell. `measured` are the measured features, whose sign decides the sign convention of levels.
 fn test(found: &Found, measured: &[f64], cell: &Cell) -> Tested {
     let values: Vec<f64> =
         cell.members.iter().map(|(section, feature)| found.alone.difference[found.seen.place(*section, *feature)]).collect();
-    // What is told is simulated - measured, as the protocol's quantities do; `difference` is measured - simulated. Levels count towards
-    // the side of the measured one, so that left and right curves do not cancel.
+    // `difference` is measured - simulated; reported is simulated - measured, as in the protocol. A level is multiplied by the sign of the
+    // measured value, so that left and right curves do not cancel.
     let side = |(section, feature): &(usize, usize)| match cell.kind {
         Kind::Level => -measured[found.seen.place(*section, *feature)].signum(),
         _ => -1.0,

@@ -1,4 +1,4 @@
-//! Where the gap lies: cells, sums of forces, trends, spectra.
+//! Description of the gap: cells, sums of forces, trends, spectra.
 
 pub(super) mod cells;
 pub(super) mod fold;

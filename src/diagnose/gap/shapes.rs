@@ -1,8 +1,8 @@
-//! How dynamic content differs: its peaks beside its rms, and whether the difference of spectra keeps to a frequency, as a mode of the
-//! vehicle does, or to a wavelength, as track and wheels do.
+//! Differences of the dynamic content: peaks and rms, and whether the ratio of spectra scales with frequency, as a mode of the vehicle
+//! does, or with wavelength, as track and wheels do.
 //!
-//! Sections are each other's repetition here: intervals and the choice between the two are by resampling them, so that nothing need
-//! be known of noise or model.
+//! Sections are treated as repetitions: intervals and the choice between the two scalings are by bootstrap over sections, so that no
+//! model of noise is needed.
 
 use crate::diagnose::observe::features::{Piece, Spectrum};
 use crate::diagnose::observe::observations::{Observations, piece};
@@ -12,24 +12,24 @@ use crate::metrics::percentile::{Method, percentiles};
 use crate::metrics::statistics::{Divisor, standard_deviation};
 use crate::result::diagnosis::{Ratio, Shape, Strongest};
 
-/// Points of a spectrum to the octave, each the power of a sixth of an octave around it.
+/// Points of a spectrum per octave; each is the power of one sixth of an octave.
 const TO_THE_OCTAVE: f64 = 12.0;
-/// A band holds this many resolved lines at least.
+/// Least number of spectral lines in a band.
 const RESOLVED: f64 = 3.0;
-/// Resamples of the sections.
+/// Bootstrap resamples of the sections.
 const DRAWS: usize = 400;
-/// Speeds that differ by less than this cannot tell a frequency from a wavelength.
+/// Least ratio of the largest to the smallest speed that discriminates frequency from wavelength.
 const SPREAD: f64 = 1.2;
-/// Share of the resamples that must agree on what a difference keeps to.
+/// Least share of the resamples that agree on the scaling.
 const SURE: f64 = 0.95;
-/// The strongest difference counts if it is so many standard errors from none, and at least so large.
+/// Least significance of the largest difference, in standard errors, and its least size as a ratio.
 const ERRORS: f64 = 4.0;
 const LARGE: f64 = 1.25;
-/// So many waves to the turn of a wheel are told, to within this share; more of them would be met by chance.
+/// Numbers of waves per wheel revolution that are reported, and their relative tolerance; higher numbers would match by chance.
 const TURNS: [f64; 2] = [1.0, 2.0];
 const WHOLE: f64 = 0.06;
 
-/// All groups of channels whose dynamic content is compared; none where the catalogue does not ask for it.
+/// All groups of channels whose dynamic content is compared; none where the catalogue does not specify it.
 #[must_use]
 pub fn shapes(settings: &Settings, seen: &Observations, radius: &dyn Fn(&str) -> Option<f64>, seed: u64) -> Vec<Shape> {
     let Some(wanted) = &settings.shape else { return Vec::new() };
@@ -47,14 +47,14 @@ pub fn shapes(settings: &Settings, seen: &Observations, radius: &dyn Fn(&str) ->
     (0..settings.groups.len()).filter_map(one).collect()
 }
 
-/// One section: logarithms of measured over simulated, mean over the channels.
+/// One section: logarithms of measured / simulated, averaged over the channels.
 struct Compared {
     rms: f64,
     peak: f64,
     crest: f64,
     /// Mean speed in the unit of the axis per s.
     speed: f64,
-    /// Spectra of simulated and measured, by channel, with the power of white noise per Hz that the simulated lacks.
+    /// Simulated and measured spectra by channel, with the noise power per Hz to be added to the simulated one.
     spectra: Vec<(Spectrum, Spectrum, f64)>,
     /// Length of the record in s.
     length: f64,
@@ -71,8 +71,8 @@ impl Compared {
         Self::of(&channels.iter().map(pair).collect::<Option<Vec<_>>>()?, wanted.percentile)
     }
 
-    /// Of pieces simulated and measured, channel by channel, with the standard deviation of white noise that the simulated one lacks;
-    /// nothing where a channel stands still, since it has no ratio.
+    /// From pieces simulated and measured by channel, with the standard deviation of the white noise to be added to the simulated one.
+    /// Nothing where a channel is constant, since its ratio is not defined.
     fn of(pairs: &[(Piece, Piece, f64)], percentile: f64) -> Option<Self> {
         let (_, measured, _) = pairs.first()?;
         let mut own = Self {
@@ -100,7 +100,7 @@ impl Compared {
         Some(own)
     }
 
-    /// Logarithm of the ratio of amplitudes around a frequency in Hz.
+    /// Logarithm of the amplitude ratio around a frequency in Hz.
     fn ratio(&self, frequency: f64) -> f64 {
         let (low, high) = band(frequency, self.length);
         let one = |(simulated, measured, noise): &(Spectrum, Spectrum, f64)| {
@@ -111,25 +111,25 @@ impl Compared {
     }
 }
 
-/// The band around a frequency, of a record so long in s.
+/// The band in Hz around a frequency, for a record of `length` s.
 fn band(frequency: f64, length: f64) -> (f64, f64) {
     let half = (0.5 * RESOLVED / length).max(0.5 * frequency * (2f64.powf(1.0 / TO_THE_OCTAVE) - 2f64.powf(-1.0 / TO_THE_OCTAVE)));
     (frequency - half, frequency + half)
 }
 
-/// How far the percentile lies from the median, to the larger side.
+/// Largest distance of the percentiles from the median.
 fn peak(values: &[f64], percentile: f64) -> Option<f64> {
     let at = percentiles(values, &[100.0 - percentile, 50.0, percentile], Method::Linear).ok()?;
     Some((at[2] - at[1]).max(at[1] - at[0]))
 }
 
-/// Rows of ratios, one a section, at points that are alike for all: at the same frequency, or at the same wavelength.
+/// Ratios, one row per section, at common frequencies or at common wavelengths.
 fn rows(sections: &[Compared], points: &[f64], speed: f64, by_wavelength: bool) -> Vec<Vec<f64>> {
     let factor = |section: &Compared| if by_wavelength { section.speed / speed } else { 1.0 };
     sections.iter().map(|section| points.iter().map(|point| section.ratio(point * factor(section))).collect()).collect()
 }
 
-/// Share of the scatter of the rows about their own means that their mean row has. Each row counts so many times.
+/// Share of the variance of the rows that their mean row explains. Each row is weighted by its number of draws.
 fn alike(rows: &[Vec<f64>], times: &[f64]) -> f64 {
     let count: f64 = times.iter().sum();
     let points = rows.first().map_or(0, Vec::len);
@@ -145,7 +145,7 @@ fn alike(rows: &[Vec<f64>], times: &[f64]) -> f64 {
     if all > 0.0 { common / all } else { 0.0 }
 }
 
-/// Where the rows differ most from none for sure: the point, and the mean there.
+/// The point with the largest significant mean difference, and the mean there.
 fn strongest(rows: &[Vec<f64>]) -> Option<(usize, f64)> {
     let n = rows.len() as f64;
     let at = |point: usize| {
@@ -207,7 +207,7 @@ fn scaling(sections: &[Compared], wanted: &Wanted, draws: &[Vec<f64>]) -> Scalin
     let (slowest, fastest) =
         sections.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), section| (low.min(section.speed), high.max(section.speed)));
     let moving = fastest > SPREAD * slowest;
-    // Points that every section reaches, whichever way they are compared.
+    // Points that every section covers, in frequency and in wavelength.
     let shortest = sections.iter().map(|section| section.length).fold(f64::INFINITY, f64::min);
     let nyquist = sections.iter().map(|section| section.nyquist).fold(f64::INFINITY, f64::min);
     let low = wanted.range.0.max(RESOLVED / shortest) * speed / slowest;
@@ -242,10 +242,10 @@ fn found(mean: f64, frequency: f64, wavelength: Option<f64>) -> Strongest {
     Strongest { ratio: mean.exp(), frequency, wavelength, per_wheel_turn: None }
 }
 
-/// A difference that is alike in so much of its scatter is worth a word.
+/// Least share of the variance explained by the mean row for a sentence in the report.
 const ALIKE: f64 = 0.5;
 
-/// What the quantity whose spectra differ most alike keeps to, in words.
+/// A sentence on the group of channels whose spectra differ most consistently.
 pub fn worth_a_word(all: &[Shape]) -> Option<String> {
     let share = |shape: &Shape| shape.alike_by_frequency.unwrap_or(0.0).max(shape.alike_by_wavelength.unwrap_or(0.0));
     let known = all.iter().filter(|shape| shape.keeps_to.is_some() && share(shape) >= ALIKE);
@@ -284,8 +284,8 @@ mod tests {
 
     const RATE: f64 = 200.0;
 
-    /// Ten sections of 8 s, each at its own speed: noise of unit standard deviation, which the measured one has as well, and on top of
-    /// that a sine of a frequency that may depend on the speed.
+    /// Ten sections of 8 s, each at its own speed: noise of unit standard deviation in both records, and in the measured record a sine
+    /// whose frequency may depend on the speed.
     fn sections(speed: impl Fn(usize) -> f64, sine: impl Fn(f64) -> f64, amplitude: f64) -> Vec<Compared> {
         let mut random = Gauss::new(7);
         let one = |at: usize| {
@@ -326,13 +326,13 @@ mod tests {
         assert_eq!((shape.keeps_to, shape.reason), (None, Some("no significant difference of the spectra")));
     }
 
-    /// A sine of amplitude 2 beside noise of unit variance: rms (1 + 2)^1/2 times as large.
+    /// A sine of amplitude 2 added to noise of unit variance increases the rms by the factor (1 + 2)^1/2.
     #[test]
     fn rms_and_crest() {
         let shape = shape_of(&sections(|at| 16.0 + 2.0 * at as f64, |_| 9.0, 2.0));
         assert!((shape.rms.value / 3f64.sqrt() - 1.0).abs() < 0.02, "{:?}", shape.rms);
         assert!((shape.crest.value - shape.peak.value / shape.rms.value).abs() < 1e-9);
-        // A sine has a crest of 1.4, noise of 3 at this percentile.
+        // The crest factor of a sine is 1.4, that of noise 3 at this percentile.
         assert!(shape.crest.value < 0.9 && shape.rms.low <= shape.rms.value && shape.rms.value <= shape.rms.high);
     }
 }

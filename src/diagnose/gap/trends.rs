@@ -1,5 +1,5 @@
-//! What a difference grows with: every quantity, position and band against each number of the section table, the direction of the
-//! curve and the order of the sections.
+//! Trends of the difference: every quantity, position and band against each number of the section table, the direction of the curve
+//! and the order of the sections.
 
 use super::cells::{Cell, cells, kinds, positions, significant_up_to};
 use super::fold::Fold;
@@ -15,27 +15,27 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Half the width of a 90 % interval, in standard errors.
 pub const NINETY: f64 = 1.645;
-/// Covariates that go together by more than this cannot be told apart by the campaign.
+/// Correlation from which the campaign does not discriminate two covariates.
 const TOGETHER: f64 = 0.8;
 
-/// Something that differs from section to section.
+/// A property that varies between sections.
 #[derive(Debug)]
 pub struct Covariate {
     pub name: String,
-    /// By section, from 0 where it is least to 1 where it is most.
+    /// By section, scaled to 0 at its minimum and 1 at its maximum.
     pub values: Vec<f64>,
-    /// What the table says of the least and of the most.
+    /// The table's text for the minimum and the maximum.
     pub ends: [String; 2],
 }
 
-/// All trends, the least probable first, and the covariates that go together, in words.
+/// All trends in increasing order of p-value, and the correlated covariates, in words.
 #[must_use]
 pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>, Vec<String>) {
     use rayon::prelude::*;
     let sections = [found.seen.first_runs()];
     let covariates = covariates(settings, &found.seen);
-    // Single channels as well: what drifts or fades is one of them, on whichever side of the curve its wheel runs.
-    // They are not turned with the curve.
+    // Single channels are included: a drift or a fading gain belongs to one channel, whichever side of the curve its wheel is on.
+    // They are not folded.
     let alone = |name: &str| Position { name: name.into(), straight: vec![name.into()], mirrored: vec![name.into()] };
     let channels = found.seen.layout.channels.iter().map(|of| (alone(&of.name), false));
     let places: Vec<(Position, bool)> = positions(settings).into_iter().map(|position| (position, true)).chain(channels).collect();
@@ -82,18 +82,18 @@ pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>,
     (trends, together(&covariates, &sections[0]))
 }
 
-/// Whether what is left follows something for certain: the chance of any such trend among all that were tested (Bonferroni) is less than
-/// this. What is allowed for is judgement, so that chance alone would say too little.
+/// Probability below which a trend of the residual is certain, among all trends tested (Bonferroni). It is small because the allowed
+/// discrepancy is a judgement.
 pub const CERTAIN: f64 = 1e-5;
 
-/// Whether what the causes leave grows with something, for certain.
+/// Whether a trend of the residual is certain.
 #[must_use]
 pub fn certain(trends: &[Trend]) -> bool {
     let tested = trends.len() as f64;
     trends.iter().any(|trend| trend.after.p_value * tested < CERTAIN)
 }
 
-/// What is left follows, in words: the trend that is least probable with the causes added, if it is significant.
+/// A sentence on the trend with the smallest p-value with the causes added, if it is significant.
 #[must_use]
 pub fn worth_a_word(trends: &[Trend]) -> Option<String> {
     let trend = trends.iter().filter(|trend| trend.after.significant).min_by(|a, b| a.after.p_value.total_cmp(&b.after.p_value))?;
@@ -116,7 +116,7 @@ pub fn change(trend: &Trend, change: f64) -> String {
     if trend.unit == "-" { format!("{:.0} %", 100.0 * change) } else { format!("{change:.2} {}", trend.unit) }
 }
 
-/// The slope of a cell over each covariate, its members times the sides they are turned to; nothing where covariates do not differ in its
+/// The slope of a cell over each covariate, with the signs of its folded members; nothing where the covariate is constant over its
 /// sections.
 fn slopes(
     found: &Found,
@@ -126,7 +126,7 @@ fn slopes(
     (covariance, rest): (&Covariance, &[f64]),
 ) -> Vec<Option<Slope>> {
     let place = |(section, feature): &(usize, usize)| found.seen.place(*section, *feature);
-    // What is left is measured - simulated; told is the opposite, as the protocol's quantities have it.
+    // The residual is measured - simulated; reported is simulated - measured, as in the protocol.
     let values: Vec<f64> = cell.members.iter().map(|member| -rest[place(member)]).collect();
     let among = covariance.among(&cell.members);
     let of = |covariate: &Covariate| {
@@ -148,7 +148,7 @@ fn slopes(
     covariates.iter().map(of).collect()
 }
 
-/// What the sections differ in: their order, the direction of the curve, and the columns that the catalogue names.
+/// Covariates: the order of the sections, the direction of the curve, and the columns that the catalogue lists.
 pub fn covariates(settings: &Settings, seen: &Observations) -> Vec<Covariate> {
     let sections = || seen.sections.iter().map(|observed| &observed.section);
     let order = (0..seen.sections.len()).map(|at| at as f64).collect();
@@ -160,11 +160,11 @@ pub fn covariates(settings: &Settings, seen: &Observations) -> Vec<Covariate> {
     for name in &settings.covariates {
         let column = name.strip_prefix(INVERSE).unwrap_or(name);
         let inverse = column.len() < name.len();
-        // What has no radius is straight.
+        // A section without a radius is straight: 1 / radius = 0.
         let number = |number: Option<f64>| if inverse { Some(number.map_or(0.0, |number| 1.0 / number)) } else { number };
         let text = |at: usize| {
             let says = seen.sections[at].section.says(column).unwrap_or_else(|| format!("no {column}"));
-            // A number says what it is; a reciprocal is told by what it is one of.
+            // A number includes its column name; for a reciprocal the original value is given.
             says.strip_prefix(&format!("{name} ")).unwrap_or(&says).to_string()
         };
         if let Some(values) = sections().map(|section| number(section.number(column))).collect::<Option<Vec<f64>>>() {
@@ -174,7 +174,7 @@ pub fn covariates(settings: &Settings, seen: &Observations) -> Vec<Covariate> {
     all.into_iter().flatten().collect()
 }
 
-/// A covariate over its range; nothing if it is the same everywhere.
+/// A covariate scaled to its range; nothing if it is constant.
 fn scaled(name: &str, values: Vec<f64>, text: &dyn Fn(usize) -> String) -> Option<Covariate> {
     let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
     let (least, most) = ((0..values.len()).min_by(by_value)?, (0..values.len()).max_by(by_value)?);
@@ -187,7 +187,7 @@ fn scaled(name: &str, values: Vec<f64>, text: &dyn Fn(usize) -> String) -> Optio
     })
 }
 
-/// Pairs of covariates that the campaign cannot tell apart, in words.
+/// Pairs of correlated covariates, in words.
 fn together(covariates: &[Covariate], sections: &[usize]) -> Vec<String> {
     let values = |covariate: &Covariate| sections.iter().map(|at| covariate.values[*at]).collect::<Vec<f64>>();
     let pairs = covariates.iter().enumerate().flat_map(|(at, one)| covariates[at + 1..].iter().map(move |other| (one, other)));

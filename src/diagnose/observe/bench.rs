@@ -1,4 +1,4 @@
-//! A simulator whose runs become features.
+//! A simulator whose results are converted to features.
 
 use rayon::prelude::*;
 
@@ -8,28 +8,28 @@ use crate::effects::Operator;
 use crate::problem::Problem;
 use crate::simulate::{Plan, Simulator, Task};
 
-/// Runs that were made, and those that failed.
+/// Computed and failed simulations.
 #[derive(Clone, Debug, Default)]
 pub struct Runs {
     pub made: usize,
     pub failed: Vec<String>,
 }
 
-/// What every run of a bench has, in some sections or in all.
+/// Settings common to all simulations of a bench, in some sections or in all.
 #[derive(Clone, Debug)]
 pub struct Set {
-    /// Parameters of the simulator, and operations on its signals.
+    /// Parameters of the simulator and operations on its signals.
     pub plan: Plan,
-    /// All sections where nothing.
+    /// By section; all sections where absent.
     pub sections: Option<Vec<bool>>,
 }
 
-/// A simulator whose runs become features, and are kept.
+/// A simulator whose results are converted to features and kept in a cache.
 pub struct Bench<'a> {
     pub seen: &'a Observations,
     pub simulator: &'a dyn Simulator,
     pub cache: Option<Cache>,
-    /// Later ones over earlier ones.
+    /// Common settings. A later one overrides an earlier one.
     pub set: Vec<Set>,
 }
 
@@ -40,36 +40,36 @@ impl std::fmt::Debug for Bench<'_> {
 }
 
 impl Bench<'_> {
-    /// What is set in a section.
+    /// The settings that apply in a section.
     fn there(&self, section: usize) -> impl DoubleEndedIterator<Item = &Plan> {
         self.set.iter().filter(move |set| set.sections.as_ref().is_none_or(|sections| sections[section])).map(|set| &set.plan)
     }
 
-    /// What a parameter is set to in a section, if it is.
+    /// The value that is set for a parameter in a section, if any.
     #[must_use]
     pub fn value(&self, section: usize, key: &str) -> Option<f64> {
         self.there(section).rev().flat_map(|plan| &plan.settings).find(|(known, _)| known == key).map(|(_, value)| *value)
     }
 
-    /// What is done to the signals of a section, in the order of the measuring chain.
+    /// The operations on the signals of a section, in the order of the measuring chain.
     fn chain(&self, section: usize) -> Plan {
         let mut operators: Vec<_> = self.there(section).flat_map(|plan| plan.operators.clone()).collect();
         operators.sort_by_key(|(operator, ..)| *operator);
         Plan { operators, ..Plan::default() }
     }
 
-    /// Features of the simulator with settings over what is set, all sections.
+    /// Features of all sections with `settings` in addition to the common settings.
     ///
     /// # Errors
-    /// The first section that fails.
+    /// The error of the first section that fails.
     pub fn features(&self, settings: &[(String, f64)]) -> Result<Vec<f64>, Problem> {
         self.moved(&|_| settings.to_vec())
     }
 
-    /// The same with settings section by section.
+    /// The same with settings by section.
     ///
     /// # Errors
-    /// The first section that fails.
+    /// The error of the first section that fails.
     pub fn moved(&self, settings: &(dyn Fn(usize) -> Vec<(String, f64)> + Sync)) -> Result<Vec<f64>, Problem> {
         let keys = self.set.iter().flat_map(|set| &set.plan.settings).map(|(key, _)| key);
         let each: Vec<Vec<(String, f64)>> = (0..self.seen.sections.len())

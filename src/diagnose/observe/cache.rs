@@ -1,4 +1,4 @@
-//! Features of runs that were made before: a diagnosis that was interrupted goes on where it was.
+//! Cache of computed features, so that an interrupted diagnosis can be resumed.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -10,16 +10,16 @@ use crate::problem::Problem;
 
 /// Largest entry in bytes: a million features.
 const LARGEST: u64 = 8 << 20;
-/// Bytes of the checksum that an entry begins with.
+/// Length in bytes of the checksum at the start of an entry.
 const SEAL: usize = 64;
 
-/// A folder of features by what made them.
+/// A folder of features, keyed by the settings of the simulation.
 #[derive(Clone, Debug)]
 pub struct Cache {
     folder: PathBuf,
-    /// Everything that features depend on beside the settings.
+    /// Hash of everything the features depend on apart from the settings.
     of: String,
-    /// Entries that are not what was kept.
+    /// Entries whose checksum does not match.
     damaged: Arc<Mutex<Vec<PathBuf>>>,
 }
 
@@ -30,7 +30,7 @@ impl Cache {
         Self { folder: folder.to_path_buf(), of, damaged: Arc::default() }
     }
 
-    /// What an entry is kept under; `settings` section by section.
+    /// The key of an entry; `settings` by section.
     fn key(&self, settings: &[Vec<(String, f64)>]) -> String {
         let mut key = self.of.clone();
         for (name, value) in settings.iter().flat_map(|of| of.iter().map(|(name, value)| (name.as_str(), *value)).chain([("", 0.0)])) {
@@ -43,7 +43,7 @@ impl Cache {
         self.folder.join(format!("{}.features", &sha256(key.as_bytes())[..32]))
     }
 
-    /// The features of a run with settings, if it was made; `wanted` numbers.
+    /// The cached features of a simulation, if present; `wanted` is their number.
     #[must_use]
     pub fn get(&self, settings: &[Vec<(String, f64)>], wanted: usize) -> Option<Vec<f64>> {
         let key = self.key(settings);
@@ -64,19 +64,19 @@ impl Cache {
         values
     }
 
-    /// A warning of entries that were not what was kept; what they said was computed anew.
+    /// A warning of damaged entries, which were computed again.
     #[must_use]
     pub fn warning(&self) -> Option<Problem> {
         let damaged = self.damaged.lock().ok()?;
         let first = damaged.iter().min()?.display().to_string();
         let says = match damaged.len() {
-            1 => format!("the kept result `{first}` is damaged; it was computed anew"),
-            count => format!("{count} kept results are damaged, `{first}` among them; they were computed anew"),
+            1 => format!("the cached result `{first}` is damaged; it was computed again"),
+            count => format!("{count} cached results are damaged, among them `{first}`; they were computed again"),
         };
         Some(Problem::warning("cache-damaged", says))
     }
 
-    /// Keeps the features of a run. A cache that cannot be written is no fault: the run is made again.
+    /// Stores the features of a simulation. A write error is ignored: the simulation is then repeated.
     pub fn put(&self, settings: &[Vec<(String, f64)>], features: &[f64]) {
         let key = self.key(settings);
         let bytes: Vec<u8> = features.iter().flat_map(|value| value.to_le_bytes()).collect();
@@ -84,7 +84,7 @@ impl Cache {
     }
 }
 
-/// Ties features to the key that they are kept under: those of another run are seen, too.
+/// Checksum of key and features, so that an entry under a wrong key is detected as well.
 fn seal(key: &str, bytes: &[u8]) -> String {
     sha256(&[key.as_bytes(), b"\n", bytes].concat())
 }

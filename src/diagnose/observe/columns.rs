@@ -1,4 +1,4 @@
-//! Columns of the section table that the catalogue names, in the words of the protocol.
+//! Columns of the section table that the catalogue names, with values in the words of the protocol.
 
 use crate::certify::Compiled;
 use crate::data::Campaign;
@@ -6,10 +6,10 @@ use crate::diagnose::settings::Settings;
 use crate::problem::{Problem, Problems};
 use crate::simulate::Section;
 
-/// Columns by which sections are told apart have the words that the protocol declares for them: a zone `1.0` is zone 1.
+/// Replaces values by the words that the protocol declares for the column: a zone `1.0` is zone 1.
 ///
-/// Problems, all of them warnings: `unknown-column` for a column that the table does not have, `section-data` for a word that the
-/// protocol does not know.
+/// Problems, all of them warnings: `unknown-column` for a column that is not in the table, `section-data` for a value that is not declared
+/// in the protocol.
 pub fn in_words_of(compiled: &Compiled, settings: &Settings, campaign: &Campaign, sections: &mut [Section], problems: &mut Problems) {
     let Some(table) = &campaign.sections else { return };
     let mut done: Vec<&str> = Vec::new();
@@ -19,7 +19,7 @@ pub fn in_words_of(compiled: &Compiled, settings: &Settings, campaign: &Campaign
         }
         done.push(column);
         let Some(at) = table.column(column) else {
-            let says = format!("the section table has no column `{column}`: sections are not told apart by it");
+            let says = format!("the section table has no column `{column}`; it is not used to distinguish sections");
             let known = table.columns.iter().map(|heading| heading.name.as_str());
             problems.push(Problem::warning("unknown-column", says).at(named).suggest(column, known));
             continue;
@@ -32,7 +32,7 @@ pub fn in_words_of(compiled: &Compiled, settings: &Settings, campaign: &Campaign
                 Some(Ok(word)) => fact.text = word,
                 Some(Err(says)) => {
                     let problem = Problem::warning("section-data", format!("`{column}`: {says}")).at(&cell.span);
-                    problems.push(problem.help("the protocol does not use this section; the diagnosis takes it for one of its own kind"));
+                    problems.push(problem.help("the protocol does not use this section; the diagnosis treats it as a separate kind"));
                 }
             }
         }

@@ -1,14 +1,14 @@
-//! Faults of the recording that spoil everything else, looked for first: a channel that stands still, a channel that is cut off.
+//! Faults of the recording, detected first: a constant channel, a saturated channel.
 
 use super::observations::Observed;
 use crate::effects::Signals;
 use crate::result::diagnosis::Fault;
 
-/// A channel that keeps one value for so long, in s, while the simulation moves, has dropped out.
+/// A channel that keeps one value for this time in s while the simulation varies has failed.
 const STILL: f64 = 0.5;
-/// Of the simulated range of the section, what counts as movement meanwhile.
+/// Variation of the simulation meanwhile, as a share of its range in the section.
 const MOVES: f64 = 0.02;
-/// A channel that reaches its extreme value so often for so many samples in a row is cut off there.
+/// A channel is saturated if it reaches its extreme value this many times, for this many consecutive samples.
 const TIMES: usize = 3;
 const ROW: usize = 3;
 
@@ -45,7 +45,7 @@ fn range(values: &[f64]) -> f64 {
     (high - low).max(0.0)
 }
 
-/// The longest time that a value is kept; where the simulation rests too, that is no fault.
+/// The longest time with a constant value; not a fault where the simulation is constant, too.
 fn still(measured: &[f64], simulated: &[f64], rate: f64) -> Option<String> {
     let (mut longest, mut from) = ((0, 0), 0);
     for i in 1..=measured.len() {
@@ -62,7 +62,7 @@ fn still(measured: &[f64], simulated: &[f64], rate: f64) -> Option<String> {
         .then(|| format!("keeps the value {} for {seconds:.1} s while the simulated signal varies", measured[longest.0]))
 }
 
-/// Rows of samples at the extreme value; a bound that the simulation does not reach cannot be told from a quiet section.
+/// Runs of samples at the extreme value. If the simulation does not exceed the bound, saturation cannot be detected.
 fn cut_off(measured: &[f64], simulated: &[f64]) -> Option<String> {
     let most = measured.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let least = measured.iter().copied().fold(f64::INFINITY, f64::min);
@@ -100,7 +100,7 @@ mod tests {
         let measured: Vec<f64> = simulated.iter().map(|value| value.min(7.0)).collect();
         assert!(cut_off(&measured, &simulated).is_some_and(|says| says.contains("above 7")));
         assert_eq!(cut_off(&simulated, &simulated), None);
-        // A rounded wave has rows at its crests, each at another height.
+        // The rounded signal has runs at its peaks, but at different values.
         let rounded: Vec<f64> = simulated.iter().map(|value| (value * 100.0).round() / 100.0).collect();
         assert_eq!(cut_off(&rounded, &simulated), None);
     }

@@ -1,7 +1,7 @@
-//! What is compared: a record reduced to levels, band powers, gains and lags of its channels.
+//! Features of a record: levels, band powers, gains and lags of its channels.
 //!
-//! Features of a channel depend on that channel alone (and on the reference that gains and lags refer to), so that an operation on
-//! one channel changes the features of one channel.
+//! Features of a channel depend on that channel alone, and on the simulated one for gains and lags. An operation on one channel
+//! therefore changes the features of that channel only.
 
 use realfft::RealFftPlanner;
 
@@ -11,44 +11,44 @@ use crate::units::Unit;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     pub channels: Vec<ChannelFeatures>,
-    /// Edges of the bands in Hz, increasing; one band fewer than edges.
+    /// Edges of the bands in Hz, increasing; the number of bands is one less.
     pub edges: Vec<f64>,
-    /// Band in Hz over which gain and lag are taken.
+    /// Band in Hz in which gain and lag are estimated.
     pub alike: (f64, f64),
-    /// The largest lag that is looked for, in the unit of the axis.
+    /// The largest lag searched, in the unit of the axis.
     pub furthest: f64,
 }
 
-/// What is taken of one channel.
+/// The features of one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelFeatures {
     pub name: String,
-    /// Number of the group of channels that it belongs to.
+    /// Number of its group of channels.
     pub group: usize,
-    /// What its levels are in.
+    /// Unit of its levels.
     pub unit: Unit,
     /// Whether its level is a feature.
     pub level: bool,
-    /// How many of the bands are features, from the lowest.
+    /// The number of bands that are features, from the lowest.
     pub bands: usize,
-    /// Whether its gain and lag against the simulation are.
+    /// Whether gain and lag against the simulation are features.
     pub alike: bool,
 }
 
-/// What a feature is.
+/// Kind of a feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
-    /// Mean without spikes, in the unit of the channel.
+    /// Winsorised mean, in the unit of the channel.
     Level,
     /// Natural logarithm of the rms in a band.
     Band(usize),
-    /// Regression of the record on the simulation, 1 where they are alike.
+    /// Regression coefficient of the record on the simulation; 1 where they agree.
     Gain,
-    /// Where the record lies behind the simulation, in the unit of the axis.
+    /// Distance of the record behind the simulation, in the unit of the axis.
     Lag,
 }
 
-/// A feature of the layout: channel by number, kind.
+/// A feature of the layout: channel number and kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Feature {
     pub channel: usize,
@@ -75,10 +75,10 @@ impl Layout {
     }
 }
 
-/// A section's signal of one channel, ready for features.
+/// The samples of one channel inside a section.
 #[derive(Clone, Debug)]
 pub struct Piece {
-    /// Inside the section, at a constant rate.
+    /// Samples at a constant rate.
     pub values: Vec<f64>,
     /// Samples per s.
     pub rate: f64,
@@ -86,23 +86,23 @@ pub struct Piece {
     pub step: f64,
 }
 
-/// The spectrum of a piece without its mean, in a taper.
+/// The tapered spectrum of a piece without its mean.
 #[derive(Clone, Debug)]
 pub struct Spectrum {
     lines: Vec<(f64, f64)>,
-    /// Hz between lines.
+    /// Distance of spectral lines in Hz.
     width: f64,
-    /// Sum of squares of a line to power.
+    /// Factor from the squared magnitude of a line to power.
     scale: f64,
     padded: usize,
 }
 
-/// Share of the samples at either end that count as the next one inside.
+/// Share of the samples at either end that is replaced (Winsorised).
 const SPIKES: f64 = 0.01;
 
-/// What a signal is about: its mean, with the lowest and the highest hundredth of the samples put to the next inside, so that single
-/// spikes do not count (Winsor's mean, Dixon 1960). Of a signal that sways it scatters two to four times less than the median does, since
-/// whole periods cancel. `None` of nothing.
+/// Winsorised mean (Dixon 1960): the lowest and the highest hundredth of the samples are replaced by the next value inside, so that single
+/// spikes have no influence. For an oscillating signal it scatters two to four times less than the median, since whole periods cancel.
+/// `None` of an empty slice.
 #[must_use]
 pub fn level(values: &[f64]) -> Option<f64> {
     let last = values.len().checked_sub(1)?;
@@ -114,17 +114,18 @@ pub fn level(values: &[f64]) -> Option<f64> {
     Some(values.iter().map(|value| value.clamp(low, high.max(low))).sum::<f64>() / values.len() as f64)
 }
 
-/// A record is upside down if it is so much more like the reference that way: records that are hardly alike are it either way by chance.
+/// A record is inverted if its best negative correlation exceeds the best positive one by this factor; records with a low correlation
+/// reach smaller factors by chance.
 const INVERTED: f64 = 1.35;
 
 impl Spectrum {
-    /// With Hann's taper, padded to a power of two at least twice as long, so that correlations do not wrap around.
+    /// Spectrum with a Hann taper, padded to a power of two of at least twice the length, so that correlations do not wrap around.
     #[must_use]
     pub fn new(piece: &Piece) -> Self {
         let n = piece.values.len();
         let padded = (2 * n.max(8)).next_power_of_two();
         let mean = piece.values.iter().sum::<f64>() / n.max(1) as f64;
-        // A straight line through the piece does not belong to its bands.
+        // The linear trend is removed, since it would leak into the bands.
         let middle = 0.5 * (n.max(1) - 1) as f64;
         let (mut up, mut down) = (0.0, 0.0);
         for (i, value) in piece.values.iter().enumerate() {
@@ -142,7 +143,7 @@ impl Spectrum {
         }
         let transform = RealFftPlanner::<f64>::new().plan_fft_forward(padded);
         let mut output = transform.make_output_vec();
-        // The lengths are those of the plan: it cannot fail.
+        // The lengths are those of the plan: the call cannot fail.
         let _ = transform.process(&mut input, &mut output);
         let lines = output.into_iter().map(|line| (line.re, line.im)).collect();
         Self { lines, width: piece.rate / padded as f64, scale: 2.0 / (power.max(1e-300) * padded as f64), padded }
@@ -160,15 +161,13 @@ impl Spectrum {
         self.lines[self.range(low, high)].iter().map(|(re, im)| re * re + im * im).sum::<f64>() * self.scale
     }
 
-    /// Regression of `self` on `reference` over a band: its gain, and the lag in samples at which the two are most alike, be it
-    /// upside down.
+    /// Regression of `self` on `reference` over a band: the gain, and the lag in samples of the largest correlation, of either sign.
     #[must_use]
     pub fn alike(&self, reference: &Self, band: (f64, f64), furthest: usize) -> (f64, f64) {
         self.correlated(reference, band, furthest).map_or((0.0, 0.0), |alike| (alike.gain(), alike.lag()))
     }
 
-    /// How much alike the two are at the best of the other lags, as a share of what they are at the lag where they are most: near 1,
-    /// where next to nothing decides which of them that is, as of a slow sway that comes again and again.
+    /// The second-largest peak of the correlation as a share of the largest. Near 1, the lag is not unique, as for a slow periodic motion.
     #[must_use]
     pub fn next_best(&self, reference: &Self, band: (f64, f64), furthest: usize) -> f64 {
         self.correlated(reference, band, furthest).map_or(0.0, |alike| alike.next_best())
@@ -188,23 +187,23 @@ impl Spectrum {
             own += c * c + d * d;
         }
         let mut values = inverse.make_output_vec();
-        // The lengths are those of the plan: it cannot fail.
+        // The lengths are those of the plan: the call cannot fail.
         let _ = inverse.process(&mut cross, &mut values);
         Some(Correlated { values, own, furthest: (furthest as i64).min(self.padded as i64 / 2 - 2) })
     }
 }
 
-/// Two records over each other, at every lag.
+/// Cross-correlation of two records at every lag.
 struct Correlated {
     values: Vec<f64>,
-    /// Of the reference with itself, at no lag.
+    /// Autocorrelation of the reference at lag 0.
     own: f64,
     furthest: i64,
 }
 
 impl Correlated {
     fn at(&self, lag: i64) -> f64 {
-        // The transform of one-sided lines: the correlation is half the sum.
+        // The transform covers one-sided lines: the correlation is half the sum.
         self.values[lag.rem_euclid(self.values.len() as i64) as usize] * 0.5
     }
 
@@ -212,7 +211,7 @@ impl Correlated {
         self.at(0) / self.own.max(1e-300)
     }
 
-    /// The lag at which the two are most alike, and -1 if it is upside down.
+    /// The lag of the largest correlation, and -1 if that is negative.
     fn best(&self) -> (i64, f64) {
         let signed = |sign: f64| move |a: &i64, b: &i64| (sign * self.at(*a)).total_cmp(&(sign * self.at(*b)));
         let most = |sign: f64| (-self.furthest..=self.furthest).max_by(signed(sign)).unwrap_or(0);
@@ -220,7 +219,7 @@ impl Correlated {
         if -self.at(inverted) > INVERTED * self.at(upright) { (inverted, -1.0) } else { (upright, 1.0) }
     }
 
-    /// The same between samples.
+    /// The same, interpolated between samples.
     fn lag(&self) -> f64 {
         let (best, sign) = self.best();
         let [left, middle, right] = [-1, 0, 1].map(|by| sign * self.at(best + by));
@@ -232,7 +231,7 @@ impl Correlated {
         let (best, sign) = self.best();
         let beyond = |by: i64| {
             let lags = move || std::iter::successors(Some(best), move |lag| Some(lag + by)).take_while(|lag| lag.abs() <= self.furthest);
-            // Down from the peak to where it rises again.
+            // Skip the peak: down to where the correlation rises again.
             let down = lags().zip(lags().skip(1)).take_while(|(a, b)| sign * self.at(*b) < sign * self.at(*a)).count();
             lags().skip(down).map(|lag| sign * self.at(lag)).fold(0.0, f64::max)
         };
@@ -240,10 +239,10 @@ impl Correlated {
     }
 }
 
-/// Features of one channel, in the order of [`Layout::features`].
+/// Appends the features of one channel, in the order of [`Layout::features`].
 ///
-/// `reference` is the spectrum of the simulated channel; `noise` the standard deviation of white noise per sample that is added to
-/// the powers, in the unit of the channel; `shift` where the piece's own axis lies behind that of the reference.
+/// `reference` is the spectrum of the simulated channel. `noise` is the standard deviation per sample of white noise whose power is added,
+/// in the unit of the channel. `shift` is the distance of the piece's axis behind that of the reference.
 pub fn of_channel(layout: &Layout, of: &ChannelFeatures, piece: &Piece, reference: Option<&Spectrum>, noise: f64, out: &mut Vec<f64>) {
     if of.level {
         out.push(level(&piece.values).unwrap_or(0.0));
@@ -289,25 +288,25 @@ mod tests {
         let (a, b) = (Spectrum::new(&sine(3.0, 2.0, 0)), Spectrum::new(&sine(3.0, 3.0, 7)));
         let (_, lag) = b.alike(&a, (1.0, 8.0), 30);
         assert!((lag - 7.0).abs() < 0.05, "{lag}");
-        // Upside down; half a period is 33 samples.
+        // Inverted; half a period is 33 samples.
         let (gain, lag) = Spectrum::new(&sine(3.0, -3.0, 0)).alike(&a, (1.0, 8.0), 20);
         assert!((gain + 1.5).abs() < 1e-3, "{gain}");
         assert!(lag.abs() < 0.05, "{lag}");
     }
 
-    /// A sine comes again after a period, but for the taper.
+    /// A sine correlates with itself after one period, except for the taper.
     #[test]
     fn what_comes_again_has_another_lag() {
         let long = Spectrum::new(&sine(1.0, 2.0, 0));
         let again = long.next_best(&long, (0.5, 8.0), 400);
-        // Hann's taper over 10 s with itself a second later.
+        // The Hann taper over 10 s, correlated with itself at a lag of 1 s.
         let tapered = |n: usize| (std::f64::consts::PI * (n as f64 + 0.5) / 2000.0).sin().powi(2);
         let wanted = (0..1800).map(|n| tapered(n) * tapered(n + 200)).sum::<f64>() / (0..2000).map(|n| tapered(n).powi(2)).sum::<f64>();
         assert!((again - wanted).abs() < 0.01, "{again} for {wanted}");
         assert_eq!(long.next_best(&long, (0.5, 8.0), 60), 0.0);
     }
 
-    /// 200 values of which two at either end are put to the next: 2, 2, 2, 3, ..., 197, 197, 197; what they are does not count.
+    /// 200 values of which two at either end are replaced: 2, 2, 2, 3, ..., 197, 197, 197; their own values have no influence.
     #[test]
     fn levels() {
         let mut values: Vec<f64> = (0..200).map(f64::from).collect();

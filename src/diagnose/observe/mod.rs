@@ -1,4 +1,4 @@
-//! What was measured and what was simulated, as features.
+//! Measurement and simulation as features.
 
 pub mod bench;
 pub mod cache;

@@ -1,4 +1,4 @@
-//! A campaign as features: what was measured, what was simulated, section by section.
+//! A campaign as features: measured and simulated, section by section.
 
 use rayon::prelude::*;
 
@@ -17,14 +17,14 @@ use crate::units::Unit;
 #[derive(Debug)]
 pub struct Observed {
     pub section: Section,
-    /// The campaign's simulation, and what was measured.
+    /// The campaign's simulation, and the measurement.
     pub simulated: Signals,
     pub measured: Signals,
     /// Spectra of the simulated channels of the layout.
     pub references: Vec<Option<Spectrum>>,
-    /// How much the channels of the layout scatter.
+    /// Scatter of the channels of the layout.
     pub scatter: Vec<Scatter>,
-    /// Whether it is an earlier section measured again: it says nothing new about the simulation.
+    /// Whether it repeats an earlier section: it adds no information on the simulation.
     pub again: bool,
 }
 
@@ -36,14 +36,14 @@ pub struct Observations {
     pub sections: Vec<Observed>,
     /// Standard deviation of white noise per sample, by channel of the layout.
     pub noise: Vec<f64>,
-    /// Sections that could not be used, with the reason.
+    /// Excluded sections, with the reason.
     pub left_out: Vec<(String, String)>,
-    /// Channels that cannot be used.
+    /// Faulty channels.
     pub faults: Vec<Fault>,
 }
 
 impl Observations {
-    /// Reads the records of a campaign, in the units that `unit` gives or else the simulation's own, and finds which channels both
+    /// Reads the records of a campaign in the units given by `unit`, else in those of the simulation, and finds the channels that both
     /// sides have.
     ///
     /// Problems: no section can be read; no channel of the catalogue is in the records.
@@ -108,7 +108,7 @@ impl Observations {
         if layout.channels.is_empty() {
             let known: Vec<String> = catalogue.groups.iter().flat_map(|group| group.channels.clone()).collect();
             let says = format!("no channel of the catalogue `{}` is in both records of every section", catalogue.name);
-            problems.push(Problem::error("no-channels", says).help(format!("it knows {}", known.join(", "))));
+            problems.push(Problem::error("no-channels", says).help(format!("the catalogue lists {}", known.join(", "))));
             return None;
         }
         let features = layout.features();
@@ -126,7 +126,7 @@ impl Observations {
         Some(Self { layout, features, sections, noise, left_out, faults })
     }
 
-    /// Sections that say something of their own.
+    /// Sections that do not repeat an earlier one.
     #[must_use]
     pub fn first_runs(&self) -> Vec<usize> {
         (0..self.sections.len()).filter(|at| !self.sections[*at].again).collect()
@@ -143,7 +143,7 @@ impl Observations {
         self.len() == 0
     }
 
-    /// Features of signals of a section; `noisy` adds the power of the declared noise, which a simulation has not.
+    /// Features of the signals of a section. `noisy` adds the power of the declared noise, which simulated signals do not contain.
     #[must_use]
     pub fn of(&self, at: usize, signals: &Signals, noisy: bool) -> Vec<f64> {
         let mut out = Vec::with_capacity(self.features.len());
@@ -166,20 +166,20 @@ impl Observations {
         out.resize(before + wanted, 0.0);
     }
 
-    /// Features of every section, one after the other.
+    /// Features of all sections, concatenated.
     #[must_use]
     pub fn all(&self, noisy: bool, signals: impl Fn(&Observed) -> &Signals + Sync) -> Vec<f64> {
         let each = |at: usize| self.of(at, signals(&self.sections[at]), noisy);
         (0..self.sections.len()).into_par_iter().flat_map_iter(each).collect()
     }
 
-    /// Place of a feature of a section in the list of all.
+    /// Index of a feature of a section in the list of all.
     #[must_use]
     pub fn place(&self, section: usize, feature: usize) -> usize {
         section * self.features.len() + feature
     }
 
-    /// Samples per s and length in s of a section.
+    /// Sampling rate in 1/s and length in s of a section.
     #[must_use]
     pub fn extent(&self, at: usize) -> (f64, f64) {
         let observed = &self.sections[at];
@@ -187,7 +187,7 @@ impl Observations {
         (observed.measured.rate, inside as f64 / observed.measured.rate)
     }
 
-    /// The channel's features by kind.
+    /// Index of the channel's feature of a kind.
     #[must_use]
     pub fn find(&self, channel: usize, kind: Kind) -> Option<usize> {
         self.features.iter().position(|feature| *feature == Feature { channel, kind })
@@ -207,7 +207,7 @@ pub fn piece(signals: &Signals, name: &str, section: &Section) -> Option<Piece> 
     Some(Piece { values: channel.values[from..to].to_vec(), rate: signals.rate, step })
 }
 
-/// Simulated and measured in the same units: those of `unit`, else of the simulation.
+/// Simulated and measured signals in the same units: those of `unit`, else of the simulation.
 fn both_sides(campaign: &Campaign, section: &Section, unit: &dyn Fn(&str) -> Option<Unit>) -> Result<(Signals, Signals), String> {
     let side = |kind| recorded(campaign, kind, section).map(|(signals, units, _)| (signals, units)).map_err(|problems| first(&problems));
     let (mut simulated, units) = side(RecordKind::Simulation)?;

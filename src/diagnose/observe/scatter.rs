@@ -1,25 +1,25 @@
-//! How much the features of a single channel and section scatter by themselves.
+//! Scatter of the features of a single channel and section.
 
 use super::features::{Layout, Piece, Spectrum, level};
 use crate::effects::Gauss;
 
-/// Blocks of the bootstrap are at least this long, in s.
+/// Least length of the bootstrap blocks in s.
 const BLOCK: f64 = 1.0;
-/// Draws of the bootstrap.
+/// Bootstrap draws.
 const DRAWS: usize = 60;
-/// Where the records are so much as alike at another lag as at the best, as a share, their lag tells nothing.
+/// From this ratio of the second-largest to the largest correlation on, the lag is not unique and is not used.
 const AS_ALIKE: f64 = 0.8;
 
-/// What a channel of a section can tell.
+/// Scatter of the features of one channel in one section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scatter {
     /// Variance of measured - simulated level, in the square of the channel's unit.
     pub level: f64,
-    /// Whether a lag is one: a body that sways slowly is nearly as much alike a period later.
+    /// Whether the lag is unique; that of a slow periodic motion is not.
     pub has_lag: bool,
 }
 
-/// Of the measured and the simulated piece.
+/// Estimates it from the measured and the simulated piece.
 #[must_use]
 pub fn scatter(layout: &Layout, measured: &Piece, simulated: &Piece, reference: &Spectrum, seed: u64) -> Scatter {
     let spectrum = Spectrum::new(measured);
@@ -29,7 +29,7 @@ pub fn scatter(layout: &Layout, measured: &Piece, simulated: &Piece, reference: 
     Scatter { level: of_levels(measured, simulated, seed), has_lag: again < AS_ALIKE }
 }
 
-/// Variance of the difference of two levels, by moving blocks that both have in common (Künsch 1989).
+/// Variance of the difference of two levels by a moving-block bootstrap with common blocks (Künsch 1989).
 fn of_levels(measured: &Piece, simulated: &Piece, seed: u64) -> f64 {
     let sides = [measured, simulated].map(|piece| (&piece.values, ((BLOCK * piece.rate) as usize).max(1)));
     if sides.iter().any(|(values, block)| values.len() <= *block) {
@@ -60,7 +60,7 @@ mod tests {
         Piece { values: (0..4000).map(|_| random.next()).collect(), rate: 200.0, step: 0.1 }
     }
 
-    /// The variance of the mean of n numbers is 1 / n of theirs; 60 draws know it to a fifth, twenty times 60 to a twentieth.
+    /// The variance of the mean of n numbers is 1 / n of theirs; its relative error is a fifth with 60 draws, a twentieth with 20 times 60.
     #[test]
     fn of_white_noise() {
         let still = Piece { values: vec![3.0; 4000], ..noise(0) };
@@ -70,14 +70,14 @@ mod tests {
         assert_eq!(of_levels(&noise(1), &noise(1), 7), 0.0);
     }
 
-    /// Of a second of a record nothing can be drawn that it is not.
+    /// A record shorter than a block has no bootstrap variance.
     #[test]
     fn of_a_short_record() {
         let short = Piece { values: vec![1.0; 150], ..noise(0) };
         assert_eq!(of_levels(&short, &short, 1), 0.0);
     }
 
-    /// A slow sway is as much alike a period later, 20 m on; noise is alike at one lag only.
+    /// A slow periodic motion has a second peak of its correlation after one period, 20 m; noise has only one.
     #[test]
     fn a_sway_has_no_lag() {
         let layout = Layout { channels: Vec::new(), edges: vec![0.5, 8.0], alike: (0.5, 8.0), furthest: 50.0 };

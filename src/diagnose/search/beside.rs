@@ -1,5 +1,5 @@
-//! Further members, each simulated beside what was found before it: what an effect changes where a wind blows, or on records that lie
-//! elsewhere, is not what it changes alone.
+//! Further members, each simulated together with those found before. An effect may change the features differently when a second effect
+//! is present, such as wind or shifted records.
 
 use std::sync::Arc;
 
@@ -13,51 +13,51 @@ use crate::diagnose::observe::bench::{Bench, Runs, Set};
 use crate::effects::{Action, Applied};
 use crate::simulate::Plan;
 
-/// How many candidates are simulated beside what was found, and the share of the way out of its tolerance that each must be alone.
+/// Number of candidates simulated together with the members, and their least distance from neutral as a share of the threshold.
 const TRIED: usize = 3;
 const FAR: f64 = 0.5;
-/// How often one that was chosen is simulated again beside sizes that have moved by so much of themselves since.
+/// How often a chosen candidate is simulated again, and the relative change of the other sizes that requires it.
 const ROUNDS: usize = 3;
 const MOVED: f64 = 0.02;
-/// How far from a size, as a share of what it is from neutral, others are that are simulated with it.
+/// Distance of further simulated sizes from a size, as a share of its distance from neutral.
 const APART: f64 = 0.15;
 
-/// What was found first, as a simulation has it.
+/// Members found before, as settings of the simulation.
 #[derive(Debug)]
 pub struct Beside {
     set: Vec<Set>,
-    /// Its features.
+    /// Features of the simulation with them.
     pub base: Vec<f64>,
-    /// The candidates that it is, and their sizes.
+    /// Numbers of the candidates, and their sizes.
     members: Vec<usize>,
     sizes: Vec<f64>,
 }
 
 impl Beside {
-    /// A bench with it.
+    /// A bench with these members set.
     #[must_use]
     pub fn on<'a>(&self, bench: &Bench<'a>) -> Bench<'a> {
         Bench { set: bench.set.iter().chain(&self.set).cloned().collect(), cache: bench.cache.clone(), ..*bench }
     }
 }
 
-/// A candidate beside what was found first.
+/// Simulation of a candidate together with members found before.
 #[derive(Clone, Debug)]
 pub struct Placed {
     pub there: Arc<Beside>,
-    /// Its nodes where it is alone.
+    /// Its nodes when simulated alone.
     alone: Arc<Vec<Node>>,
 }
 
 impl Placed {
-    /// Whether both are beside the same.
+    /// Whether both were simulated together with the same members.
     #[must_use]
     pub fn same_place(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.there, &other.there)
     }
 }
 
-/// A member as what is set in every run: parameters of the simulator, or operations on its signals.
+/// A member as a common setting of all simulations: parameters of the simulator, or operations on its signals.
 #[must_use]
 pub fn set(workshop: &Workshop<'_>, candidate: &Candidate, masks: &[Mask], member: &Fitted) -> Option<Set> {
     let effect = workshop.catalogue.effect(&candidate.effect).filter(|effect| !matches!(effect.action, Action::Formulas(_)))?;
@@ -72,7 +72,8 @@ pub fn set(workshop: &Workshop<'_>, candidate: &Candidate, masks: &[Mask], membe
     Some(Set { plan, sections: (member.mask != 0).then(|| masks[member.mask].sections.clone()) })
 }
 
-/// Members that were simulated beside one that has gone are what they are alone, and must be fitted again; whether there are any.
+/// Restores candidates that were simulated together with a member that was dropped. Returns whether there are any: the members are then
+/// refitted.
 pub fn alone_again(candidates: &mut [Candidate], members: &[Fitted]) -> bool {
     let mut any = false;
     for member in members {
@@ -87,8 +88,8 @@ pub fn alone_again(candidates: &mut [Candidate], members: &[Fitted]) -> bool {
 }
 
 impl Converging<'_> {
-    /// Searches for further members again, one after the other: with the tolerances as they act beside what was found before them, and
-    /// with those that come near simulated beside it.
+    /// Searches for further members, one after the other: with the tolerances simulated together with the members found before, and with
+    /// the strongest candidates simulated together with them.
     pub(super) fn beside(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Converged, runs: &mut Runs) -> Converged {
         for count in 1..now.bars.most {
             if now.chosen.members.len() < count {
@@ -108,8 +109,8 @@ impl Converging<'_> {
         now
     }
 
-    /// Members alone, with the tolerances as they act beside them, until neither moves the other; nothing where the tolerances do not
-    /// notice them.
+    /// Alternates between the fit of the members and the simulation of the tolerances with them until the sizes converge. Nothing where the
+    /// members do not change the effect of the tolerances.
     fn placed(&self, (candidates, masks): (&mut [Candidate], &[Mask]), first: &mut Chosen, runs: &mut Runs) -> Option<Arc<Place>> {
         let mut place: Option<Arc<Place>> = None;
         for _ in 0..ROUNDS {
@@ -123,7 +124,7 @@ impl Converging<'_> {
         place
     }
 
-    /// Searches for members beside the first.
+    /// Searches for members in addition to the first.
     fn further(
         &self,
         (candidates, masks): (&mut [Candidate], &[Mask]),
@@ -143,7 +144,7 @@ impl Converging<'_> {
         });
         near.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         near.truncate(TRIED);
-        // With the tolerances as they were nothing else would be found.
+        // Without new tolerances the search would give the same result.
         let anew = !self.place.is_alone();
         if near.is_empty() && !anew {
             return now;
@@ -161,7 +162,7 @@ impl Converging<'_> {
         let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
         now.chosen = search(&fitter, z, (first, barred), (&now.bars, &self.channels()), self.far, &guard, &mut now.refused);
         now.known = fitter.whitened;
-        // What was refused alone and is not named beside the first stays refused.
+        // A candidate refused before stays refused unless it is named together with the first member.
         let known: Vec<usize> =
             now.chosen.members.iter().chain(now.refused.iter().map(|refused| &refused.fitted)).map(|fit| fit.candidate).collect();
         now.refused.extend(again.into_iter().filter(|refused| !known.contains(&refused.fitted.candidate)));
@@ -174,7 +175,7 @@ impl Converging<'_> {
         self.settled((candidates, masks), (now, count), runs)
     }
 
-    /// The last member again, beside the others where they are by now, and with sizes to either side of its own.
+    /// Simulates the last member again with the present sizes of the others, at its own size and at sizes to either side.
     fn settled(
         &self,
         (candidates, masks): (&mut [Candidate], &[Mask]),
@@ -206,7 +207,7 @@ impl Converging<'_> {
         self.workshop.catalogue.effect(&candidate.effect).is_some_and(|effect| matches!(effect.action, Action::Simulator))
     }
 
-    /// The simulation with members; nothing where one of them cannot be set, or where it fails.
+    /// The simulation with members; nothing where one of them cannot be set, or where the simulation fails.
     fn there(&self, (candidates, masks): (&[Candidate], &[Mask]), members: &[Fitted], runs: &mut Runs) -> Option<Arc<Beside>> {
         let bench = self.workshop.bench?;
         let set = members.iter().map(|member| set(self.workshop, &candidates[member.candidate], masks, member)).collect::<Option<_>>()?;
@@ -217,7 +218,7 @@ impl Converging<'_> {
         Some(Arc::new(there))
     }
 
-    /// Simulates a candidate beside what was found: at the size that it asks for, and at those to either side that it has alone.
+    /// Simulates a candidate together with the members: at its fitted size, and at existing sizes to either side.
     fn place_beside(&self, candidate: &mut Candidate, size: f64, there: &Arc<Beside>, runs: &mut Runs) {
         let alone = match candidate.beside.take() {
             Some(placed) => placed.alone,
@@ -230,7 +231,7 @@ impl Converging<'_> {
     }
 }
 
-/// A size, and of those that a candidate has on the same side of neutral the nearest that are some way below and above it, or the last.
+/// A size, and the nearest nodes below and above it that are on the same side of neutral and at least [`APART`] away, or the last node.
 fn around(nodes: &[Node], size: f64) -> Vec<f64> {
     let neutral = nodes.iter().find(|node| node.change.is_empty()).map_or(0.0, |node| node.size);
     let reach = APART * if neutral.is_finite() { (size - neutral).abs() } else { size.abs() };
@@ -252,13 +253,13 @@ mod tests {
 
     #[test]
     fn sizes_to_either_side_are_some_way_off() {
-        // 0.15 of 0.3 is 0.045: 0.52 is too near, and so is 0.48; 0.1 is on the other side of 0.2.
+        // 0.15 of 0.3 is 0.045: 0.52 and 0.48 are too close; 0.1 is on the other side of 0.2.
         let friction = [0.1, 0.2, 0.3, 0.4, 0.48, 0.5, 0.52, 0.6];
         assert_eq!(sizes(&friction, 0.2, 0.5), [0.4, 0.5, 0.6]);
         assert_eq!(sizes(&friction, 0.2, 0.59), [0.52, 0.59, 0.6]);
         assert_eq!(sizes(&friction, 0.2, 0.6), [0.52, 0.6]);
         assert_eq!(sizes(&friction, 0.2, 0.15), [0.1, 0.15]);
-        // A low-pass that changes nothing where it is infinite.
+        // A low-pass has no influence at an infinite frequency.
         assert_eq!(sizes(&[4.0, 8.0, f64::INFINITY], f64::INFINITY, 7.5), [4.0, 7.5, 8.0]);
     }
 }

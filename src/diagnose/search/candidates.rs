@@ -1,4 +1,4 @@
-//! What may have caused a gap: for every effect of the catalogue, how the features change with its size.
+//! Candidate causes: for every effect of the catalogue, the change of the features with its size.
 
 use rayon::prelude::*;
 
@@ -11,37 +11,37 @@ use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Parameter, Si
 use crate::problem::Problem;
 use crate::units::Unit;
 
-/// A path of changes with the size of an effect: from none through the sizes that were simulated.
+/// The change of the features with the size of an effect, as a piecewise linear path through the simulated sizes.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     pub effect: String,
-    /// What it acts on, if it is an operator.
+    /// The channels of an operation.
     pub channels: Vec<String>,
-    /// The parameter that is its size, and the range that is plausible.
+    /// The parameter that is the size, and its plausible range.
     pub size: String,
     pub unit: Unit,
     pub range: (f64, f64),
-    /// Other parameters, fixed.
+    /// Other parameters, constant.
     pub fixed: Vec<(String, f64)>,
-    /// In increasing order of the size; where nothing changes, `change` is empty.
+    /// In increasing order of size; `change` is empty at the neutral size.
     pub nodes: Vec<Node>,
-    /// There or not: nothing between nodes.
+    /// Without interpolation between nodes.
     pub discrete: bool,
-    /// An operation on the recorded signals: what the model is wrong in does not enter its change.
+    /// An operation on the recorded signals: its change has no model error.
     pub exact: bool,
     pub confinable: bool,
-    /// The declared tolerance that it is the blown form of.
+    /// The declared tolerance of the same parameter.
     pub tolerance: Option<String>,
-    /// How many candidates of the effect there are: what looking at all of them costs.
+    /// Number of candidates of the same effect, which enters the penalty of the evidence.
     pub alternatives: usize,
-    /// Sizes that are simulated only where the coarser ones say that it is worth it.
+    /// Sizes that are simulated only if the coarser ones give enough evidence.
     pub pending: Vec<f64>,
-    /// What it was simulated beside, if it was.
+    /// The members it was simulated together with, if any.
     pub beside: Option<Placed>,
 }
 
 impl Candidate {
-    /// An effect by one of its parameters, everywhere and on no channels of its own.
+    /// A candidate for an effect and one of its parameters, in all sections and without channels.
     fn new(effect: &Effect, parameter: &Parameter, mut nodes: Vec<Node>) -> Self {
         nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
         Self {
@@ -62,7 +62,7 @@ impl Candidate {
         }
     }
 
-    /// By a path alone, for tests.
+    /// A candidate from a path, for tests.
     #[cfg(test)]
     pub fn path(effect: &str, nodes: Vec<Node>) -> Self {
         Self {
@@ -83,7 +83,7 @@ impl Candidate {
         }
     }
 
-    /// How far apart the changes of a feature are, between half of an effect of this size and half as much again.
+    /// Range of the change of a feature between half and one and a half times the distance of a size from neutral.
     #[must_use]
     pub fn range_near(&self, size: f64, place: usize) -> f64 {
         let reach = 0.5 * (size - self.neutral().unwrap_or(0.0)).abs();
@@ -93,24 +93,24 @@ impl Candidate {
         (high - low).max(0.0)
     }
 
-    /// Where nothing changes.
+    /// The size without influence.
     #[must_use]
     pub fn neutral(&self) -> Option<f64> {
         self.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size)
     }
 
-    /// Whether it is the same cause, be it by another parameter.
+    /// Whether it is the same cause, possibly by another parameter.
     #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
         self.effect == other.effect && self.channels == other.channels
     }
 
-    /// Whether a size lies on the same side of neutral as another.
+    /// Whether two sizes are on the same side of neutral.
     fn same_side(&self, size: f64, other: f64) -> bool {
         self.neutral().is_none_or(|neutral| (size < neutral) == (other < neutral))
     }
 
-    /// Whether sizes towards another are left to be simulated.
+    /// Whether sizes on the side of `size` remain to be simulated.
     #[must_use]
     pub fn pending_towards(&self, size: f64) -> bool {
         self.pending.iter().any(|pending| self.same_side(*pending, size))
@@ -123,15 +123,15 @@ impl Candidate {
     }
 }
 
-/// A size and what it changes.
+/// A size and the change of the features.
 #[derive(Clone, Debug)]
 pub struct Node {
     pub size: f64,
-    /// Change of all features; empty where nothing changes.
+    /// Change of all features; empty at the neutral size.
     pub change: Vec<f64>,
 }
 
-/// Everything that the candidates are made with.
+/// Data for the construction of candidates.
 pub struct Workshop<'a> {
     pub seen: &'a Observations,
     pub catalogue: &'a Catalogue,
@@ -177,7 +177,7 @@ impl Workshop<'_> {
                 Some(name) => parameter.simulators.iter().find(|(known, ..)| known == name).map(|(_, key, factor)| (key, factor)),
                 None => parameter.model.as_ref().map(|(key, factor)| (key, factor)),
             };
-            // A program may know by another name what the vehicle file has as a parameter of the model.
+            // An external simulator may have another name for a parameter of the vehicle file.
             let of_model = || parameter.model.as_ref().and_then(|(key, factor)| Some((self.neutral)(key)? / factor));
             let neutral =
                 parameter.neutral.or_else(|| moved.and_then(|(key, factor)| Some((self.neutral)(key)? / factor))).or_else(of_model);
@@ -197,7 +197,7 @@ impl Workshop<'_> {
         found
     }
 
-    /// Simulates more sizes of a candidate.
+    /// Simulates further sizes of a candidate.
     fn simulate(&self, bench: &Bench<'_>, effect: &Effect, candidate: &mut Candidate, sizes: &[f64], runs: &mut Runs) {
         let beside = candidate.beside.as_ref().map(|placed| placed.there.clone());
         let there = beside.as_ref().map(|there| there.on(bench));
@@ -214,7 +214,7 @@ impl Workshop<'_> {
         candidate.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
     }
 
-    /// Adds the sizes of a candidate towards one that were left for later.
+    /// Simulates the remaining sizes of a candidate on the side of `towards`.
     pub fn refine(&self, candidate: &mut Candidate, towards: f64, runs: &mut Runs) {
         let (pending, left) = candidate.pending.iter().partition(|pending| candidate.same_side(**pending, towards));
         candidate.pending = left;
@@ -225,7 +225,7 @@ impl Workshop<'_> {
         }
     }
 
-    /// Adds one more size of a candidate: simulated, or applied to the signals.
+    /// Adds one size of a candidate: simulated, or applied to the signals.
     pub fn add_size(&self, candidate: &mut Candidate, size: f64, runs: &mut Runs) {
         let Some(effect) = self.catalogue.effect(&candidate.effect) else { return };
         match (&effect.action, self.bench) {
@@ -240,10 +240,10 @@ impl Workshop<'_> {
         }
     }
 
-    /// How the features change with an effect on the simulator, from those without it.
+    /// The change of the features with an effect in the simulator.
     ///
     /// # Errors
-    /// A section fails, or the catalogue does not say how this simulator adds the effect.
+    /// A section fails, or the catalogue does not define the effect for this simulator.
     fn run(&self, (bench, base): (&Bench<'_>, &[f64]), applied: &Applied) -> Result<Vec<f64>, Problem> {
         let effects = std::slice::from_ref(applied);
         let plan = crate::simulate::Plan::new(self.catalogue, effects, &self.seen.sections[0].section, bench.simulator.catalogue_name())?;
@@ -272,7 +272,7 @@ impl Workshop<'_> {
             }
             let mut sizes = trials.clone();
             if operator == Operator::Offset {
-                // In the unit of the channel, which the catalogue does not know: up to what the channel reaches.
+                // In the unit of the channel, which the catalogue does not contain: up to the range of the channel.
                 let reach = self.reach(&list);
                 sizes.retain(|size| size.abs() < reach);
                 sizes.extend([-reach, reach]);
@@ -298,7 +298,7 @@ impl Workshop<'_> {
         lists.into_par_iter().filter_map(make).collect()
     }
 
-    /// Effects by expressions on the signals: each set of sizes is applied to what would have been recorded.
+    /// Effects by expressions on the signals: each set of sizes is applied to the simulation as it would have been recorded.
     fn expressed(&self, effect: &Effect) -> Vec<Candidate> {
         let mut found = Vec::new();
         for fit in &effect.fits {
@@ -333,7 +333,7 @@ impl Workshop<'_> {
         Ok(parts?.concat().iter().zip(&self.ground.recorded.features).map(|(made, without)| made - without).collect())
     }
 
-    /// Channels of one group that could be exchanged.
+    /// Pairs of channels of one group, for exchange.
     fn pairs(&self, channels: &[String]) -> Vec<Vec<String>> {
         let of = &self.seen.layout.channels;
         let mut pairs = Vec::new();
@@ -347,14 +347,14 @@ impl Workshop<'_> {
         pairs
     }
 
-    /// The largest magnitude that channels reach, simulated or measured: no offset is larger.
+    /// The largest magnitude of the channels, simulated or measured, as an upper bound of an offset.
     fn reach(&self, channels: &[String]) -> f64 {
         let sides = self.seen.sections.iter().flat_map(|observed| [&observed.simulated, &observed.measured]);
         let all = sides.flat_map(|signals| channels.iter().filter_map(|name| signals.channel(name)));
         all.flat_map(|channel| channel.values.iter()).fold(0.0, |most, value| value.abs().max(most))
     }
 
-    /// How the features change with an operator on what would have been recorded; nothing where it cannot be applied.
+    /// The change of the features with an operation on the simulation as it would have been recorded; nothing where it cannot be applied.
     #[must_use]
     pub fn operate(&self, operator: Operator, size: f64, channels: &[String]) -> Option<Vec<f64>> {
         let seen = self.seen;
@@ -384,22 +384,21 @@ impl Workshop<'_> {
     }
 }
 
-/// How far beyond what is plausible an operation is applied, as a share of the way there.
+/// How far beyond the plausible range an operation is applied, as a share of the distance from neutral.
 const BEYOND: f64 = 0.2;
 
-/// Sizes to either side that are not plausible any more: a difference that asks for one is told from one that asks for the last of those
-/// that are.
+/// Sizes on either side of the plausible range, so that a difference with an implausible size is distinguished from one at the bound.
 fn beyond(range: (f64, f64), neutral: f64) -> Vec<f64> {
     let further = |end: f64| {
         let along = end + BEYOND * (end - neutral);
-        // What a size scales, or cuts off, has no size of the other sign.
+        // A scale factor or a cut-off frequency does not change sign.
         if neutral.is_finite() && along * end > 0.0 { along } else { end / (1.0 + BEYOND) }
     };
     [range.0, range.1].into_iter().filter(|end| end.is_finite() && *end != neutral).map(further).collect()
 }
 
-/// Every other size, counted from none to either side; the nearer of two, since halfway to the farther one an effect that sets in at a
-/// threshold would not be there at all. And the others.
+/// Splits sizes into every other one, counted from neutral to either side, and the rest. The nearer of two is taken, since an effect with
+/// a threshold may have no influence at half of the farther one.
 fn coarse(sizes: &[f64], none: f64) -> (Vec<f64>, Vec<f64>) {
     let (mut first, mut later) = (Vec::new(), Vec::new());
     let below = sizes.iter().rev().filter(|size| **size < none).copied().collect::<Vec<_>>();
@@ -413,7 +412,7 @@ fn coarse(sizes: &[f64], none: f64) -> (Vec<f64>, Vec<f64>) {
     (first, later)
 }
 
-/// An effect with values, everywhere.
+/// An effect with values, in all sections.
 #[must_use]
 pub fn applied(effect: &Effect, values: Vec<(String, f64)>) -> Applied {
     Applied { effect: effect.name.clone(), values, channels: Vec::new(), confined: None }
@@ -429,7 +428,7 @@ fn combinations(axes: &[(usize, Vec<f64>)]) -> Vec<Vec<(usize, f64)>> {
 mod tests {
     use super::*;
 
-    /// A fifth of the way on: a gain of 0.5 to 1.6, a shift of 50 m either way, and an edge that has no negative size.
+    /// A fifth beyond the range: a gain of 0.5 to 1.6, a shift of ±50 m, and a frequency that cannot be negative.
     #[test]
     fn operations_are_tried_a_fifth_beyond_what_is_plausible() {
         let near = |range: (f64, f64), neutral: f64, wanted: &[f64]| {
@@ -442,7 +441,7 @@ mod tests {
         near((0.6, f64::INFINITY), f64::INFINITY, &[0.5]);
     }
 
-    /// A lag of 0, 1, 2 and then 30 along the sizes 0 to 3: around 1 it moves by no more than 1, around 2.5 it has jumped.
+    /// Lags of 0, 1, 2 and then 30 at the sizes 0 to 3: the range is at most 1 around size 1, and larger around 2.5.
     #[test]
     fn what_jumps_between_sizes_is_seen_near_them() {
         let node = |(size, lag): (f64, f64)| Node { size, change: if size == 0.0 { Vec::new() } else { vec![5.0, lag] } };
@@ -450,8 +449,8 @@ mod tests {
         assert_eq!([of.range_near(1.0, 1), of.range_near(2.5, 1), of.range_near(2.5, 0), of.range_near(0.0, 1)], [1.0, 28.0, 0.0, 0.0]);
     }
 
-    /// A simulation of nothing, recorded with noise of 0.5: a gain of 0.8 lowers all bands by its logarithm, and a low-pass of 10 Hz the
-    /// band about 10 Hz by that of the square root of a half, as they do where there is a signal.
+    /// Zero signals recorded with noise of 0.5: a gain of 0.8 reduces all bands by its logarithm, and a low-pass of 10 Hz reduces the band
+    /// around 10 Hz by ln(2^1/2), as with any other signal.
     #[test]
     fn operations_act_on_noise_as_on_all_else() {
         use crate::diagnose::allowed::recorded::as_recorded;

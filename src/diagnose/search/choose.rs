@@ -1,24 +1,24 @@
-//! Forward search for a set of effects, each of which must earn its place.
+//! Forward selection of a set of effects.
 
 use super::candidates::Candidate;
 use super::fit::{Fitted, Fitter};
 use crate::diagnose::allowed::whiten::{dot, less};
 
-/// A size that is a declared tolerance is named from so many standard deviations on: what is declared is an estimate itself.
+/// Declared standard deviations from which an effect on a tolerated parameter is named: the declared value is itself an estimate.
 pub const TOLERANCE_SD: f64 = 3.5;
 
-/// What a member must bring.
+/// Criteria for a member.
 #[derive(Clone, Copy, Debug)]
 pub struct Bars {
     /// Least evidence of a member.
     pub first: f64,
-    /// The same for an operation on the signals: exact, whatever the model is wrong in.
+    /// The same for an operation on the signals, which has no model error.
     pub exact: f64,
-    /// Extra evidence that a confinement must bring over the whole campaign.
+    /// Additional evidence required of a confinement.
     pub confined: f64,
-    /// A size that is a declared tolerance must be so many standard deviations from neutral.
+    /// Least distance from neutral of an effect on a tolerated parameter, in declared standard deviations.
     pub tolerance_sd: f64,
-    /// Share of the fall of the strongest simulated member that a further one must bring.
+    /// Least fall of chi-squared of a further member, as a share of that of the strongest simulated member.
     pub share: f64,
     pub most: usize,
 }
@@ -31,27 +31,27 @@ impl Bars {
     }
 }
 
-/// A set of effects with the difference that is left.
+/// A set of effects and the residual.
 #[derive(Clone, Debug)]
 pub struct Chosen {
     pub members: Vec<Fitted>,
-    /// What is left, whitened.
+    /// The whitened residual.
     pub rest: Vec<f64>,
 }
 
-/// What a guard says of a fit as a further member.
+/// Result of a guard for a fit as a further member.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Judged {
     Sound,
-    /// It may stay if it proves itself elsewhere.
+    /// It must also reduce the gap in cross-validation.
     Doubtful,
-    /// Views of the data ask for sizes that contradict each other.
+    /// Views of the data give contradictory sizes.
     Contradicted(String),
     Refused(String),
 }
 
 impl Judged {
-    /// A fit that was refused, with the reason; nothing if it was not.
+    /// The fit with the reason why it was refused; nothing if it was not.
     fn refused(self, fitted: Fitted) -> Option<Refused> {
         let contradicted = matches!(self, Self::Contradicted(_));
         match self {
@@ -64,12 +64,12 @@ impl Judged {
 /// Judges a fit as a further member.
 pub type Guard<'a> = &'a (dyn Fn(&Fitted, &Chosen) -> Judged + Sync);
 
-/// A refused member and why.
+/// A refused fit with the reason.
 #[derive(Clone, Debug)]
 pub struct Refused {
     pub fitted: Fitted,
     pub reason: String,
-    /// Whether views contradicted each other.
+    /// Whether views contradict each other.
     pub contradicted: bool,
 }
 
@@ -81,7 +81,7 @@ impl Refused {
 }
 
 impl Chosen {
-    /// No member.
+    /// The empty set.
     #[must_use]
     pub fn none(z: &[f64]) -> Self {
         Self { members: Vec::new(), rest: z.to_vec() }
@@ -92,7 +92,7 @@ impl Chosen {
         self.members.iter().map(|member| member.evidence).sum()
     }
 
-    /// What the members but one leave of the whitened difference.
+    /// The whitened difference less the changes of all members but one.
     #[must_use]
     pub fn left_by_others(&self, z: &[f64], at: usize) -> Vec<f64> {
         let others = self.members.iter().enumerate().filter(|(other, _)| *other != at);
@@ -100,8 +100,8 @@ impl Chosen {
     }
 }
 
-/// Searches for members beside those that are `chosen`, without the candidates that are `barred`. `z` is the whitened difference; `far`
-/// says how many declared standard deviations a size is from neutral, `channels` of which channel each feature of a section is.
+/// Searches for further members of `chosen`, without the candidates that are `barred`. `z` is the whitened difference. `far` gives the
+/// distance of a size from neutral in declared standard deviations. `channels` gives the channel of each feature of a section.
 pub fn search(
     fitter: &Fitter<'_>,
     z: &[f64],
@@ -122,10 +122,10 @@ pub fn search(
         fits.retain(|fit| fit.evidence >= bar(fit) && !barred.contains(&fit.candidate) && !taken(fitter, &chosen, fit));
         fits.retain(|fit| far(&fitter.candidates[fit.candidate], fit.size) >= bars.tolerance_sd + fitter.masks[fit.mask].picked());
         fits.retain(|fit| plausible(&fitter.candidates[fit.candidate], fit.size));
-        // Sections that the data chose themselves must say it twice as loud.
+        // A confinement to sections selected from the data needs twice the evidence.
         fits.retain(|fit| fitter.masks[fit.mask].asked_by.is_none() || fit.evidence >= 2.0 * bar(fit));
-        // What a simulated change is wrong by, in the channels that it changes, looks like something else; an operation on the signals
-        // leaves nothing.
+        // The model error of a simulated change, in the channels that it changes, may resemble another effect. Operations on the signals
+        // have no such error.
         let simulated = chosen.members.iter().filter(|member| !fitter.candidates[member.candidate].exact);
         let wrong = |fit: &Fitted, member: &Fitted| bars.share * member.fall * in_common(channels, &fit.whitened, &member.whitened);
         fits.retain(|fit| simulated.clone().all(|member| fit.fall >= wrong(fit, member)));
@@ -153,7 +153,7 @@ pub fn search(
             refit(fitter, z, &mut chosen);
             continue;
         }
-        // A member that the others have made needless goes.
+        // A member that the others make redundant is dropped.
         if let Some(weak) = chosen.members.iter().position(|member| member.evidence < bar(member)) {
             barred.push(chosen.members[weak].candidate);
             chosen.members.remove(weak);
@@ -163,12 +163,11 @@ pub fn search(
     chosen
 }
 
-/// How many candidates are fitted together with the members, from which evidence on beside the members as they are.
+/// Number of candidates that are fitted jointly with the members, and their least evidence with the members fixed.
 const TOGETHER: usize = 12;
 const WORTH: f64 = 5.0;
 
-/// Candidates as further members, fitted together with the members: what is alike takes its part of what the other explains, and has
-/// little evidence left beside it, until both give way.
+/// Candidates as further members, fitted jointly with the members. With the members fixed, correlated candidates have little evidence left.
 #[must_use]
 pub fn together(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, mut fits: Vec<Fitted>) -> Vec<Fitted> {
     fits.retain(|fit| fit.evidence >= WORTH && !taken(fitter, chosen, fit));
@@ -184,7 +183,7 @@ pub fn together(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, mut fits: Vec<F
     fits.into_iter().filter_map(one).collect()
 }
 
-/// A set with one more member, all fitted again.
+/// A set with one more member, all refitted.
 fn with(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, fit: Fitted) -> Chosen {
     let mut more = chosen.clone();
     more.members.push(fit);
@@ -192,16 +191,16 @@ fn with(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, fit: Fitted) -> Chosen 
     more
 }
 
-/// Whether a size is within what the catalogue holds possible.
+/// Whether a size is within the plausible range of the catalogue.
 #[must_use]
 pub fn plausible(candidate: &Candidate, size: f64) -> bool {
     (candidate.range.0..=candidate.range.1).contains(&size)
 }
 
-/// Share of the evidence that a confinement must add: leaving out the sections that fit worst adds some to anything.
+/// Share of the evidence that a confinement must add: excluding the sections that fit worst always adds some.
 const CONFINED: f64 = 0.15;
 
-/// A confinement must earn what it costs over the same candidate everywhere.
+/// Removes a confinement that does not add enough evidence to the same candidate in all sections.
 pub fn unconfine(fitter: &Fitter<'_>, rest: &[f64], fit: &mut Fitted, bars: &Bars) {
     if fit.mask == 0 {
         return;
@@ -212,17 +211,17 @@ pub fn unconfine(fitter: &Fitter<'_>, rest: &[f64], fit: &mut Fitted, bars: &Bar
     }
 }
 
-/// Cosine of whitened changes below which two members are a compensation: each is there for the sake of the other.
+/// Cosine of two whitened changes below which the members compensate each other.
 const UNDONE: f64 = -0.6;
 
-/// The member that the last one mostly undoes.
+/// The member that the last one compensates.
 fn undone(chosen: &Chosen) -> Option<usize> {
     let (last, others) = chosen.members.split_last()?;
     let length = |member: &Fitted| dot(&member.whitened, &member.whitened).sqrt();
     others.iter().position(|other| dot(&other.whitened, &last.whitened) < UNDONE * length(other) * length(last))
 }
 
-/// How much of two whitened changes is in the same channels: 1 where their lengths are spread over them alike, 0 where they share none.
+/// Similarity of the distribution of two whitened changes over the channels: 1 for the same distribution, 0 without a common channel.
 fn in_common(channels: &[usize], a: &[f64], b: &[f64]) -> f64 {
     let squares = |of: &[f64]| {
         let mut sums = vec![0.0; channels.iter().max().map_or(0, |most| most + 1)];
@@ -235,7 +234,7 @@ fn in_common(channels: &[usize], a: &[f64], b: &[f64]) -> f64 {
     if lengths > 0.0 { both * both / lengths } else { 0.0 }
 }
 
-/// Whether a like cause is a member already: another size of the same effect on the same channels, or another size of what is turned round.
+/// Whether the same cause is a member already: another size of the same effect on the same channels, or of an inverted channel.
 #[must_use]
 pub fn taken(fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> bool {
     let of = &fitter.candidates[fit.candidate];
@@ -246,12 +245,11 @@ pub fn taken(fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> bool {
     })
 }
 
-/// Most turns in which members are fitted to what the others leave, and the share of chi-squared by which a turn that ends it falls:
-/// changes that are alike give way to each other slowly.
+/// Maximum number of iterations of the refit, and its convergence criterion as a share of chi-squared. Correlated changes converge slowly.
 const TURNS: usize = 100;
 const SETTLED: f64 = 1e-6;
 
-/// Fits every member to what the others leave, in turns, until nothing is gained.
+/// Fits every member to the residual of the others, in turn, until chi-squared converges.
 pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen) {
     let mut before = f64::INFINITY;
     for _ in 0..TURNS {
@@ -271,7 +269,7 @@ pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen) {
     }
 }
 
-/// For every candidate, the best evidence of the set in which it takes the place of a member: that member, the fit, how much less.
+/// For every candidate, the set with the most evidence in which it replaces a member: that member, the fit, the loss of evidence.
 #[must_use]
 pub fn rivals(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, at: usize) -> Vec<(usize, Fitted, f64)> {
     let less = |fit: Fitted| {
@@ -281,11 +279,11 @@ pub fn rivals(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, at: usize) -> Vec
     fitter.all(&chosen.left_by_others(z, at)).into_iter().map(less).collect()
 }
 
-/// How many candidates that are not named are told, and the evidence from which on.
+/// Number of unnamed candidates that are reported, and their least evidence.
 const TOLD: usize = 3;
 const TELLING: f64 = 10.0;
 
-/// What has most evidence for what a set leaves, one candidate of each effect; neither a member nor refused.
+/// The candidates with the most evidence for the residual, one per effect; neither members nor refused.
 #[must_use]
 pub fn nearest(fitter: &Fitter<'_>, chosen: &Chosen, refused: &[Refused]) -> Vec<Fitted> {
     let mut fits = fitter.all(&chosen.rest);
@@ -302,8 +300,8 @@ pub fn nearest(fitter: &Fitter<'_>, chosen: &Chosen, refused: &[Refused]) -> Vec
     told
 }
 
-/// What views contradict and has more evidence, for what a set leaves, than any member: it stands for something that is there and that
-/// no effect explains.
+/// A refused candidate with contradictory views that has more evidence for the residual than any member: a difference is present that no
+/// effect explains.
 #[must_use]
 pub fn contradicting(fitter: &Fitter<'_>, chosen: &Chosen, refused: &[Refused]) -> Option<(Refused, f64)> {
     let most = chosen.members.iter().map(|member| member.evidence).reduce(f64::max)?;
@@ -327,8 +325,8 @@ mod tests {
     use crate::diagnose::search::candidates::Node;
     use crate::diagnose::search::fit::Mask;
 
-    /// Ten sections of two features of unit variance: one is off by 2, which a member explains, the other by 3, which a refused effect
-    /// would.
+    /// Ten sections of two features of unit variance: one differs by 2, which a member explains, the other by 3, which a refused effect
+    /// would explain.
     #[test]
     fn more_than_the_answer_that_views_contradict_is_told() {
         const SECTIONS: usize = 10;
@@ -349,14 +347,14 @@ mod tests {
             let refused = Refused { contradicted, ..Refused::new(fit(1), "views differ") };
             contradicting(&fitter, &chosen, &[refused]).map(|(_, evidence)| evidence)
         };
-        // 10 * 3^2 less the price of a path of 10 * 10^1/2 standard deviations: 2 ln (31.6 / (2 pi)^1/2) = 5.07.
+        // 10 * 3^2 less the penalty of a path of 10 * 10^1/2 standard deviations: 2 ln (31.6 / (2 pi)^1/2) = 5.07.
         let evidence = told(3.0, true).expect("it has more");
         assert!((evidence - (90.0 - 5.07)).abs() < 0.01, "{evidence}");
         assert_eq!((told(3.0, false), told(1.9, true)), (None, None));
     }
 
-    /// Ten sections of two features of unit variance, off by 30 and by 3: falls of 9000 and 90. A simulated change of the first size may be
-    /// wrong by as much as the second shows; an operation on the signals leaves nothing.
+    /// Ten sections of two features of unit variance, with differences of 30 and 3: falls of 9000 and 90. The model error of a simulated
+    /// first change may be as large as the second difference; an operation on the signals has none.
     #[test]
     fn what_a_large_effect_may_be_wrong_by_is_not_named_beside_it() {
         const SECTIONS: usize = 10;
@@ -387,13 +385,14 @@ mod tests {
         };
         assert_eq!(named(false, &[0, 0]), [(0, 9000.0)]);
         assert_eq!(named(true, &[0, 0]), [(0, 9000.0), (1, 90.0)]);
-        // It is wrong in nothing that it does not change.
+        // There is no model error in features that it does not change.
         assert_eq!(named(false, &[0, 1]), [(0, 9000.0), (1, 90.0)]);
         assert!((in_common(&[0, 1], &[3.0, 4.0, 0.0, 0.0], &[4.0, 0.0, 0.0, 0.0]) - 9.0 / 25.0).abs() < 1e-12);
     }
 
-    /// Ten sections of two features of unit variance. Two changes whose cosine is 0.9 are there with 0.3 each. Beside the first as it is
-    /// alone, the second would explain 1 - 0.9^2 of what the first leaves; together they explain all of it, with the sizes that they have.
+    /// Ten sections of two features of unit variance. Two changes with a cosine of 0.9 are present with size 0.3 each. With the first
+    /// fixed at its size when fitted alone, the second explains 1 - 0.9^2 of the residual; jointly they explain all of it, with the true
+    /// sizes.
     #[test]
     fn what_is_alike_is_weighed_together() {
         const SECTIONS: usize = 10;

@@ -1,4 +1,4 @@
-//! The search, with what it asks for simulated: until neither the answer nor a veto rests on interpolation.
+//! The search with simulation of the fitted sizes, so that neither an answer nor a refusal is based on interpolation.
 
 use super::beside::alone_again;
 use super::candidates::{Candidate, Workshop};
@@ -12,33 +12,33 @@ use super::settle::{ROUNDS, polish};
 use crate::diagnose::observe::bench::Runs;
 use crate::effects::Gauss;
 
-/// Draws for the threshold.
+/// Random draws for the threshold.
 const DRAWS: usize = 60;
-/// Evidence below which no cause is named: real discrepancies are not those of the covariance.
+/// Least evidence of a cause: real discrepancies deviate from the assumed covariance.
 const FLOOR: f64 = 30.0;
-/// The same for an operation on the signals, which no such discrepancy enters: half as much, where 10 is called very strong (Kass and
+/// The same for an operation on the signals, which such discrepancies do not affect: half as much; 10 is called very strong (Kass and
 /// Raftery 1995).
 const FLOOR_EXACT: f64 = 15.0;
-/// A candidate is simulated at all its sizes from this share of the best evidence on, and from this evidence on.
+/// All sizes of a candidate are simulated from this share of the largest evidence on, and from this evidence on.
 pub const NEAR: f64 = 0.5;
 pub const WORTH: f64 = 10.0;
 
-/// With so much more evidence, the least that is called positive (Kass and Raftery 1995), another takes the place of a member.
+/// Gain of evidence from which another candidate replaces a member: the least called positive (Kass and Raftery 1995).
 const BETTER: f64 = 2.0;
 
-/// What is searched, and by what it is weighed.
+/// Inputs of the search.
 pub struct Converging<'a> {
     pub workshop: &'a Workshop<'a>,
     pub place: &'a Place,
-    /// How other places are found, if they are.
+    /// Simulation of the tolerances together with members; absent in a search with fixed tolerances.
     pub tolerances: Option<&'a Tolerances<'a>>,
     pub families: &'a [Vec<View>],
-    /// How many declared standard deviations a size is from neutral.
+    /// Distance of a size from neutral in declared standard deviations.
     pub far: &'a (dyn Fn(&Candidate, f64) -> f64 + Sync),
     pub seed: u64,
 }
 
-/// What was found.
+/// Result of the search.
 pub struct Converged {
     pub chosen: Chosen,
     pub refused: Vec<Refused>,
@@ -47,7 +47,7 @@ pub struct Converged {
 }
 
 impl Converging<'_> {
-    /// Searches until no candidate that matters has sizes left to be simulated.
+    /// Searches until no relevant candidate has sizes left to simulate.
     pub fn search(&self, candidates: &mut [Candidate], masks: &mut Vec<Mask>, runs: &mut Runs) -> Converged {
         let (workshop, Place { whitener, z, .. }) = (self.workshop, self.place);
         let mut refused = Vec::new();
@@ -64,7 +64,7 @@ impl Converging<'_> {
             let more = if wanted.is_empty() { section_masks(&fitter, z, &found, workshop.seen) } else { Vec::new() };
             known = fitter.whitened;
             if wanted.is_empty() && more.is_empty() {
-                // Nor may a veto: what was refused is looked at again with the size that was found.
+                // A refusal must not be based on interpolation either: refused candidates are judged again at the simulated size.
                 let again: Vec<Fitted> = refused
                     .iter()
                     .map(|refused: &Refused| refused.fitted.clone())
@@ -88,17 +88,17 @@ impl Converging<'_> {
         now
     }
 
-    /// The same at another place.
+    /// The same with another weighing.
     pub(super) fn at<'b>(&'b self, place: &'b Place) -> Converging<'b> {
         Converging { place, ..*self }
     }
 
-    /// Of which channel each feature of a section is.
+    /// The channel of each feature of a section.
     pub(super) fn channels(&self) -> Vec<usize> {
         self.workshop.seen.features.iter().map(|feature| feature.channel).collect()
     }
 
-    /// The members fitted again with the sizes that were found simulated; one that was above the bar by interpolation alone goes.
+    /// Refits the members with their fitted sizes simulated. A member whose evidence was sufficient only by interpolation is dropped.
     pub(super) fn simulated(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Converged, runs: &mut Runs) -> Converged {
         let Place { whitener, z, .. } = self.place;
         for _ in 0..ROUNDS {
@@ -132,8 +132,8 @@ impl Converging<'_> {
         now
     }
 
-    /// Where others have come beside a member, or gone, another may have more evidence in its place than it has now: with the tolerances
-    /// as they act beside the members before it, if that was looked at. Whether any was exchanged; then all must be fitted again.
+    /// Replaces members by candidates with more evidence, after others were added or dropped. The weighing is that with the tolerances
+    /// simulated together with the members before, where computed. Returns whether any was replaced; all must then be refitted.
     pub fn exchange(&self, of: (&[Candidate], &[Mask]), now: &mut Chosen, bars: &Bars, refused: &[Refused], known: &mut Known) -> bool {
         let mut any = false;
         for at in 0..now.members.len() {
@@ -150,7 +150,7 @@ impl Converging<'_> {
         any
     }
 
-    /// What has more evidence in the place of a member.
+    /// The candidate with more evidence in place of a member.
     fn better(
         &self,
         (candidates, masks): (&[Candidate], &[Mask]),
@@ -179,12 +179,12 @@ impl Converging<'_> {
         better
     }
 
-    /// Refuses a member that views contradict, or that a single section carries.
+    /// Refuses a member with contradictory views, or whose evidence is in a single section.
     pub(super) fn guard(&self, fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> Judged {
         let rest = left(fitter.candidates, &fitter.masks, &self.place.difference, chosen);
         let fitted = (&fitter.candidates[fit.candidate], &fitter.masks[fit.mask], fit);
         let mut judged = Judged::Sound;
-        // What a simulated change of the others is wrong by is no word against this one.
+        // The model error of the other simulated changes must not count against this one.
         let beside = with_room(&self.place.covariance, fitter.candidates, &fitter.masks, chosen);
         for family in self.families {
             match contradiction(&beside, family, fitted, &rest) {
@@ -201,13 +201,13 @@ impl Converging<'_> {
     }
 }
 
-/// Bars from what chance reaches.
+/// Criteria from the evidence that occurs by chance.
 fn bars(chance: f64) -> Bars {
     let first = chance.max(FLOOR);
     Bars { first, exact: chance.max(FLOOR_EXACT), confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.08, most: 3 }
 }
 
-/// More evidence than the best candidate reaches by chance in any draw from the covariance.
+/// Evidence larger than that of the best candidate in any random draw from the covariance.
 fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
     use rayon::prelude::*;
     let mut most: Vec<f64> = (0..DRAWS)
@@ -222,8 +222,8 @@ fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
     most.last().copied().unwrap_or(0.0) + 3.0
 }
 
-/// Candidates that are worth their other sizes, and towards which: those within reach of the best for the whole difference, for what a first set of
-/// causes leaves, or for what it leaves without one of them; and the members of that set.
+/// Candidates whose remaining sizes are simulated, and on which side: those close to the best for the whole difference, for the residual
+/// of a first set, or for the residual of that set without one member; and the members of that set.
 fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, f64)> {
     let pending = |fit: &&Fitted| fitter.candidates[fit.candidate].pending_towards(fit.size);
     let towards = |fit: &Fitted| (fit.candidate, fit.size);
@@ -239,7 +239,7 @@ fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, f64
         let near = |fit: &&Fitted| fit.evidence >= (NEAR * best).max(WORTH) && pending(fit);
         found.extend(fits.iter().filter(near).map(towards));
     }
-    // One after the other in the order of the catalogue; a second one on the same side finds nothing left.
+    // In the order of the catalogue; a second request for the same side has nothing to simulate.
     found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     found
 }
@@ -257,7 +257,7 @@ mod tests {
 
     const SECTIONS: usize = 10;
 
-    /// With a search at a place, among these views.
+    /// Runs `work` with a search for a weighing and these views.
     fn at_place<R>(place: &Place, families: &[Vec<View>], work: impl FnOnce(&Converging<'_>) -> R) -> R {
         let layout = Layout { channels: Vec::new(), edges: Vec::new(), alike: (0.0, 1.0), furthest: 1.0 };
         let (noise, left_out, faults) = (Vec::new(), Vec::new(), Vec::new());
@@ -274,7 +274,7 @@ mod tests {
         (0..SECTIONS).flat_map(|_| of.to_vec()).collect()
     }
 
-    /// A path from nothing at 0 to a change of each section at 10.
+    /// A path from no change at size 0 to a change of each section at size 10.
     fn path(effect: &str, change: &[f64]) -> Candidate {
         Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change: per_section(change) }])
     }
@@ -287,9 +287,9 @@ mod tests {
         [Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None }]
     }
 
-    /// Ten sections of three features of unit variance, the second of which is off by 3. A member that moves the first as well was
-    /// chosen beside one that moved the first back: alone it explains 10 * 3^2 / 2. Another moves the second alone and explains all of
-    /// 10 * 3^2. Both pay the same for their paths.
+    /// Ten sections of three features of unit variance; the second differs by 3. A member that also changes the first feature was chosen
+    /// with a second one that compensated it. Alone it explains 10 * 3^2 / 2. Another candidate changes only the second feature and
+    /// explains all of 10 * 3^2. The penalties are equal.
     #[test]
     fn where_a_member_has_gone_another_takes_the_place_of_what_was_chosen_beside_it() {
         let side = 10.0 / 2_f64.sqrt();
@@ -311,15 +311,15 @@ mod tests {
         let (any, candidate, size, fall) = exchanged(3.0, &[1]);
         assert!(any && candidate == 2, "{candidate}");
         assert!((size - 3.0).abs() < 1e-9 && (fall - 90.0).abs() < 1e-9, "{size}, {fall}");
-        // What was refused takes no place; nor does what has less than a first member must have: 10 * 1.8^2 is 32.4, less the price 28.
+        // A refused candidate replaces no member; nor does one below the first threshold: 10 * 1.8^2 is 32.4, less the penalty 28.
         assert_eq!(exchanged(3.0, &[1, 2]).1, 0);
         assert_eq!(exchanged(1.8, &[1]).1, 0);
         assert_eq!(exchanged(2.0, &[1]).1, 2);
     }
 
-    /// Two features of unit variance, each a view of its own. A first member moves the second feature by 60; what is simulated of that may
-    /// be wrong by a fifth, 12. A further one moves both by 6, and the second shows nothing of it: with an error of
-    /// (1 + 12^2)^1/2 / (6 * 10^1/2) = 0.63 of it that says nothing, with one of 1 / (6 * 10^1/2) = 0.05 it contradicts.
+    /// Two features of unit variance, each a view. The first member changes the second feature by 60, with a model error of a fifth, 12. A
+    /// further one changes both by 6, which the second feature does not show. With the model error the second view has the standard error
+    /// (1 + 12^2)^1/2 / (6 * 10^1/2) = 0.63 and does not contradict; without it, 1 / (6 * 10^1/2) = 0.05, and contradicts.
     #[test]
     fn what_a_member_is_wrong_by_contradicts_no_other() {
         let mut candidates = [path("first", &[0.0, 100.0]), path("further", &[10.0, 10.0])];

@@ -1,4 +1,4 @@
-//! Which candidates explain a difference: sizes, evidence, and the search for a set of them.
+//! Fit of candidates to a difference: sizes and evidence.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -7,66 +7,66 @@ use super::beside::Placed;
 use super::candidates::Candidate;
 use crate::diagnose::allowed::whiten::{Whitener, dot};
 
-/// Sections that an effect is confined to; all of them at number 0.
+/// Sections to which an effect is confined; mask 0 is all sections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mask {
-    /// Column and values, or nothing for all sections.
+    /// Column and values; nothing for all sections.
     pub confined: Option<(String, Vec<String>)>,
     pub sections: Vec<bool>,
-    /// The candidate that asks for it, if it was found in the data: it costs a free choice of sections.
+    /// The candidate whose fit selected the sections, if they were selected from the data: the selection has a penalty.
     pub asked_by: Option<usize>,
 }
 
-/// A candidate with its size, and what it explains.
+/// A fitted candidate.
 #[derive(Clone, Debug)]
 pub struct Fitted {
     pub candidate: usize,
     pub mask: usize,
-    /// Between node `segment` and the next, at `share`.
+    /// The size is between node `segment` and the next, at `share`.
     pub segment: usize,
     pub share: f64,
     pub size: f64,
     /// Fall of chi-squared.
     pub fall: f64,
-    /// Fall less what the freedom of the fit costs: twice the logarithm of the Bayes factor against nothing.
+    /// Fall less the penalty of the free parameters: twice the logarithm of the Bayes factor against no effect.
     pub evidence: f64,
     /// Whitened change.
     pub whitened: Vec<f64>,
-    /// Length of the whitened change per unit of size.
+    /// Length of the whitened change per unit of the size.
     pub slope: f64,
-    /// Whether views ask for rather different sizes, though all ask for some.
+    /// Whether views give rather different sizes, though none gives zero.
     pub doubtful: bool,
 }
 
-/// Candidates in whitened form.
+/// Whitened candidates.
 #[derive(Debug)]
 pub struct Fitter<'a> {
     pub whitener: &'a Whitener,
     pub candidates: &'a [Candidate],
     pub masks: Vec<Mask>,
-    /// By candidate and mask: the whitened nodes.
+    /// The whitened nodes by candidate and mask.
     pub whitened: Known,
 }
 
 /// Whitened nodes of candidates under masks.
 pub type Known = HashMap<(usize, usize), Path>;
 
-/// A candidate under a mask: its whitened nodes, and what of a fit does not depend on the difference.
+/// A candidate under a mask: its whitened nodes, and the terms of a fit that do not depend on the difference.
 #[derive(Debug)]
 pub struct Path {
-    /// Of which sizes, and beside what.
+    /// Sizes of the nodes, and the members simulated with them.
     sizes: Vec<f64>,
     beside: Option<Placed>,
     nodes: Vec<Vec<f64>>,
-    /// Squared lengths of the nodes, and products of each with the next.
+    /// Squared lengths of the nodes, and inner products of each with the next.
     lengths: Vec<f64>,
     products: Vec<f64>,
 }
 
-/// How far from a size, as a share of it, nodes must lie that its slope is taken between.
+/// Least distance of nodes from a size, as a share of it, for the estimate of the slope.
 const APART: f64 = 0.05;
 
-/// Where on a path a difference is met best.
+/// The best fit on a path.
 #[derive(Clone, Copy, Debug)]
 struct Best {
     segment: usize,
@@ -75,7 +75,7 @@ struct Best {
     evidence: f64,
 }
 
-/// Where on a path a difference is met best, and how long the path is.
+/// The best fit on a path, and the length of the path.
 struct Closest {
     segment: usize,
     share: f64,
@@ -83,7 +83,7 @@ struct Closest {
     long: f64,
 }
 
-/// From squared lengths of the nodes, products of each with the next, and products of each with the difference.
+/// From squared lengths of the nodes, inner products of each with the next, and inner products of each with the difference.
 fn closest(lengths: &[f64], products: &[f64], along: &[f64], discrete: bool) -> Option<Closest> {
     let mut best: Option<Closest> = None;
     let mut long = 0.0;
@@ -109,7 +109,7 @@ fn closest(lengths: &[f64], products: &[f64], along: &[f64], discrete: bool) -> 
     best.map(|best| Closest { long, ..best })
 }
 
-/// A path section by section: what a fit to a choice of sections needs.
+/// A path by section, for fits to a selection of sections.
 #[derive(Debug)]
 pub struct BySection {
     lengths: Vec<Vec<f64>>,
@@ -120,13 +120,13 @@ pub struct BySection {
 }
 
 impl BySection {
-    /// Fall of chi-squared and size where each section counts so many times; nothing where no section that counts is changed.
+    /// Fall of chi-squared and size with a weight per section; nothing where no section with a weight is changed.
     #[must_use]
     pub fn fit(&self, times: &[f64]) -> Option<(f64, f64)> {
         self.fit_among(times, 0..self.sizes.len())
     }
 
-    /// As [`Self::fit`], among sizes to the same side of what changes nothing as `size`.
+    /// As [`Self::fit`], among sizes on the same side of neutral as `size`.
     #[must_use]
     pub fn fit_beside(&self, times: &[f64], size: f64) -> Option<(f64, f64)> {
         let nothing = self.lengths.iter().position(|sections| sections.iter().all(|length| *length == 0.0));
@@ -160,7 +160,7 @@ impl Path {
         Self { sizes: of.nodes.iter().map(|node| node.size).collect(), beside: of.beside.clone(), nodes, lengths, products }
     }
 
-    /// Whether a candidate has not changed since.
+    /// Whether a candidate is unchanged.
     fn is_of(&self, candidate: &Candidate) -> bool {
         let beside = match (&self.beside, &candidate.beside) {
             (Some(a), Some(b)) => a.same_place(b),
@@ -169,8 +169,8 @@ impl Path {
         beside && candidate.nodes.iter().map(|node| node.size).eq(self.sizes.iter().copied())
     }
 
-    /// Length of the change per unit of the size, between nodes that are some way to either side of it: between two that nearly are one,
-    /// what features scatter by would pass for a change. 0 where one of the two has no finite size.
+    /// Length of the change per unit of the size, between nodes at some distance on either side. Between two close nodes, scatter of the
+    /// features would dominate. 0 where one of the two sizes is infinite.
     fn slope(&self, of: &Candidate, segment: usize, size: f64) -> f64 {
         let near = |at: &usize| (of.nodes[*at].size - size).abs() < APART * size.abs();
         let from = (1..=segment).rev().find(|at| !near(at)).unwrap_or(0);
@@ -187,13 +187,13 @@ impl Path {
 }
 
 impl<'a> Fitter<'a> {
-    /// Whitens the nodes of all candidates under all masks that they may have.
+    /// Whitens the nodes of all candidates under all their masks.
     #[must_use]
     pub fn new(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>) -> Self {
         Self::knowing(whitener, candidates, masks, Known::new())
     }
 
-    /// As [`Self::new`], with what an earlier one whitened: candidates may have more nodes by now, and there may be more masks.
+    /// As [`Self::new`], reusing the results of an earlier fitter. Candidates may have more nodes since, and there may be more masks.
     #[must_use]
     pub fn knowing(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>, known: Known) -> Self {
         let every = (0..candidates.len()).flat_map(|at| (0..masks.len()).map(move |mask| (at, mask)));
@@ -235,7 +235,7 @@ impl<'a> Fitter<'a> {
         self.candidates[candidate].nodes.iter().map(|node| all(&node.change)).collect()
     }
 
-    /// Where a candidate under a mask meets the whitened difference `z` best.
+    /// The best fit of a candidate under a mask to the whitened difference `z`.
     fn meet(&self, z: &[f64], candidate: usize, mask: usize) -> Option<Best> {
         let path = self.whitened.get(&(candidate, mask))?;
         let of = &self.candidates[candidate];
@@ -245,7 +245,7 @@ impl<'a> Fitter<'a> {
         Some(Best { segment, share, fall, evidence: fall - freedom - self.price(mask) })
     }
 
-    /// A candidate under a mask and the whitened difference `z`, section by section.
+    /// A candidate under a mask and the whitened difference `z`, by section.
     #[must_use]
     pub fn by_section(&self, z: &[f64], candidate: usize, mask: usize) -> Option<BySection> {
         let path = self.whitened.get(&(candidate, mask))?;
@@ -265,7 +265,7 @@ impl<'a> Fitter<'a> {
         })
     }
 
-    /// What the choice of a mask costs.
+    /// Penalty of the choice of a mask.
     fn price(&self, mask: usize) -> f64 {
         let fixed = self.masks.iter().filter(|mask| mask.asked_by.is_none()).count();
         match self.masks[mask].asked_by {
@@ -275,7 +275,7 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// The most evidence that any candidate has for `z`, everywhere.
+    /// The largest evidence of any candidate for `z`, in all sections.
     #[must_use]
     pub fn most(&self, z: &[f64]) -> f64 {
         (0..self.candidates.len()).filter_map(|at| self.meet(z, at, 0)).map(|best| best.evidence).fold(0.0, f64::max)
@@ -318,15 +318,15 @@ impl<'a> Fitter<'a> {
         Some(self.fitted(candidate, mask, best))
     }
 
-    /// The sections in which an effect seems to be, where it is in some and not in others: those that ask for more than half of what
-    /// the strongest ask for.
+    /// The sections in which an effect seems to be present, where it is not present in all: those whose fitted size is more than half of
+    /// the largest ones.
     #[must_use]
     pub fn seems_in(&self, z: &[f64], fit: &Fitted) -> Option<Vec<bool>> {
         let sections = self.masks[0].sections.len();
         let size = z.len() / sections.max(1);
         let whole = self.fit(z, fit.candidate, 0)?;
         let part = |values: &[f64], at: usize| values[at * size..(at + 1) * size].to_vec();
-        // How much of the fitted change each section asks for, and how sure it is of that.
+        // The share of the fitted change in each section, and its standard error.
         let asked: Vec<Option<(f64, f64)>> = (0..sections)
             .map(|at| {
                 let (change, rest) = (part(&whole.whitened, at), part(z, at));
@@ -340,8 +340,8 @@ impl<'a> Fitter<'a> {
         let typical = if strong > 0.0 { weight / strong } else { 0.0 };
         let inside: Vec<bool> = asked.iter().map(|asked| asked.is_some_and(|(share, _)| share > 0.5 * typical)).collect();
         let some = inside.iter().filter(|inside| **inside).count();
-        // Without a few that fit worst, anything fits better: that is no confinement.
-        // And what is in one or two sections may be anything.
+        // Excluding the few sections that fit worst always improves the fit: that is no confinement. One or two sections are not
+        // significant.
         (some > 2 && 4 * some <= 3 * asked.iter().flatten().count()).then_some(inside)
     }
 }
@@ -351,8 +351,8 @@ fn allowed(candidates: &[Candidate], masks: &[Mask], candidate: usize, mask: usi
 }
 
 impl Mask {
-    /// Sections that the data chose are those that ask for most: by how many standard deviations the mean of so many of them is off
-    /// where each differs by chance alone. 0 where nothing was chosen.
+    /// Bias of sections selected from the data by their size: the expected mean of that many largest values of a standard normal sample, in
+    /// standard deviations. 0 where nothing was selected.
     #[must_use]
     pub fn picked(&self) -> f64 {
         use statrs::distribution::{Continuous, ContinuousCDF, Normal};
@@ -366,7 +366,7 @@ impl Mask {
         normal.pdf(normal.inverse_cdf(1.0 - share)) / share
     }
 
-    /// A change where the mask is, nothing elsewhere.
+    /// A change in the sections of the mask, zero elsewhere.
     #[must_use]
     pub fn on(&self, change: &[f64]) -> Vec<f64> {
         let mut masked = change.to_vec();
@@ -381,18 +381,18 @@ impl Mask {
 }
 
 impl Fitted {
-    /// Raw change of the features per unit of the size, where it is.
+    /// Derivative of the features with respect to the size, at the fitted size.
     #[must_use]
     pub fn tangent(&self, candidates: &[Candidate], masks: &[Mask]) -> Vec<f64> {
         let [from, to] = [self.segment, self.segment + 1].map(|node| &candidates[self.candidate].nodes[node]);
-        // What `between` grows by with the share.
+        // Derivative of `between` with respect to the share.
         let width = if to.size.is_infinite() { from.size / (1.0 - self.share).powi(2) } else { to.size - from.size };
         let get = |node: &Vec<f64>, i: usize| node.get(i).copied().unwrap_or(0.0);
         let raw = |i: usize| (get(&to.change, i) - get(&from.change, i)) / width;
         masks[self.mask].on(&(0..from.change.len().max(to.change.len())).map(raw).collect::<Vec<f64>>())
     }
 
-    /// Raw change of the features.
+    /// Change of the features, not whitened.
     #[must_use]
     pub fn change(&self, candidates: &[Candidate], masks: &[Mask]) -> Vec<f64> {
         let of = &candidates[self.candidate];
@@ -404,7 +404,8 @@ impl Fitted {
     }
 }
 
-/// Between two sizes; one of them may be infinite, where the effect vanishes with growing size: then by the reciprocal.
+/// Interpolates between two sizes. One may be infinite, where the effect vanishes with increasing size: then the reciprocal is
+/// interpolated.
 fn between(from: f64, to: f64, share: f64) -> f64 {
     if to.is_infinite() {
         return if share < 1.0 { from / (1.0 - share) } else { f64::INFINITY };
@@ -417,7 +418,7 @@ mod tests {
     use super::*;
     use crate::diagnose::search::candidates::Node;
 
-    /// Three nodes on a line of slope 2 and one that is a little off beside the middle: the slope is that of the line.
+    /// Three nodes on a line of slope 2, and one close to the middle node that is off the line: the slope is that of the line.
     #[test]
     fn nodes_side_by_side_make_no_slope() {
         let nodes = [(0.0, 0.0), (1.0, 2.0), (1.001, 2.5), (2.0, 4.0)];

@@ -1,4 +1,4 @@
-//! What the simulation is without effects, and by what it may differ: what candidates and places are made with.
+//! The simulation without effects and the allowed difference: the common input of candidates and weighings.
 
 use std::sync::Mutex;
 
@@ -15,27 +15,27 @@ use crate::diagnose::observe::bench::{Bench, Runs};
 use crate::diagnose::observe::observations::Observations;
 use crate::problem::Problems;
 
-/// The simulation without effects, and by what it may differ.
+/// The simulation without effects, and its allowed difference.
 #[derive(Debug, Default)]
 pub struct Ground {
-    /// Features of the simulator without any effect.
+    /// Features of the simulator without effects.
     pub base: Vec<f64>,
     /// Features of the campaign's simulation.
     pub simulated: Vec<f64>,
-    /// The same simulation as it would have been recorded.
+    /// The campaign's simulation as it would have been recorded.
     pub recorded: Recorded,
-    /// What the tolerances change.
+    /// Sensitivities to the tolerances.
     pub columns: Vec<Option<Sensitivity>>,
-    /// What is known of the discrepancies.
+    /// Estimate of the standing discrepancies.
     pub standing: Standing,
-    /// Measured - simulated, with what is expected of the tolerances.
+    /// Measured - simulated, without the expected deviation of the tolerances.
     pub whole: Vec<f64>,
 }
 
 impl Ground {
     /// Simulates without effects, and with each tolerance.
     ///
-    /// Problems: of reading references; a section that cannot be simulated.
+    /// Problems: references that cannot be read; a section that cannot be simulated.
     pub fn find(inputs: &Inputs<'_>, seen: &Observations, admitted: &Declared, runs: &mut Runs, problems: &mut Problems) -> Option<Self> {
         let settings = inputs.settings;
         let declared = |name: &str| admitted.get(name);
@@ -54,7 +54,7 @@ impl Ground {
                 return None;
             }
         };
-        (inputs.trying)("what the tolerances change");
+        (inputs.trying)("sensitivities to the tolerances");
         let columns = match &bench {
             Some(bench) => sensitivities(bench, settings, &base, &value, &declared, &|_| true, runs),
             None => Vec::new(),
@@ -63,7 +63,7 @@ impl Ground {
         Some(Self { base, simulated, recorded, columns, standing, whole })
     }
 
-    /// The place beside no effect, and the covariance of noise and tolerances alone.
+    /// The weighing without effects, and the covariance of noise and tolerances alone.
     #[must_use]
     pub fn alone(&self, inputs: &Inputs<'_>, seen: &Observations, admitted: &Declared) -> (Place, Covariance) {
         let columns: Vec<Sensitivity> = self.columns.iter().flatten().cloned().collect();
@@ -74,7 +74,7 @@ impl Ground {
         (Place::new(with(Some(&self.standing)), difference), with(None))
     }
 
-    /// Works with candidates and places on this ground, of which some are known.
+    /// Runs `R` with candidates and weighings on this basis.
     pub fn work<R>(
         &self,
         inputs: &Inputs<'_>,

@@ -1,4 +1,4 @@
-//! Guards: views that share no feature must agree on the size of an effect, and no single section may carry it.
+//! Guards: views without common features must agree on the size of an effect, and no single section may carry its evidence.
 
 use super::candidates::Candidate;
 use super::choose::Judged;
@@ -8,7 +8,7 @@ use crate::diagnose::observe::features::Kind;
 use crate::diagnose::observe::observations::Observations;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Features of some sections: a part of the data that is looked at on its own.
+/// A part of the data that is fitted separately: some features of some sections.
 #[derive(Clone, Debug)]
 pub struct View {
     pub says: String,
@@ -17,7 +17,7 @@ pub struct View {
 }
 
 impl Covariance {
-    /// The covariance of some features of some sections; a section that is named twice is there twice, as if another like it were.
+    /// The covariance of some features of some sections. A section listed twice counts as two independent sections.
     #[must_use]
     pub fn part(&self, sections: &[usize], features: &[usize]) -> Self {
         let pick = |column: &[f64], section: usize| {
@@ -39,13 +39,13 @@ impl Covariance {
     }
 }
 
-/// The part of a column that a view sees.
+/// The part of a column in a view.
 #[must_use]
 pub fn part(column: &[f64], size: usize, view: &View) -> Vec<f64> {
     view.sections.iter().flat_map(|section| view.features.iter().map(move |feature| column[section * size + feature])).collect()
 }
 
-/// What a view says about an effect: how much of it is there (1: all), and the standard error of that.
+/// The share of an effect that a view shows (1: all), and its standard error.
 #[must_use]
 pub fn share_seen(covariance: &Covariance, view: &View, change: &[f64], rest: &[f64]) -> Option<(f64, f64)> {
     let direction = part(change, covariance.size, view);
@@ -57,7 +57,7 @@ pub fn share_seen(covariance: &Covariance, view: &View, change: &[f64], rest: &[
     (length > 0.0).then(|| (along / length, 1.0 / length.sqrt()))
 }
 
-/// Views by kind of feature, by stratum, and by group of channels; the views of a family share no feature.
+/// Views by kind of feature, by stratum, by group of channels and by halves; the views of a family have no common feature.
 #[must_use]
 pub fn families(seen: &Observations, strata: &[Vec<usize>]) -> Vec<Vec<View>> {
     let all: Vec<usize> = seen.first_runs();
@@ -84,21 +84,21 @@ pub fn families(seen: &Observations, strata: &[Vec<usize>]) -> Vec<Vec<View>> {
     let (even, odd): (Vec<usize>, Vec<usize>) = all.iter().partition(|at| *at % 2 == 0);
     let halves = vec![view("every second section", &even, every.clone()), view("the other sections", &odd, every.clone())];
     let mut families = vec![kinds, strata.collect(), groups.collect(), halves];
-    // A catalogue may have levels alone, a campaign one section.
+    // A catalogue may have levels only, and a campaign one section.
     families.iter_mut().for_each(|family| family.retain(|view| !view.sections.is_empty() && !view.features.is_empty()));
     families
 }
 
-/// Share of the evidence that must be left whichever section is taken away, unless so much is left that it would do by itself.
+/// Least share of the evidence without any one section, unless the remaining evidence is sufficient by itself.
 const KEPT: f64 = 0.5;
 const ENOUGH: f64 = 60.0;
-/// Where an effect shows most in one section, the others may have less, if it is this share of what they should have, and very strong
-/// by itself (Kass and Raftery 1995).
+/// Where one section shows most of an effect, the others need this share of their expected evidence, and very strong evidence (Kass and
+/// Raftery 1995).
 const EXPECTED: f64 = 0.5;
 const VERY_STRONG: f64 = 10.0;
 
-/// The section without which most of the evidence for a change is gone, and the share of it that is left, if one section carries it;
-/// one of few sections always does.
+/// The section without which the evidence of a change falls most, and the share that remains, if that section carries the evidence. With
+/// few sections, one always does.
 #[must_use]
 pub fn carried(covariance: &Covariance, mask: &Mask, change: &[f64], rest: &[f64]) -> Option<(usize, f64)> {
     let inside: Vec<usize> = (0..mask.sections.len()).filter(|at| mask.sections[*at]).collect();
@@ -117,16 +117,16 @@ pub fn carried(covariance: &Covariance, mask: &Mask, change: &[f64], rest: &[f64
     (left(at) < VERY_STRONG.max(EXPECTED * expected)).then(|| (at, left(at) / all))
 }
 
-/// What a view says of a candidate.
+/// A candidate fitted in a view.
 #[derive(Debug)]
 pub struct InView {
     pub fitted: Fitted,
     pub whitener: Whitener,
-    /// What the view sees of the difference, whitened.
+    /// The whitened difference of the view.
     pub z: Vec<f64>,
 }
 
-/// A candidate under a mask fitted to what a view sees of a difference; nothing where it changes nothing.
+/// Fits a candidate under a mask to a view of a difference; nothing where it changes nothing there.
 #[must_use]
 pub fn in_view(covariance: &Covariance, view: &View, (candidate, mask): (&Candidate, &Mask), rest: &[f64]) -> Option<InView> {
     let whitener = covariance.part(&view.sections, &view.features).whitener();
@@ -141,9 +141,9 @@ pub fn in_view(covariance: &Covariance, view: &View, (candidate, mask): (&Candid
     Some(InView { fitted, whitener, z })
 }
 
-/// The size that a view asks for, in shares of the size that all together ask for, and its standard error. Along the path of the
-/// candidate, since the change need not be linear in the size: the error is that of the slope where the view's size is, or, if that is
-/// larger, what the fall of chi-squared from the size of all to the view's own says (a likelihood ratio).
+/// The size in a view as a share of the size of the joint fit, and its standard error. The fit follows the path of the candidate, since
+/// the change need not be linear in the size. The error is that of the slope at the view's size or, if larger, that of the likelihood
+/// ratio between the joint size and the view's size.
 fn size_seen(covariance: &Covariance, view: &View, candidate: &Candidate, mask: &Mask, fit: &Fitted, rest: &[f64]) -> Option<(f64, f64)> {
     let neutral = candidate.neutral().unwrap_or(0.0);
     let change = fit.change(std::slice::from_ref(candidate), std::slice::from_ref(mask));
@@ -155,13 +155,13 @@ fn size_seen(covariance: &Covariance, view: &View, candidate: &Candidate, mask: 
     let (share, slope) = ((fitted.size - neutral) / full, (fitted.slope * full).abs());
     let whole = whitener.apply(&part(&change, covariance.size, view));
     let ratio = fitted.fall - (2.0 * dot(&z, &whole) - dot(&whole, &whole));
-    // What an operation on the signals changes follows its size closely; only of a simulated path the slope may mislead.
+    // For an operation on the signals the slope is reliable. For a simulated path it may not be.
     let by_ratio = if ratio > 0.0 && !candidate.exact { (share - 1.0).abs() / ratio.sqrt() } else { 0.0 };
     (slope > 0.0).then(|| (share, by_ratio.max(1.0 / slope)))
 }
 
-/// How views of a family contradict each other: the two that differ most, if they differ by more than chance (Cochran's Q). The fit is
-/// of the candidate under the mask.
+/// Contradiction between the views of a family: the two that differ most, if they differ significantly (Cochran's Q). `fit` is the joint
+/// fit of the candidate under the mask.
 #[must_use]
 pub fn contradiction(
     covariance: &Covariance,
@@ -171,7 +171,7 @@ pub fn contradiction(
 ) -> Judged {
     use rayon::prelude::*;
     let only = Fitted { candidate: 0, mask: 0, ..fit.clone() };
-    // What the model has wrong in an effect spills over from where it shows to where it hardly does; an operation has nothing wrong.
+    // The model error of a simulated effect extends from views that show it to views that hardly show it; an operation has none.
     let whole = if candidate.exact { 0.0 } else { dot(&fit.whitened, &fit.whitened).sqrt() };
     let error_with_model = |error: f64| error.hypot((SPILL * whole * error).clamp(MODEL, SPILT));
     let each = |view: &View| size_seen(covariance, view, candidate, mask, &only, rest);
@@ -191,7 +191,7 @@ pub fn contradiction(
     if q < law.inverse_cdf(0.99) || high.1 - low.1 < 0.6 {
         return Judged::Sound;
     }
-    // A view that could as well ask for what the others do contradicts nothing.
+    // A view that is compatible with the joint size does not contradict.
     let below = (mean - low.1) / error_with_model(low.2);
     if low.1 >= SOME || below < SURE {
         return Judged::Doubtful;
@@ -199,11 +199,11 @@ pub fn contradiction(
     Judged::Contradicted(format!("{} require {:.0} % of it, {} {:.0} %", high.0.says, 100.0 * high.1, low.0.says, 100.0 * low.1))
 }
 
-/// A view that asks for less than this share of an effect contradicts it, if it is by so many standard errors below what all ask for.
+/// A view contradicts an effect if its share of the size is below this, by this many standard errors below the joint size.
 const SOME: f64 = 0.45;
 const SURE: f64 = 3.0;
-/// The model is wrong by this part of any size; and, in what a view sees, by this part of the whole effect, but by no more than that
-/// part of what the view should see.
+/// Model error as a share of the size in any view; in addition, as a share of the whole effect, limited to a share of the expected
+/// change in the view.
 const MODEL: f64 = 0.15;
 const SPILL: f64 = 0.1;
 const SPILT: f64 = 0.3;
@@ -213,7 +213,7 @@ mod tests {
     use super::*;
     use crate::diagnose::search::candidates::Node;
 
-    /// Sixteen sections of one feature of unit variance: the effect changes it by 10 in the first and by 1 in each of the others, so that
+    /// Sixteen sections of one feature of unit variance. The effect changes it by 10 in the first and by 1 in each of the others, so that
     /// 15 of 115 are expected without the first.
     #[test]
     fn a_section_may_show_most_where_the_others_show_their_part() {
@@ -222,20 +222,21 @@ mod tests {
         let of = |first: f64, others: f64| [vec![first], vec![others; 15]].concat();
         let carried = |others: f64| carried(&covariance, &mask, &of(10.0, 1.0), &of(10.0, others));
         assert_eq!(carried(1.0), None);
-        // (15 * 0.8)^2 / 15 = 9.6 is not very strong; nothing at all is none of what is expected.
+        // (15 * 0.8)^2 / 15 = 9.6 is not very strong.
         let (section, share) = carried(0.8).expect("the first carries it");
         assert!(section == 0 && (share - 9.6 / (112.0 * 112.0 / 115.0)).abs() < 1e-12, "{share}");
         assert_eq!(carried(0.0), Some((0, 0.0)));
-        // Sections that are all alike carry it together.
+        // Equal sections carry it together.
         assert_eq!(super::carried(&covariance, &mask, &of(1.0, 1.0), &of(3.0, 3.0)), None);
     }
 
-    /// Two features in each of 40 sections, each a view of its own and of unit variance: one changes by 2 per section and shows all of
-    /// the effect, the other changes by 1.2 and shows nothing of it.
+    /// Two features in each of 40 sections, each a view and of unit variance: one changes by 2 per section and shows the full effect, the
+    /// other changes by 1.2 and shows none of it.
     ///
-    /// By hand: lengths 12.65 and 7.59, standard errors 0.079 and 0.132, weights 160 and 57.6, so that all ask for 0.735. An
-    /// operation on the signals is wrong by 0.15 at the most: 0.735 / 0.2 = 3.7 standard errors. Of a simulated change a tenth of the
-    /// whole, 0.1 * 14.75 * 0.132 = 0.194: 0.735 / 0.235 = 3.1; with 3 and 1.2 it is 0.862 / 0.300 = 2.9, which is not sure.
+    /// By hand: lengths 12.65 and 7.59, standard errors 0.079 and 0.132, weights 160 and 57.6, so that the joint size is 0.735. An
+    /// operation on the signals has an error of at most 0.15 + 0.05: 0.735 / 0.2 = 3.7 standard errors. A simulated change has in
+    /// addition a tenth of the whole, 0.1 * 14.75 * 0.132 = 0.194: 0.735 / 0.235 = 3.1; with 3 and 1.2 it is 0.862 / 0.300 = 2.9, which
+    /// is not significant.
     #[test]
     fn a_simulated_change_may_spill_over() {
         const SECTIONS: usize = 40;

@@ -1,4 +1,4 @@
-//! What a set of causes leaves beyond what is allowed for.
+//! Lack of fit: the residual of a set of causes beyond the allowed difference.
 
 use super::candidates::Candidate;
 use super::choose::{Chosen, Refused, refit};
@@ -9,21 +9,20 @@ use crate::diagnose::allowed::whiten::{Covariance, less};
 use crate::diagnose::observe::features::Kind;
 use crate::diagnose::observe::observations::Observations;
 
-/// Lack of fit, in standard deviations of chi-squared of a channel, beyond which something is not explained.
+/// Lack of fit of a channel from which the residual is significant, in standard deviations of chi-squared.
 pub const LACK: f64 = 5.0;
 
-/// With a member the excess of the channels may be this share of what it was without it, at the most: some effects show elsewhere.
+/// Largest ratio of the excess of the channels with a member to that without it: some effects increase other channels.
 const WORSE: f64 = 1.1;
-/// And this much more of chi-squared, which is nothing beside some thousand features.
+/// Increase of the excess that is negligible against some thousand features.
 const LITTLE: f64 = 10.0;
 
-/// Of the change that an effect makes, what the model that makes it is wrong by, feature by feature.
+/// Model error of a simulated change, as a share of the change, independent between features.
 const WRONG: f64 = 0.2;
-/// Of that of the levels as one.
+/// Model error of the levels, as a share of the change, fully correlated.
 const WRONG_LEVEL: f64 = 0.05;
 
-/// The covariance beside an answer, with room for what is wrong in the changes of its members: an operation on the signals has nothing
-/// wrong.
+/// The covariance with an answer, plus the model error of the simulated members, independent between features.
 #[must_use]
 pub fn with_room(beside: &Covariance, candidates: &[Candidate], masks: &[Mask], chosen: &Chosen) -> Covariance {
     let mut wider = beside.clone();
@@ -34,9 +33,8 @@ pub fn with_room(beside: &Covariance, candidates: &[Candidate], masks: &[Mask], 
     wider
 }
 
-/// What a model has wrong of the changes of the members, as one: little of the levels, which follow from equilibrium, more of all else.
-/// It leaves a size as it is that only the one or the other says, and makes its interval wider. `levels` says which features of a section
-/// are levels.
+/// Fully correlated model errors of the members: small for levels, which follow from equilibrium, larger for all other features. They
+/// widen the interval of a size. `levels` marks the features of a section that are levels.
 #[must_use]
 pub fn wrong_as_one(levels: &[bool], candidates: &[Candidate], masks: &[Mask], members: &[Fitted]) -> Vec<Vec<f64>> {
     let mut columns = Vec::new();
@@ -50,25 +48,25 @@ pub fn wrong_as_one(levels: &[bool], candidates: &[Candidate], masks: &[Mask], m
     columns
 }
 
-/// How far a channel goes beyond what is allowed for, in its levels or in all else.
+/// Lack of fit of a channel, in its levels or in all other features.
 #[derive(Clone, Debug)]
 pub struct Lack {
     pub channel: String,
     pub kind: Kind,
-    /// Standard deviations of chi-squared.
+    /// Standardised: standard deviations of chi-squared.
     pub sigma: f64,
-    /// Chi-squared less what is expected of it.
+    /// Chi-squared less its expectation.
     pub excess: f64,
-    /// Sections that stand out alone and do not count in this.
+    /// Outlying sections, which are excluded.
     pub alone: Vec<usize>,
-    /// Standard deviations with them.
+    /// Standard deviations with the outlying sections included.
     pub sigma_with_them: f64,
 }
 
-/// One section in so many may stand out alone: a wheelset that reaches the flange, or hunts, on one side of the comparison only.
+/// One section in this many may be an outlier, such as a wheelset that reaches the flange on one side of the comparison only.
 const ONE_IN: usize = 8;
 
-/// What is left beyond what is allowed for, channel by channel, levels and all else apart.
+/// Lack of fit by channel, separately for levels and all other features.
 #[must_use]
 pub fn lack_of_fit(covariance: &Covariance, seen: &Observations, rest: &[f64]) -> Vec<Lack> {
     use rayon::prelude::*;
@@ -96,8 +94,8 @@ pub fn lack_of_fit(covariance: &Covariance, seen: &Observations, rest: &[f64]) -
     views.into_par_iter().map(each).collect()
 }
 
-/// Chi-squared of a view with and without the sections that stand out alone, and these: each by more than [`LACK`] standard deviations
-/// of its own chi-squared given the others. They are taken out of the view.
+/// Chi-squared of a view with and without outlying sections, and these. A section is outlying if its conditional chi-squared given the
+/// others exceeds [`LACK`] standard deviations. The sections are removed from the view.
 fn without_those_alone(covariance: &Covariance, view: &mut View, rest: &[f64]) -> (f64, f64, Vec<usize>) {
     let own = view.features.len() as f64;
     let most = view.sections.len() / ONE_IN;
@@ -115,13 +113,13 @@ fn without_those_alone(covariance: &Covariance, view: &mut View, rest: &[f64]) -
     }
 }
 
-/// What is beyond what is allowed for, over all channels.
+/// Excess of chi-squared over all channels.
 pub fn excess(lack: &[Lack]) -> f64 {
     lack.iter().map(|lack| lack.excess.max(0.0)).sum()
 }
 
-/// What is left of the excess, and whether that is too much to call the gap explained: more than half of it, in more than one kind of
-/// one channel or far beyond. One among some forty may be a little beyond without anything being missing.
+/// The share of the excess that remains, and whether the gap is unexplained: more than half remains, in more than one kind of feature or
+/// channel or far beyond the threshold. One of some forty may exceed the threshold by a little.
 #[must_use]
 pub fn unexplained(before: &[Lack], after: &[Lack]) -> (f64, bool) {
     let (gap, rest) = (excess(before), excess(after));
@@ -130,7 +128,7 @@ pub fn unexplained(before: &[Lack], after: &[Lack]) -> (f64, bool) {
     (share, share > 0.5 && (beyond.len() > 1 || beyond.iter().any(|sigma| *sigma > 3.0 * LACK)))
 }
 
-/// A member that makes channels go further beyond what is allowed for is no cause. Gives what is left.
+/// Drops members that increase the lack of fit, and gives the remaining lack of fit.
 pub fn drop_what_harms(
     fitter: &Fitter<'_>,
     (place, seen): (&Place, &Observations),
@@ -156,13 +154,13 @@ pub fn drop_what_harms(
     }
 }
 
-/// What the members leave of the difference, in the features' own units.
+/// The residual of the members, not whitened.
 #[must_use]
 pub fn left(candidates: &[Candidate], masks: &[Mask], difference: &[f64], chosen: &Chosen) -> Vec<f64> {
     chosen.members.iter().fold(difference.to_vec(), |rest, member| less(&rest, &member.change(candidates, masks)))
 }
 
-/// Where what the members leave is more than is allowed for.
+/// Lack of fit of the residual.
 #[must_use]
 pub fn lack_after(
     covariance: &Covariance,
@@ -180,7 +178,7 @@ mod tests {
     use super::*;
     use crate::diagnose::search::candidates::Node;
 
-    /// Sixteen sections of nine features of unit variance: one that is off by 10 in each of them has a chi-squared of 900.
+    /// Sixteen sections of nine features of unit variance; a difference of 10 in each feature gives a chi-squared of 900.
     #[test]
     fn two_of_sixteen_sections_may_stand_out_alone() {
         let covariance = Covariance { diagonal: vec![1.0; 16 * 9], inside: Vec::new(), shared: Vec::new(), size: 9 };
@@ -195,9 +193,9 @@ mod tests {
         assert_eq!((with_them, chi, alone.len()), (2700.0, 900.0, 2));
     }
 
-    /// Levels ask for a size of 1, all else for one of 0.5, both without noise: 0.05 and 0.2 of either are wrong, so that the size is
-    /// (1 / 0.05^2 + 0.5 / 0.2^2) / (1 / 0.05^2 + 1 / 0.2^2) = 0.9706, with an error of 1 / (1 / 0.05^2 + 1 / 0.2^2)^1/2 of it. An operation
-    /// on the signals has nothing wrong: there it is the mean.
+    /// Levels give a size of 1, all other features 0.5, both without noise. The model errors are 0.05 and 0.2, so that the joint size is
+    /// (1 / 0.05^2 + 0.5 / 0.2^2) / (1 / 0.05^2 + 1 / 0.2^2) = 0.9706, with the relative error 1 / (1 / 0.05^2 + 1 / 0.2^2)^1/2. An
+    /// operation on the signals has no model error: there it is the mean.
     #[test]
     fn levels_say_more_of_a_size_than_all_else() {
         const SECTIONS: usize = 3;
@@ -225,7 +223,7 @@ mod tests {
         assert!((of(true).0 - 0.75).abs() < 1e-9);
     }
 
-    /// A change of 10 that is simulated may be wrong by 2, one by an operation on the signals by nothing.
+    /// A simulated change of 10 has a model error of 2; an operation on the signals has none.
     #[test]
     fn only_what_is_simulated_may_be_wrong() {
         let covariance = Covariance { diagonal: vec![1.0; 2], inside: Vec::new(), shared: Vec::new(), size: 1 };

@@ -1,4 +1,4 @@
-//! Sections that an effect may be confined to.
+//! Sections to which an effect may be confined.
 
 use super::choose::Chosen;
 use super::converge::{NEAR, WORTH};
@@ -6,7 +6,7 @@ use super::fit::{Fitted, Fitter, Mask};
 use crate::diagnose::observe::observations::Observations;
 use crate::diagnose::settings::Settings;
 
-/// Lists of sections that strong candidates seem to be confined to, and that are not among the masks yet.
+/// Lists of sections to which strong candidates seem to be confined and that are not masks yet.
 pub fn section_masks(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, seen: &Observations) -> Vec<Mask> {
     let mut more: Vec<Mask> = Vec::new();
     for rest in [z, &chosen.rest] {
@@ -18,7 +18,7 @@ pub fn section_masks(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, seen: &Obs
             let asked_by = Some(fit.candidate);
             let known = |mask: &Mask| mask.sections == sections && (mask.asked_by.is_none() || mask.asked_by == asked_by);
             let asked = fitter.masks.iter().chain(&more).filter(|mask| mask.asked_by == asked_by).count();
-            // What a candidate asks for settles after one or two rounds; it need not be followed further.
+            // The list converges after one or two rounds.
             if asked < 2 && !fitter.masks.iter().chain(&more).any(known) {
                 let names = (0..sections.len()).filter(|at| sections[*at]).map(|at| seen.sections[at].section.name().to_string());
                 more.push(Mask { confined: Some(("section".to_string(), names.collect())), sections, asked_by });
@@ -28,7 +28,7 @@ pub fn section_masks(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen, seen: &Obs
     more
 }
 
-/// The whole campaign, the values of the columns that an effect may be confined to, and pairs of neighbouring strata.
+/// All sections, the values of the columns by which an effect may be confined, and pairs of successive values.
 #[must_use]
 pub fn masks(seen: &Observations, settings: &Settings) -> Vec<Mask> {
     let all = seen.sections.len();

@@ -1,4 +1,4 @@
-//! Which effects explain the difference: candidates, fits, guards.
+//! Identification of effects: candidates, fits, guards.
 
 pub(super) mod beside;
 pub mod candidates;

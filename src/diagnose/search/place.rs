@@ -1,5 +1,5 @@
-//! The tolerances as they act beside members: a body that sways hardly damped moves with a stiffness of which it took no notice before,
-//! and short waves matter less where others are added.
+//! Weighing of differences with the tolerances simulated together with members. A vehicle with low damping is sensitive to a stiffness
+//! that has no influence otherwise, and short waves matter less where others are present.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -13,19 +13,19 @@ use crate::diagnose::observe::bench::{Bench, Runs, Set};
 use crate::diagnose::settings::Settings;
 use crate::effects::Action;
 
-/// A tolerance that moves the features by less than so many standard deviations of everything else stays as it was: branches of contact
-/// alone move them by about one.
+/// A tolerance whose change of the features is below this, in standard deviations of all else, is not simulated again: the scatter of
+/// contact solutions alone reaches about one.
 const MATTERS: f64 = 1.5;
 
-/// Sizes by which so much of themselves they differ at most have the same tolerances beside them.
+/// Relative difference of sizes up to which the simulated tolerances are reused.
 const ALIKE: f64 = 0.1;
 
-/// What a difference is weighed by, beside members or beside none.
+/// A weighing: difference and covariance with members, or without effects.
 #[derive(Debug)]
 pub struct Place {
-    /// The members that it is beside: candidate, mask and size.
+    /// The members that are simulated with it: candidate, mask and size.
     members: Vec<(usize, usize, f64)>,
-    /// Measured - simulated, without what is expected of the tolerances as they act here.
+    /// Measured - simulated, without the expected deviation of the tolerances simulated with the members.
     pub difference: Vec<f64>,
     pub covariance: Covariance,
     pub whitener: Whitener,
@@ -34,7 +34,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Beside none.
+    /// The weighing without effects.
     #[must_use]
     pub fn new(covariance: Covariance, difference: Vec<f64>) -> Self {
         let whitener = covariance.whitener();
@@ -46,37 +46,37 @@ impl Place {
         self.members.is_empty()
     }
 
-    /// Whether it is beside these, be it other sizes of them.
+    /// Whether it is for these members, of any size.
     fn is_beside(&self, members: &[Fitted]) -> bool {
         let same = |((candidate, mask, _), member): (&(usize, usize, f64), &Fitted)| (*candidate, *mask) == (member.candidate, member.mask);
         self.members.len() == members.len() && self.members.iter().zip(members).all(same)
     }
 
-    /// Whether it is beside these, of about these sizes.
+    /// Whether it is for these members, of about these sizes.
     fn is_near(&self, members: &[Fitted]) -> bool {
         let near = |((.., size), member): (&(usize, usize, f64), &Fitted)| (size - member.size).abs() <= ALIKE * size.abs();
         self.is_beside(members) && self.members.iter().zip(members).all(near)
     }
 }
 
-/// How places are found, and those that were looked at.
+/// Computation of weighings with members, and those computed so far.
 #[allow(missing_debug_implementations)]
 pub struct Tolerances<'a> {
     pub workshop: &'a Workshop<'a>,
     pub settings: &'a Settings,
-    /// What a parameter has where nothing is set.
+    /// The value of a parameter where no setting changes it.
     pub value: &'a (dyn Fn(&str) -> Option<f64> + Sync),
     pub declared: &'a (dyn Fn(&str) -> Option<f64> + Sync),
-    /// Those that were looked at.
+    /// Weighings computed so far.
     pub places: Mutex<Places>,
 }
 
-/// Places beside members, in the order in which they were looked at.
+/// Weighings with members, in order of computation.
 #[derive(Clone, Debug, Default)]
 pub struct Places(Vec<Arc<Place>>);
 
 impl Places {
-    /// The last that is beside these members, whatever their sizes.
+    /// The last one for these members, of any size.
     #[must_use]
     pub fn beside(&self, members: &[Fitted]) -> Option<Arc<Place>> {
         self.0.iter().rev().find(|place| place.is_beside(members)).cloned()
@@ -88,7 +88,7 @@ impl Places {
 }
 
 impl Tolerances<'_> {
-    /// The place beside members as they are in the simulation; nothing where none of them moves what the tolerances do, or where one fails.
+    /// The weighing with members; nothing where none of them changes the effect of the tolerances, or where a simulation fails.
     #[must_use]
     pub fn beside(&self, of: (&[Candidate], &[Mask]), members: &[Fitted], runs: &mut Runs) -> Option<Arc<Place>> {
         if let Some(known) = self.looked_at().near(members) {
@@ -102,13 +102,13 @@ impl Tolerances<'_> {
         Some(place)
     }
 
-    /// The places that were looked at.
+    /// The weighings computed so far.
     pub fn looked_at(&self) -> MutexGuard<'_, Places> {
         self.places.lock().expect("no thread stops with it")
     }
 
-    /// The covariance with the members in the simulation, and the difference without what is expected there; nothing where no member is,
-    /// or where one fails.
+    /// Simulates the tolerances with the members set: covariance, and the difference without the expected deviation. Nothing where no
+    /// member can be set, or where a simulation fails.
     fn simulated(
         &self,
         (candidates, masks): (&[Candidate], &[Mask]),
@@ -120,7 +120,7 @@ impl Tolerances<'_> {
         if added.is_empty() {
             return None;
         }
-        (self.workshop.trying)("what the tolerances change beside the effects");
+        (self.workshop.trying)("sensitivities to the tolerances, with the effects");
         let set = bench.set.iter().cloned().chain(added).collect();
         let there = Bench { set, cache: bench.cache.clone(), ..*bench };
         let base = there.features(&[]).ok()?;
@@ -128,7 +128,7 @@ impl Tolerances<'_> {
         let again = sensitivities(&there, self.settings, &base, self.value, self.declared, &|at| matters[at], runs);
         let mut columns: Vec<Sensitivity> =
             again.into_iter().zip(&self.workshop.ground.columns).filter_map(|(again, first)| again.or(first.clone())).collect();
-        // What a member gives the size of is not free any more, but for the scatter of single sections.
+        // A tolerance whose size a member of all sections gives is fixed, except for its scatter between sections.
         for member in members.iter().filter(|member| member.mask == 0) {
             let given = candidates[member.candidate].tolerance.as_ref();
             columns.iter_mut().filter(|column| Some(&column.tolerance) == given).for_each(|column| column.shared = 0.0);
@@ -143,7 +143,7 @@ impl Tolerances<'_> {
         covariance(self.workshop.seen, self.settings, &ground.simulated, columns, self.declared, Some(&ground.standing))
     }
 
-    /// Which columns matter.
+    /// Which columns are relevant.
     fn matter(&self) -> Vec<bool> {
         let others = self.of(&[]).whitener();
         let long = |column: &Sensitivity| {
@@ -153,8 +153,8 @@ impl Tolerances<'_> {
         self.workshop.ground.columns.iter().map(|column| column.as_ref().is_some_and(long)).collect()
     }
 
-    /// What a member sets in the simulator, or exchanges or turns round of its signals: another wheel's guiding force differs by other
-    /// tolerances. What else is done to signals leaves them as they are.
+    /// The settings of a member, or its exchange or inversion of signals: the guiding force of another wheel depends on other tolerances.
+    /// Other operations on the signals do not change the effect of the tolerances.
     fn set(&self, candidate: &Candidate, masks: &[Mask], member: &Fitted) -> Option<Set> {
         let effect = self.workshop.catalogue.effect(&candidate.effect)?;
         let moves = matches!(effect.action, Action::Simulator) || candidate.discrete;

@@ -1,4 +1,4 @@
-//! The answer again, with the tolerances as they act where it is: what a member seemed to explain may be one that another has made matter.
+//! Refit of the answer with the tolerances simulated together with it: part of the difference may then be due to a tolerance.
 
 use std::sync::Arc;
 
@@ -12,14 +12,14 @@ use crate::diagnose::allowed::covariance::NOTHING;
 use crate::diagnose::observe::bench::Runs;
 use crate::diagnose::observe::features::Kind;
 
-/// A lag that moves by so many of its standard deviations between half an effect and as much again has jumped.
+/// Range of a lag between half and one and a half times an effect, in standard deviations, from which the lag is excluded.
 const JUMP: f64 = 5.0;
 
-/// How often the sizes that were found are added and fitted again, and what share of a size is no difference.
+/// Maximum number of refits with the fitted sizes simulated, and the convergence criterion as a share of the size.
 pub const ROUNDS: usize = 3;
 const ALIKE: f64 = 0.01;
 
-/// A set of effects, and where it is weighed.
+/// A set of effects and its weighing.
 #[derive(Clone)]
 pub struct Weighed {
     pub place: Arc<Place>,
@@ -31,8 +31,8 @@ impl Weighed {
         Self { place, ..self }
     }
 
-    /// A size in sections that the data chose, less what the other sections ask for to the same side: they are not chosen for what all
-    /// have. The size itself where nothing was chosen.
+    /// A size in sections selected from the data, less the size of the other sections if it has the same sign: the selection is not
+    /// justified by a change common to all sections. The size itself where the sections were not selected from the data.
     fn beside_the_others(&self, of: &Candidate, mask: &Mask, size: f64) -> f64 {
         let Some(neutral) = of.neutral().filter(|_| mask.asked_by.is_some()) else { return size };
         let others = Mask { confined: None, sections: mask.sections.iter().map(|inside| !inside).collect(), asked_by: None };
@@ -43,16 +43,15 @@ impl Weighed {
     }
 }
 
-/// Where an answer is put, and how far off a size is.
+/// Inputs of the refit.
 pub struct Settled<'a> {
     pub tolerances: &'a Tolerances<'a>,
-    /// How many declared standard deviations a size is from neutral.
+    /// Distance of a size from neutral in declared standard deviations.
     pub far: &'a dyn Fn(&Candidate, f64) -> f64,
 }
 
 impl Settled<'_> {
-    /// The members as they are weighed where they put the vehicle: the place that what is left is judged at, and the weighing of their
-    /// sizes, in which what stands out in a section alone does not count.
+    /// The refitted members and two weighings: one for the residual, and one for the sizes, without outlying sections.
     pub fn answer(
         &self,
         (candidates, masks): (&mut [Candidate], &[Mask]),
@@ -67,7 +66,7 @@ impl Settled<'_> {
         };
         let before = refused.len();
         let mut now = self.settle((candidates, masks), first.clone(), bars, refused, runs);
-        // A set that leaves most of the gap is no place to take anything at.
+        // With most of the gap unexplained, the tolerances are not simulated again.
         if unexplained(lack_before, &lack(candidates, &now)).1 {
             refused.truncate(before);
             now = first;
@@ -76,8 +75,8 @@ impl Settled<'_> {
         (beside, self.sized((candidates, masks), now, &left, runs))
     }
 
-    /// Weighs with the tolerances as they act beside the first member, then beside the first two, and so on: what one seemed to
-    /// explain may be a tolerance that it or another has made matter.
+    /// Weighs with the tolerances simulated together with the first member, then with the first two, and so on. A member may be replaced
+    /// by a tolerance to which it or another member makes the vehicle sensitive.
     fn settle(
         &self,
         (candidates, masks): (&mut [Candidate], &[Mask]),
@@ -127,9 +126,8 @@ impl Settled<'_> {
         now
     }
 
-    /// Fits the members again by what their sizes follow from: without what stands out in a section alone, which would pull with all that
-    /// it is off, without lags that jump to another period of a sway between sizes, and with the levels and all else of a simulated
-    /// change as wrong, each as one, as a model may be.
+    /// Refits the members with the covariance for sizes: without outlying sections, without lags that jump to another period between sizes,
+    /// and with the model error of simulated changes, fully correlated for levels and for all other features.
     fn sized(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Weighed, lack: &[Lack], runs: &mut Runs) -> Weighed {
         let (seen, settings) = (self.tolerances.workshop.seen, self.tolerances.settings);
         let mut covariance = now.place.covariance.clone();
@@ -163,7 +161,7 @@ impl Settled<'_> {
     }
 }
 
-/// Fits the members again, with the sizes that are found simulated; last comes a fit, so that no size is judged that is not the answer's.
+/// Refits the members with their fitted sizes simulated. The last step is a fit, so that the judged sizes are those of the answer.
 pub fn refined(
     workshop: &Workshop<'_>,
     (candidates, masks): (&mut [Candidate], &[Mask]),
@@ -179,7 +177,7 @@ pub fn refined(
     }
 }
 
-/// Adds the sizes that were found, where no size as near was tried; whether there was any to add.
+/// Simulates the fitted sizes where no close size exists; returns whether there was any.
 pub fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], fits: &[Fitted], runs: &mut Runs) -> bool {
     let mut added = false;
     for member in fits {
@@ -200,7 +198,7 @@ mod tests {
     use crate::diagnose::allowed::whiten::less;
     use crate::diagnose::search::candidates::Node;
 
-    /// One feature in each of eight sections, of unit variance: three that the data chose ask for 5, the others for 2, or for -2.
+    /// One feature in each of eight sections, of unit variance: three selected sections have the size 5, the others 2 or -2.
     #[test]
     fn what_all_sections_have_is_no_reason_to_choose_some() {
         let covariance = Covariance { diagonal: vec![1.0; 8], inside: Vec::new(), shared: Vec::new(), size: 1 };

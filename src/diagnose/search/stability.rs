@@ -1,6 +1,6 @@
-//! Whether an answer stands when other sections had been measured: resampling of the sections, stratum by stratum.
+//! Stability of an answer under resampling of the sections, stratum by stratum.
 //!
-//! No simulation is needed: whitened changes are known section by section.
+//! No simulation is needed, since whitened changes are known by section.
 
 use rayon::prelude::*;
 
@@ -8,26 +8,26 @@ use super::choose::{Chosen, Refused};
 use super::fit::{BySection, Fitter};
 use crate::effects::Gauss;
 
-/// Resamples (Efron and Tibshirani 1993, ch. 13: some hundred for a standard error, more for tails).
+/// Bootstrap resamples (Efron and Tibshirani 1993, ch. 13: some hundred for a standard error, more for tails).
 const DRAWS: usize = 400;
-/// Candidates with this share of a member's evidence may take its place.
+/// Candidates with at least this share of a member's evidence are compared with it.
 const NEAR: f64 = 0.3;
 
-/// A member that is first in fewer of the resamples is not told from others.
+/// Least share of the resamples in which a member must be first, that is, have the most evidence.
 const FIRST: f64 = 0.5;
-/// One that is first in so many is sure to be there, be it more or less of it.
+/// Share of the resamples from which a member counts as certain, of either sign.
 const SURE: f64 = 0.95;
 
-/// How a member fares over resamples of the sections.
+/// Results of a member over resamples of the sections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stability {
     /// Share of the resamples in which no other effect has more evidence.
     pub first: f64,
-    /// Sizes that 5 % and 95 % of the resamples stay below, each to the side of what changes nothing that has more evidence in it.
+    /// 5 % and 95 % quantiles of the size, each on the side of neutral with more evidence in that resample.
     pub sizes: (f64, f64),
-    /// The same to whichever side fits best by the weighing of sizes.
+    /// The same, on whichever side fits best by the weighing of sizes.
     pub either_side: (f64, f64),
-    /// Candidates that are first in its place in some resamples, and in which share of them.
+    /// Candidates that are first in place of the member in some resamples, and their shares.
     pub instead: Vec<(usize, f64)>,
 }
 
@@ -38,19 +38,19 @@ impl Stability {
         self.first < FIRST
     }
 
-    /// The sizes by which it is judged whether there is an effect at all: where others are first now and then, to either side.
+    /// The sizes that decide whether the effect is significant: on either side of neutral unless the member is certain.
     #[must_use]
     pub fn judged(&self) -> (f64, f64) {
         if self.first < SURE { self.either_side } else { self.sizes }
     }
 
-    /// Share of the resamples in which a candidate is first in the place of the member.
+    /// Share of the resamples in which a candidate is first in place of the member.
     #[must_use]
     pub fn instead_of(&self, candidate: usize) -> f64 {
         self.instead.iter().find(|(other, _)| *other == candidate).map_or(0.0, |(_, share)| *share)
     }
 
-    /// Whether a candidate must be told beside a member that fails: first half as often as what is first most often, or more.
+    /// Whether a candidate is reported together with a member that fails: at least half as often first as the most frequent one.
     #[must_use]
     pub fn as_well(&self, candidate: usize) -> bool {
         let share = self.instead_of(candidate);
@@ -59,10 +59,10 @@ impl Stability {
     }
 }
 
-/// A fitter, the difference whitened by it, and the members as it sees them.
+/// A fitter, the difference whitened by it, and the members fitted with it.
 pub type Weighing<'a> = (&'a Fitter<'a>, &'a [f64], &'a Chosen);
 
-/// A member of a set, the others as they are: against its rivals by one weighing, its size by another. What was refused is no rival.
+/// Resamples one member with the others fixed: against its rivals by one weighing, its size by another. Refused candidates are no rivals.
 #[must_use]
 pub fn stability(
     (fitter, z, chosen): Weighing<'_>,
@@ -88,9 +88,9 @@ pub fn stability(
     let drawn: Vec<(Option<usize>, [Option<f64>; 2])> = draws
         .par_iter()
         .map(|times| {
-            // Where none of the sections that it shows in is drawn, it explains nothing, and has no size.
+            // If none of its sections is drawn, it explains nothing and has no size.
             let (fall, side) = own.as_ref().and_then(|own| own.fit(times)).unwrap_or((0.0, member.size));
-            // More of it or less is a matter of evidence, how much of its size.
+            // The evidence decides the side of neutral, the weighing of sizes the size.
             let beside = own_size.as_ref().and_then(|own| own.fit_beside(times, side)).map(|(_, size)| size);
             let freely = own_size.as_ref().and_then(|own| own.fit(times)).map(|(_, size)| size);
             let others = rivals.iter().filter_map(|(rival, cost, candidate)| Some((rival.fit(times)?.0 - cost, *candidate)));
@@ -115,7 +115,7 @@ pub fn stability(
     Stability { first: share(None), sizes: between(0), either_side: between(1), instead }
 }
 
-/// How often each section is drawn, as many of each stratum as it has.
+/// Number of times each section is drawn, with the size of each stratum fixed.
 fn resample(strata: &[Vec<usize>], sections: usize, seed: u64) -> Vec<f64> {
     let mut random = Gauss::new(seed);
     let mut times = vec![0.0; sections];
@@ -139,7 +139,7 @@ mod tests {
         Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change }])
     }
 
-    /// One feature in each of 20 sections that an effect changes alike: its size is the mean of the differences, whose bootstrap
+    /// One feature in each of 20 sections that an effect changes equally: its size is the mean of the differences, whose bootstrap
     /// has the standard error sqrt(sum (x - mean)^2) / n (Efron and Tibshirani 1993, eq. 5.12) and is nearly normal.
     #[test]
     fn sizes_scatter_like_a_resampled_mean() {
@@ -149,7 +149,7 @@ mod tests {
         let z: Vec<f64> = (0..SECTIONS).map(|at| 5.0 + ((at * 7) % SECTIONS) as f64 * 0.1).collect();
         let mean = z.iter().sum::<f64>() / SECTIONS as f64;
         let error = z.iter().map(|x| (x - mean).powi(2)).sum::<f64>().sqrt() / SECTIONS as f64;
-        // Another effect that shows in one section alone never wins; a copy of the first is beaten by nobody either.
+        // An effect in a single section is never first; a copy of the first effect is never beaten either.
         let mut once = vec![0.0; SECTIONS];
         once[3] = 10.0;
         let candidates = [candidate("everywhere", vec![10.0; SECTIONS]), candidate("once", once)];
@@ -165,9 +165,9 @@ mod tests {
         }
     }
 
-    /// More of an effect moves two features by (1, 0.6) a unit, less of it by (0.8, -0.6). By evidence they are off by (4, 2.4): four units
-    /// more in every resample. By the weighing of sizes they are off by (4, m), m alternating: less of it fits better where the mean of m
-    /// in the resample is below -0.207, from (4 + 0.6 m)^2 / 1.36 = (3.2 - 0.6 m)^2, which is so in four of ten.
+    /// A positive size changes two features by (1, 0.6) per unit, a negative one by (0.8, -0.6). For evidence the differences are (4,
+    /// 2.4): the size is 4 in every resample. For the weighing of sizes they are (4, m) with alternating m: the negative side fits better
+    /// where the mean of m in the resample is below -0.207, from (4 + 0.6 m)^2 / 1.36 = (3.2 - 0.6 m)^2, which holds in four of ten.
     #[test]
     fn evidence_decides_whether_there_is_more_of_it_or_less() {
         const SECTIONS: usize = 20;
@@ -195,8 +195,8 @@ mod tests {
         assert_eq!(Stability { first: 0.9, ..found.clone() }.judged(), found.either_side);
     }
 
-    /// All evidence for one effect is in one section, 25 each time that it is drawn; the other has 1.75 in each of the other 19. So the
-    /// one is first where its section is drawn twice or more: 1 - 0.95^20 - 20 * 0.05 * 0.95^19 = 0.264 of the resamples (binomial).
+    /// All evidence for one effect is in one section, 25 per draw; the other effect has 1.75 in each of the other 19. The first one has
+    /// more where its section is drawn at least twice: 1 - 0.95^20 - 20 * 0.05 * 0.95^19 = 0.264 of the resamples (binomial).
     #[test]
     fn an_effect_that_one_section_carries_is_not_told_from_one_that_all_others_show() {
         const SECTIONS: usize = 20;

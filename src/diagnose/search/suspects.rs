@@ -1,6 +1,6 @@
-//! What no effect of the catalogue moves: parameters of the vehicle that the test engineer admits not to know exactly, each alone and
-//! by far more than is declared. Where one of them explains a gap much better than the answer does, the cause is outside the catalogue;
-//! where it does so by little, the data cannot tell.
+//! Causes outside the catalogue: parameters of the vehicle with a tolerance, each alone and far beyond the declared one. If one of them
+//! explains a gap much better than the answer, the cause is outside the catalogue. If it is only slightly better, the data do not
+//! discriminate.
 
 use super::candidates::{Candidate, Node, Workshop};
 use super::choose::{Chosen, refit};
@@ -11,21 +11,21 @@ use crate::diagnose::observe::bench::Runs;
 use crate::diagnose::settings::Settings;
 use crate::units::Unit;
 
-/// Factors that every suspect is simulated with, 1 being none; and those that are left for the ones that come near.
+/// Factors simulated for every parameter (1 is neutral), and further ones for the strongest.
 const COARSE: [f64; 2] = [0.45, 1.8];
 const FINE: [f64; 5] = [0.25, 0.35, 0.7, 1.3, 2.5];
-/// How many are simulated finely at most, and from which share of the evidence of the answer on.
+/// Maximum number of parameters with further factors, and their least evidence as a share of the answer's.
 const MOST: usize = 2;
 const NEAR: f64 = 0.15;
-/// How often the factor that was found is simulated itself, and what is no other factor.
+/// Maximum number of refits with the fitted factor simulated, and the convergence criterion.
 const ROUNDS: usize = 2;
 const ALIKE: f64 = 0.02;
-/// So much more evidence than the answer's, what a cause needs by itself, makes the answer one of two; so large a share of it more makes it
-/// wrong.
+/// Evidence in excess of the answer's from which the verdict is ambiguous: the threshold of a single cause. With this share of the
+/// answer's evidence in excess, the answer is rejected.
 const BETTER: f64 = 30.0;
 const BETTER_SHARE: f64 = 0.5;
 
-/// What moves the features in the same direction, by this cosine, is the same cause by another name.
+/// Cosine of two whitened changes above which they count as the same cause.
 const SAME: f64 = 0.8;
 
 /// A parameter that explains more than the answer.
@@ -34,24 +34,24 @@ pub struct Suspect {
     pub key: String,
     pub factor: f64,
     pub evidence: f64,
-    /// Of what it would take the place of.
+    /// Evidence of the member or members it is compared with.
     pub answer: f64,
-    /// Whether that is all of several members.
+    /// Whether these are several members together.
     pub of_all: bool,
 }
 
 impl Suspect {
-    /// Whether it leaves nothing of the answer, and is not only as likely.
+    /// Whether it rejects the answer, instead of being equally likely.
     #[must_use]
     pub fn beats(&self) -> bool {
-        // One cause instead of several need not be half as good again.
+        // One cause in place of several needs no additional share of the evidence.
         self.evidence > self.answer + if self.of_all { BETTER } else { BETTER.max(BETTER_SHARE * self.answer) }
     }
 }
 
-/// What a suspect may take the place of.
+/// The member or members that a parameter is compared with.
 struct Place {
-    /// What is left of the whitened difference without it, what its first member explains, and its evidence.
+    /// The whitened difference without the other members, the change of the first one, and the evidence.
     rest: Vec<f64>,
     whitened: Vec<f64>,
     answer: f64,
@@ -67,15 +67,15 @@ impl Place {
         if chosen.members.len() > 1 { vec![strongest, all] } else { vec![strongest] }
     }
 
-    /// Whether a suspect is the same cause by another name. One in the place of several is none of them.
+    /// Whether a parameter is the same cause as a member. One in place of several never is.
     fn is(&self, fit: &Fitted) -> bool {
         let length = |of: &[f64]| dot(of, of).sqrt();
         !self.of_all && dot(&fit.whitened, &self.whitened).abs() > SAME * length(&fit.whitened) * length(&self.whitened)
     }
 }
 
-/// Looks for one in the place of the strongest member, unless that is an operation on the signals of one channel alone, and in the place of
-/// all. The weighing is that without effects.
+/// Tests parameters in place of the strongest member, unless that is an operation on the signals of one channel alone, and in place of all
+/// members. The weighing is that without effects.
 #[must_use]
 pub fn suspect(
     workshop: &Workshop<'_>,
@@ -103,14 +103,14 @@ pub fn suspect(
         let (key, value) = (path.size.clone(), (workshop.neutral)(&path.size).unwrap_or(0.0));
         for factor in factors {
             runs.made += workshop.seen.sections.len();
-            // A vehicle that cannot run so is no suspect with that factor.
+            // A factor with which the vehicle cannot be simulated is skipped.
             if let Ok(made) = bench.features(&[(key.clone(), factor * value)]) {
                 path.nodes.push(Node { size: *factor, change: less(&made, &workshop.ground.base) });
             }
         }
         path.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
     };
-    (workshop.trying)("what no effect of the catalogue moves");
+    (workshop.trying)("parameters outside the catalogue");
     let mut coarse: Vec<Candidate> = keys.iter().map(|key| Candidate::of_path(key, keys.len())).collect();
     coarse.iter_mut().for_each(|path| simulate(path, &COARSE, runs));
     let mut best: Option<Suspect> = None;
@@ -132,7 +132,7 @@ pub fn suspect(
         }
         for (path, fit) in paths.into_iter().filter(|(_, fit)| !place.is(fit)) {
             let suspect = Suspect { key: path.size, factor: fit.size, evidence: fit.evidence, answer: place.answer, of_all: place.of_all };
-            // An operation on the signals that comes as near is the simpler cause; of one and several, the one.
+            // Of comparable causes the simpler one is preferred: an operation on the signals, or one cause instead of several.
             let near = match place.of_all {
                 true => suspect.evidence > suspect.answer,
                 false => !first.exact && suspect.evidence > suspect.answer + BETTER,
@@ -147,7 +147,7 @@ pub fn suspect(
 }
 
 impl Candidate {
-    /// A parameter of the simulator that no effect of the catalogue moves, by its path alone.
+    /// A simulator parameter that no effect of the catalogue changes, as a candidate.
     fn of_path(key: &str, alternatives: usize) -> Self {
         Self {
             effect: key.to_string(),

@@ -1,4 +1,4 @@
-//! What a catalogue says about diagnosing: features, tolerances, and what the simulation is allowed to be wrong in.
+//! The `diagnosis` part of a catalogue: features, tolerances, and the allowed discrepancy of the simulation.
 
 mod read;
 
@@ -6,7 +6,7 @@ use crate::simulate::Section;
 use crate::source::Span;
 use crate::units::Unit;
 
-/// Before a covariate: its reciprocal.
+/// Prefix of a covariate that stands for its reciprocal.
 pub const INVERSE: &str = "1 / ";
 
 /// The `diagnosis` part of a catalogue.
@@ -14,38 +14,38 @@ pub const INVERSE: &str = "1 / ";
 pub struct Settings {
     /// Edges of the bands in Hz.
     pub edges: Vec<f64>,
-    /// Band in Hz for gains and lags.
+    /// Band in Hz in which gains and lags are estimated.
     pub alike: (f64, f64),
-    /// The largest lag that is looked for, in the unit of the axis.
+    /// The largest lag searched, in the unit of the axis.
     pub furthest: f64,
     pub groups: Vec<GroupFeatures>,
     pub tolerances: Vec<Tolerance>,
     pub discrepancies: Vec<Discrepancy>,
-    /// Columns of the section table whose values an effect may be confined to.
+    /// Columns of the section table by which an effect may be confined.
     pub confine: Vec<String>,
-    /// Columns of the section table that what is left may follow; `1 / ` before one for its reciprocal.
+    /// Columns of the section table tested as covariates of the residual; with the prefix `1 / ` the reciprocal.
     pub covariates: Vec<String>,
-    /// The column whose sign folds left and right, and the value that is mirrored.
+    /// The column that distinguishes left and right curves, and the value of mirrored sections.
     pub mirror: Option<(String, String)>,
-    /// The column that sections are stratified by.
+    /// The column that defines the strata of the sections.
     pub stratum: Option<String>,
-    /// Every column of the section table that is named above, and where.
+    /// Every column of the section table named above, with its place in the catalogue.
     pub columns: Vec<(String, Span)>,
     pub positions: Vec<Position>,
     /// Sums of channels with weights, by name.
     pub invariants: Vec<(String, Vec<(String, f64)>)>,
-    /// How the dynamic content is described beside the features.
+    /// Description of the dynamic content in addition to the features.
     pub shape: Option<Shape>,
 }
 
-/// How the dynamic content of a group of channels is described.
+/// Description of the dynamic content of the groups of channels.
 #[derive(Clone, Debug)]
 pub struct Shape {
-    /// In Hz: where spectra are compared line by line.
+    /// Frequency range in Hz in which spectra are compared line by line.
     pub range: (f64, f64),
-    /// In %: what is called the peak of a record, to either side of its median.
+    /// Percentile in % of a record, to either side of its median, that defines its peak.
     pub percentile: f64,
-    /// The number of the vehicle file that is the radius of a wheel in m.
+    /// Key of the wheel radius in m in the vehicle file.
     pub wheel_radius: Option<String>,
 }
 
@@ -56,9 +56,9 @@ pub struct GroupFeatures {
     pub level: bool,
     pub bands: usize,
     pub alike: bool,
-    /// Standard deviation of a level beyond what the record itself shows, in the unit of the channels.
+    /// Standard deviation of a level in addition to the scatter of the record, in the unit of the channels.
     pub level_sd: f64,
-    /// Of the logarithm of a band's rms.
+    /// Standard deviation of the logarithm of a band's rms.
     pub band_sd: f64,
     pub gain_sd: f64,
     pub lag_sd: f64,
@@ -68,49 +68,48 @@ pub struct GroupFeatures {
     pub noise: Option<String>,
     pub offset: Option<String>,
     pub gain: Option<String>,
-    /// Which axis of motion: groups of one axis share discrepancies.
+    /// Axis of motion. Groups with the same axis share discrepancies.
     pub axis: String,
-    /// What an engineer calls it.
+    /// Name in reports.
     pub says: String,
 }
 
-/// Something that the test engineer admits not to know.
+/// A parameter that the campaign may declare with a standard deviation.
 #[derive(Clone, Debug)]
 pub struct Tolerance {
-    /// As in `declared_tolerances`, without unit.
+    /// Its key in `declared_tolerances`, without unit.
     pub name: String,
-    /// The unit that it is read in.
+    /// Unit of the standard deviation.
     pub unit: Unit,
     /// One standard deviation where the campaign declares none.
     pub default: f64,
-    /// Parameters that are scaled, each on its own.
+    /// Parameters that are multiplied by 1 + x, each independently.
     pub scales: Vec<String>,
-    /// Parameters that are added to: the factor from the declared unit to theirs.
+    /// Parameters to which x is added: the factor from the declared unit to theirs.
     pub adds: Vec<(String, f64)>,
-    /// Parameters that are set together, as another model of the same thing would have them: that model is one standard deviation.
+    /// Parameters that are set together as in an alternative model, whose difference counts as one standard deviation.
     pub sets: Vec<(String, f64)>,
-    /// Every parameter that is named, and where.
+    /// Every parameter of the tolerance, with its place in the catalogue.
     pub named: Vec<(String, Span)>,
-    /// Of a size that is never negative: the share of what is declared that is expected to be there; 0 for a size that may lie on either
-    /// side.
+    /// For a quantity that is never negative: its expected value as a share of the declared one; 0 for a quantity of either sign.
     pub expected: f64,
-    /// Whether each section has its own.
+    /// Whether the deviation differs between sections.
     pub per_section: bool,
-    /// How much of one standard deviation all sections have in common, from 0 to 1.
+    /// Share of a standard deviation that is common to all sections, from 0 to 1.
     pub shared: f64,
-    /// One standard deviation of what may be off in the same way besides, whatever is declared: an effect must be further out than both.
+    /// A further standard deviation for the same parameter, independent of the declared one. An effect must exceed both.
     pub besides: f64,
-    /// Whether each parameter that it scales is looked at alone, as a cause that no effect stands for.
+    /// Whether each scaled parameter is also tested as a cause outside the catalogue.
     pub suspects: bool,
 }
 
-/// What the simulation may be wrong in without an effect being missing: one standard deviation.
+/// Allowed discrepancy of the simulation without an effect: one standard deviation.
 #[derive(Clone, Debug)]
 pub struct Discrepancy {
     pub feature: FeatureKind,
-    /// Weights by channel for levels; all channels of the groups otherwise.
+    /// Weights by channel for levels; otherwise all channels of the groups.
     pub channels: Vec<(String, f64)>,
-    /// In the unit of the channel, or of the logarithm; one number, or one per band.
+    /// In the unit of the channel, or of the logarithm; one value, or one per band.
     pub sd: Vec<f64>,
     pub moves: Moves,
     pub over: Over,
@@ -120,15 +119,15 @@ pub struct Discrepancy {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FeatureKind {
     Level,
-    /// Each band on its own.
+    /// Each band independently.
     Bands,
-    /// All bands alike.
+    /// All bands together.
     Amplitude,
     Gain,
     Lag,
 }
 
-/// Which channels move together.
+/// Channels that are fully correlated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Moves {
     All,
@@ -136,7 +135,7 @@ pub enum Moves {
     Channel,
 }
 
-/// Which sections move together.
+/// Sections that are fully correlated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Over {
     All,
@@ -144,19 +143,19 @@ pub enum Over {
     Sections,
 }
 
-/// What it grows with.
+/// Factor of the discrepancy in each section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Times {
     One,
-    /// The number in a column over this number; and its sign by the mirrored column.
+    /// This number divided by the value of a column, with the sign of the mirrored column.
     Over(f64),
     /// 1, or -1 in mirrored sections.
     Side,
-    /// As `Over`, without the sign.
+    /// As `Over`, without a sign.
     Unsigned(f64),
 }
 
-/// A position as an engineer speaks of it: channels where the section is not mirrored, and where it is.
+/// A position in the report's terms, with its channels in sections that are not mirrored and in those that are.
 #[derive(Clone, Debug)]
 pub struct Position {
     pub name: String,
@@ -175,7 +174,7 @@ impl Settings {
         }
     }
 
-    /// Everything that a campaign may declare, with the unit that it is read in.
+    /// All quantities that a campaign may declare, with their units.
     #[must_use]
     pub fn tolerated(&self) -> Vec<(&str, Unit)> {
         let mut all: Vec<(&str, Unit)> = self.tolerances.iter().map(|one| (one.name.as_str(), one.unit.clone())).collect();

@@ -7,7 +7,7 @@ use crate::source::Span;
 use crate::units::Unit;
 use crate::yaml::{Key, Node, Value};
 
-/// Lag in m beyond which records belong to other places.
+/// Default of the largest lag in m. A larger lag means that the records belong to different places.
 const FURTHEST: f64 = 50.0;
 
 const TOP: [&str; 13] = [
@@ -32,13 +32,13 @@ const TOLERANCE: [&str; 10] = ["default", "unit", "expected", "scales", "adds", 
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
 impl Settings {
-    /// Reads them; a catalogue without any cannot be used for a diagnosis.
+    /// Reads the settings. A catalogue without them cannot be used for a diagnosis.
     ///
     /// Problems: `key-missing`, `unknown-key`, `wrong-kind`, `range`, `unknown-channel`.
     pub fn read(catalogue: &Catalogue, problems: &mut Problems) -> Option<Self> {
         let before = problems.errors();
         let Some(node) = &catalogue.diagnosis else {
-            let says = format!("the catalogue `{}` has no `diagnosis`: which features are compared", catalogue.name);
+            let says = format!("the catalogue `{}` has no part `diagnosis`, which lists the features to be compared", catalogue.name);
             problems.push(Problem::error("key-missing", says).at(&catalogue.source.span(0..0)));
             return None;
         };
@@ -77,7 +77,7 @@ impl Reader<'_> {
         }
         let numbers: Option<Vec<f64>> = node.items().iter().map(Node::number).collect();
         numbers.unwrap_or_else(|| {
-            self.wrong("a number or a list of numbers is needed", node);
+            self.wrong("expected a number or a list of numbers", node);
             Vec::new()
         })
     }
@@ -86,17 +86,17 @@ impl Reader<'_> {
         match node.get(key) {
             None => default,
             Some(found) => found.number().unwrap_or_else(|| {
-                self.wrong(format!("`{key}` is a number"), found);
+                self.wrong(format!("`{key}` must be a number"), found);
                 default
             }),
         }
     }
 
-    /// How far a lag is looked for.
+    /// The largest lag searched.
     fn furthest(&mut self, node: &Node) -> f64 {
         let furthest = self.number(node, "furthest lag", FURTHEST);
         if let Some(found) = node.get("furthest lag").filter(|_| furthest <= 0.0) {
-            self.outside("`furthest lag` is a distance or a time: it must be positive", found);
+            self.outside("`furthest lag` is a distance or a time and must be positive", found);
         }
         furthest
     }
@@ -105,16 +105,16 @@ impl Reader<'_> {
     fn spread(&mut self, node: &Node, key: &str, default: f64) -> f64 {
         let spread = self.number(node, key, default);
         if let Some(found) = node.get(key).filter(|_| spread < 0.0) {
-            self.outside(format!("`{key}` is a standard deviation: it cannot be negative"), found);
+            self.outside(format!("`{key}` is a standard deviation and cannot be negative"), found);
         }
         spread
     }
 
-    /// Frequencies in Hz, each above the one before.
+    /// Strictly increasing frequencies in Hz.
     fn rising(&mut self, node: &Node) -> Vec<f64> {
         let found = self.numbers(node);
         if found.first().is_some_and(|first| *first < 0.0) || found.windows(2).any(|pair| pair[1] <= pair[0]) {
-            self.outside("these are frequencies in Hz, each above the one before", node);
+            self.outside("frequencies in Hz must increase", node);
         }
         found
     }
@@ -124,7 +124,7 @@ impl Reader<'_> {
             None => false,
             Some(Node { value: Value::Bool(flag), .. }) => *flag,
             Some(found) => {
-                self.wrong(format!("`{key}` is true or false"), found);
+                self.wrong(format!("`{key}` must be true or false"), found);
                 false
             }
         }
@@ -133,12 +133,12 @@ impl Reader<'_> {
     fn unit(&mut self, node: &Node) -> Unit {
         let Some(found) = node.get("unit") else { return Unit::one() };
         found.scalar_text().and_then(|text| Unit::parse(text).ok()).unwrap_or_else(|| {
-            self.wrong("`unit` is a unit such as kN or mm", found);
+            self.wrong("`unit` must be a unit such as kN or mm", found);
             Unit::one()
         })
     }
 
-    /// A word or a list of words.
+    /// A name or a list of names.
     fn words(&mut self, node: Option<&Node>) -> Vec<String> {
         self.placed(node).into_iter().map(|(word, _)| word).collect()
     }
@@ -153,7 +153,7 @@ impl Reader<'_> {
         for item in items {
             match item.scalar_text() {
                 Some(text) => found.push((text.to_string(), item.span.clone())),
-                None => self.wrong(format!("a name or a list of names is needed here, not {}", item.kind_in_words()), item),
+                None => self.wrong(format!("expected a name or a list of names, found {}", item.kind_in_words()), item),
             }
         }
         found
@@ -165,7 +165,8 @@ impl Reader<'_> {
             match self.catalogue.channels(&name) {
                 Some(channels) => found.extend(channels),
                 None => {
-                    let problem = Problem::error("unknown-channel", format!("`{name}` is no group and no channel of one")).at(&node.span);
+                    let problem =
+                        Problem::error("unknown-channel", format!("`{name}` is neither a group nor a channel of a group")).at(&node.span);
                     self.problems.push(problem.suggest(&name, self.catalogue.groups.iter().map(|group| group.name.as_str())));
                 }
             }
@@ -181,12 +182,12 @@ impl Reader<'_> {
             _ => None,
         };
         if only.is_none() {
-            self.wrong("`mirrored` is one column and its value, such as `{direction: left}`", node);
+            self.wrong("`mirrored` must be one column and its value, such as `{direction: left}`", node);
         }
         only
     }
 
-    /// Numbers by their keys.
+    /// A map of numbers.
     fn values(&mut self, node: &Node) -> Vec<(String, f64)> {
         let mut found = Vec::new();
         for (key, node) in node.entries() {
@@ -202,7 +203,7 @@ impl Reader<'_> {
     fn weights(&mut self, node: &Node) -> Vec<(String, f64)> {
         for (key, _) in node.entries() {
             if !self.catalogue.groups.iter().any(|group| group.channels.contains(&key.text)) {
-                let problem = Problem::error("unknown-channel", format!("`{}` is no channel of a group", key.text)).at(&key.span);
+                let problem = Problem::error("unknown-channel", format!("`{}` is not a channel of a group", key.text)).at(&key.span);
                 let known = self.catalogue.groups.iter().flat_map(|group| &group.channels);
                 self.problems.push(problem.suggest(&key.text, known.map(String::as_str)));
             }
@@ -214,7 +215,7 @@ impl Reader<'_> {
         self.keys(node, &TOP);
         let alike = node.get("alike").map_or(Vec::new(), |alike| self.rising(alike));
         if let Some(found) = node.get("alike").filter(|_| alike.len() != 2) {
-            self.outside("`alike` is two frequencies in Hz", found);
+            self.outside("`alike` must be two frequencies in Hz", found);
         }
         let (strata, confine, covariates) =
             (self.placed(node.get("strata")), self.placed(node.get("confine to")), self.placed(node.get("covariates")));
@@ -244,7 +245,7 @@ impl Reader<'_> {
             let text = |key: &str| node.get(key).and_then(Node::scalar_text).map(str::to_string);
             let (bands, most) = (self.number(node, "bands", 0.0), settings.edges.len().saturating_sub(1));
             if let Some(found) = node.get("bands").filter(|_| bands.fract() != 0.0 || !(0.0..=most as f64).contains(&bands)) {
-                self.outside(format!("`bands` is how many of the {most} bands of the catalogue this group has"), found);
+                self.outside(format!("`bands` is the number of bands of this group, at most the {most} bands of the catalogue"), found);
             }
             settings.groups.push(GroupFeatures {
                 name: key.text.clone(),
@@ -270,7 +271,7 @@ impl Reader<'_> {
             let per_section = self.flag(node, "each section");
             let shared = self.spread(node, "shared", if per_section { 0.0 } else { 1.0 });
             if let Some(found) = node.get("shared").filter(|_| shared > 1.0) {
-                self.outside("`shared` is how much of one standard deviation all sections have in common, from 0 to 1", found);
+                self.outside("`shared` is the share of a standard deviation common to all sections, from 0 to 1", found);
             }
             settings.tolerances.push(Tolerance {
                 name: key.text.clone(),
@@ -317,18 +318,18 @@ impl Reader<'_> {
         self.keys(node, &SHAPE);
         let percentile = self.number(node, "percentile", f64::NAN);
         let [low, high] = node.get("range").map(|range| self.numbers(range))?[..] else {
-            self.wrong("`range` is two frequencies in Hz", node);
+            self.wrong("`range` must be two frequencies in Hz", node);
             return None;
         };
         if !(low > 0.0 && high > low && (50.0..100.0).contains(&percentile)) {
-            self.wrong("`range` is two rising frequencies in Hz, `percentile` a number from 50 to 100", node);
+            self.wrong("`range` must be two increasing frequencies in Hz, and `percentile` a number from 50 to 100", node);
             return None;
         }
         let wheel_radius = node.get("wheel radius").and_then(Node::scalar_text).map(str::to_string);
         Some(Shape { range: (low, high), percentile, wheel_radius })
     }
 
-    /// `bands` is how many there are.
+    /// Reads a discrepancy; `bands` is the number of bands.
     fn discrepancy(&mut self, node: &Node, bands: usize) -> Option<Discrepancy> {
         self.keys(node, &DISCREPANCY);
         let word = |key: &str| node.get(key).and_then(Node::scalar_text).unwrap_or_default().to_string();
@@ -339,7 +340,7 @@ impl Reader<'_> {
             "gain" => FeatureKind::Gain,
             "lag" => FeatureKind::Lag,
             other => {
-                self.wrong(format!("a discrepancy is `of` level, bands, amplitude, gain or lag, not `{other}`"), node);
+                self.wrong(format!("`of` must be level, bands, amplitude, gain or lag, not `{other}`"), node);
                 return None;
             }
         };
@@ -358,7 +359,7 @@ impl Reader<'_> {
             "group" => Moves::Group,
             "channel" => Moves::Channel,
             other => {
-                self.wrong(format!("`together` is all, group or channel, not `{other}`"), node);
+                self.wrong(format!("`together` must be all, group or channel, not `{other}`"), node);
                 return None;
             }
         };
@@ -367,7 +368,7 @@ impl Reader<'_> {
             "strata" => Over::Strata,
             "each" => Over::Sections,
             other => {
-                self.wrong(format!("`sections` is all, strata or each, not `{other}`"), node);
+                self.wrong(format!("`sections` must be all, strata or each, not `{other}`"), node);
                 return None;
             }
         };
@@ -380,7 +381,7 @@ impl Reader<'_> {
             Some((number, " unsigned")) => Times::Unsigned(number),
             _ => {
                 self.wrong(
-                    format!("`times` is side, `400 / radius` or `400 / radius unsigned`, not `{times}`"),
+                    format!("`times` must be side, `400 / radius` or `400 / radius unsigned`, not `{times}`"),
                     node.get("times").unwrap_or(node),
                 );
                 return None;
@@ -394,13 +395,13 @@ impl Reader<'_> {
         let most = if feature == FeatureKind::Bands { bands } else { 1 };
         if sd.is_empty() || sd.len() > most || sd.iter().any(|sd| *sd < 0.0) {
             let many = if most == 1 { "one number".to_string() } else { format!("one number, or one for each of the {most} bands") };
-            self.outside(format!("`sd` is {many}, none of them negative"), given);
+            self.outside(format!("`sd` must be {many}, none of them negative"), given);
         }
         Some(Discrepancy { feature, channels, sd, moves, over, times })
     }
 }
 
-/// The parameters that a tolerance moves.
+/// The parameters that a tolerance changes.
 fn named(node: &Node) -> Vec<(String, Span)> {
     let maps = ["adds", "sets"].into_iter().filter_map(|key| node.get(key)).flat_map(Node::entries);
     let maps = maps.map(|(key, _)| (key.text.clone(), key.span.clone()));
@@ -436,9 +437,9 @@ diagnosis:
         let (sound, problems) = read(SOUND);
         assert!(sound, "{}", problems.render(false));
         for (good, bad, says, place) in [
-            ("[1, 2, 4]", "[1, 4, 2]", "each above the one before", "7:10"),
-            ("bands: 2,", "bands: 3,", "how many of the 2 bands", "8:50"),
-            ("bands: 2,", "bands: 1.5,", "how many of the 2 bands", "8:50"),
+            ("[1, 2, 4]", "[1, 4, 2]", "must increase", "7:10"),
+            ("bands: 2,", "bands: 3,", "at most the 2 bands", "8:50"),
+            ("bands: 2,", "bands: 1.5,", "at most the 2 bands", "8:50"),
             ("level sd: 0.2", "level sd: -0.2", "cannot be negative", "8:63"),
             ("default: 0.1", "default: -0.1", "cannot be negative", "9:32"),
             ("default: 0.1", "default: 0.1, shared: 1.5", "from 0 to 1", "9:45"),
@@ -450,7 +451,7 @@ diagnosis:
             ("400 / radius", "much / radius", "not `much / radius`", "10:74"),
             ("channels: [forces], ", "", "needs `channels`", "10:19"),
             ("sd: [0.1, 0.2]", "sd: []", "none of them negative", "10:55"),
-            ("[1, 2, 4]\n", "[1, 2, 4]\n  alike: [8]\n", "`alike` is two", "8:10"),
+            ("[1, 2, 4]\n", "[1, 2, 4]\n  alike: [8]\n", "`alike` must be two", "8:10"),
             ("[1, 2, 4]\n", "[1, 2, 4]\n  furthest lag: -5\n", "must be positive", "8:17"),
         ] {
             let text = SOUND.replacen(good, bad, 1);
