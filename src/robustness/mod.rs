@@ -1,6 +1,6 @@
-//! The studies: what another choice of sections, another synchronisation or another parameter would have said.
+//! Studies: dependence of the verdict on sections, synchronisation and parameters.
 //!
-//! Joins the stages as `certify` does: records are evaluated by `run`, selections are counted by `study`.
+//! Joins the stages as `certify` does: `run` evaluates records, `study` evaluates selections.
 
 mod parameters;
 mod rule;
@@ -19,17 +19,17 @@ use crate::study::{self, reduced, selections};
 pub use parameters::{Vary, all_choices, parameters};
 pub use synchronisation::{Synchronisation, synchronisation};
 
-/// What is asked of every study.
+/// Common settings of the studies.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Settings {
     pub selections: study::Settings,
-    /// Sections of each zone that a selection takes, if not the protocol's number.
+    /// Sections per zone in a selection, if different from the protocol's number.
     pub take: Option<usize>,
-    /// Sections of each zone that are kept before anything is selected.
+    /// Sections per zone that are kept before selections are formed.
     pub reduce: Option<usize>,
 }
 
-/// Every selection of sections.
+/// Study of all selections of sections.
 ///
 /// # Errors
 /// As [`crate::run::run`]; `too-few-sections`: a zone has fewer usable sections than a selection takes.
@@ -41,10 +41,10 @@ pub fn sections(compiled: &Compiled, campaign: &Campaign, settings: &Settings, p
 }
 
 fn too_few(says: String) -> Problems {
-    Problems(vec![Problem::error("too-few-sections", says).help("give more sections, or fewer for each selection with `--take`")])
+    Problems(vec![Problem::error("too-few-sections", says).help("provide more sections, or reduce the number per selection with `--take`")])
 }
 
-/// What is selected from, reduced where that is asked for.
+/// The sections to select from, reduced if required.
 fn case_of(evaluated: &Evaluated, plan: &Plan, settings: &Settings) -> Result<(Case, Option<Reduction>), String> {
     let case = Case::of(&evaluated.pool(plan), settings.take)?;
     Ok(match settings.reduce {

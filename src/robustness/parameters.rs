@@ -1,4 +1,4 @@
-//! The verdict along parameters and rules of the protocol, each varied by itself.
+//! The verdict as a function of parameters and rules of the protocol, each varied by itself.
 
 use super::rule::Rule;
 use super::scale::Scale;
@@ -15,7 +15,7 @@ use crate::source::Source;
 use crate::study::marked;
 use crate::syntax::document::Text;
 
-/// A parameter or a rule, and the values it is to take, as written.
+/// A parameter or a rule, and its values as written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vary {
     /// The name of a parameter, or the words that lead to a rule: `quantity NAME limit std`, or to several: `every limit std`.
@@ -23,18 +23,18 @@ pub struct Vary {
     pub values: Vec<String>,
 }
 
-/// Every parameter that is a choice of words, over all its words.
+/// Every parameter with a choice of words, over all its words.
 pub fn all_choices(plan: &Plan) -> Vec<Vary> {
     let choices = plan.parameters.iter().filter(|parameter| !parameter.choices.is_empty());
     choices.map(|parameter| Vary { name: parameter.name.clone(), values: parameter.choices.clone() }).collect()
 }
 
-/// The verdict along parameters and rules of the protocol, each varied by itself, the others as they are.
+/// Evaluates the protocol for each value of each parameter or rule, with the others unchanged.
 ///
-/// `progress` is told the value that is being evaluated.
+/// `progress` receives the value that is being evaluated.
 ///
 /// # Errors
-/// A value that the protocol does not admit; as [`crate::run::run`].
+/// A value that the protocol does not allow; as [`crate::run::run`].
 pub fn parameters(
     compiled: &Compiled,
     campaign: &Campaign,
@@ -44,7 +44,7 @@ pub fn parameters(
     progress: Progress<'_>,
 ) -> Result<Study, Problems> {
     let plan = &compiled.plan;
-    // All values are compiled before any is evaluated: a wrong one is told at once.
+    // All values are compiled before any is evaluated, so that an invalid one is reported at once.
     let mut compiled_values = Vec::new();
     let mut problems = Problems::default();
     for varied in vary {
@@ -86,7 +86,7 @@ pub fn parameters(
     Ok(joined(compiled, campaign, &evaluated, Found::Parameters(ParameterStudy { base, parameters })))
 }
 
-/// What is varied.
+/// A parameter, a rule or a group of limits.
 enum Variable<'a> {
     Parameter(&'a Parameter),
     Rule(Rule),
@@ -94,7 +94,7 @@ enum Variable<'a> {
 }
 
 impl<'a> Variable<'a> {
-    /// A name without spaces is a parameter's; words lead to a rule, `every limit` and a statistic to several.
+    /// A name without spaces is a parameter; several words address a rule, `every limit` and a statistic several rules.
     fn find(compiled: &'a Compiled, name: &str, problems: &mut Problems) -> Option<Self> {
         if Scale::asked(name) {
             return Scale::find(&compiled.family.merged, name).map(Self::Scale).map_err(|problem| problems.push(*problem)).ok();
@@ -137,7 +137,7 @@ impl<'a> Variable<'a> {
         }
     }
 
-    /// A value as the protocol prints it.
+    /// A value in the protocol's notation.
     fn shown(&self, value: &str, plan: &Plan) -> String {
         match self {
             Self::Parameter(parameter) => {

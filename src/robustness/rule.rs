@@ -1,4 +1,4 @@
-//! A rule of a protocol found by the words that lead to it, and the protocol with another text in its place.
+//! A rule of a protocol found by its address, and the protocol with another value for it.
 
 use crate::check::family::Family;
 use crate::problem::Problem;
@@ -9,22 +9,22 @@ use crate::syntax::keys;
 /// One field of one block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rule {
-    /// As asked for: `quantity NAME limit std`.
+    /// The address: `quantity NAME limit std`.
     words: String,
     block: usize,
     field: usize,
-    /// Words of the field's value that belong to the address and stay: `std`.
+    /// Words of the field's value that are part of the address: `std`.
     stays: String,
-    /// The rest of the value without variation.
+    /// The rest of the present value.
     pub as_it_is: String,
     pub title: String,
 }
 
 impl Rule {
-    /// Finds the field that a kind of block, its name, a key and first words of the value lead to.
+    /// Finds a field by the kind of block, its name, a key and the first words of the value.
     ///
     /// # Errors
-    /// No such block, no such field, or several of them: which there are.
+    /// No such block, no such field, or several of them; the message lists the available ones.
     pub fn find(document: &Document, address: &str) -> Result<Self, Box<Problem>> {
         let words: Vec<&str> = address.split_whitespace().collect();
         let wrong = |says: String| Problem::error("unknown-rule", says);
@@ -65,12 +65,12 @@ impl Rule {
             several => {
                 let each = several.iter().map(|(at, _)| format!("`{} {}`", block.fields[*at].key.text, block.fields[*at].value.text));
                 let help = format!("add the first words of one of them: {}", each.collect::<Vec<_>>().join(", "));
-                Err(Box::new(wrong(format!("`--vary {address}` leads to several rules")).help(help)))
+                Err(Box::new(wrong(format!("`--vary {address}` matches several rules")).help(help)))
             }
         }
     }
 
-    /// The protocol with a value in place of the rule's own; problems with it point into the words of the command line.
+    /// The protocol with another value of the rule; problems with it point to the command line.
     pub fn with(&self, family: &Family, value: &str) -> Family {
         let mut family = family.clone();
         let source = Source::new("--vary", format!("{} {value}", self.words));
@@ -81,7 +81,7 @@ impl Rule {
     }
 }
 
-/// What of a field's value the words after its key name, if they lead to it.
+/// The part of a field's value that the words after its key address, if they match.
 fn stays(field: &Field, words: &[&str]) -> Option<String> {
     let key: Vec<&str> = field.key.text.split_whitespace().collect();
     let first = words.strip_prefix(key.as_slice())?;

@@ -1,13 +1,13 @@
-//! All limits of one statistic of a protocol, times a common factor.
+//! All limits of one statistic of a protocol, multiplied by a common factor.
 
 use crate::check::family::Family;
 use crate::problem::{Problem, Problems};
 use crate::syntax::document::{Document, Text};
 
-/// What `every limit std` leads to.
+/// The limits addressed by `every limit std`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scale {
-    /// As asked for.
+    /// The address.
     words: String,
     statistic: String,
     /// Block and field of each limit.
@@ -15,20 +15,20 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Whether the words lead to several limits at once.
+    /// Whether an address is of this form.
     pub fn asked(address: &str) -> bool {
         address.split_whitespace().next() == Some("every")
     }
 
-    /// Finds the limits that `every limit` and a statistic lead to.
+    /// Finds the limits addressed by `every limit` and a statistic.
     ///
     /// # Errors
-    /// Other words; a statistic without a limit: which have one.
+    /// Another address, or a statistic without a limit; the message lists those that have one.
     pub fn find(document: &Document, address: &str) -> Result<Self, Box<Problem>> {
         let wrong = |says: String| Problem::error("unknown-rule", format!("`--vary {address}`: {says}"));
         let [_, "limit", statistic] = address.split_whitespace().collect::<Vec<_>>()[..] else {
-            let says = "`every` is followed by `limit` and a statistic".to_owned();
-            return Err(Box::new(wrong(says).help("write `every limit std`, and factors as its values")));
+            let says = "`every` must be followed by `limit` and a statistic".to_owned();
+            return Err(Box::new(wrong(says).help("write `every limit std`, with factors as its values")));
         };
         let fields = document.blocks.iter().enumerate().flat_map(|(at, block)| {
             let limits = block.fields.iter().enumerate().filter(|(_, field)| field.key.text == "limit");
@@ -43,7 +43,7 @@ impl Scale {
         Ok(Self { words: format!("every limit {statistic}"), statistic: statistic.to_owned(), limits })
     }
 
-    /// The protocol with every such limit times a factor. Limits that are shares of one of them change with it.
+    /// The protocol with every such limit multiplied by a factor. Limits that are shares of them change accordingly.
     pub fn with(&self, family: &Family, value: &str, problems: &mut Problems) -> Option<Family> {
         let Some(factor) = value.trim().parse::<f64>().ok().filter(|factor| factor.is_finite() && *factor > 0.0) else {
             let says = format!("`--vary {}={value}`: `{value}` is not a number above zero", self.words);
@@ -53,7 +53,7 @@ impl Scale {
         let mut family = family.clone();
         for &(block, field) in &self.limits {
             let limit = &mut family.merged.blocks[block].fields[field].value;
-            // In the words of the language, so that the report prints the limit that was used.
+            // In the language's own words, so that the report prints the limit that was used.
             *limit = Text { text: format!("{}, times {factor} when true", limit.text), span: limit.span.clone(), exact: false };
         }
         Some(family)

@@ -1,4 +1,4 @@
-//! The measurement shifted against the simulation.
+//! Study of offsets between measurement and simulation.
 
 use super::{Settings, joined, too_few};
 use crate::certify::Compiled;
@@ -14,18 +14,18 @@ use crate::study::flips::{Marked, flips};
 use crate::study::random::{Random, draw};
 use crate::study::{marked, reduced};
 
-/// How a study of the synchronisation is done.
+/// Settings of a study of the synchronisation.
 #[derive(Clone, Debug)]
 pub struct Synchronisation {
-    /// In the unit of the axis; 0 is added if it is missing.
+    /// In the unit of the axis; 0 is added if missing.
     pub offsets: Vec<f64>,
-    /// Farthest offset looked for in the signals, in the unit of the axis.
+    /// Largest offset searched in the signals, in the unit of the axis.
     pub farthest: f64,
-    /// Whether what is found there is taken out first.
+    /// Whether the estimated offsets are corrected first.
     pub correct: bool,
 }
 
-/// The measurement shifted against the simulation.
+/// Evaluates the campaign with the measurement shifted by each offset.
 ///
 /// # Errors
 /// As [`super::sections`], for the records without offset.
@@ -48,7 +48,7 @@ pub fn synchronisation(
     let zero = offsets.iter().position(|offset| *offset == 0.0).unwrap_or(0);
     let mut base = Case::of(&all[zero].pool(plan), settings.take).map_err(too_few)?;
     if let Some(most) = settings.reduce {
-        // The same sections at every offset: what is kept is decided without one.
+        // The same sections at every offset: the reduction uses the records without offset.
         base = reduced(&base, most).0;
     }
     let selection = draw(&base, &mut Random::new(settings.selections.seed, 0));
@@ -78,12 +78,12 @@ pub fn synchronisation(
     Ok(joined(compiled, campaign, &all[zero], Found::Sync(study)))
 }
 
-/// What other offsets are compared with.
+/// The reference without offset.
 struct Without<'a> {
     case: &'a Case,
     /// Selections that are not validated.
     fails: Option<Fails>,
-    /// The one selection of the first figure.
+    /// The selection of the first figure.
     selection: &'a [usize],
 }
 
@@ -113,8 +113,8 @@ fn at_offset(evaluated: &Evaluated, plan: &Plan, settings: &Settings, offset: f6
     }
 }
 
-/// What is otherwise than without offset: the verdict on all sections, limits of all sections, limits of the one selection, and
-/// how many selections have another verdict.
+/// Differences from the case without offset: the verdict on all sections, limits of all sections, limits of the single selection, and
+/// the number of selections with another verdict.
 fn changes(base: &AtOffset, at: &AtOffset) -> Vec<String> {
     let mut changes = Vec::new();
     if base.verdict != at.verdict {
@@ -138,7 +138,7 @@ fn changes(base: &AtOffset, at: &AtOffset) -> Vec<String> {
     changes
 }
 
-/// Reasons state the value of the statistic, which is another at every offset.
+/// Compares reasons without the value of the statistic, which differs at every offset.
 fn same_limit(reasons: &[String], reason: &str) -> bool {
     reasons.iter().any(|known| of_limit(known) == of_limit(reason))
 }

@@ -1,28 +1,28 @@
-//! Numbers in about their order: put into buckets of equal width, without comparing any two.
+//! Approximate sorting of numbers into buckets of equal width, without comparisons.
 
-/// Where numbers went.
+/// Buckets of a set of numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Buckets {
     least: f64,
     greatest: f64,
     per_unit: f64,
-    /// Place of the first number of each bucket, with an empty bucket below all numbers and one above.
+    /// Index of the first number of each bucket, with an empty bucket below all numbers and one above.
     first: Vec<u32>,
     places: Vec<u32>,
 }
 
 impl Buckets {
-    /// Shares numbers out to as many buckets; the place of each, in the order of the numbers.
+    /// Distributes the numbers to as many buckets; returns their indices in bucket order.
     #[inline(always)]
     pub fn fill(&mut self, numbers: &[f64]) -> &[u32] {
         let ends = (f64::INFINITY, f64::NEG_INFINITY);
         (self.least, self.greatest) = numbers.iter().fold(ends, |(least, greatest), x| (least.min(*x), greatest.max(*x)));
         let (count, width) = (numbers.len(), self.greatest - self.least);
-        // A little less than all, so that the greatest number stays below the bucket above.
+        // Slightly less than the range, so that the largest number is below the upper bucket.
         self.per_unit = if width > 0.0 { (count as f64 * (1.0 - 1e-9) / width).min(f64::MAX) } else { 0.0 };
         self.places.clear();
         self.places.extend(numbers.iter().map(|x| ((x - self.least) * self.per_unit + 1.0) as u32));
-        // First how many numbers each bucket has, one bucket on; then where it begins; then where the next of it goes.
+        // Counting sort: counts of the buckets, shifted by one; then their starts; then the position of the next number of each.
         self.first.clear();
         self.first.resize(count + 3, 0);
         for bucket in &self.places {
@@ -38,20 +38,20 @@ impl Buckets {
             *place = *next;
             *next += 1;
         }
-        // Each has moved on to where the next bucket begins.
+        // Each position has advanced to the start of the next bucket.
         self.first.copy_within(..count + 2, 1);
         self.first[0] = 0;
         &self.places
     }
 
-    /// The same for equal numbers and never less for a greater one, so that a bucket further on means a greater number.
+    /// Monotonic: equal numbers give the same bucket, and a higher bucket implies a larger number.
     #[inline(always)]
     fn bucket(&self, bound: f64) -> usize {
         let bound = bound.clamp(-1e300, 1e300);
         (((bound - self.least) * self.per_unit + 1.0) as usize).min(self.first.len() - 2)
     }
 
-    /// Places of the numbers that may lie between two bounds: all before are below the lower one, all after above the upper one.
+    /// Range of positions of the numbers that may lie between two bounds: all before are below `low`, all after are above `high`.
     #[inline(always)]
     pub fn between(&self, low: f64, high: f64) -> (usize, usize) {
         let from = self.first[self.bucket(low)] as usize;
@@ -67,7 +67,7 @@ impl Buckets {
     }
 }
 
-/// Which number comes where, in about the order of the numbers.
+/// Indices of the numbers, in approximate order of the numbers.
 #[inline(always)]
 pub fn ordered(numbers: &[f64]) -> Vec<u32> {
     let mut buckets = Buckets::default();

@@ -1,12 +1,12 @@
-//! The values and limits of a campaign as a study asks them: by stratum, section and quantity, with their sums at hand.
+//! Values and limits of a campaign for a study, by stratum, section and quantity.
 
 use crate::catalog::Statistic;
 use crate::run::pool::{Pool, PooledLimit, PooledQuantity, Rule};
 
-/// Room for rounding where a value equals its limit; a value equal to its limit passes.
+/// Tolerance for rounding where a value equals its limit, which counts as met. Relative to the limit.
 const EQUAL: f64 = 1e-12;
 
-/// What is selected from, and what a selection is judged by.
+/// Sections to select from, and the criteria for a selection.
 #[derive(Clone, Debug)]
 pub struct Case {
     pub strata: Vec<Stratum>,
@@ -21,9 +21,9 @@ pub struct Stratum {
     pub zone: String,
     pub title: String,
     pub take: usize,
-    /// Usable sections.
+    /// Usable sections by index.
     pub members: Vec<usize>,
-    /// Others of the zone, with the reason.
+    /// Other sections of the zone, with the reason.
     pub not_used: Vec<(usize, String)>,
 }
 
@@ -35,14 +35,14 @@ pub struct Quantity {
     pub unit: String,
     /// Differences of every section.
     pub values: Vec<Vec<f64>>,
-    /// Bit by bit the signals that a section has.
+    /// Bit set of the signals that each section has.
     pub signals: Vec<u128>,
     pub minimum_signals: usize,
     pub minimum_pairs: usize,
     pub measures: Vec<Measure>,
 }
 
-/// A statistic with its limit.
+/// A statistic and its limit.
 #[derive(Clone, Debug)]
 pub struct Measure {
     pub name: String,
@@ -51,20 +51,20 @@ pub struct Measure {
     pub limit: f64,
     pub at_least: bool,
     pub kind: Kind,
-    /// What a value is multiplied by to be compared with `low` and `high`.
+    /// Factor of a value before it is compared with `low` and `high`.
     pub scale: f64,
-    /// The limit holds from `low` to `high`.
+    /// The limit is met from `low` to `high`.
     pub low: f64,
     pub high: f64,
-    /// Values of each section that it is taken over, already divided by their own limits where each has one.
+    /// Values of each section, already divided by their own limits where each has one.
     pub values: Vec<Vec<f64>>,
 }
 
-/// How a statistic of many sections follows from their parts.
+/// How a statistic of several sections follows from sums over single sections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     Mean,
-    /// With the divisor's n - `ddof`.
+    /// Divisor n - `ddof`.
     Deviation {
         ddof: usize,
     },
@@ -76,19 +76,19 @@ pub enum Kind {
     Pooled(Statistic),
 }
 
-/// Why a study cannot be made of a campaign.
+/// Reason why a study of a campaign is not possible.
 pub type Refusal = String;
 
 impl Case {
-    /// Takes over what a run pooled.
+    /// Takes the pooled values of a run.
     ///
-    /// `take` is the number of sections of each zone where it is not the protocol's.
+    /// `take` is the number of sections per zone if it differs from the protocol's.
     ///
     /// # Errors
-    /// A zone with fewer usable sections than a selection takes; a protocol that asks for none.
+    /// A zone has fewer usable sections than a selection takes, or the protocol has no criterion.
     pub fn of(pool: &Pool, take: Option<usize>) -> Result<Self, Refusal> {
         if !pool.quantities.is_empty() && pool.quantities.iter().all(|quantity| quantity.limits.is_empty()) {
-            return Err("no acceptance criterion applies: there is no verdict that sections could change".into());
+            return Err("no acceptance criterion applies, so no verdict depends on the sections".into());
         }
         let mut strata = Vec::new();
         let of_zone = |inside: &dyn Fn(Option<&str>) -> bool| {
@@ -135,10 +135,10 @@ impl Case {
         })
     }
 
-    /// Only the sections that another case has, too.
+    /// Restricts the case to the sections of another case.
     ///
     /// # Errors
-    /// A zone is left with fewer than a selection takes: which.
+    /// A zone has fewer common sections than a selection takes.
     pub fn with_sections_of(&self, other: &Self) -> Result<Self, Refusal> {
         let mut case = self.clone();
         let theirs = other.usable();
@@ -146,13 +146,13 @@ impl Case {
             stratum.members.retain(|section| theirs.contains(section));
             if stratum.members.len() < stratum.take {
                 let (zone, has, needs) = (&stratum.zone, stratum.members.len(), stratum.take);
-                return Err(format!("zone {zone} has {has} sections usable in both, and a selection takes {needs}"));
+                return Err(format!("zone {zone} has {has} sections usable in both cases, and a selection takes {needs}"));
             }
         }
         Ok(case)
     }
 
-    /// Number of selections, rounded where it is beyond 2^53.
+    /// Number of selections; rounded beyond 2^53.
     pub fn combinations(&self) -> f64 {
         self.strata.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).product()
     }
@@ -228,7 +228,7 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
 }
 
 impl Measure {
-    /// The value over some sections divided by the limit; `None` where it is not defined.
+    /// The statistic over some sections divided by the limit; `None` where it is not defined.
     pub fn over(&self, sections: impl Iterator<Item = usize>) -> Option<f64> {
         let values: Vec<f64> = sections.flat_map(|at| self.values[at].iter().copied()).collect();
         let named = |name: &str, ddof: usize| match Statistic::named(name) {

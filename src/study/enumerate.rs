@@ -1,4 +1,4 @@
-//! All selections, from sums of halves.
+//! Evaluation of all selections from sums of two halves.
 
 use std::sync::Mutex;
 
@@ -13,7 +13,7 @@ use super::verdicts::Verdicts;
 use crate::result::study::{Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection};
 use crate::run::pool::Rule;
 
-/// What looking at selections came to.
+/// Results of an enumeration.
 #[derive(Debug)]
 pub struct Counted {
     pub share: Share,
@@ -23,11 +23,11 @@ pub struct Counted {
     pub methods: Vec<String>,
 }
 
-/// Order statistics of every limit, quantity by quantity, and which selections fail.
+/// Order statistics of every limit by quantity, and the selections that do not meet a limit.
 pub fn core(case: &Case, halves: &Halves) -> (Vec<Vec<OverAll>>, Verdicts) {
     let (rows, columns) = (halves.rows.count, halves.columns.count);
     let verdicts = Mutex::new(Verdicts::new(case.rule, case.quantities.len(), rows, columns));
-    // Marks and memory of a quantity that is done serve the next one.
+    // Bit sets and buffers of a finished quantity are reused.
     let spare = Mutex::new(Vec::new());
     let all = case
         .quantities
@@ -64,7 +64,7 @@ pub fn core(case: &Case, halves: &Halves) -> (Vec<Vec<OverAll>>, Verdicts) {
     (all, verdicts.into_inner().expect("no panic holds the lock"))
 }
 
-/// Marks of the selections that are not validated.
+/// Bit set of the selections that are not validated.
 pub fn fails(case: &Case, halves: &Halves) -> Fails {
     let (_, mut verdicts) = core(case, halves);
     apply(case, &mut verdicts);
@@ -75,12 +75,12 @@ fn apply(case: &Case, verdicts: &mut Verdicts) {
     verdicts.apply(case.quantities.iter().filter(|quantity| !quantity.measures.is_empty()).count(), case.measures().count());
 }
 
-/// All selections of a case.
+/// Evaluates all selections of a case.
 pub fn all(case: &Case) -> Counted {
     marked(case).0
 }
 
-/// All selections of a case, and the marks of those not validated.
+/// Evaluates all selections of a case; returns also the bit set of those that are not validated.
 pub fn marked(case: &Case) -> (Counted, Fails) {
     let halves = Halves::of(case);
     let (statistics, mut verdicts) = core(case, &halves);
@@ -143,7 +143,7 @@ pub fn marked(case: &Case) -> (Counted, Fails) {
     (counted, verdicts.any)
 }
 
-/// The share with and without every section, from the selections that do not fail.
+/// The share validated with and without every section.
 fn importance(case: &Case, halves: &Halves, fails: &Fails) -> Vec<Importance> {
     let (rows, columns) = fails.unmarked();
     let validated: u64 = rows.iter().sum();

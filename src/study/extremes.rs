@@ -1,13 +1,13 @@
-//! Largest and smallest values over all selections, counted by binomials: no selection is formed, however many there are.
+//! Largest and smallest values over all selections, counted by binomial coefficients without forming selections.
 
 use super::case::{Case, Kind, Measure, choose};
 use super::listed::{Listed, weighted};
 
-/// Order statistics of a largest, a smallest or a largest magnitude. `None` for other statistics, and where no selection has a
-/// value.
+/// Order statistics of a largest value, a smallest value or a largest magnitude. `None` for other statistics, and where no selection has
+/// a value.
 ///
-/// The largest value of a selection is no more than a bound if that of each of its sections is: zone by zone, as many choices as
-/// there are of the sections that keep to the bound.
+/// The largest value of a selection is at most a bound if that of each of its sections is. The number of such selections is the product,
+/// over the zones, of the choices among the sections within the bound.
 pub fn over_all(case: &Case, measure: &Measure) -> Option<Listed> {
     let (sign, magnitude) = match measure.kind {
         Kind::Largest => (1.0, false),

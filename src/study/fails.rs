@@ -1,17 +1,17 @@
-//! Which selections break a limit: one bit for each pair of halves.
+//! Bit set of the selections that do not meet a limit: one bit for each pair of half selections.
 
-/// A bit for every row and column.
+/// One bit per row and column.
 #[derive(Clone, Debug)]
 pub struct Fails {
     pub rows: usize,
     pub columns: usize,
     words: usize,
     bits: Vec<u64>,
-    /// For every `STEP`th place in the order of the columns, the set of all columns from there on.
+    /// For every `STEP`th position in the order of the columns, the set of all columns from there on.
     from: Vec<u64>,
 }
 
-/// Columns marked one by one before whole sets are.
+/// Columns set one by one before whole sets are used.
 const STEP: usize = 64;
 
 impl Fails {
@@ -35,7 +35,7 @@ impl Fails {
         self.bits[row as usize * self.words + column as usize / 64] |= u64::from(fails) << (column % 64);
     }
 
-    /// The order that the next calls of `after` and `before` speak of.
+    /// Sets the order of columns for the following calls of `after` and `before`.
     #[inline(always)]
     pub fn order(&mut self, columns: &[u32]) {
         let cuts = columns.len().div_ceil(STEP);
@@ -51,7 +51,7 @@ impl Fails {
         }
     }
 
-    /// A row with all columns from a place in the order on.
+    /// Sets a row in all columns from a position in the order on.
     #[inline(always)]
     pub fn after(&mut self, row: u32, columns: &[u32], place: usize) {
         let cut = place.div_ceil(STEP);
@@ -68,7 +68,7 @@ impl Fails {
         }
     }
 
-    /// A row with all columns before a place in the order.
+    /// Sets a row in all columns before a position in the order.
     #[inline(always)]
     pub fn before(&mut self, row: u32, columns: &[u32], place: usize) {
         let cut = place / STEP;
@@ -89,18 +89,18 @@ impl Fails {
     }
 
     pub fn count(&self) -> u64 {
-        // Where the processor counts bits by itself, it does.
+        // Uses the population-count instruction where the processor has one.
         pulp::Arch::new().dispatch(|| self.bits.iter().map(|word| u64::from(word.count_ones())).sum())
     }
 
-    /// Takes over the marks of another.
+    /// Takes the union with another set.
     pub fn join_all(&mut self, other: &Self) {
         for (word, other) in self.bits.iter_mut().zip(&other.bits) {
             *word |= other;
         }
     }
 
-    /// Words of bits, row by row: bits beyond the last column are never set.
+    /// The words of the set, row by row; bits beyond the last column are zero.
     pub fn words(&self) -> &[u64] {
         &self.bits
     }
@@ -109,7 +109,7 @@ impl Fails {
         &mut self.bits
     }
 
-    /// Selections not marked, for every row and for every column.
+    /// Number of selections not in the set, by row and by column.
     pub fn unmarked(&self) -> (Vec<u64>, Vec<u64>) {
         let mut columns = vec![self.rows as u64; self.columns];
         let rows = self
@@ -131,7 +131,7 @@ impl Fails {
         (rows, columns)
     }
 
-    /// Adds one to the count of every marked selection.
+    /// Increments the count of every selection in the set.
     pub fn tally(&self, counts: &mut [u8]) {
         for row in 0..self.rows {
             for column in 0..self.columns {

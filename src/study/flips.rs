@@ -1,4 +1,4 @@
-//! Selections whose verdict is another under other values of the same sections.
+//! Selections whose verdict changes with other values of the same sections.
 
 use rayon::prelude::*;
 
@@ -14,17 +14,17 @@ use crate::metrics::interval::wilson;
 use crate::result::Verdict;
 use crate::result::study::Flips;
 
-/// A case with the marks of the selections that are not validated, if all were looked at.
+/// A case, and the selections that are not validated if all were evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Marked<'a> {
     pub case: &'a Case,
     pub fails: Option<&'a Fails>,
 }
 
-/// Compares the verdicts on every selection that both cases have; on random ones where there are too many.
+/// Compares the verdicts on all selections common to both cases, or on random ones if there are too many.
 ///
 /// # Errors
-/// A zone has fewer sections usable in both than a selection takes: which.
+/// A zone has fewer sections usable in both cases than a selection takes.
 pub fn flips(before: Marked<'_>, after: Marked<'_>, settings: &Settings) -> Result<Flips, String> {
     let (one, two) = (before.case.with_sections_of(after.case)?, after.case.with_sections_of(before.case)?);
     let combinations = one.combinations();

@@ -1,21 +1,21 @@
-//! Some set of sections without which the others give another verdict, where not all sets can be tried: one section is given up
-//! at a time, always the one that helps most.
+//! Greedy search for a set of sections whose removal changes the verdict, for campaigns where not all sets can be tried. One section is
+//! removed at a time, always the one with the largest effect.
 
 use super::case::Case;
 use super::judged::{Sums, Tally};
 use crate::result::Verdict;
 
-/// A set whose removal changes the verdict, none of whose sections can be put back; not surely the smallest. Every zone keeps what
-/// a selection takes from it. `None` where giving up sections so leads nowhere.
+/// A set whose removal changes the verdict and of which no section can be restored; not necessarily the smallest. Every zone keeps the
+/// number of sections that a selection takes. `None` if the search finds no such set.
 pub fn set(case: &Case, verdict: Verdict) -> Option<Vec<usize>> {
     let search = Search::of(case, verdict);
     let found = match verdict {
-        // One limit has to break: each is pushed by itself, and the shortest way stays.
+        // It is sufficient that one limit fails: each is tried, and the shortest set is kept.
         Verdict::Validated => {
             let most = search.sums.iter().map(Vec::len).sum::<usize>();
             (0..most).filter_map(|limit| search.walk(|beyond| -beyond[limit])).min_by_key(Vec::len)
         }
-        // All have to hold: what lies beyond them together has to go.
+        // All limits must be met: the sum of the exceedances is minimised.
         _ => search.walk(|beyond| beyond.iter().map(|by| by.max(0.0)).sum()),
     };
     found.map(|found| search.shortened(found))
@@ -25,7 +25,7 @@ struct Search<'a> {
     case: &'a Case,
     verdict: Verdict,
     sums: Vec<Vec<Sums<'a>>>,
-    /// Of all usable sections.
+    /// Sums of all usable sections.
     all: Vec<Vec<(f64, f64, f64)>>,
     usable: Vec<usize>,
 }
@@ -38,7 +38,7 @@ impl<'a> Search<'a> {
         Self { case, verdict, sums, all, usable }
     }
 
-    /// The verdict without some sections, and by how much each limit is exceeded, less than none where it holds.
+    /// The verdict without some sections, and the exceedance of each limit; negative where the limit is met.
     fn without(&self, removed: &[usize]) -> (Verdict, Vec<f64>) {
         let kept = || self.usable.iter().copied().filter(|at| !removed.contains(at));
         let (mut tally, mut beyond) = (Tally::default(), Vec::new());
@@ -55,7 +55,7 @@ impl<'a> Search<'a> {
         (tally.verdict(self.case.rule), beyond)
     }
 
-    /// Gives up the section whose loss costs least, until the verdict is another or no section may go.
+    /// Removes the section with the lowest cost until the verdict changes or no section can be removed.
     fn walk(&self, cost: impl Fn(&[f64]) -> f64) -> Option<Vec<usize>> {
         let mut spare: Vec<usize> = self.case.strata.iter().map(|stratum| stratum.members.len() - stratum.take).collect();
         let mut removed: Vec<usize> = Vec::new();
@@ -79,7 +79,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Without the sections that can be put back, and in their order.
+    /// Restores the sections that are not needed, and sorts the rest.
     fn shortened(&self, mut removed: Vec<usize>) -> Vec<usize> {
         let mut at = 0;
         while at < removed.len() {

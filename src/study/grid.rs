@@ -1,8 +1,8 @@
-//! Means over all selections where even their halves are too many to list: parts of sections counted on a grid.
+//! Order statistics of means over all selections where even the half selections are too many to list.
 //!
-//! A section gives its part of the mean, rounded to a grid. How many choices of a zone have each sum of rounded parts follows
-//! section by section, and a convolution joins the zones. What rounding does to a selection is bounded by its sections' own
-//! remainders, so that a quartile surely lies between two bounds, which are told.
+//! The contribution of each section to the mean is rounded to a grid. The number of choices of a zone for each sum of contributions
+//! is counted by dynamic programming, and a convolution joins the zones. The rounding error of a selection is bounded by the remainders
+//! of its sections, so that every quartile lies between two bounds, which are reported.
 
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
@@ -11,23 +11,23 @@ use super::case::{Case, Kind, Measure};
 use super::halves::Form;
 use crate::result::study::Spread;
 
-/// Cells of the grid, at most and at least.
+/// Largest and smallest number of grid cells.
 const CELLS: (usize, usize) = (1 << 20, 1 << 12);
-/// Additions that counting may take; more sections get a coarser grid.
+/// Largest number of additions; more sections get a coarser grid.
 const WORK: f64 = 2e9;
-/// Room for rounding in sums of as many shares as there are cells.
+/// Tolerance for rounding in sums of shares over all cells.
 const UNSURE: f64 = 1e-9;
 
-/// A statistic that is a sum of parts of the sections, or the root of one.
+/// A statistic that is a sum of contributions of the sections, or the root of one.
 #[derive(Debug)]
 pub struct Additive {
-    /// Per zone how many sections are taken, and the part of each section, the least first.
+    /// Per zone the number of sections taken, and the contribution of each section in increasing order.
     strata: Vec<(usize, Vec<(f64, usize)>)>,
     form: Form,
 }
 
 impl Additive {
-    /// `None` for other statistics, and where selections differ in their number of values.
+    /// `None` for other statistics, and where the number of values differs between selections.
     pub fn of(case: &Case, measure: &Measure) -> Option<Self> {
         let (form, weight) = match measure.kind {
             Kind::Mean => (Form::Value, measure.scale),
@@ -58,7 +58,7 @@ impl Additive {
         Some(Self { strata: strata.collect(), form })
     }
 
-    /// The selections with the least and with the greatest value.
+    /// The selections with the smallest and the largest value.
     pub fn ends(&self) -> (Vec<usize>, Vec<usize>) {
         let of = |greatest: bool| {
             let mut sections: Vec<usize> =
@@ -69,8 +69,7 @@ impl Additive {
         (of(false), of(true))
     }
 
-    /// Exact least and greatest value, quartiles with the room that they surely lie in, and outliers to as much. `None` where the
-    /// numbers of choices are beyond all bounds.
+    /// Exact minimum and maximum, quartiles and outliers with bounds. `None` where the number of choices exceeds the floating-point range.
     pub fn spread(&self, combinations: f64) -> Option<Spread> {
         let sum_of = |greatest: bool| -> f64 {
             self.strata.iter().map(|(take, parts)| ends(parts, *take, greatest).iter().map(|(part, _)| part).sum::<f64>()).sum()
@@ -124,7 +123,7 @@ impl Additive {
         }
         let span: f64 =
             self.strata.iter().map(|(take, parts)| ends(parts, *take, true).iter().map(|(part, _)| part - parts[0].0).sum::<f64>()).sum();
-        // Rounding adds at most half a cell for every section taken.
+        // Rounding adds at most half a cell per section taken.
         let step = if span > 0.0 { span / (cells - taken - 1) as f64 } else { 1.0 };
         let mut planner = RealFftPlanner::<f64>::new();
         let forward = planner.plan_fft_forward(cells);
@@ -155,14 +154,14 @@ impl Additive {
     }
 }
 
-/// The parts of so many sections with the least or the greatest ones.
+/// The `take` smallest or largest contributions.
 fn ends(parts: &[(f64, usize)], take: usize, greatest: bool) -> &[(f64, usize)] {
     if greatest { &parts[parts.len() - take..] } else { &parts[..take] }
 }
 
-/// For every sum of places, how many choices of so many of them have it.
+/// For every sum of positions, the number of choices of `take` of them with this sum.
 fn choices(places: &[usize], take: usize) -> Vec<f64> {
-    // Places are in their order: the last ones are the greatest.
+    // The positions are sorted: the last ones are the largest.
     let length = places[places.len() - take..].iter().sum::<usize>() + 1;
     let mut counts = vec![vec![0.0_f64; length]; take + 1];
     counts[0][0] = 1.0;
@@ -178,14 +177,14 @@ fn choices(places: &[usize], take: usize) -> Vec<f64> {
 /// Share of the selections in every cell.
 struct Counted {
     shares: Vec<f64>,
-    /// Sum at the first cell, from one to the next, and what selections lie below and above theirs at most.
+    /// Sum at the first cell, distance of cells, and largest deviation of a selection below and above its cell.
     first: f64,
     step: f64,
     rest: (f64, f64),
 }
 
 impl Counted {
-    /// Between which sums the selections of a cell lie.
+    /// Lowest and highest sum of the selections of a cell.
     fn edges(&self, at: usize, least: f64, greatest: f64) -> (f64, f64) {
         let middle = self.first + at as f64 * self.step;
         ((middle + self.rest.0).clamp(least, greatest), (middle + self.rest.1).clamp(least, greatest))

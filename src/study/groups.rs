@@ -1,21 +1,21 @@
-//! Values that are sums of few parts, row by row with their columns in about the order of the values.
+//! Values that are sums of few parts, by row, with the columns in approximate order of the values.
 //!
-//! The values are `p + q - c y` for every row `(p, c)` with every column `(q, y)` of a block. A variance is of this form, with
-//! rows and columns the sums over two halves of a selection, and so is a mean (c = 0).
+//! The values are `p + q - c y` for every row `(p, c)` and every column `(q, y)` of a block. A variance has this form, with rows and
+//! columns the sums over two halves of a selection, and so has a mean (c = 0).
 
 use super::buckets::{Buckets, ordered};
 use super::fails::Fails;
 
-/// Part of a value that one half of a selection gives.
+/// Contribution of one half of a selection to a value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
     pub p: f64,
     pub c: f64,
-    /// Which half selection it is.
+    /// Index of the half selection.
     pub at: u32,
 }
 
-/// Part of a value that the other half gives.
+/// Contribution of the other half.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Column {
     pub q: f64,
@@ -23,24 +23,24 @@ pub struct Column {
     pub at: u32,
 }
 
-/// Every row with every column.
+/// Rows and columns, combined in all pairs.
 #[derive(Clone, Debug, Default)]
 pub struct Block {
     pub rows: Vec<Row>,
     pub columns: Vec<Column>,
 }
 
-/// The value of one row and one column: every comparison is of this number.
+/// The value of one row and one column; all comparisons use this number.
 #[inline(always)]
 pub fn value(row: &Row, q: f64, y: f64) -> f64 {
     (row.p + q) - row.c * y
 }
 
-/// Rows of about the same `c`, and the columns in about the order of their values for them.
+/// Rows of similar `c`, with the columns in approximate order of their values.
 #[derive(Debug)]
 pub struct Sorted<'a> {
     pub rows: &'a [Row],
-    /// Of the rows' `c`.
+    /// Centre of the rows' `c`.
     middle: f64,
     /// Values for `c = middle`, without the rows' part `p`.
     pub keys: &'a Buckets,
@@ -49,11 +49,11 @@ pub struct Sorted<'a> {
     pub at: &'a [u32],
     /// Largest |y|.
     reach: f64,
-    /// Room for rounding.
+    /// Tolerance for rounding.
     room: f64,
 }
 
-/// Visits the rows of a block in groups, the columns put in order for each.
+/// Visits the rows of a block in groups, with the columns sorted for each group.
 #[inline(always)]
 pub fn groups(block: &Block, mut visit: impl FnMut(&Sorted<'_>)) {
     let Block { rows, columns } = block;
@@ -71,7 +71,7 @@ pub fn groups(block: &Block, mut visit: impl FnMut(&Sorted<'_>)) {
     let slopes: Vec<f64> = rows.iter().map(|row| row.c).collect();
     let rows: Vec<Row> = ordered(&slopes).into_iter().map(|at| rows[at as usize]).collect();
     let flat = slopes.iter().all(|c| *c == slopes[0]);
-    // Fewer rows to a group: a surer order; more rows: fewer orders to make. Both cost the same near the root of their number.
+    // Small groups give a more accurate order, large groups need fewer sorts. The cost is least near the square root of the number of rows.
     let group = if flat { rows.len() } else { (rows.len() as f64).sqrt().ceil() as usize };
     let mut buckets = Buckets::default();
     let n = columns.len();
@@ -94,20 +94,20 @@ pub fn groups(block: &Block, mut visit: impl FnMut(&Sorted<'_>)) {
 }
 
 impl Sorted<'_> {
-    /// By how much the order of the columns is uncertain for a row.
+    /// Largest error of the order of the columns for a row.
     #[inline(always)]
     pub fn slack(&self, row: &Row) -> f64 {
         (row.c - self.middle).abs() * self.reach + self.room
     }
 
-    /// Values of a row from one place of the order to another.
+    /// Values of a row between two positions in the order.
     #[inline(always)]
     pub fn values(&self, row: &Row, from: usize, to: usize) -> impl Iterator<Item = (f64, u32)> {
         let row = *row;
         self.q[from..to].iter().zip(&self.y[from..to]).zip(&self.at[from..to]).map(move |((q, y), at)| (value(&row, *q, *y), *at))
     }
 
-    /// Marks every value below or above what is allowed; how many they are.
+    /// Adds all values outside the limit to the set, and returns their number.
     #[inline(always)]
     pub fn mark(&self, low: f64, high: f64, fails: &mut Fails) -> u64 {
         let mut count = 0;

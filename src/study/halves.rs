@@ -1,7 +1,6 @@
 //! Selections as pairs of two halves: every choice of sections of some zones with every choice of the others.
 //!
-//! Sums over a selection are sums of two numbers, one of each half, so that a selection costs an addition and not a look at its
-//! sections.
+//! A sum over a selection is the sum of two numbers, one for each half. A selection therefore costs one addition.
 
 use super::case::{Case, Kind, Measure, choose};
 use super::groups::{Block, Column, Row};
@@ -9,16 +8,16 @@ use super::groups::{Block, Column, Row};
 /// All choices of sections from some strata.
 #[derive(Clone, Debug)]
 pub struct Half {
-    /// Sections of one choice.
+    /// Number of sections of one choice.
     pub width: usize,
     /// `width` sections for each choice.
     pub sections: Vec<u32>,
     pub count: usize,
-    /// Choices of each stratum, of which these are all combinations.
+    /// Choices of each stratum, whose combinations are listed.
     factors: Vec<Vec<Vec<u32>>>,
 }
 
-/// Rows with columns are all selections.
+/// All pairs of a row and a column are all selections.
 #[derive(Clone, Debug)]
 pub struct Halves {
     pub rows: Half,
@@ -26,7 +25,7 @@ pub struct Halves {
 }
 
 impl Halves {
-    /// The numbers of choices of both halves, split as evenly as the zones allow; the first is the larger.
+    /// Numbers of choices of both halves, balanced as evenly as the zones allow; the first is the larger.
     pub fn sizes(case: &Case) -> (f64, f64) {
         let (rows, columns, _) = split(case);
         (rows, columns)
@@ -45,11 +44,11 @@ impl Halves {
     }
 }
 
-/// Which strata make the rows: the larger product, and the split whose larger half is least.
+/// The strata of the rows: the split whose larger half is smallest, with the larger half as rows.
 fn split(case: &Case) -> (f64, f64, Vec<bool>) {
     let sizes: Vec<f64> = case.strata.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).collect();
     let all: f64 = sizes.iter().product();
-    // Beyond 16 zones the first 16 are shared out and the others stay with the columns.
+    // Beyond 16 zones, the first 16 are split and the others are added to the columns.
     let shared = sizes.len().min(16);
     let product = |mask: u32| (0..shared).filter(|at| mask >> at & 1 == 1).map(|at| sizes[at]).product::<f64>();
     let best =
@@ -68,7 +67,7 @@ pub fn subsets(members: &[usize], take: usize) -> Vec<Vec<u32>> {
     }
     loop {
         found.push(chosen.iter().map(|&at| members[at] as u32).collect());
-        // The last place that can still move on.
+        // The last position that can still advance.
         let Some(place) = (0..take).rev().find(|&place| chosen[place] < members.len() - take + place) else { return found };
         chosen[place] += 1;
         for next in place + 1..take {
@@ -95,7 +94,7 @@ impl Half {
         &self.sections[at * self.width..(at + 1) * self.width]
     }
 
-    /// Sums over every choice, from those of sections: first within strata, then over all combinations.
+    /// Sums of every choice from those of sections: first within strata, then over all combinations.
     fn sums(&self, of_section: &[Sums]) -> Vec<Sums> {
         self.factors.iter().fold(vec![Sums::default()], |all, choices| {
             let more: Vec<Sums> =
@@ -109,7 +108,7 @@ impl Half {
     }
 }
 
-/// Count of values, sum and sum of squares of a choice.
+/// Number of values, sum and sum of squares of a choice.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     n: usize,
@@ -123,18 +122,18 @@ impl Sums {
     }
 }
 
-/// A statistic over selections, in parts that its halves give.
+/// A statistic over selections, in terms of the two halves.
 #[derive(Clone, Debug)]
 pub enum Parts {
-    /// Sums, whose sum the form maps to the value; choices of rows and columns that give none.
+    /// Sums, which `form` maps to the value; and the choices of rows and columns without a value.
     Sums { blocks: Vec<Block>, form: Form, undefined: Vec<(Vec<u32>, Vec<u32>)> },
-    /// The largest of both halves; negated for the smallest. `None` where a half has no value.
+    /// The larger of both halves; negated for the smallest. `None` where a half has no value.
     Extremes { rows: Vec<Option<f64>>, columns: Vec<Option<f64>>, negative: bool },
-    /// Not to be had from parts.
+    /// Not a function of the halves.
     Pooled,
 }
 
-/// What the sum of the parts is.
+/// Meaning of the sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     Value,
@@ -150,7 +149,7 @@ impl Form {
         }
     }
 
-    /// The sums that map to values between two.
+    /// Bounds of the sum for values between two bounds.
     pub fn bounds(self, low: f64, high: f64) -> (f64, f64) {
         match self {
             Self::Value => (low, high),
@@ -185,7 +184,7 @@ impl Measure {
     }
 
     fn sums(&self, halves: &Halves) -> Parts {
-        // Sums about the mean of all values keep their digits.
+        // Sums about the common mean avoid cancellation.
         let all: Vec<f64> = self.values.iter().flatten().copied().collect();
         let center = match self.kind {
             Kind::RootMeanSquare => 0.0,
@@ -202,7 +201,7 @@ impl Measure {
         let (rows, columns) = (halves.rows.sums(&of_section), halves.columns.sums(&of_section));
         let form = if self.kind == Kind::Mean { Form::Value } else { Form::Square };
         let (mut blocks, mut undefined) = (Vec::new(), Vec::new());
-        // Choices with the same number of values share their divisor.
+        // Choices with the same number of values have the same divisor.
         for row_count in counts(&rows) {
             for column_count in counts(&columns) {
                 let n = (row_count + column_count) as f64;
@@ -229,7 +228,7 @@ impl Measure {
     }
 }
 
-/// What a sum, a sum of squares and the square of a sum count for.
+/// Weights of a sum, a sum of squares and the square of a sum.
 #[derive(Clone, Copy, Debug, Default)]
 struct Weights {
     x: f64,

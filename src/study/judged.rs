@@ -1,4 +1,4 @@
-//! One selection judged from its sections: what enumeration is compared with, and what single selections are judged by.
+//! Evaluation of one selection from its sections: the reference for the enumeration, and the method for single selections.
 
 use super::case::{Case, Kind, Measure};
 use crate::result::Verdict;
@@ -6,7 +6,7 @@ use crate::result::study::Selected;
 use crate::run::pool::Rule;
 
 impl Case {
-    /// Every usable section of the strata.
+    /// All usable sections of the strata.
     pub fn usable(&self) -> Vec<usize> {
         self.strata.iter().flat_map(|stratum| stratum.members.iter().copied()).collect()
     }
@@ -38,7 +38,7 @@ impl Case {
     }
 }
 
-/// Limits and quantities that hold so far.
+/// Counts of limits and quantities that are met.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
     pub missing: bool,
@@ -56,7 +56,7 @@ impl Tally {
         }
     }
 
-    /// Ends a quantity that began with the tally before it.
+    /// Completes a quantity; `before` are the counts at its start.
     pub fn quantity(&mut self, before: &Self, empty: bool) {
         if !empty && self.failing == before.failing {
             self.quantities += 1;
@@ -78,7 +78,7 @@ impl Tally {
 }
 
 impl super::case::Quantity {
-    /// Whether some sections have as many signals and pairs as the protocol asks for.
+    /// Whether some sections have the number of signals and pairs that the protocol requires.
     pub fn enough(&self, sections: impl Iterator<Item = usize>) -> bool {
         let mut pairs = 0;
         let mut signals = 0_u128;
@@ -93,7 +93,7 @@ impl super::case::Quantity {
     }
 }
 
-/// Count, sum and sum of squares of every section, so that a statistic of many is had without their values.
+/// Number of values, sum and sum of squares of every section, so that a statistic of several does not need their values.
 #[derive(Clone, Debug)]
 pub struct Sums<'a> {
     measure: &'a Measure,
@@ -116,12 +116,12 @@ impl<'a> Sums<'a> {
         Self { measure, center, sections }
     }
 
-    /// The value divided by its limit; `None` where it is not defined.
+    /// The statistic divided by its limit; `None` where it is not defined.
     pub fn over(&self, sections: impl Iterator<Item = usize> + Clone) -> Option<f64> {
         if self.pooled() { self.measure.over(sections) } else { self.value(self.add(sections)) }
     }
 
-    /// As [`Self::over`] of all sections summed but some.
+    /// As [`Self::over`], from the sums of all sections less those of some.
     pub fn without(&self, all: (f64, f64, f64), removed: &[usize], kept: impl Iterator<Item = usize> + Clone) -> Option<f64> {
         if self.pooled() {
             return self.measure.over(kept);
@@ -130,7 +130,7 @@ impl<'a> Sums<'a> {
         self.value((all.0 - n, all.1 - x, all.2 - xx))
     }
 
-    /// Count, sum and sum of squares of some sections.
+    /// Number of values, sum and sum of squares of some sections.
     pub fn add(&self, sections: impl Iterator<Item = usize>) -> (f64, f64, f64) {
         sections.fold((0.0, 0.0, 0.0), |(n, x, xx), at| {
             let (of_n, of_x, of_xx) = self.sections[at];

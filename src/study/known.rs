@@ -1,4 +1,4 @@
-//! What is known of all selections where they are too many to look at: no sampling where another way leads there.
+//! Order statistics that are computed for all selections even where there are too many to enumerate.
 
 use rayon::prelude::*;
 
@@ -9,10 +9,10 @@ use super::halves::{Halves, Parts};
 use super::listed::sums;
 use crate::result::study::Spread;
 
-/// Choices of a half that are listed to have a statistic exactly.
+/// Largest number of choices of a half that is listed for an exact statistic.
 const MOST_LISTED: f64 = 2e6;
 
-/// Of every limit what is known of its order statistics over all selections, without drawing any.
+/// For every limit its order statistics over all selections, where they can be computed without random selections.
 pub fn known(case: &Case) -> Vec<Option<Spread>> {
     let (rows, columns) = Halves::sizes(case);
     let halves = (rows <= MOST_LISTED && columns <= MOST_LISTED).then(|| Halves::of(case));
@@ -30,20 +30,20 @@ pub fn known(case: &Case) -> Vec<Option<Spread>> {
     measures.par_iter().with_max_len(1).map(of).collect()
 }
 
-/// How it is known, a sentence for each way.
+/// One sentence for each method used.
 pub fn methods(known: &[Option<Spread>]) -> Vec<String> {
     let (all, exact) = (known.len(), known.iter().flatten().filter(|spread| spread.exact).count());
     let surely: Vec<f64> = known.iter().flatten().filter_map(|spread| spread.within).collect();
     let mut methods = Vec::new();
     if exact > 0 {
         methods.push(format!(
-            "{exact} of {all} statistics are exact all the same: the choices with a largest value up to a bound are counted by binomials, and order statistics of means follow from sorted halves of selections."
+            "{exact} of {all} statistics are nevertheless exact: selections with a largest value up to a bound are counted by binomial coefficients, and order statistics of means follow from sorted half selections."
         ));
     }
     if !surely.is_empty() {
         let widest = surely.iter().copied().fold(0.0, f64::max);
         methods.push(format!(
-            "{} of {all} statistics, which are means, are known of all selections without drawing: least and greatest values exactly, quartiles to ± {widest:.1e} for certain, since the parts of sections are counted on a grid.",
+            "{} of {all} statistics, which are means, are computed for all selections: minima and maxima exactly, quartiles within ± {widest:.1e}, by counting the contributions of the sections on a grid.",
             surely.len()
         ));
     }

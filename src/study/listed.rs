@@ -1,11 +1,11 @@
-//! Order statistics where the values, or their counts, can be listed: single values, and sums by sorting.
+//! Order statistics where the values or their counts can be listed: single values, and sums by sorting.
 
 use super::groups::Block;
 use super::halves::Form;
 use super::spread::{Order, ranks};
 use crate::result::study::Spread;
 
-/// Values with how often each occurs, the least first; `None` if there are none.
+/// From values in any order with their counts; `None` if there are none.
 pub fn weighted(list: &[(f64, f64)]) -> Option<Listed> {
     let count: f64 = list.iter().map(|(_, times)| times).sum();
     if count < 1.0 {
@@ -30,7 +30,7 @@ pub fn weighted(list: &[(f64, f64)]) -> Option<Listed> {
     Some(Listed { count, min: list[0].0, max: list[list.len() - 1].0, quartiles, outliers })
 }
 
-/// What [`Order`] says, with counts that may be beyond whole numbers.
+/// As [`Order`], with counts that may exceed the integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Listed {
     pub count: f64,
@@ -64,10 +64,10 @@ impl From<Listed> for Spread {
     }
 }
 
-/// Values kept around a wanted rank.
+/// Number of values kept around a rank.
 const KEPT: u64 = 1 << 17;
 
-/// Order statistics of sums of two numbers, however many there are: sorted rows and columns, and counts by walking along both.
+/// Order statistics of sums of two numbers, by sorted rows and columns; counts are obtained by one pass along both.
 pub fn sums(blocks: &[Block], form: Form) -> Option<Listed> {
     let sorted: Vec<(Vec<f64>, Vec<f64>)> = blocks
         .iter()
@@ -98,7 +98,7 @@ pub fn sums(blocks: &[Block], form: Form) -> Option<Listed> {
     Some(Listed { count: count as f64, min: form.map(min), max: form.map(max), quartiles, outliers: outliers as f64 })
 }
 
-/// Sums below a value, or up to it.
+/// Number of sums below a value, or up to it.
 fn below(sorted: &[(Vec<f64>, Vec<f64>)], value: f64, or_equal: bool) -> u64 {
     let mut count = 0;
     for (rows, columns) in sorted {
@@ -140,7 +140,7 @@ fn of_rank(sorted: &[(Vec<f64>, Vec<f64>)], rank: u64, (min, max): (f64, f64)) -
             while from > 0 && row + columns[from - 1] > low {
                 from -= 1;
             }
-            // Places move down only; what lies above `low` again is passed over.
+            // The positions only decrease; values above `low` are visited again.
             kept.extend(columns[from..to].iter().map(|column| row + column).filter(|sum| *sum > low));
         }
     }

@@ -1,21 +1,21 @@
-//! How far a verdict depends on the sections chosen: every selection, counted and not run.
+//! Dependence of a verdict on the selection of sections. Selections are computed from sums of sections, without evaluating records again.
 //!
-//! | file | what |
+//! | file | content |
 //! |---|---|
 //! | `case` | strata, values and limits of a campaign |
-//! | `halves` | selections as pairs of two halves; a statistic as a sum of their parts |
-//! | `groups`, `buckets` | rows of selections with their columns in about the order of the values |
-//! | `spread`, `pilot`, `window` | exact order statistics of such sums, without keeping them |
-//! | `listed`, `extremes` | order statistics where values can be listed or sums only added; of largest values, by binomials |
-//! | `grid` | bounds of the order statistics of means, however many selections there are |
+//! | `halves` | selections as pairs of two halves; a statistic as a sum of their contributions |
+//! | `groups`, `buckets` | rows of selections with the columns in approximate order of the values |
+//! | `spread`, `pilot`, `window` | exact order statistics of such sums, without storing them |
+//! | `listed`, `extremes` | order statistics from lists or sorted sums; of largest values, by binomial coefficients |
+//! | `grid` | bounds of the order statistics of means, for any number of selections |
 //! | `overall` | one statistic over all selections |
-//! | `fails`, `verdicts` | a bit for every selection that breaks a limit; by which quantities selections fail |
+//! | `fails`, `verdicts` | bit sets of selections that do not meet a limit; the quantities that fail |
 //! | `judged` | one selection from its sections |
 //! | `enumerate` | all selections |
-//! | `sampling`, `random`, `quartiles` | some of them, drawn at random, with intervals |
-//! | `known` | what is known of all of them all the same |
-//! | `flips` | selections whose verdict is another under other values |
-//! | `removal`, `greedy` | smallest sets that change the verdict; some set, where not all can be tried |
+//! | `sampling`, `random`, `quartiles` | random selections, with intervals |
+//! | `known` | statistics that are exact even where selections are random |
+//! | `flips` | selections whose verdict changes with other values |
+//! | `removal`, `greedy` | smallest sets that change the verdict; a set by greedy search |
 //! | `reduce` | fewer sections with the same scatter |
 
 mod buckets;
@@ -47,19 +47,19 @@ use case::Case;
 use fails::Fails;
 pub use reduce::reduced;
 
-/// How a study is done where there is a choice.
+/// Settings of a study.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// Selections that are all looked at; more are drawn from.
+    /// Number of selections up to which all are evaluated; beyond it, random ones.
     pub most: f64,
-    /// Width of the interval of the share at which drawing ends.
+    /// Width of the 95 % interval of the share at which drawing stops.
     pub width: f64,
     pub seed: u64,
 }
 
-/// Selections that are enumerated: a set of bits, one for each, takes 25 MB, and there are about eight of them.
+/// Largest number of enumerated selections: a bit set of them takes 25 MB, and about eight are used.
 pub const MOST: f64 = 2e8;
-/// Selections enumerated where a statistic has to be taken from all values together.
+/// The same where a statistic must be computed from all values together.
 const MOST_POOLED: f64 = 2e6;
 
 impl Default for Settings {
@@ -69,20 +69,20 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Selections of a case that are all looked at.
+    /// The number of selections up to which all selections of a case are evaluated.
     fn most_of(&self, case: &Case) -> f64 {
         let pooled = case.measures().any(|(_, measure)| matches!(measure.kind, case::Kind::Pooled(_)));
         if pooled { self.most.min(MOST_POOLED) } else { self.most }
     }
 }
 
-/// Every selection of a case, or as many as it takes, and the smallest sets of sections that decide the verdict.
+/// Evaluates the selections of a case, and the smallest sets of sections that change the verdict.
 pub fn selections(case: &Case, settings: &Settings) -> SelectionStudy {
     let found = marked(case, settings).0;
     SelectionStudy { removal: Some(removal::smallest(case, found.verdict)), ..found }
 }
 
-/// Every selection without such sets, and the marks of the selections that are not validated, if all were looked at.
+/// The same without these sets, with the selections that are not validated if all were evaluated.
 pub fn marked(case: &Case, settings: &Settings) -> (SelectionStudy, Option<Fails>) {
     let combinations = case.combinations();
     let (counted, fails) = if combinations <= settings.most_of(case) {

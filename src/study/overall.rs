@@ -1,4 +1,4 @@
-//! One statistic over all selections: its order statistics, and the selections that break its limit.
+//! One statistic over all selections: its order statistics, and the selections that do not meet its limit.
 
 use super::case::{Case, Measure, Quantity};
 use super::extremes;
@@ -12,11 +12,11 @@ use super::spread::{Limit, Memory, order};
 pub struct OverAll {
     pub spread: Option<Listed>,
     pub failing: u64,
-    /// Row and column of the value that is worst against the limit, and that value.
+    /// Row and column of the worst value against the limit, and that value.
     pub worst: Option<((u32, u32), f64)>,
 }
 
-/// One statistic: its order statistics, with the selections marked that break its limit and those where it is not defined.
+/// Computes the order statistics, and marks the selections that do not meet the limit or have no value.
 pub fn over_all(
     case: &Case,
     measure: &Measure,
@@ -49,7 +49,7 @@ pub fn over_all(
         Parts::Extremes { rows, columns, negative } => {
             let sign = if negative { -1.0 } else { 1.0 };
             let within = |value: &Option<f64>| value.is_none_or(|value| measure.holds(sign * value));
-            // The larger of two is beyond a bound on that side if either is; on the other side if both are.
+            // The larger of two exceeds an upper bound if either does, and is below a lower bound if both are.
             for (row, r) in rows.iter().enumerate() {
                 for (column, c) in columns.iter().enumerate() {
                     match (*r).into_iter().chain(*c).reduce(f64::max) {
@@ -79,7 +79,7 @@ fn with_worst(measure: &Measure, listed: Option<Listed>, ends: Ends, failing: u6
 
 type Ends = Option<((u32, u32), (u32, u32))>;
 
-/// Where the larger of two is least and where it is greatest.
+/// Positions of the minimum and the maximum of the larger of two.
 fn extreme_ends(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -> Ends {
     let by = |value: &Option<f64>| value.unwrap_or(f64::NEG_INFINITY);
     let least = |values: &[Option<f64>]| (0..values.len()).min_by(|a, b| by(&values[*a]).total_cmp(&by(&values[*b])));
@@ -116,7 +116,7 @@ fn pooled(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut
     (weighted(&single), ends, failing)
 }
 
-/// Marks selections with fewer signals or pairs than the protocol asks for.
+/// Marks selections with fewer signals or pairs than the protocol requires.
 pub fn too_few(quantity: &Quantity, halves: &Halves, undefined: &mut Option<Fails>) {
     let of = |half: &Half| -> Vec<(usize, u128)> {
         half.choices()

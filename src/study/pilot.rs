@@ -1,13 +1,13 @@
-//! A small even sample of a great many values, to know about where their quartiles lie.
+//! An evenly distributed sample of a large set of values, to estimate its quartiles.
 
 use super::buckets::ordered;
 use super::groups::{Block, value};
 
-/// Values of the sample for the root of the number of all.
+/// Size of the sample as a multiple of the square root of the number of values.
 const SAMPLE: f64 = 6.0;
 
-/// Some of the values: rows and columns, each in about the order of their own parts, at the points of a sequence that fills
-/// the unit square evenly (Roberts' R2: powers of the plastic number).
+/// A sample of the values: rows and columns, each in approximate order of their own contributions, at the points of a low-discrepancy
+/// sequence (Roberts' R2: powers of the plastic number).
 #[inline(always)]
 pub fn sample(blocks: &[Block], count: u64) -> Vec<f64> {
     let wanted = ((count as f64).sqrt() * SAMPLE).min(count as f64).max(1.0);
@@ -31,12 +31,12 @@ pub fn sample(blocks: &[Block], count: u64) -> Vec<f64> {
     sample
 }
 
-/// Of a number below 2, what is beyond 1.
+/// Subtracts 1 from a number of [1, 2).
 fn wrapped(x: f64) -> f64 {
     if x >= 1.0 { x - 1.0 } else { x }
 }
 
-/// Values of some places in the order of a sample; infinite beyond its ends.
+/// Values at some positions in the order of a sample; infinite beyond its ends.
 pub fn places<const N: usize>(sample: &mut [f64], shares: [f64; N]) -> [f64; N] {
     let places = shares.map(|share| (share * sample.len() as f64).floor());
     let mut found = places.map(|place| if place < 0.0 { f64::NEG_INFINITY } else { f64::INFINITY });
@@ -47,8 +47,8 @@ pub fn places<const N: usize>(sample: &mut [f64], shares: [f64; N]) -> [f64; N] 
     found
 }
 
-/// Looks up the middle one of some places, which are in their order, then those before it among lesser numbers and those after it among greater ones.
-/// The numbers begin at place `begin`.
+/// Selects several order statistics: the middle one first, then those before it among the smaller numbers and those after it among the
+/// larger ones. `wanted` is sorted; the numbers begin at position `begin`.
 fn select(numbers: &mut [f64], begin: usize, wanted: &[(usize, usize)], found: &mut [f64]) {
     let Some((_, place)) = wanted.get(wanted.len() / 2).copied() else { return };
     let (less, value, more) = numbers.select_nth_unstable_by(place - begin, f64::total_cmp);

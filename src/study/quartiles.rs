@@ -1,11 +1,11 @@
-//! Quartiles estimated from selections drawn at random, with intervals that hold for any distribution.
+//! Quartiles estimated from random selections, with distribution-free intervals.
 
 use statrs::distribution::{Binomial, DiscreteCDF};
 
 use crate::metrics::percentile::{Method, percentiles};
 use crate::result::study::Spread;
 
-/// What some of many values say of them. Where there are none, nothing.
+/// Order statistics estimated from a random sample; nothing for an empty sample.
 pub fn estimated(values: &[f64]) -> Option<Spread> {
     let found = percentiles(values, &[0.0, 25.0, 50.0, 75.0, 100.0], Method::Linear).ok()?;
     let [min, q1, median, q3, max] = found[..] else { return None };
@@ -18,11 +18,11 @@ pub fn estimated(values: &[f64]) -> Option<Spread> {
     Some(Spread { min, q1, median, q3, max, outliers, count: values.len() as f64, exact: false, within: None, intervals })
 }
 
-/// 95 % interval of a quantile from a sorted sample, whatever the distribution: between two order statistics.
+/// 95 % interval of a quantile from a sorted sample, for any distribution, between two order statistics.
 ///
-/// The number of values below the quantile is binomial, so that the quantile lies between the order statistics of the ranks that
-/// this number exceeds and falls short of with 2.5 % each (David and Nagaraja, "Order Statistics", 2003, section 7.1). `None` where
-/// the sample is too small to have such ranks.
+/// The number of values below the quantile is binomial. The interval lies between the order statistics whose ranks this number exceeds
+/// and falls short of with 2.5 % each (David and Nagaraja, "Order Statistics", 2003, section 7.1). `None` where the sample is too small
+/// to have such ranks.
 pub fn interval(sorted: &[f64], share: f64) -> Option<(f64, f64)> {
     let below = Binomial::new(share, sorted.len() as u64).ok()?;
     // Ranks from 1; P(count < low) and P(count >= high) are at most 2.5 % each.
@@ -43,14 +43,14 @@ mod tests {
         assert_eq!((of(10), of(20), of(5)), (Some((2.0, 9.0)), Some((6.0, 15.0)), None));
     }
 
-    /// Its coverage, summed from binomial probabilities, is never below 95 % and little above for a large sample.
+    /// The coverage, summed from binomial probabilities, is never below 95 % and little above for a large sample.
     #[test]
     fn it_covers_what_it_says() {
         for (n, share, most) in [(30_u64, 0.25, 0.985), (200, 0.5, 0.97), (65_536, 0.75, 0.9515)] {
             let sorted: Vec<f64> = (1..=n).map(|k| k as f64).collect();
             let (low, high) = interval(&sorted, share).expect("large enough");
             let below = Binomial::new(share, n).expect("a distribution");
-            // The quantile lies between the ranks where as many as `low` and fewer than `high` values are below it.
+            // The quantile is inside if at least `low` and fewer than `high` values are below it.
             let covered = below.cdf(high as u64 - 1) - below.cdf(low as u64 - 1);
             assert!((0.95..most).contains(&covered), "{n} {share}: {covered}");
         }

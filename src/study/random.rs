@@ -1,4 +1,4 @@
-//! Random selections, the same for the same seed on every machine.
+//! Random selections, reproducible from a seed on every machine.
 
 use super::case::Case;
 
@@ -7,14 +7,14 @@ use super::case::Case;
 pub struct Random(u64);
 
 impl Random {
-    /// Streams of different numbers are independent of each other.
+    /// Streams of different numbers are independent.
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut random = Self(seed ^ stream.wrapping_mul(0xd134_2543_de82_ef95));
         random.number();
         random
     }
 
-    /// Any number of 64 bits, each as likely.
+    /// A uniformly distributed 64-bit number.
     pub fn number(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -23,13 +23,13 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number below `n`, each as likely (Lemire's multiplication; its bias is below n / 2^64).
+    /// A uniformly distributed number below `n` (Lemire's multiplication; its bias is below n / 2^64).
     pub fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.number()) * n as u128) >> 64) as usize
     }
 }
 
-/// One selection, every one as likely: sections of each stratum without repetition.
+/// A random selection with equal probability: sections of each stratum without replacement.
 pub fn draw(case: &Case, random: &mut Random) -> Vec<usize> {
     let mut chosen = Vec::new();
     for stratum in &case.strata {

@@ -1,19 +1,20 @@
-//! Fewer sections with the scatter of all: at most so many for each zone, chosen so that the highest standard deviation stays.
+//! Reduction of the sections with nearly the same scatter: at most a given number per zone, so that the highest standard deviation is
+//! kept.
 //!
-//! Götz and Polach (section 4.1) choose their nine sections for each zone so that the highest standard deviation of a validation
-//! quantity, taken over all sections, remains almost the same. They do not say how; here sections are given up one at a time,
-//! always the one whose loss changes least, and then exchanged one for one as long as that helps.
+//! Götz and Polach (section 4.1) choose nine sections per zone so that the highest standard deviation of a validation quantity over all
+//! sections remains almost the same. They do not describe the method. Here sections are removed one at a time, always the one whose
+//! removal changes the scatter least; then sections are exchanged as long as the result improves.
 
 use super::case::{Case, Kind};
 use super::judged::Sums;
 use crate::result::study::Reduction;
 
-/// What the scatter of single quantities counts for beside the highest.
+/// Weight of the scatter of single quantities against the highest.
 const OTHERS: f64 = 0.1;
-/// Exchanges after which the choice stands.
+/// Largest number of exchanges.
 const MOST_EXCHANGES: usize = 200;
 
-/// The case with at most `most` sections in each stratum, and what became of the scatter.
+/// The case with at most `most` sections in each stratum, and the change of the scatter.
 pub fn reduced(case: &Case, most: usize) -> (Case, Reduction) {
     let deviations: Vec<(usize, Sums<'_>)> = case
         .measures()
@@ -32,7 +33,7 @@ pub fn reduced(case: &Case, most: usize) -> (Case, Reduction) {
     };
     let keep: Vec<usize> = case.strata.iter().map(|stratum| most.max(stratum.take).min(stratum.members.len())).collect();
     let mut kept: Vec<Vec<usize>> = case.strata.iter().map(|stratum| stratum.members.clone()).collect();
-    // One section less, or one exchanged for another: the first of the best.
+    // One section removed, or one exchanged for another: the first of the best.
     let flat = |kept: &[Vec<usize>]| kept.concat();
     while let Some(next) = (0..kept.len())
         .filter(|&stratum| kept[stratum].len() > keep[stratum])

@@ -1,4 +1,4 @@
-//! The smallest sets of sections without which all others together give another verdict.
+//! The smallest sets of sections whose removal changes the verdict.
 
 use super::case::{Case, Kind};
 use super::greedy;
@@ -6,13 +6,13 @@ use super::judged::{Sums, Tally};
 use crate::result::Verdict;
 use crate::result::study::Removal;
 
-/// Sets tried, fewer where a statistic is taken from all values anew.
+/// Number of sets tried; fewer where a statistic must be computed from all values.
 const MOST_TRIED: usize = 300_000;
 const MOST_TRIED_POOLED: usize = 20_000;
-/// Sets of which the sections are kept.
+/// Number of sets for which the sections are stored.
 const KEPT: usize = 20;
 
-/// Tries sets of one section, of two, and so on; every zone keeps what a selection takes from it.
+/// Tries sets of one section, of two, and so on. Every zone keeps the number of sections that a selection takes.
 pub fn smallest(case: &Case, verdict: Verdict) -> Removal {
     let sums: Vec<Vec<Sums<'_>>> = case.quantities.iter().map(|quantity| quantity.measures.iter().map(Sums::of).collect()).collect();
     let slow = case.measures().any(|(_, measure)| !matches!(measure.kind, Kind::Mean | Kind::Deviation { .. } | Kind::RootMeanSquare));
@@ -49,7 +49,7 @@ pub fn smallest(case: &Case, verdict: Verdict) -> Removal {
             break;
         }
     }
-    // Values that have to be taken anew for each section given up would take too long.
+    // Statistics that must be computed from all values for each set would take too long.
     if removal.sets.is_empty() && !removal.complete && !slow {
         let named = |set: Vec<usize>| set.into_iter().map(|at| case.sections[at].clone()).collect();
         removal.larger = greedy::set(case, verdict).map(named);
@@ -60,20 +60,20 @@ pub fn smallest(case: &Case, verdict: Verdict) -> Removal {
 struct Search<'a> {
     case: &'a Case,
     sums: &'a [Vec<Sums<'a>>],
-    /// Of all usable sections.
+    /// Sums of all usable sections.
     all: &'a [Vec<(f64, f64, f64)>],
     /// Stratum and section.
     members: &'a [(usize, usize)],
     verdict: Verdict,
     left: usize,
     removed: Vec<usize>,
-    /// Sections that each stratum can do without.
+    /// Number of sections that each stratum can lose.
     spare: Vec<usize>,
     found: Vec<Vec<usize>>,
 }
 
 impl Search<'_> {
-    /// All sets of so many more sections from a place on; false where there were too many.
+    /// All sets of `more` further sections from a position on; false where there were too many.
     fn sets(&mut self, from: usize, more: usize) -> bool {
         if more == 0 {
             if self.left == 0 {

@@ -1,5 +1,5 @@
-//! Selections drawn at random, where there are too many to look at all: the share with an interval, drawn until it is narrow
-//! enough. What can be had exactly all the same is had exactly.
+//! Random selections, where there are too many to evaluate all: the share with an interval, drawn until it is narrow enough. Statistics
+//! that can be computed for all selections are exact.
 
 use rayon::prelude::*;
 
@@ -15,19 +15,19 @@ use crate::metrics::interval::wilson;
 use crate::result::Verdict;
 use crate::result::study::{Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection};
 
-/// Selections of a batch, and batches drawn before the width is looked at again.
+/// Selections of a batch, and batches drawn between checks of the width.
 pub(super) const BATCH: usize = 4096;
 pub(super) const ROUND: usize = 8;
-/// No more are drawn, however narrow the interval is wanted.
+/// Largest number of selections drawn.
 pub(super) const MOST_DRAWN: usize = 1 << 22;
-/// Selections whose values are kept for the estimated quartiles.
+/// Number of selections whose values are kept for the quartiles.
 const KEPT: usize = 1 << 16;
-/// What some selections came to.
+/// Results of some selections.
 struct Drawn {
     validated: u64,
     /// Per section: selections with it, and validated ones.
     with: Vec<(u64, u64)>,
-    /// Per quantity and per limit: selections that break it; per quantity, alone.
+    /// Per quantity and per limit: selections that do not meet it; per quantity: those in which it alone fails.
     quantities: Vec<(u64, u64)>,
     limits: Vec<u64>,
     /// Values of each limit, and the worst with its selection.
@@ -97,7 +97,7 @@ impl Drawn {
         }
     }
 
-    /// Batches are joined in their order, so that the result does not depend on who was first.
+    /// Batches are joined in order, so that the result does not depend on the number of threads.
     fn join(&mut self, other: Self) {
         self.validated += other.validated;
         let pairs = |mine: &mut Vec<(u64, u64)>, others: Vec<(u64, u64)>| {
@@ -118,7 +118,7 @@ impl Drawn {
     }
 }
 
-/// As many selections as the wanted width takes.
+/// Draws selections until the interval has the required width.
 pub fn some(case: &Case, settings: &Settings) -> Counted {
     let sums_of: Vec<Vec<Sums<'_>>> = case.quantities.iter().map(|quantity| quantity.measures.iter().map(Sums::of).collect()).collect();
     let mut drawn = Drawn::none(case);
@@ -200,7 +200,7 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
     }
 }
 
-/// Of a mean the selection that is worst of all, if it breaks the limit: no drawing finds a worse one.
+/// For a mean, the worst of all selections, if it does not meet the limit.
 fn worst_known(case: &Case, measure: &Measure) -> Option<Vec<usize>> {
     let (least, greatest) = Additive::of(case, measure)?.ends();
     let value = |selection: &[usize]| measure.over(selection.iter().copied());
@@ -214,7 +214,7 @@ fn methods(all: u64, interval: (f64, f64), known: &[Option<Spread>], settings: &
     let ended = if width <= wanted {
         format!("until the 95 % interval of the share (Wilson) was no wider than {wanted}: it is {width:.5} wide")
     } else {
-        format!("which is the maximum; the 95 % interval of the share (Wilson) is {width:.5} wide, more than the {wanted} wanted")
+        format!("which is the maximum; the 95 % interval of the share (Wilson) is {width:.5} wide, more than the required {wanted}")
     };
     let mut methods = vec![format!(
         "There are too many selections to evaluate all: {all} were drawn at random with equal probability (seed {}), {ended}.",

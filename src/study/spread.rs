@@ -1,7 +1,7 @@
-//! Exact order statistics of a great many values: none is kept that cannot be one of those wanted.
+//! Exact order statistics of a large set of values, storing only candidates for the required ranks.
 //!
-//! A small even sample says where the quartiles lie; one sweep over all rows counts what lies below those places and keeps what
-//! lies within them. Where the sample misled, the sweep is made again with wider windows, so that the result is exact in any case.
+//! An evenly distributed sample estimates the quartiles. One pass over all rows counts the values below these estimates and stores those
+//! near them. If a quartile is not among the stored values, the pass is repeated with wider windows, so that the result is always exact.
 
 use super::fails::Fails;
 use super::groups::{Block, Row, Sorted, groups};
@@ -15,11 +15,11 @@ pub struct Order {
     pub count: u64,
     pub min: f64,
     pub max: f64,
-    /// 25, 50, 75 %, linear between order statistics.
+    /// 25, 50, 75 %, interpolated linearly between order statistics.
     pub quartiles: [f64; 3],
     /// Values more than 1.5 interquartile ranges below the first or above the third quartile.
     pub outliers: u64,
-    /// Row and column of the least and of the greatest value.
+    /// Row and column of the minimum and of the maximum.
     pub at_min: (u32, u32),
     pub at_max: (u32, u32),
 }
@@ -27,23 +27,23 @@ pub struct Order {
 /// Three for the quartiles, two for the ends of the whiskers.
 const WINDOWS: usize = 5;
 
-/// Memory that one statistic after another uses, so that the system hands it out once.
+/// Buffers that are reused for one statistic after another.
 #[derive(Debug, Default)]
 pub struct Memory {
     kept: [Vec<f64>; WINDOWS],
 }
 
-/// Where a limit holds.
+/// Range in which a limit is met.
 #[derive(Debug)]
 pub struct Limit<'a> {
     pub low: f64,
     pub high: f64,
     pub fails: &'a mut Fails,
-    /// How many values broke it.
+    /// Number of values outside it.
     pub count: u64,
 }
 
-/// Rank of each quartile among `count` values, and how far it lies toward the next.
+/// Rank of each quartile among `count` values, and the fraction towards the next.
 pub fn ranks(count: u64) -> [(u64, f64); 3] {
     [0.25, 0.5, 0.75].map(|share| {
         let rank = (count - 1) as f64 * share;
@@ -51,15 +51,15 @@ pub fn ranks(count: u64) -> [(u64, f64); 3] {
     })
 }
 
-/// Share of the values on each side of a quartile's place in the sample that the sweep keeps, for sums of two and of more parts.
-/// Found by trying: the error of an even sample has no simple law, and a sweep that misses is made again.
+/// Half the width of a window, as a share of the values, for sums of two and of more parts. Determined by trial, since the error of the
+/// sample has no simple law; a pass that misses is repeated.
 const MARGIN: (f64, f64) = (0.0008, 0.0045);
-/// Size of the sample that the margins are for: six times the root of 13.8 million.
+/// Sample size for which the margins hold: six times the square root of 13.8 million.
 const MARGIN_FOR: f64 = 18_600.0;
 
-/// Order statistics of all values of some blocks, mapped by their form; what a limit forbids is marked on the way.
+/// Order statistics of all values of some blocks, mapped by their form. Values outside the limit are marked in the same pass.
 ///
-/// The same numbers on every processor: wide instructions do the same sums, and none is contracted.
+/// The result is the same on every processor: vector instructions give the same sums, and no operations are fused.
 pub fn order(blocks: &[Block], form: Form, limit: Option<&mut Limit<'_>>, memory: &mut Memory) -> Option<Order> {
     pulp::Arch::new().dispatch(|| swept(blocks, form, limit, memory))
 }
@@ -107,7 +107,7 @@ impl Sweep {
         for (window, bounds) in windows.iter_mut().zip(at.chunks_exact(2)) {
             (window.low, window.high) = (bounds[0], bounds[1]);
         }
-        // Where the whiskers may end, from the least and the greatest that the quartiles can be.
+        // Possible ends of the whiskers, from the bounds of the quartiles.
         let (q1, q3) = ((form.map(windows[0].low), form.map(windows[0].high)), (form.map(windows[2].low), form.map(windows[2].high)));
         let fence = |low: f64, high: f64| {
             let room = 1e-9 * (low.abs() + high.abs());
@@ -130,7 +130,7 @@ impl Sweep {
         }
     }
 
-    /// Only a row that can hold a new extreme is looked into.
+    /// Only rows that may contain a new extreme are evaluated.
     #[inline(always)]
     fn extremes(&mut self, sorted: &Sorted<'_>, row: &Row, slack: f64) {
         if row.p + sorted.keys.least() - slack <= self.min.0 {
@@ -153,7 +153,7 @@ impl Sweep {
         }
     }
 
-    /// `None` where a window missed what it looked for.
+    /// `None` where a window does not contain its rank.
     #[inline(always)]
     fn finish(&mut self, count: u64, form: Form) -> Option<Order> {
         let mut quartiles = [0.0; 3];

@@ -1,31 +1,30 @@
-//! Which selections fail, and by how many quantities and by which one.
+//! Selections that fail, the number of quantities that fail in each, and the only one that fails.
 
 use rayon::prelude::*;
 
 use super::fails::Fails;
 use crate::run::pool::Rule;
 
-/// Words joined at a time, so that they are fetched from memory once for all that is done with them.
+/// Words joined at a time, so that they stay in the cache for all operations.
 const CHUNK: usize = 512;
 
-/// Marks of all selections, gathered quantity by quantity.
+/// Bit sets of all selections, collected quantity by quantity.
 ///
-/// The first quantity that a selection fails in is kept as a number in bits, one set of marks for each binary digit: with twelve
-/// quantities four sets in place of twelve.
+/// The number of the first quantity that fails is stored in binary, one bit set per binary digit: four sets for twelve quantities.
 #[derive(Debug)]
 pub struct Verdicts {
     rule: Rule,
-    /// Fails in some quantity; once the rule was applied, is not validated.
+    /// Fails in some quantity; after the rule is applied: is not validated.
     pub any: Fails,
-    /// In two or more.
+    /// Fails in two or more.
     twice: Fails,
     /// Binary digits of the first quantity.
     first: Vec<Fails>,
-    /// Has no value that it needs, where a verdict allows some limits to fail.
+    /// Has no value for some limit, where the verdict allows some limits to fail.
     missing: Option<Fails>,
-    /// Limits or quantities that fail, where a verdict allows some.
+    /// Number of limits or quantities that fail, where the verdict allows some.
     counts: Vec<u8>,
-    /// Selections that fail in each quantity.
+    /// Number of selections that fail, by quantity.
     pub failing: Vec<u64>,
 }
 
@@ -45,12 +44,12 @@ impl Verdicts {
         }
     }
 
-    /// A limit by itself, where the verdict counts limits.
+    /// Adds a limit, where the verdict counts limits.
     pub fn limit(&mut self, fails: &Fails) {
         fails.tally(&mut self.counts);
     }
 
-    /// A quantity, with the selections in which it has no value that it needs.
+    /// Adds a quantity; `missing` are the selections in which it has no value.
     pub fn quantity(&mut self, number: usize, fails: &Fails, missing: Option<&Fails>) {
         if let Some((all, missing)) = self.missing.as_mut().zip(missing) {
             all.join_all(missing);
@@ -71,7 +70,7 @@ impl Verdicts {
         self.failing[number] = fails.count();
     }
 
-    /// For each quantity, the selections that fail in it and in no other; to be asked before the rule is applied.
+    /// For each quantity, the number of selections in which only it fails; to be called before `apply`.
     pub fn alone(&self) -> Vec<u64> {
         let of = |number: usize| {
             let word = |at: usize| {
@@ -86,7 +85,7 @@ impl Verdicts {
         (0..self.failing.len()).into_par_iter().map(of).collect()
     }
 
-    /// Marks what is not validated where a verdict allows some of so many limits or quantities to fail.
+    /// Applies a rule that allows some of the limits or quantities to fail.
     pub fn apply(&mut self, quantities: usize, limits: usize) {
         let allowed = match self.rule {
             Rule::EveryLimit => return,

@@ -1,23 +1,23 @@
-//! Values near a wanted order statistic: those inside are kept, those below counted.
+//! Values near a required order statistic: those inside the window are stored, those below it counted.
 
 use super::groups::{Row, value};
 
-/// Values looked for: those between the two bounds are kept, ties with a bound counted by themselves.
+/// Values between two bounds are stored; values equal to a bound are counted separately.
 #[derive(Clone, Debug, Default)]
 pub struct Window {
     pub low: f64,
     pub high: f64,
-    /// Values below `low`.
+    /// Number of values below `low`.
     pub below: u64,
     at_low: u64,
     at_high: u64,
-    /// The first `length` of these.
+    /// Only the first `length` of these are valid.
     kept: Vec<f64>,
     length: usize,
 }
 
 impl Window {
-    /// With memory that another window gave back.
+    /// With a buffer returned by another window.
     pub fn with(kept: Vec<f64>) -> Self {
         Self { kept, ..Self::default() }
     }
@@ -26,7 +26,7 @@ impl Window {
         self.kept
     }
 
-    /// Counts and keeps values of a row.
+    /// Counts and stores the values of a row.
     #[inline(always)]
     pub fn look(&mut self, row: &Row, q: &[f64], y: &[f64]) {
         let start = self.length;
@@ -36,7 +36,7 @@ impl Window {
         let (low, high) = (self.low, self.high);
         let (mut under, mut at_low, mut at_high) = (0_u64, 0_u64, 0_u64);
         let kept = &mut self.kept[start..start + q.len()];
-        // Two loops: the first works on several values at a time.
+        // Two loops: the first one is vectorised.
         for ((q, y), kept) in q.iter().zip(y).zip(&mut *kept) {
             let value = value(row, *q, *y);
             *kept = value;
@@ -50,10 +50,10 @@ impl Window {
         self.at_high += at_high;
     }
 
-    /// The values of a rank and of the next, if they are in the window. It keeps nothing after that.
+    /// The values of a rank and of the next, if they are in the window. The window is empty afterwards.
     #[inline(always)]
     pub fn ranked(&mut self, rank: u64, next: u64) -> Option<(f64, f64)> {
-        // With equal bounds ties are counted at both.
+        // With equal bounds, ties would be counted twice.
         let at_high = if self.low == self.high { 0 } else { self.at_high };
         let (upto_low, upto_kept) = (self.below + self.at_low, self.below + self.at_low + self.length as u64);
         if rank < self.below || next >= upto_kept + at_high {
@@ -72,7 +72,7 @@ impl Window {
         Some((of(rank, found[0]), of(next, found[1])))
     }
 
-    /// Values that meet a condition which holds below the window and fails above it.
+    /// Number of values that meet a condition that holds below the window and fails above it.
     pub fn counted(&self, holds: impl Fn(f64) -> bool) -> u64 {
         let ties = |value: f64, count: u64| if holds(value) { count } else { 0 };
         let high = if self.low == self.high { 0 } else { ties(self.high, self.at_high) };
@@ -81,13 +81,13 @@ impl Window {
     }
 }
 
-/// Moves the numbers that are wanted to the front; how many they are.
+/// Moves the wanted numbers to the front; returns their count.
 #[inline(always)]
 fn keep(numbers: &mut [f64], wanted: impl Fn(f64) -> bool) -> usize {
     let mut length = 0;
     for at in 0..numbers.len() {
         let number = numbers[at];
-        // Written in any case, which is quicker than to decide.
+        // Unconditional, which is faster than a branch.
         numbers[length] = number;
         length += usize::from(wanted(number));
     }
@@ -101,7 +101,7 @@ fn two(numbers: &mut [f64], rank: usize, next: usize, low: f64, high: f64) -> [f
     let per_unit = BUCKETS as f64 / (high - low);
     let bucket = |x: f64| (((x - low) * per_unit) as u32 as usize).min(BUCKETS - 1);
     let (mut inside, mut before) = (0..BUCKETS, 0);
-    // Numbers of a narrow window are spread evenly: all but those of one or two buckets can be left out.
+    // Numbers of a narrow window are nearly uniform: all but one or two buckets can be excluded.
     if numbers.len() > 4 * BUCKETS && per_unit.is_finite() {
         let mut counts = [0_u32; BUCKETS];
         numbers.iter().for_each(|x| counts[bucket(*x)] += 1);
