@@ -202,7 +202,7 @@ fn more_jobs_than_any_machine_has_cores() {
     let tiny = campaign::tiny();
     let out = tiny.path().join("out").display().to_string();
     let ran = within(SMALL, &["certify", &tiny.path().display().to_string(), "--out", &out, "--jobs", "5000"]);
-    assert!(ran.code == 2 && ran.stderr.contains("`--jobs 5000` is more than 256"), "{}", ran.stderr);
+    assert!(ran.code == 2 && ran.stderr.contains("`--jobs 5000` exceeds the maximum of 256"), "{}", ran.stderr);
 }
 
 /// The example's vehicle with one number changed, on one of its tracks.

@@ -154,7 +154,7 @@ fn wrong_input_is_told_and_nothing_is_written() {
     let folder = out.path().join("none");
     for (kind, more, says) in [
         ("sections", &["--take", "9"][..], "a selection takes 9"),
-        ("sections", &["--width", "2"], "is not between 0 and 1"),
+        ("sections", &["--width", "2"], "must be between 0 and 1"),
         ("sync", &["--offsets=5,x"], "`x` is not a number"),
         ("sync", &["--farthest", "-1"], ""),
         ("parameters", &["--vary", "lowpass_oder=2,4"], "did you mean `lowpass_order`?"),

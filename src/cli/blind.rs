@@ -1,4 +1,4 @@
-//! `blind`: diagnoses every campaign first, then opens the truths and scores.
+//! `blind`: diagnoses every campaign first, then reads the truths and scores the answers.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -24,17 +24,17 @@ use crate::report::blind as report;
 use crate::report::html;
 use crate::result::blind::Case;
 
-/// Largest truth in bytes: a few effects and their sizes.
+/// Maximum size of a truth file in bytes.
 const LARGEST_TRUTH: u64 = 1 << 20;
-/// Folders below the given ones in which campaigns are looked for.
+/// Maximum depth of the search for campaigns.
 const DEEPEST: usize = 6;
 
 #[derive(Debug, Args)]
 pub struct Blinded {
-    /// Folders; every campaign below them is diagnosed.
+    /// Folders. Every campaign in them is diagnosed.
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
-    /// Path of a protocol, or the name of a shipped one.
+    /// Path of a protocol, or name of a shipped one.
     #[arg(long, short)]
     protocol: Option<String>,
     /// Catalogue of effects: a path, or the name of a shipped one.
@@ -43,10 +43,10 @@ pub struct Blinded {
     /// Folder for blind.json, blind.html and the diagnoses.
     #[arg(long, short, default_value = "blind")]
     out: PathBuf,
-    /// Folder in which what was simulated is kept, so that an interrupted run goes on where it was.
+    /// Folder for intermediate results, so that an interrupted run can be resumed.
     #[arg(long, value_name = "DIR")]
     resume: Option<PathBuf>,
-    /// Seed of every random draw.
+    /// Seed of all random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
 }
@@ -57,10 +57,10 @@ impl Blinded {
         self.folders.iter().for_each(|folder| find(folder, &mut campaigns, 0));
         campaigns.sort();
         if campaigns.is_empty() {
-            return console.fail(Problem::error("no-campaigns", "there is no campaign below these folders"), Exit::Wrong);
+            return console.fail(Problem::error("no-campaigns", "these folders contain no campaign"), Exit::Wrong);
         }
         let mut problems = Problems::default();
-        // A fault of the catalogue is told once, not for every campaign.
+        // A fault of the catalogue is reported once, not for every campaign.
         let usable = |catalogue: &Catalogue, problems: &mut Problems| Settings::read(catalogue, problems).is_some();
         let catalogue = load_catalogue(&self.catalogue, &mut problems);
         let Some(catalogue) = catalogue.filter(|catalogue| usable(catalogue, &mut problems)) else {
@@ -68,7 +68,7 @@ impl Blinded {
             return Exit::Wrong;
         };
         let out = Mutex::new(Outputs::new(&self.out));
-        // Side by side: a diagnosis alone does not fill all cores all the time.
+        // In parallel, since one diagnosis does not use all cores all the time.
         let one = |(at, folder): (usize, &PathBuf)| {
             console.say(&format!("{} of {}: {}", at + 1, campaigns.len(), folder.display()));
             self.one(folder, &catalogue, &out, console)
@@ -132,7 +132,7 @@ impl Blinded {
         Ok(case(&name, &outcome.diagnosis, &truth, really.as_ref(), &outcome.found.seen.sections))
     }
 
-    /// What the true effects do; nothing if there are none, or if the catalogue does not know them.
+    /// Influence of the true effects; nothing if there are none, or if the catalogue does not contain them.
     fn true_effect(&self, folder: &Path, campaign: &Campaign, outcome: &Outcome, catalogue: &Catalogue, truth: &Truth) -> Option<Really> {
         let effects = truth.applied(catalogue).filter(|effects| !effects.is_empty())?;
         let prepared = super::inputs::prepare(folder, self.protocol.as_deref(), &[], &mut Problems::default())?;
@@ -144,7 +144,7 @@ fn without(campaign: &str, fault: String) -> Case {
     Case { campaign: campaign.to_string(), fault: Some(fault), ..Case::default() }
 }
 
-/// Campaigns at or below a folder.
+/// Campaigns in a folder or below it.
 fn find(folder: &Path, found: &mut Vec<PathBuf>, depth: usize) {
     if disk::may_be_file(&folder.join(CAMPAIGN_FILE)) {
         found.push(folder.to_path_buf());

@@ -1,4 +1,4 @@
-//! `certify`: the main job.
+//! `certify`: evaluates a protocol on a campaign and writes the report.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -19,32 +19,32 @@ use crate::report::{attached, figure, findings, html, json, number, tables, typs
 use crate::result::{Certification, Verdict};
 use crate::run::Settings;
 
-/// Distance plots of a report unless another number is asked for.
+/// Default number of distance plots of a report.
 pub const PLOTS: usize = 8;
 
 #[derive(Debug, Args)]
 pub struct Certify {
     /// Folder of the campaign.
     campaign: PathBuf,
-    /// Path of a protocol, or the name of a shipped one [default: what campaign.yaml names, else en14363-2016-annex-t]
+    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
     #[arg(long, short)]
     protocol: Option<String>,
-    /// Folder to write to; made if missing.
+    /// Output folder; created if missing.
     #[arg(long, short)]
     out: PathBuf,
     /// Set a parameter of the protocol.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// What to write beside results.json and the tables.
+    /// Outputs in addition to results.json and the tables.
     #[arg(long, value_enum, default_value_t = Only::All)]
     only: Only,
-    /// How many distance plots to show.
+    /// Number of distance plots.
     #[arg(long, default_value_t = PLOTS)]
     plots: usize,
     /// Sign report.pdf and statement.json with this secret key; see `fishplate sign`.
     #[arg(long, value_name = "KEY")]
     sign: Option<PathBuf>,
-    /// Records worked on at a time [default: one per core]
+    /// Number of records processed in parallel [default: one per core]
     #[arg(long, short)]
     jobs: Option<NonZeroUsize>,
 }
@@ -75,7 +75,7 @@ impl Certify {
         }
         console.problems(&problems);
         let Some(Prepared { compiled, campaign, .. }) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
-        // Asked for before the work begins: a wrong password costs no run.
+        // The password is read before the computation, so that a wrong one is reported at once.
         let key = match self.sign.as_deref().map(|path| secret_key(path, sign::password())).transpose() {
             Ok(key) => key,
             Err(problem) => return console.fail(problem, Exit::Wrong),
@@ -111,7 +111,7 @@ impl Certify {
         if found.verdict == Verdict::Validated { Exit::Done } else { Exit::DoesNotHold }
     }
 
-    /// All files of the report, by path below the output folder.
+    /// All files of the report, by path relative to the output folder.
     fn files(&self, found: &Certification, key: Option<&SecretKey>) -> Result<Vec<(String, Vec<u8>)>, Problems> {
         let results = json::results(found);
         let mut files = Vec::new();
@@ -143,7 +143,7 @@ impl Certify {
     }
 }
 
-/// The table of verdicts on the terminal.
+/// The table of verdicts for the terminal.
 fn summary(found: &Certification, console: &Console) -> String {
     let paint = |text: String, holds: Option<bool>| holds.map_or(text.clone(), |holds| console.paint(&text, holds));
     let width = found.quantities.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);

@@ -1,4 +1,4 @@
-//! `diagnose`: where the gap lies, which effect causes it, how far it shrinks.
+//! `diagnose`: locates the gap, identifies the effects that cause it, and computes how far they reduce it.
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -28,35 +28,35 @@ use crate::simulate::{Builtin, sections};
 pub struct Diagnose {
     /// Folder of the campaign.
     campaign: PathBuf,
-    /// Path of a protocol, or the name of a shipped one [default: what campaign.yaml names, else en14363-2016-annex-t]
+    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
     #[arg(long, short)]
     protocol: Option<String>,
     /// Catalogue of effects: a path, or the name of a shipped one.
     #[arg(long = "effects", value_name = "CATALOGUE", default_value = library::CATALOGUES[0].name)]
     catalogue: String,
-    /// Folder to write to; made if missing.
+    /// Output folder; created if missing.
     #[arg(long, short)]
     out: PathBuf,
-    /// Campaign of the same vehicle in a known state: what the simulation is wrong in anyway is learnt from it; may be repeated.
+    /// Campaign of the same vehicle in a known state, from which the standing discrepancy of the simulation is estimated; may be repeated.
     #[arg(long = "reference", value_name = "CAMPAIGN")]
     references: Vec<PathBuf>,
-    /// Folder for the simulation with the named effects added, as a campaign.
+    /// Folder for a copy of the campaign whose simulation includes the named effects.
     #[arg(long, value_name = "DIR")]
     write_improved: Option<PathBuf>,
     #[command(flatten)]
     simulator: SimulatorChoice,
-    /// Folder in which what was simulated is kept, so that an interrupted diagnosis goes on where it was.
+    /// Folder for intermediate results, so that an interrupted diagnosis can be resumed.
     #[arg(long, value_name = "DIR")]
     resume: Option<PathBuf>,
-    /// Seed of every random draw.
+    /// Seed of all random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Sections worked on at a time [default: one per core]
+    /// Number of sections processed in parallel [default: one per core]
     #[arg(long, short)]
     jobs: Option<NonZeroUsize>,
 }
 
-/// What is diagnosed, and how.
+/// Arguments of a diagnosis.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<'a> {
     pub folder: &'a Path,
@@ -117,7 +117,7 @@ impl Diagnose {
             files(outcome).map_err(|problems| problems.0.into_iter().next().unwrap_or_else(|| Problem::error("report", "no report")))?;
         let mut outputs = Outputs::new(&self.out);
         files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes))?;
-        // Both are on the disk before either is in its place.
+        // Both are written to disk before either is moved to its place.
         let mut all = vec![outputs];
         if let Some(folder) = &self.write_improved {
             let mut outputs = Outputs::of(SetKind::Campaign, folder);
@@ -128,13 +128,13 @@ impl Diagnose {
         all.into_iter().try_for_each(Outputs::commit)
     }
 
-    /// Refuses folders that are read, or that are one and the same.
+    /// Refuses output folders that are inputs, or that are the same.
     fn check_folders(&self, campaign: &Campaign) -> Result<(), Problem> {
         check_folder(&self.out, REPORT, campaign)?;
         let Some(improved) = &self.write_improved else { return Ok(()) };
         if same(improved, &self.out) {
             let says = format!("the report and the improved simulation cannot both go to `{}`", improved.display());
-            return Err(Problem::error("output-is-input", says).help("give each a folder of its own"));
+            return Err(Problem::error("output-is-input", says).help("give different folders"));
         }
         check_folder(improved, CAMPAIGN, campaign)
     }
@@ -151,7 +151,7 @@ pub fn json(diagnosis: &Diagnosis) -> String {
     serde_json::to_string_pretty(diagnosis).unwrap_or_default() + "\n"
 }
 
-/// 0 where the question is answered and nothing is open.
+/// 0 if the gap is explained, or if there is no significant gap.
 pub fn exit(diagnosis: &Diagnosis) -> Exit {
     match diagnosis.verdict {
         "explained" | "no significant gap" => Exit::Done,
@@ -159,10 +159,10 @@ pub fn exit(diagnosis: &Diagnosis) -> Exit {
     }
 }
 
-/// What is wrong with a number of the vehicle file that is there.
+/// Problems of a number that is present in the vehicle file.
 const WRONG: [&str; 2] = ["wrong-kind", "range"];
 
-/// Opens everything and diagnoses; `places` looks at where the outputs go before anything is computed.
+/// Reads all inputs and diagnoses; `places` checks the output folders before the computation.
 pub fn diagnosed(
     asked: &Asked<'_>,
     places: &dyn Fn(&Campaign) -> Result<(), Problem>,
@@ -175,13 +175,13 @@ pub fn diagnosed(
     let settings = Settings::read(&catalogue, problems)?;
     let sections = sections(&campaign, problems)?;
     let references: Vec<Campaign> = asked.references.iter().map(|folder| Campaign::open(folder, problems)).collect::<Option<_>>()?;
-    // What is learnt from it would be the gap itself.
+    // A campaign as its own reference would remove the gap itself.
     if let Some(same) = asked.references.iter().find(|folder| same(folder, asked.folder)) {
-        let says = format!("`{}` is the campaign itself: its gap would be taken for what the model is wrong in anyway", same.display());
-        problems.push(Problem::error("reference", says).help("give a campaign of the same vehicle whose state is known"));
+        let says = format!("`{}` is the campaign itself: its gap would be treated as a standing discrepancy", same.display());
+        problems.push(Problem::error("reference", says).help("give a campaign of the same vehicle in a known state"));
         return None;
     }
-    // A campaign, what simulates it, and where its runs are kept.
+    // A campaign, its simulator, and the cache of its simulations.
     let mut with_all = |campaign| {
         let chosen = simulating(asked.simulator, campaign, problems)?;
         let cache = asked.resume.map(|folder| kept(folder, campaign, &settings)).transpose();
@@ -218,8 +218,8 @@ pub fn diagnosed(
     }
 }
 
-/// What simulates a campaign; without a model that can run, nothing, and what can be done is done. `None` where what is there is wrong
-/// and to be mended.
+/// The simulator of a campaign. `Some(None)` if there is no model that can run: only effects of the measuring chain are then tested.
+/// `None` if the inputs are wrong.
 fn simulating<'a>(choice: Option<&SimulatorChoice>, campaign: &'a Campaign, problems: &mut Problems) -> Option<Option<Chosen<'a>>> {
     let mut lacking = Problems::default();
     let chosen = match choice {
@@ -233,13 +233,13 @@ fn simulating<'a>(choice: Option<&SimulatorChoice>, campaign: &'a Campaign, prob
     (problems.errors() == 0).then_some(chosen)
 }
 
-/// Runs kept in a folder, by everything that they and their features depend on.
+/// The cache in a folder, keyed by everything the simulations and their features depend on.
 fn kept(folder: &Path, campaign: &Campaign, settings: &Settings) -> Result<Cache, Problem> {
     let files: Vec<String> =
         campaign.other_files(RecordKind::Measurement)?.iter().map(|(path, bytes)| format!("{path} {}", sha256(bytes))).collect();
     let Settings { edges, alike, groups, furthest, .. } = settings;
     let groups: Vec<_> = groups.iter().map(|group| (&group.name, group.level, group.bands, group.alike, &group.noise)).collect();
-    // Changes with what a feature is.
+    // To be changed whenever the definition of the features changes.
     const FEATURES: &str = "levels are means";
     let of = format!("{} {FEATURES} {} {edges:?} {alike:?} {groups:?} {furthest}", env!("CARGO_PKG_VERSION"), files.join(" "));
     Ok(Cache::new(folder, of))

@@ -1,4 +1,4 @@
-//! `effects`: what can be added to a simulation.
+//! `effects`: lists the effects that can be added to a simulation.
 
 use std::fmt::Write;
 
@@ -12,10 +12,10 @@ use crate::problem::Problems;
 
 #[derive(Debug, Args)]
 pub struct Effects {
-    /// A catalogue: a path, or the name of a shipped one.
+    /// Catalogue of effects: a path, or the name of a shipped one.
     #[arg(default_value = library::CATALOGUES[0].name)]
     catalogue: String,
-    /// Print the text of the catalogue instead.
+    /// Print the text of the catalogue instead of a list.
     #[arg(long)]
     text: bool,
 }

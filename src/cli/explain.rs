@@ -1,4 +1,4 @@
-//! `explain`: a protocol at any stage, or the registry.
+//! `explain`: a protocol at any stage of its processing, or the functions of the language.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ use crate::units::SYMBOLS;
 
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// Path of a protocol, or the name of a shipped one; without it the registry is listed.
+    /// Path of a protocol, or name of a shipped one; without it, the functions of the language are listed.
     #[arg(value_name = "PROTOCOL")]
     protocol: Option<String>,
     /// [default: plan]
@@ -25,16 +25,16 @@ pub struct Explain {
     stage: Option<Stage>,
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-    /// File to write; the terminal otherwise.
+    /// Output file [default: standard output]
     #[arg(long, short)]
     output: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum Stage {
-    /// Blocks and fields as written, merged with what is extended.
+    /// Blocks and fields as written, merged with the extended protocols.
     Ast,
-    /// The checked rules, parameters put in.
+    /// The checked rules with the values of the parameters.
     Plan,
     /// The processing graph.
     Graph,
@@ -52,7 +52,7 @@ impl Explain {
     pub fn run(self, console: &Console) -> Exit {
         let text = match &self.protocol {
             None if matches!(self.format, Format::Text | Format::Json) => registry(self.format == Format::Json),
-            None => return console.fail(Problem::error("format", "the registry is printed as text or json"), Exit::Wrong),
+            None => return console.fail(Problem::error("format", "without a protocol the format is text or json"), Exit::Wrong),
             Some(name) => match self.stage_text(name, console) {
                 Ok(text) => text,
                 Err(exit) => return exit,
@@ -68,11 +68,11 @@ impl Explain {
     fn stage_text(&self, name: &str, console: &Console) -> Result<String, Exit> {
         let stage = self.stage.unwrap_or(Stage::Plan);
         if stage != Stage::Graph && matches!(self.format, Format::Dot | Format::Svg) {
-            return Err(console.fail(Problem::error("format", "only the graph is drawn: `--stage graph`"), Exit::Wrong));
+            return Err(console.fail(Problem::error("format", "only the graph can be drawn: add `--stage graph`"), Exit::Wrong));
         }
         let mut problems = Problems::default();
         let family = load(name, &mut problems);
-        // As written is as written: what a rule means is looked at for the later stages only.
+        // The AST is printed as written; rules are checked for the later stages only.
         let checked = family.as_ref().filter(|_| stage != Stage::Ast);
         let plan = checked.and_then(|family| check::check(family, &Overrides::new(), &mut problems));
         console.problems(&problems);

@@ -1,4 +1,4 @@
-//! What subcommands that run a protocol over a campaign have in common.
+//! Common inputs of the subcommands that evaluate a protocol on a campaign.
 
 use std::num::NonZeroUsize;
 use std::path::Path;
@@ -18,26 +18,26 @@ use crate::problem::{Problem, Problems};
 use crate::source::{Source, Spanned};
 use crate::syntax::document::Text;
 
-/// Most records that are worked on at a time. Each takes a thread, and memory for its text and its signals; no machine that this runs
-/// on has more cores.
+/// Maximum number of records processed in parallel. Each takes a thread, and memory for its text and signals. The value exceeds the number
+/// of cores of the machines the program is used on.
 const MOST_JOBS: usize = 256;
 
-/// Starts the threads that were asked for.
+/// Starts the requested number of threads.
 ///
 /// # Errors
-/// How the program ends: there cannot be so many.
+/// The number exceeds [`MOST_JOBS`]; the exit code.
 pub fn start_jobs(jobs: Option<NonZeroUsize>, console: &Console) -> Result<(), Exit> {
     let Some(jobs) = jobs.map(NonZeroUsize::get) else { return Ok(()) };
     if jobs > MOST_JOBS {
-        let says = format!("`--jobs {jobs}` is more than {MOST_JOBS}");
-        return Err(console.fail(Problem::error("jobs", says).help("leave it out for one per core"), Exit::Wrong));
+        let says = format!("`--jobs {jobs}` exceeds the maximum of {MOST_JOBS}");
+        return Err(console.fail(Problem::error("jobs", says).help("omit it to use one per core"), Exit::Wrong));
     }
-    // Fails only if the pool was made before, which nothing does before here.
+    // Fails only if the thread pool exists already, which is not the case here.
     let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global();
     Ok(())
 }
 
-/// A protocol ready to run, and what to run it over.
+/// A compiled protocol and its campaign.
 #[derive(Debug)]
 pub struct Prepared {
     pub compiled: Compiled,
@@ -58,7 +58,7 @@ pub fn prepare(folder: &Path, protocol: Option<&str>, set: &[String], problems: 
     Some(Prepared { compiled, campaign, overrides })
 }
 
-/// Parameters of the campaign, and over them those of the command line.
+/// Parameters of the campaign, overridden by those of the command line.
 fn overrides(set: &[String], campaign: &Campaign, problems: &mut Problems) -> Option<Overrides> {
     let mut overrides = Overrides::new();
     for parameter in &campaign.parameters {
@@ -81,7 +81,7 @@ fn overrides(set: &[String], campaign: &Campaign, problems: &mut Problems) -> Op
     Some(overrides)
 }
 
-/// The protocol a campaign names: a shipped one, or a file inside the campaign, as are those it extends.
+/// The protocol that a campaign names: a shipped one, or a file inside the campaign; the same for those it extends.
 fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mut Problems) -> Option<Family> {
     let inside = |named: &Spanned<String>| {
         if let Some(shipped) = library::shipped(&named.value) {
@@ -104,7 +104,7 @@ fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mu
     Some(family::read(&source, &parent, problems))
 }
 
-/// A bar on a terminal, nothing in a pipe.
+/// A progress bar on a terminal; nothing if the output is redirected.
 pub fn progress_bar(console: &Console, steps: usize) -> Arc<ProgressBar> {
     let bar = ProgressBar::new(steps as u64);
     if console.quiet {

@@ -1,4 +1,4 @@
-//! The command line: arguments to stages to an exit code.
+//! The command line: from arguments to an exit code.
 
 mod blind;
 mod certify;
@@ -25,7 +25,7 @@ use crate::problem::{acts, plain};
 use output::Console;
 pub use output::Exit;
 
-/// Validation of rail vehicle simulation models: from a protocol text and a campaign folder to a certification report.
+/// Validates simulation models of rail vehicles: a protocol and a campaign of records give a certification report.
 #[derive(Debug, Parser)]
 #[command(name = "fishplate", version, about, arg_required_else_help = true)]
 pub struct Arguments {
@@ -48,44 +48,44 @@ pub enum Color {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Run a protocol over a campaign and write the report.
+    /// Evaluate a protocol on a campaign and write the report.
     #[command(after_help = "Example:\n  fishplate certify examples/coach --out target/coach-report")]
     Certify(certify::Certify),
-    /// Check a report: that it agrees with itself and, with its campaign, that the same files still give the same numbers and pages.
+    /// Check that a report is consistent and, with its campaign, that the same files still give the same numbers and pages.
     #[command(
-        after_help = "Example:\n  fishplate verify target/coach-report/report.pdf examples/coach\n\nExit code: 0 everything agrees, 1 something differs, 2 an input is wrong, 3 could not be finished"
+        after_help = "Example:\n  fishplate verify target/coach-report/report.pdf examples/coach\n\nExit code: 0 everything agrees, 1 something differs, 2 an input is wrong, 3 the check could not be completed"
     )]
     Verify(verify::Verify),
-    /// Follow one number of a report back to the line of its rule and the rows of its data.
+    /// Trace one number of a report to the line of its rule and to the rows of its data.
     #[command(after_help = "Example:\n  fishplate trace target/coach-report/results.json Y_max S05 Y_1R --campaign examples/coach")]
     Trace(verify::Trace),
-    /// Make a pair of keys to sign reports with.
+    /// Create a pair of keys for signing reports.
     #[command(after_help = "Example:\n  fishplate keygen laboratory")]
     Keygen(sign::Keygen),
-    /// Sign files; the signatures are files of their own, in the format of minisign.
+    /// Sign files; each signature is a separate file in the format of minisign.
     #[command(after_help = "Example:\n  fishplate sign target/coach-report/report.pdf --key laboratory.key")]
     Sign(sign::Sign),
-    /// How far the verdict depends on choices: sections, synchronisation, parameters of the protocol.
+    /// Study how the verdict depends on the sections, the synchronisation and the parameters of the protocol.
     #[command(after_help = "Example:\n  fishplate study sections examples/coach --out target/coach-sections")]
     Study {
         #[command(subcommand)]
         study: study::Study,
     },
-    /// Simulate one section, or every section of a campaign, with the reference vehicle model or another simulator; effects can be added.
+    /// Simulate one section or a whole campaign, with the reference vehicle model or another simulator; effects can be added.
     #[command(
         after_help = "Example:\n  fishplate simulate examples/coach --effect friction=0.5 --out target/coach-wet\n  fishplate simulate examples/coach --simulator sim.yaml --increment --effect friction=0.5 --out target/coach-wet\n  fishplate simulate --vehicle examples/coach/vehicle.yaml --track examples/coach/track/S13.csv --speed '70 km/h' -o S13.csv"
     )]
     Simulate(simulate::Simulate),
-    /// Say where simulation and measurement differ, which effect causes it, and how far the gap shrinks once it is added.
+    /// Locate the differences of simulation and measurement, identify their cause, and compute how far the gap decreases with it.
     #[command(after_help = "Example:\n  fishplate diagnose examples/coach --out target/coach-diagnosis")]
     Diagnose(diagnose::Diagnose),
-    /// Diagnose every campaign below folders, then score the answers against the truths that were withheld.
+    /// Diagnose all campaigns in folders, then score the answers against the withheld truths.
     #[command(after_help = "Example:\n  fishplate blind campaigns --out target/blind")]
     Blind(blind::Blinded),
     /// List the effects that can be added to a simulation, or print a shipped catalogue.
     #[command(after_help = "Example:\n  fishplate effects\n  fishplate effects --text > mine.yaml")]
     Effects(effects::Effects),
-    /// Check protocols: every problem with its place.
+    /// Check protocols, and show every problem with its place.
     #[command(after_help = "Example:\n  fishplate check protocols/en14363-2016-annex-t.fp my-variant.yaml")]
     Check {
         /// Paths of protocols, or names of shipped ones.
@@ -101,23 +101,23 @@ enum Command {
         #[arg(long)]
         check: bool,
     },
-    /// Turn a protocol into the other form, without loss.
+    /// Convert a protocol to the other form, without loss.
     #[command(after_help = "Example:\n  fishplate convert en14363-2016-annex-t --to yaml -o annex-t.yaml")]
     Convert {
         #[arg(value_name = "PROTOCOL")]
         protocol: String,
         #[arg(long, value_enum)]
         to: Form,
-        /// File to write; the terminal otherwise.
+        /// Output file [default: standard output]
         #[arg(long, short)]
         output: Option<PathBuf>,
     },
-    /// Show a protocol at any stage; without a protocol, everything the language can do with signals and numbers.
+    /// Show a protocol at any stage of its processing; without a protocol, list the functions of the language.
     #[command(
         after_help = "Example:\n  fishplate explain en14363-2016-annex-t --stage graph --format svg -o graph.svg\n  fishplate explain"
     )]
     Explain(explain::Explain),
-    /// What differs in meaning between two protocols, rule by rule.
+    /// Show the differences in meaning between two protocols, rule by rule.
     #[command(after_help = "Example:\n  fishplate diff en14363-2016-annex-t my-variant.fp")]
     Diff {
         #[arg(value_name = "PROTOCOL")]
@@ -154,18 +154,18 @@ enum Form {
     Fp,
 }
 
-/// Runs the program as called.
+/// Runs the program with the arguments of the process.
 pub fn run() -> Exit {
     run_with(std::env::args_os())
 }
 
-/// Runs the program with arguments, its own name first.
+/// Runs the program with arguments; the first one is its name.
 pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
     let words: Vec<OsString> = words.into_iter().collect();
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // clap prints help and versions this way too, which are no errors.
+            // clap also reports help and version as errors, which go to standard output.
             let failed = error.use_stderr();
             if words.iter().any(|word| word.to_string_lossy().chars().any(acts)) {
                 eprint!("{}", plain(&error.render().to_string()));

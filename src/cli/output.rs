@@ -1,4 +1,4 @@
-//! What the program says and how it ends.
+//! Terminal output and exit codes.
 
 use std::io::{IsTerminal, Write};
 use std::path::Path;
@@ -10,16 +10,16 @@ use crate::problem::{Problem, Problems, acts, plain};
 use crate::report::study::Document;
 use crate::report::{html, typst};
 
-/// The exit codes of the contract.
+/// Exit codes, as documented.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
-    /// Done, and the verdict, if one was asked for, holds.
+    /// Done; the verdict, if any, is positive.
     Done = 0,
-    /// Done, and the verdict does not hold.
+    /// Done; the verdict is negative.
     DoesNotHold = 1,
     /// The command line or an input is wrong; nothing was written.
     Wrong = 2,
-    /// Could not be finished: disk, internal.
+    /// Could not be completed: a disk error or an internal error.
     Unfinished = 3,
 }
 
@@ -46,22 +46,22 @@ impl Console {
         Self { quiet, color: wanted(std::io::stdout().is_terminal()), color_errors: wanted(std::io::stderr().is_terminal()) }
     }
 
-    /// What was asked for, to standard output: words to be read, in which no character acts on a terminal.
+    /// Prints a result to standard output. Control characters are made visible.
     pub fn print(&self, text: &str) -> Exit {
         self.put(&painted(&readable(text)))
     }
 
-    /// A file's own text. Whoever keeps it gets it without loss; a terminal only gets what it can show.
+    /// Prints the text of a file: unchanged if redirected, with visible control characters on a terminal.
     pub fn print_file(&self, text: &str) -> Exit {
         if std::io::stdout().is_terminal() { self.put(&readable(text)) } else { self.put(text) }
     }
 
-    /// JSON, in which every character can be written in ASCII.
+    /// Prints JSON with control characters escaped.
     pub fn print_json(&self, text: &str) -> Exit {
         self.put(&escaped(text))
     }
 
-    /// A reader that went away is no fault.
+    /// A closed pipe is not an error.
     fn put(&self, text: &str) -> Exit {
         match std::io::stdout().lock().write_all(text.as_bytes()) {
             Ok(()) => Exit::Done,
@@ -70,14 +70,14 @@ impl Console {
         }
     }
 
-    /// A remark on what is being done.
+    /// Prints a progress message.
     pub fn say(&self, text: &str) {
         if !self.quiet {
             let _ = writeln!(std::io::stderr().lock(), "{}", plain(text));
         }
     }
 
-    /// Text in the colour of what holds, or of what does not.
+    /// Text in the colour of a positive or a negative result.
     pub fn paint(&self, text: &str, holds: bool) -> String {
         if self.color { format!("{}{text}{PLAIN}", if holds { GOOD } else { BAD }) } else { text.to_string() }
     }
@@ -94,33 +94,33 @@ impl Console {
         }
     }
 
-    /// One problem that ends the program.
+    /// Prints the problem that ends the program.
     pub fn fail(&self, problem: Problem, exit: Exit) -> Exit {
         self.problems(&Problems(vec![problem]));
         exit
     }
 
-    /// Files that belong together, all of them or none; what was written is said, and only then.
+    /// Writes a set of files, all or none, and then prints their names.
     ///
     /// # Errors
-    /// How the program is to end.
+    /// A file cannot be written; the exit code.
     pub fn write_all(&self, kind: SetKind, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Exit> {
         let mut outputs = Outputs::of(kind, folder);
         let added = files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes));
         self.commit(added.map(|()| outputs))
     }
 
-    /// The end of [`Console::write_all`] for files that were added elsewhere.
+    /// Completes [`Console::write_all`] for files that were added elsewhere.
     ///
     /// # Errors
-    /// How the program is to end.
+    /// A file cannot be written; the exit code.
     pub fn commit(&self, outputs: Result<Outputs, Problem>) -> Result<(), Exit> {
         let outputs = outputs.map_err(|problem| self.fail(problem, Exit::Unfinished))?;
         self.problems(&Problems(outputs.mended().into_iter().collect()));
         outputs.commit().map_err(|problem| self.fail(problem, Exit::Unfinished))
     }
 
-    /// A whole file, or nothing.
+    /// Writes a file completely or not at all.
     pub fn write(&self, path: &Path, bytes: &[u8]) -> Exit {
         match crate::data::write::write_whole(path, bytes) {
             Ok(()) => Exit::Done,
@@ -129,7 +129,7 @@ impl Console {
     }
 }
 
-/// Where colours begin and end: characters that Unicode keeps for use inside a program, and that print nothing.
+/// Marks of colours: noncharacters that Unicode reserves for internal use.
 const GOOD: char = '\u{fdd0}';
 const BAD: char = '\u{fdd1}';
 const PLAIN: char = '\u{fdd2}';
@@ -138,21 +138,21 @@ fn painted(text: &str) -> String {
     text.replace(GOOD, "\u{1b}[32m").replace(BAD, "\u{1b}[31;1m").replace(PLAIN, "\u{1b}[0m")
 }
 
-/// Text for a terminal; tabs stay.
+/// Text for a terminal; tabs are kept.
 fn readable(text: &str) -> String {
     text.chars().map(|c| if acts(c) && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c }).collect()
 }
 
-/// JSON whose characters that act are written `\uXXXX`; outside of texts it has none but line breaks.
+/// JSON with control characters as `\uXXXX`; outside of strings it contains only line breaks.
 fn escaped(json: &str) -> String {
     let escape = |c: char| if acts(c) && c != '\n' { format!("\\u{:04x}", u32::from(c)) } else { c.to_string() };
     json.chars().map(escape).collect()
 }
 
-/// A document as report.pdf, with its numbers attached, as report.html, and the numbers themselves as `name`.
+/// A document as report.pdf with its numbers attached, as report.html, and the numbers as `name`.
 ///
 /// # Errors
-/// A template or a text that cannot be typeset.
+/// A template or a text cannot be typeset.
 pub fn reports(
     (name, description): (&'static str, &'static str),
     numbers: String,

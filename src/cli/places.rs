@@ -1,4 +1,4 @@
-//! Where a run may write: not over what it reads.
+//! Checks that outputs do not overwrite inputs.
 
 use std::path::{Path, PathBuf};
 
@@ -6,54 +6,54 @@ use crate::data::{Campaign, campaign::Inputs};
 use crate::disk;
 use crate::problem::Problem;
 
-/// Names at the top of the folder of a report.
+/// Names at the top level of a report folder.
 pub const REPORT: &[&str] =
     &["results.json", "study.json", "diagnosis.json", "blind.json", "blind.html", "report.pdf", "report.html", "tables"];
-/// Names at the top of the folder of a campaign that is written: it is copied with all it names, so that any folder of a campaign will do.
+/// Names at the top level of a written campaign, which is copied with all files it names.
 pub const CAMPAIGN: &[&str] = &["campaign.yaml", "simulation"];
 
-/// Refuses a folder for outputs that would overwrite what a campaign is read from; `names` is what is written at its top.
+/// Refuses an output folder if files of the campaign would be overwritten; `names` are the outputs at its top level.
 ///
 /// # Errors
-/// `output-is-input`, before anything is computed.
+/// `output-is-input`, before the computation.
 pub fn check_folder(out: &Path, names: &[&str], campaign: &Campaign) -> Result<(), Problem> {
     let refused = |why: String| {
         Problem::error("output-is-input", format!("the outputs cannot go to `{}`: {why}", out.display()))
-            .help("give another folder; it is made if it does not exist")
+            .help("give another folder; it is created if it does not exist")
     };
     let Inputs { folder, folders, files } = campaign.inputs();
-    let real = real(out).map_err(|error| refused(format!("it cannot be looked at: {error}")))?;
+    let real = real(out).map_err(|error| refused(format!("it cannot be read: {error}")))?;
     if folders.iter().any(|records| real.starts_with(records) && *records != folder) {
-        return Err(refused("the records of the campaign lie there".to_string()));
+        return Err(refused("it contains the records of the campaign".to_string()));
     }
     for name in names {
         let written = real.join(name);
         let hit = files.iter().chain(&folders).find(|input| input.starts_with(&written));
         if let Some(hit) = hit {
             let hit = hit.strip_prefix(&real).unwrap_or(hit);
-            return Err(refused(format!("`{}` would be overwritten, which the campaign is read from", hit.display())));
+            return Err(refused(format!("`{}` is a file of the campaign and would be overwritten", hit.display())));
         }
     }
     Ok(())
 }
 
-/// Refuses a file for output that is one of the inputs.
+/// Refuses an output file that is one of the inputs.
 ///
 /// # Errors
 /// `output-is-input`.
 pub fn check_file(out: &Path, inputs: &[&Path]) -> Result<(), Problem> {
     match inputs.iter().find(|input| same(out, input)) {
-        Some(_) => Err(Problem::error("output-is-input", format!("`{}` is read, and cannot be written", out.display()))),
+        Some(_) => Err(Problem::error("output-is-input", format!("`{}` is an input and cannot be overwritten", out.display()))),
         None => Ok(()),
     }
 }
 
-/// Whether two paths lead to the same place.
+/// Whether two paths are the same place.
 pub fn same(one: &Path, other: &Path) -> bool {
     real(one).is_ok_and(|one| real(other).is_ok_and(|other| one == other))
 }
 
-/// A path without symbolic links, of which the last parts need not exist.
+/// A path without symbolic links; its last parts need not exist.
 fn real(path: &Path) -> std::io::Result<PathBuf> {
     let absolute = std::path::absolute(path)?;
     for above in absolute.ancestors() {

@@ -1,4 +1,4 @@
-//! Subcommands about protocol texts.
+//! Subcommands for protocol texts.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -42,7 +42,7 @@ pub fn check(names: &[String], console: &Console) -> Exit {
     exit
 }
 
-/// Nothing is written before every text has been read.
+/// Writes nothing before all texts have been read.
 pub fn fmt(paths: &[PathBuf], only_check: bool, console: &Console) -> Exit {
     let mut exit = Exit::Done;
     let mut changed = Vec::new();
@@ -56,7 +56,7 @@ pub fn fmt(paths: &[PathBuf], only_check: bool, console: &Console) -> Exit {
         };
         let mut problems = Problems::default();
         let text = canonical(&source, &mut problems, syntax::is_yaml(&source.name));
-        // A text with a broken line is left as it is: what could not be read would be lost.
+        // A text with errors is not rewritten, since its unreadable parts would be lost.
         if problems.any_error() {
             console.problems(&problems);
             exit = Exit::Wrong;
@@ -158,7 +158,7 @@ pub fn man(out: &Path, console: &Console) -> Exit {
     let mut pages = vec![("fishplate.1".to_string(), clap_mangen::Man::new(command.clone()))];
     for sub in command.get_subcommands() {
         let name = format!("fishplate-{}", sub.get_name());
-        // clap_mangen titles a page by the command's name, which lives as long as the program.
+        // clap_mangen uses the command's name as the title, which must be static.
         let named = sub.clone().name(String::leak(name.clone()) as &'static str);
         pages.push((format!("{name}.1"), clap_mangen::Man::new(named)));
     }

@@ -11,24 +11,24 @@ use crate::provenance::signature::{PASSWORD, beside, content, new_keys, secret_k
 
 #[derive(Debug, Args)]
 pub struct Keygen {
-    /// Name of the keys: NAME.key is the secret one, NAME.pub the public one. Neither may exist.
+    /// Name of the keys: NAME.key is the secret key, NAME.pub the public key. Neither file may exist.
     name: PathBuf,
-    /// Do not protect the secret key by a password.
+    /// Do not protect the secret key with a password.
     #[arg(long)]
     no_password: bool,
 }
 
 #[derive(Debug, Args)]
 pub struct Sign {
-    /// Files to sign; each signature is written beside its file, as FILE.minisig.
+    /// Files to sign; each signature is written next to its file, as FILE.minisig.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Secret key, made by `fishplate keygen` or minisign. Its password is asked for, or read from FISHPLATE_KEY_PASSWORD.
+    /// Secret key of `fishplate keygen` or minisign. The password is requested, or read from FISHPLATE_KEY_PASSWORD.
     #[arg(long, value_name = "FILE")]
     key: PathBuf,
 }
 
-/// The password from the environment, if it is there.
+/// The password from the environment, if set.
 pub fn password() -> Option<String> {
     std::env::var(PASSWORD).ok()
 }
@@ -51,13 +51,13 @@ impl Keygen {
         };
         let written = create(&secret, keys.0.as_bytes(), true).and_then(|()| {
             create(&public, keys.1.as_bytes(), false).inspect_err(|_| {
-                // A secret key whose public key nobody has is of no use.
+                // A secret key without its public key is not usable.
                 let _ = disk::remove(&secret);
             })
         });
         match written {
             Ok(()) => {
-                console.say(&format!("written: {} (keep it secret), {} (give it to who checks)", secret.display(), public.display()));
+                console.say(&format!("written: {} (keep it secret), {} (publish it for verification)", secret.display(), public.display()));
                 Exit::Done
             }
             Err(problem) => console.fail(problem, Exit::Unfinished),
@@ -65,7 +65,7 @@ impl Keygen {
     }
 }
 
-/// A new file, which must not exist; a secret one only its owner can read.
+/// Creates a new file; only the owner can read a secret one.
 fn create(path: &Path, bytes: &[u8], secret: bool) -> Result<(), Problem> {
     disk::create_new(path, bytes, secret)
         .map_err(|error| Problem::error("write-failed", format!("`{}` cannot be written: {error}", path.display())))
@@ -77,7 +77,7 @@ impl Sign {
             Ok(key) => key,
             Err(problem) => return console.fail(problem, Exit::Wrong),
         };
-        // All are read and signed before any signature is written.
+        // All files are read and signed before any signature is written.
         let mut signed = Vec::new();
         for path in &self.files {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();

@@ -1,4 +1,4 @@
-//! `simulate`: the reference vehicle model, or another simulator, with effects added.
+//! `simulate`: runs the reference vehicle model or another simulator, with effects added.
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -27,45 +27,45 @@ use crate::yaml;
 
 #[derive(Debug, Args)]
 pub struct Simulate {
-    /// Folder of a campaign: every section is simulated.
+    /// Folder of a campaign; all its sections are simulated.
     #[arg(required_unless_present = "vehicle", conflicts_with_all = ["vehicle", "track", "speed", "output"])]
     campaign: Option<PathBuf>,
-    /// A vehicle file; its contact profile stands beside it.
+    /// Vehicle file; its contact profile is in the same folder.
     #[arg(long, requires_all = ["track", "output"], conflicts_with = "simulator")]
     vehicle: Option<PathBuf>,
-    /// A track file.
+    /// Track file.
     #[arg(long)]
     track: Option<PathBuf>,
     /// Speed in m/s, or with its unit: `120 km/h`.
     #[arg(long, requires = "vehicle")]
     speed: Option<String>,
-    /// An effect and its size, as often as needed: `friction=0.5`, `payload=3.5 t`, `sensor_gain=0.8 on Y_3R`,
+    /// Effect and its size; may be repeated: `friction=0.5`, `payload=3.5 t`, `sensor_gain=0.8 on Y_3R`,
     /// `friction=0.2 in zones 3, 4`; `fishplate effects` lists them.
     #[arg(long = "effect", value_name = "EFFECT[.PARAMETER]=VALUE")]
     effects: Vec<String>,
     /// Catalogue of effects: a path, or the name of a shipped one.
     #[arg(long = "effects", value_name = "CATALOGUE", default_value = library::CATALOGUES[0].name)]
     catalogue: String,
-    /// Folder to write the simulated campaign to; made if missing.
+    /// Output folder for the simulated campaign; created if missing.
     #[arg(long, required_unless_present = "vehicle")]
     out: Option<PathBuf>,
     #[command(flatten)]
     simulator: SimulatorChoice,
-    /// Add effects to the campaign's own simulation: what it recorded + (simulator with effects - simulator without).
+    /// Add effects to the campaign's own simulation: its records + (simulator with effects - simulator without).
     #[arg(long, requires = "campaign")]
     increment: bool,
-    /// First compare the simulator without effects with the campaign's simulation, and say how far off it is.
+    /// Compare the simulator without effects with the campaign's simulation first, and print the deviation.
     #[arg(long, requires = "campaign")]
     baseline: bool,
-    /// File to write the record to.
+    /// Output file for the record.
     #[arg(long, short)]
     output: Option<PathBuf>,
-    /// Sections worked on at a time [default: one per core]
+    /// Number of sections processed in parallel [default: one per core]
     #[arg(long, short)]
     jobs: Option<NonZeroUsize>,
 }
 
-/// The catalogue of a name or path.
+/// Loads a catalogue by name or path.
 pub fn load_catalogue(name: &str, problems: &mut Problems) -> Option<Catalogue> {
     let source = library::find_catalogue(name, None).map_err(|problem| problems.push(*problem)).ok()?;
     effects::read(&source, &library::parent_catalogue, &model_parameters(), problems)
@@ -94,7 +94,7 @@ impl Simulate {
         }
     }
 
-    /// Every section of a campaign, written as a campaign with the simulated records.
+    /// Simulates every section of a campaign, and writes a campaign with the simulated records.
     fn whole(&self, folder: &Path, catalogue: &Catalogue, effects: &[Applied], console: &Console) -> Exit {
         let mut problems = Problems::default();
         let campaign = Campaign::open(folder, &mut problems);
@@ -179,7 +179,7 @@ impl Simulate {
         record_text(&made.signals, &unit)
     }
 
-    /// One vehicle on one track.
+    /// Simulates one vehicle on one track.
     fn one(&self, vehicle: &Path, catalogue: &Catalogue, effects: &[Applied], console: &Console) -> Exit {
         let (Some(track), Some(output)) = (&self.track, &self.output) else { return Exit::Wrong };
         if let Err(problem) = check_file(output, &[vehicle, track]) {
@@ -195,7 +195,7 @@ impl Simulate {
         let (Some(tree), Ok(speed)) = (tree, speed) else { return Exit::Wrong };
         let nowhere = Section::nowhere();
         if let Some(confined) = effects.iter().find(|applied| applied.confined.is_some()) {
-            let says = format!("`{}` is confined to some sections, and there is but one record", confined.effect);
+            let says = format!("`{}` is confined to some sections, but only one record is simulated", confined.effect);
             return console.fail(Problem::error("no-such-section", says), Exit::Wrong);
         }
         let plan = match Plan::new(catalogue, effects, &nowhere, None) {
@@ -221,7 +221,7 @@ impl Simulate {
     }
 }
 
-/// What is wrong with effects for these sections, whatever the simulator makes of them.
+/// Problems of effects with these sections, independent of the simulator.
 fn unusable(catalogue: &Catalogue, effects: &[Applied], sections: &[Section], chosen: &Chosen<'_>) -> Vec<Problem> {
     let mut problems = check_confined(effects, sections);
     let simulator = chosen.simulator().catalogue_name();
@@ -235,8 +235,8 @@ fn unusable(catalogue: &Catalogue, effects: &[Applied], sections: &[Section], ch
                 };
                 problems.extend(catalogue.units.iter().find(differs).map(|(channel, unit)| {
                     let says =
-                        format!("`{channel}` is recorded in {}, and the catalogue takes it in {unit}", chosen.unit(section, channel));
-                    Problem::error("unit-mismatch", says).help("give `units` of the catalogue as the records have them")
+                        format!("`{channel}` is recorded in {}, but the catalogue expects {unit}", chosen.unit(section, channel));
+                        Problem::error("unit-mismatch", says).help("set `units` in the catalogue to those of the records")
                 }));
             }
             Ok(_) => {}
@@ -249,7 +249,7 @@ fn say_baseline(console: &Console, chosen: &Chosen<'_>, deviations: &[Deviation]
     let largest = deviations.iter().max_by(|a, b| a.share().total_cmp(&b.share()));
     if let Some(worst) = largest {
         console.say(&format!(
-            "baseline: {} is off from the campaign's simulation by {:.2} % at most (`{}` of section `{}`)",
+            "baseline: {} deviates from the campaign's simulation by at most {:.2} % (`{}` of section `{}`)",
             chosen.simulator().name(),
             100.0 * worst.share(),
             worst.channel,
@@ -267,13 +267,13 @@ fn unit(name: &str) -> Unit {
 
 fn speed(written: Option<&str>) -> Result<f64, Problem> {
     let Some(written) = written else {
-        return Err(Problem::error("speed-missing", "a speed is needed").help("write `--speed 30` for m/s, or `--speed '108 km/h'`"));
+        return Err(Problem::error("speed-missing", "no speed is given").help("write `--speed 30` for m/s, or `--speed '108 km/h'`"));
     };
     let wrong = |says: String| Problem::error("speed", says).help("write `--speed 30` for m/s, or `--speed '108 km/h'`");
     let unit = Unit { text: "m/s".into(), factor: 1.0, dimension: Dimension::LENGTH / Dimension::TIME };
     let speed = number::read(written, &unit).map_err(|refused| wrong(refused.says))?.si;
     if !(1.0..=150.0).contains(&speed) {
-        return Err(wrong(format!("a speed of {speed:.1} m/s is outside what the model is for: 1 to 150 m/s")));
+        return Err(wrong(format!("a speed of {speed:.1} m/s is outside the range of the model, 1 to 150 m/s")));
     }
     Ok(speed)
 }

@@ -1,4 +1,4 @@
-//! Which simulator makes the records: the reference vehicle model, or a program that a file describes.
+//! Choice of the simulator: the reference vehicle model, or a program described by a file.
 
 use std::path::{Path, PathBuf};
 
@@ -14,17 +14,17 @@ use crate::simulate::{
 };
 use crate::units::Unit;
 
-/// The arguments that choose a simulator.
+/// Arguments that choose a simulator.
 #[derive(Debug, Args)]
 pub struct SimulatorChoice {
-    /// A file that describes another simulator, a program that makes one record per call; else the reference vehicle model.
+    /// File that describes another simulator, a program that is called once per record [default: the reference vehicle model]
     #[arg(long, value_name = "SIM.YAML")]
     simulator: Option<PathBuf>,
-    /// Folder where records of another simulator are kept, so that no call is made twice
-    /// [default: fishplate-cache in the system's folder for temporary files]
+    /// Folder for records of another simulator, so that no call is repeated
+    /// [default: fishplate-cache in the system's temporary folder]
     #[arg(long, value_name = "DIR", requires = "simulator")]
     cache: Option<PathBuf>,
-    /// Keep no records of another simulator, and use none.
+    /// Neither store nor reuse records of another simulator.
     #[arg(long, requires = "simulator", conflicts_with = "cache")]
     no_cache: bool,
 }
@@ -36,11 +36,11 @@ pub enum Chosen<'a> {
     External(Box<External<'a>>),
 }
 
-/// How far the reference vehicle model may be from the campaign's simulation without a warning.
+/// Largest deviation of the reference vehicle model from the campaign's simulation without a warning, as a share.
 const TOLERANCE: f64 = 0.05;
 
 impl SimulatorChoice {
-    /// Whether it is another than the reference vehicle model.
+    /// Whether another simulator is used.
     pub fn external(&self) -> bool {
         self.simulator.is_some()
     }
@@ -91,7 +91,7 @@ impl Chosen<'_> {
         Ok((signals, units))
     }
 
-    /// Whether the simulator without effects makes the campaign's simulation: every deviation, and a warning if one is too large.
+    /// Compares the simulator without effects with the campaign's simulation: all deviations, and a warning if one is too large.
     pub fn baseline(&self, campaign: &Campaign, sections: &[Section]) -> Result<(Vec<Deviation>, Option<Problem>), Vec<Problem>> {
         let one = |section: &Section| match self {
             Self::External(program) => program.baseline(section),
@@ -111,12 +111,12 @@ impl Chosen<'_> {
         Ok((all, warning))
     }
 
-    /// What was wrong with the records that were kept of a program.
+    /// A warning of damaged records in the cache of a program.
     pub fn warning(&self) -> Option<Problem> {
         if let Self::External(program) = self { program.warning() } else { None }
     }
 
-    /// What the program was asked to do: ` (3 calls, 13 records were there)`; nothing for the model.
+    /// Number of calls of the program: ` (3 calls of NAME, 13 records from the cache)`; empty for the model.
     pub fn effort(&self) -> String {
         let Self::External(program) = self else { return String::new() };
         let (calls, found) = program.effort();

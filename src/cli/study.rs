@@ -1,4 +1,4 @@
-//! `study`: how far the verdict depends on sections, synchronisation and free choices.
+//! `study`: dependence of the verdict on sections, synchronisation and parameters.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -18,37 +18,37 @@ use crate::study;
 
 #[derive(Debug, Subcommand)]
 pub enum Study {
-    /// Every selection of sections: the share validated, the scatter, and which sections matter.
+    /// Evaluate all selections of sections: the share validated, the scatter, and the influence of each section.
     #[command(after_help = "Example:\n  fishplate study sections examples/coach --out target/coach-sections")]
     Sections {
         #[command(flatten)]
         common: Common,
     },
-    /// The measurement shifted against the simulation.
+    /// Shift the measurement against the simulation by given offsets, and evaluate each.
     #[command(after_help = "Example:\n  fishplate study sync examples/coach --offsets=-5,-1,1,5 --out target/coach-sync")]
     Sync {
         #[command(flatten)]
         common: Common,
-        /// Offsets in the unit of the axis: a list, or `FROM..TO step STEP`; 0 is always among them.
+        /// Offsets in the unit of the axis: a list, or `FROM..TO step STEP`; 0 is always included.
         #[arg(long, default_value = "-40,-20,-10,-5,-1,1,5,10,20,40", allow_hyphen_values = true)]
         offsets: String,
-        /// Take the offset found in each section's signals out before the offsets are put in.
+        /// Correct the offset estimated from each section's signals before the study.
         #[arg(long)]
         correct: bool,
-        /// Farthest offset looked for in the signals, in the unit of the axis.
+        /// Largest offset searched in the signals, in the unit of the axis.
         #[arg(long, default_value_t = 25.0)]
         farthest: f64,
     },
-    /// Parameters of the protocol, each varied by itself: which free choice decides the verdict.
+    /// Vary each parameter of the protocol by itself, to find the ones that decide the verdict.
     #[command(
         after_help = "Examples:\n  fishplate study parameters examples/coach --vary \"lowpass_frequency=15..25 step 5 Hz\" --out target/coach-choices\n  fishplate study parameters examples/coach --vary \"zone 4 minimum length=50 m, 70 m, 100 m\" --out target/coach-lengths"
     )]
     Parameters {
         #[command(flatten)]
         common: Common,
-        /// A parameter, or a rule by the words that lead to it (`quantity NAME limit std`, `zone 4 minimum length`), or all limits
-        /// of a statistic times a factor (`every limit std`), and the values: a list, with `;` between them where they hold commas, or `FROM..TO step STEP`; may be repeated [default:
-        /// every parameter that is a choice of words, over all its words]
+        /// Parameter or rule, and its values. A rule is addressed by its words (`quantity NAME limit std`, `zone 4 minimum length`), all limits
+        /// of a statistic by `every limit std`, with factors as values. Values are a list, separated by `;` if they contain commas, or
+        /// `FROM..TO step STEP`; may be repeated [default: all parameters with a choice of words, over all words]
         #[arg(long, value_name = "NAME=VALUES")]
         vary: Vec<String>,
     },
@@ -58,31 +58,31 @@ pub enum Study {
 pub struct Common {
     /// Folder of the campaign.
     campaign: PathBuf,
-    /// Path of a protocol, or the name of a shipped one [default: what campaign.yaml names, else en14363-2016-annex-t]
+    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
     #[arg(long, short)]
     protocol: Option<String>,
-    /// Folder to write to; made if missing.
+    /// Output folder; created if missing.
     #[arg(long, short)]
     out: PathBuf,
     /// Set a parameter of the protocol.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// Sections of each zone that a selection takes [default: as many as the protocol needs]
+    /// Number of sections per zone in a selection [default: the number required by the protocol]
     #[arg(long)]
     take: Option<NonZeroUsize>,
-    /// Keep at most so many sections of each zone, those that keep the highest standard deviation, before selecting.
+    /// Keep at most this number of sections per zone before selecting, so that the highest standard deviation is kept.
     #[arg(long, value_name = "SECTIONS")]
     reduce: Option<NonZeroUsize>,
-    /// Selections that are all looked at; more are drawn from at random.
+    /// Number of selections up to which all are evaluated; beyond it, random ones are drawn.
     #[arg(long, value_name = "SELECTIONS", default_value_t = study::MOST)]
     enumerate: f64,
-    /// Where selections are drawn: width of the 95 % interval of the share at which drawing ends.
+    /// Width of the 95 % interval of the share at which drawing stops.
     #[arg(long, default_value_t = 0.01)]
     width: f64,
-    /// Seed of all that is drawn at random.
+    /// Seed of all random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Records worked on at a time [default: one per core]
+    /// Number of records processed in parallel [default: one per core]
     #[arg(long, short)]
     jobs: Option<NonZeroUsize>,
 }
@@ -114,13 +114,13 @@ impl Study {
         }
     }
 
-    /// What is asked for, as far as the command line says it.
+    /// The study that the arguments describe.
     fn asked(&self, problems: &mut Problems) -> Option<Asked> {
         match self {
             Self::Sections { .. } => Some(Asked::Sections),
             Self::Sync { offsets, correct, farthest, .. } => {
                 if !(*farthest > 0.0 && farthest.is_finite()) {
-                    problems.push(Problem::error("farthest", format!("`--farthest {farthest}` is not above zero")));
+                    problems.push(Problem::error("farthest", format!("`--farthest {farthest}` must be above zero")));
                     return None;
                 }
                 let offsets = numbers(offsets)
@@ -195,16 +195,16 @@ impl Common {
     fn wrong(&self) -> Problems {
         let mut problems = Problems::default();
         if !(self.width > 0.0 && self.width < 1.0) {
-            problems.push(Problem::error("width", format!("`--width {}` is not between 0 and 1", self.width)));
+            problems.push(Problem::error("width", format!("`--width {}` must be between 0 and 1", self.width)));
         }
         if self.enumerate.is_nan() || self.enumerate < 0.0 {
-            problems.push(Problem::error("enumerate", format!("`--enumerate {}` is no number of selections", self.enumerate)));
+            problems.push(Problem::error("enumerate", format!("`--enumerate {}` is not a valid number of selections", self.enumerate)));
         }
         problems
     }
 }
 
-/// Writes everything, or nothing.
+/// Writes all files or none.
 fn write(common: &Common, study: &found::Study, console: &Console) -> Exit {
     let files = match files(study) {
         Ok(files) => files,

@@ -1,39 +1,39 @@
-//! Lists of values on the command line: `2, 4, 6`, `10..30 step 5 Hz`, or `a, b; c, d` where values hold commas.
+//! Lists of values on the command line: `2, 4, 6`, `10..30 step 5 Hz`, or `a, b; c, d` for values that contain commas.
 
-/// Values of a list or of a range, as written: a range gives its numbers with its unit.
+/// Values of a list or of a range, as text; those of a range include its unit.
 ///
 /// # Errors
-/// What is wrong with a range.
+/// The list is empty, or the range is not valid.
 pub fn values(text: &str) -> Result<Vec<String>, String> {
     let Some((from, rest)) = text.split_once("..").filter(|_| !text.contains(';')) else {
         let comma = if text.contains(';') { ';' } else { ',' };
         let values: Vec<String> = text.split(comma).map(|value| value.trim().to_owned()).filter(|value| !value.is_empty()).collect();
         return if values.is_empty() { Err("no value is given".into()) } else { Ok(values) };
     };
-    let (to, step) = rest.split_once("step").ok_or("a range is written `FROM..TO step STEP`")?;
+    let (to, step) = rest.split_once("step").ok_or("a range has the form `FROM..TO step STEP`")?;
     let (from, to, step) = (with_unit(from)?, with_unit(to)?, with_unit(step)?);
     let mut units: Vec<&str> = [from.1, to.1, step.1].into_iter().filter(|unit| !unit.is_empty()).collect();
     units.dedup();
     if units.len() > 1 {
-        return Err(format!("a range has one unit, not {}", units.join(" and ")));
+        return Err(format!("the values of a range must have the same unit, not {}", units.join(" and ")));
     }
     let count = (to.0 - from.0) / step.0;
     if !(step.0 != 0.0 && (0.0..MOST).contains(&(count + 1e-9))) {
-        return Err(format!("a range leads from its first value to its last in at most {MOST} steps"));
+        return Err(format!("a range must go from its first value to its last in at most {MOST} steps"));
     }
     let unit = units.first().map_or(String::new(), |unit| format!(" {unit}"));
-    // What decimal steps add up to, without the tail that sums of binary fractions leave.
+    // Rounds to decimal digits, since sums of binary fractions are not exact.
     let shown = |value: f64| format!("{:.10}", value).trim_end_matches('0').trim_end_matches('.').to_owned();
     Ok((0..=(count + 1e-9) as usize).map(|at| format!("{}{unit}", shown(from.0 + at as f64 * step.0))).collect())
 }
 
-/// Values of one range at most.
+/// Maximum number of values of a range.
 const MOST: f64 = 200.0;
 
-/// `20 Hz` as number and unit.
+/// Splits `20 Hz` into number and unit.
 fn with_unit(text: &str) -> Result<(f64, &str), String> {
     let text = text.trim();
-    // The longest beginning that is a number: `1e3 m` is a thousand metres.
+    // The longest prefix that is a number: `1e3 m` is a thousand metres.
     let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
     let number = |end: usize| text[..end].trim_end().parse::<f64>().ok().filter(|number| number.is_finite()).map(|number| (number, end));
     let found = ends.filter(|&end| !text[..end].ends_with(char::is_alphabetic)).find_map(number);
@@ -43,7 +43,7 @@ fn with_unit(text: &str) -> Result<(f64, &str), String> {
 /// Plain numbers.
 ///
 /// # Errors
-/// As [`values`]; a value that is no number.
+/// As [`values`]; a value that is not a number.
 pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
     let number = |value: &String| match value.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),

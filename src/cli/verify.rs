@@ -21,35 +21,35 @@ use crate::report::visible::visible;
 pub struct Verify {
     /// A report of `certify`: report.pdf, its folder, or results.json.
     report: PathBuf,
-    /// Folder of the campaign: its files are compared with the report, and the protocol in the report is run over them again.
+    /// Folder of the campaign: its files are compared with the report, and the protocol in the report is evaluated again.
     campaign: Option<PathBuf>,
-    /// Public key that the signature is checked with: a file, or the key itself.
+    /// Public key for the signature: a file, or the key itself.
     #[arg(long, value_name = "KEY")]
     public_key: Option<String>,
-    /// Signature of the report [default: the file beside it that ends in .minisig]
+    /// Signature of the report [default: the file next to it that ends in .minisig]
     #[arg(long, value_name = "FILE")]
     signature: Option<PathBuf>,
-    /// The protocol, where the report does not carry it; it must have the SHA-256 that the results name.
+    /// The protocol, if the report does not contain it; its SHA-256 must be the one in the results.
     #[arg(long, short)]
     protocol: Option<String>,
     /// Print every difference, not only the first of each kind.
     #[arg(long)]
     all: bool,
-    /// How many distance plots the report was written with.
+    /// Number of distance plots of the report.
     #[arg(long, default_value_t = super::certify::PLOTS)]
     plots: usize,
-    /// Records worked on at a time [default: one per core]
+    /// Number of records processed in parallel [default: one per core]
     #[arg(long, short)]
     jobs: Option<NonZeroUsize>,
 }
 
-/// Differences of one kind that are printed unless all are asked for.
+/// Number of differences of one kind that are printed without `--all`.
 const MOST: usize = 20;
 
 impl Verify {
     pub fn run(self, console: &Console) -> Exit {
         if let Some(jobs) = self.jobs {
-            // Fails only if the pool was made before, which nothing does before here.
+            // Fails only if the thread pool exists already, which is not the case here.
             let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
         }
         if let Some(folder) = self.campaign.as_ref().filter(|folder| !disk::may_exist(folder)) {
@@ -97,7 +97,7 @@ impl Verify {
     }
 }
 
-/// A report, and the protocol that was named for it.
+/// Opens a report, and the protocol given for it.
 fn open(report: &std::path::Path, protocol: Option<&str>) -> Result<(Carried, Option<Family>), Problems> {
     let mut problems = Problems::default();
     let given = protocol.map(|name| load(name, &mut problems));
@@ -108,7 +108,7 @@ fn open(report: &std::path::Path, protocol: Option<&str>) -> Result<(Carried, Op
     Ok((carried, given.flatten()))
 }
 
-/// What was found, for the terminal. Names in a report are of others: what would move the cursor is made visible.
+/// The result for the terminal. Control characters in names of a report are made visible.
 fn told(carried: &Carried, checks: &[Check], campaign: bool, most: usize, color: bool) -> String {
     let results = &carried.results;
     let mut out = format!(
@@ -144,10 +144,10 @@ fn told(carried: &Carried, checks: &[Check], campaign: bool, most: usize, color:
     let (differ, open) = (named(Outcome::Differs), named(Outcome::NotPossible));
     out += "\n";
     out += &match (differ.is_empty() && open.is_empty(), campaign) {
-        (false, _) if differ.is_empty() => format!("Result: could not be finished ({open})\n"),
+        (false, _) if differ.is_empty() => format!("Result: the check could not be completed ({open})\n"),
         (false, _) => format!("Result: differs ({differ})\n"),
-        (true, true) => "Result: everything that was checked agrees\n".to_string(),
-        (true, false) => "Result: the report agrees with itself; give its campaign to check it against the data\n".to_string(),
+        (true, true) => "Result: everything checked agrees\n".to_string(),
+        (true, false) => "Result: the report is consistent; give its campaign to check it against the data\n".to_string(),
     };
     out
 }
@@ -165,7 +165,7 @@ pub struct Trace {
     /// Folder of the campaign: rows and values are read and computed again.
     #[arg(long, value_name = "DIR")]
     campaign: Option<PathBuf>,
-    /// The protocol, where the report does not carry it; it must have the SHA-256 that the results name.
+    /// The protocol, if the report does not contain it; its SHA-256 must be the one in the results.
     #[arg(long, short)]
     protocol: Option<String>,
 }
@@ -183,7 +183,7 @@ impl Trace {
         let mut problems = Problems::default();
         let compiled = match carried.sources(given.as_ref()) {
             Ok(sources) => carried.compiled(&sources, &mut problems),
-            // Without its protocol, a report still says what stands in it; a computation needs the protocol.
+            // Without its protocol, the contents of a report can be shown, but not computed again.
             Err(problem) if self.campaign.is_some() => return wrong(Problems(vec![problem])),
             Err(_) => None,
         };

@@ -132,7 +132,7 @@ fn a_job_resumes() {
 fn increments_and_baseline() {
     let place = twin();
     let ran = place.simulated("increment", &arguments(&["--increment", "--baseline", "--effect", "friction=0.5"]));
-    assert!(ran.stderr.contains("baseline: twin is off from the campaign's simulation by"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("baseline: twin deviates from the campaign's simulation by at most"), "{}", ran.stderr);
     // Without the effect, with it: the run for the baseline serves the increment too.
     assert!(ran.stderr.contains("(8 calls of twin, 4 records from the cache)"), "{}", ran.stderr);
     let direct = place.simulated("own", &["--increment", "--effect", "friction=0.5"]);

@@ -62,5 +62,5 @@ fn other_units_than_the_catalogue_says() {
     place.write("mine.yaml", &CATALOGUE.replace("effects:\n", "units: {guiding forces: N}\neffects:\n"));
     let ran = place.simulate("out", &["--effects", "mine.yaml", "--effect", "leaking_bridge=5"]);
     assert_eq!(ran.code, 2, "{}", ran.stderr);
-    assert!(ran.stderr.contains("`Y_1R` is recorded in kN, and the catalogue takes it in N"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("`Y_1R` is recorded in kN, but the catalogue expects N"), "{}", ran.stderr);
 }
