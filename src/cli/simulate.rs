@@ -234,9 +234,8 @@ fn unusable(catalogue: &Catalogue, effects: &[Applied], sections: &[Section], ch
                     found.dimension == unit.dimension && found.factor != unit.factor
                 };
                 problems.extend(catalogue.units.iter().find(differs).map(|(channel, unit)| {
-                    let says =
-                        format!("`{channel}` is recorded in {}, but the catalogue expects {unit}", chosen.unit(section, channel));
-                        Problem::error("unit-mismatch", says).help("set `units` in the catalogue to those of the records")
+                    let says = format!("`{channel}` is recorded in {}, but the catalogue expects {unit}", chosen.unit(section, channel));
+                    Problem::error("unit-mismatch", says).help("set `units` in the catalogue to those of the records")
                 }));
             }
             Ok(_) => {}

@@ -1,20 +1,20 @@
-//! Files that a report carries inside: its numbers, and the protocol, so that it can be run again from the report alone.
+//! Files attached to a report: its numbers and the protocol, so that the evaluation can be repeated from the report alone.
 
 use super::typst::Attachment;
 use crate::result::{Certification, ProtocolFile};
 
-/// The name under which a PDF carries the results.
+/// Name of the results attached to a PDF.
 pub const RESULTS: &str = "results.json";
 
-/// The name under which a PDF carries a file of the protocol, the protocol itself being number 0, then its parent, and so on.
-/// The number keeps files apart that have the same name in different folders.
+/// Name of an attached file of the protocol; number 0 is the protocol, 1 its parent, and so on. The number distinguishes files of the same
+/// name from different folders.
 pub fn protocol_name(at: usize, name: &str) -> String {
     let plain = |sign: char| sign.is_ascii_alphanumeric() || matches!(sign, '.' | '-' | '_');
     let plain: String = name.chars().map(|sign| if plain(sign) { sign } else { '_' }).collect();
     format!("protocol-{}-{plain}", at + 1)
 }
 
-/// Everything attached to a certification report.
+/// All attachments of a certification report.
 pub fn attachments<'a>(found: &'a Certification, results: &'a str, names: &'a [String]) -> Vec<Attachment<'a>> {
     let numbers =
         Attachment { name: RESULTS, mime: "application/json", bytes: results.as_bytes(), description: "Every number of this report" };
@@ -22,7 +22,7 @@ pub fn attachments<'a>(found: &'a Certification, results: &'a str, names: &'a [S
         name,
         mime: if file.name.ends_with(".fp") { "text/plain" } else { "application/yaml" },
         bytes: file.text.as_bytes(),
-        description: "The protocol that was run",
+        description: "The protocol that was evaluated",
     };
     std::iter::once(numbers).chain(names.iter().zip(&found.protocol.files).map(protocol)).collect()
 }

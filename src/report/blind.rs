@@ -4,7 +4,7 @@ use crate::report::number;
 use crate::report::study::{Chapter, Head, Item, Table};
 use crate::result::blind::{Blind, Case};
 
-/// Where nothing of the catalogue is hidden, nothing is to be named with confidence.
+/// Whether the answer is right. If no effect of the catalogue is hidden, no cause may be named with confidence.
 fn right(case: &Case) -> bool {
     match case.kind.as_str() {
         "none" => case.named.is_empty(),

@@ -1,4 +1,4 @@
-//! A diagnosis as a document: the answer first, then where, which, how far, and what would have been seen.
+//! A diagnosis as a document: answer, location of the gap, causes, reduction of the gap, detectable effects.
 
 use crate::report::figure;
 use crate::report::number;
@@ -9,16 +9,16 @@ use crate::result::diagnosis::{
     Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Trend, Value, Where,
 };
 
-/// Significant cells listed, and how many are listed with others where fewer are; all of them stand in diagnosis.json.
+/// Number of significant cells listed, and of cells listed where fewer are significant; diagnosis.json contains all.
 const CELLS: usize = 30;
 const FIRST_CELLS: usize = 12;
-/// Of the gap: what rounds to nothing is not listed.
+/// Share of the gap below which a cell is not listed.
 const LEAST_SHARE: f64 = 0.0005;
-/// Trends listed; fewer where none is significant.
+/// Number of trends listed, and where none is significant.
 const TRENDS: usize = 12;
 const FEW: usize = 4;
 
-/// The diagnosis as both reports print it. `before` is the protocol on the campaign as it is.
+/// The diagnosis as printed in both reports. `before` is the protocol evaluated on the campaign as it is.
 #[must_use]
 pub fn document(found: &Diagnosis, before: &Certification) -> Document {
     let mut chapters = vec![answer(found), places(found)];
@@ -67,7 +67,7 @@ fn sign(class: &str) -> &'static str {
     }
 }
 
-/// All figures by the names the document gives them.
+/// All figures by their names in the document.
 #[must_use]
 pub fn figures(found: &Diagnosis) -> Vec<(String, String)> {
     let mut drawn = Vec::new();
@@ -128,7 +128,7 @@ fn places(found: &Diagnosis) -> Chapter {
         Head::number("Share"),
         Head::number("p"),
     ];
-    let caption = "Cells by their share of the gap, tested against noise, declared tolerances and what a model may be wrong in; \
+    let caption = "Cells by their share of the gap, tested against noise, declared tolerances and the allowed model discrepancy; \
                    * significant at a false discovery rate of 5 %. Mean and rms are over the sections and wheels \
                    of a cell: of sign(measured) (simulated - measured) for quasi-static values, of rms simulated / measured - 1 for bands";
     let table = Table { caption: caption.into(), head, rows: rows.collect() };
@@ -141,7 +141,7 @@ fn places(found: &Diagnosis) -> Chapter {
         text.push_str(" No single cell does; the conclusions below rest on all cells together.");
     }
     let caption = "Share of the gap by quantity and position, zone and band; darker cells have a larger share (scale below); a dot marks significant cells";
-    let map = Item::figure("map", caption, "A map of cells, darker where more of the gap lies");
+    let map = Item::figure("map", caption, "Map of cells, darker where the share of the gap is larger");
     let mut items = vec![Item::text(text), map, Item::Table { table }];
     if !found.invariants.is_empty() {
         items.push(Item::Table { table: invariants(&found.invariants, !found.causes.is_empty()) });
@@ -154,7 +154,7 @@ fn places(found: &Diagnosis) -> Chapter {
     chapter("where", "Where the gap lies", items)
 }
 
-/// Columns with the effects where there are any.
+/// With columns for the effects if any are named.
 fn invariants(all: &[Invariant], named: bool) -> Table {
     let rows = all.iter().map(|one| {
         let decimals = number::decimals_of([one.before, one.after, one.allowed], 3);
@@ -166,8 +166,8 @@ fn invariants(all: &[Invariant], named: bool) -> Table {
         cells.extend(named.then(|| off(one.after, one.allowed_after)));
         cells
     });
-    let caption = "Sums of quasi-static forces that only some causes can move, simulated - measured, mean over the sections; \
-                   allowed is one standard deviation, in which it is counted how far off they are (after: as it is beside the effects)";
+    let caption = "Sums of quasi-static forces that only some causes can change, simulated - measured, mean over the sections; \
+                   allowed is one standard deviation, which is the unit of the deviations (after: including the effects)";
     let mut head = vec![Head::text("Sum"), Head::text("Symmetry"), Head::number("As simulated")];
     head.extend(named.then(|| Head::number("With the effects")));
     head.extend([Head::number("Allowed"), Head::number(if named { "Deviation before" } else { "Deviation" })]);
@@ -175,7 +175,7 @@ fn invariants(all: &[Invariant], named: bool) -> Table {
     Table { caption: caption.into(), head, rows: rows.collect() }
 }
 
-/// Trends that are significant before or after, or the nearest to it.
+/// Trends that are significant before or after, or else the closest ones.
 fn trends(found: &Diagnosis) -> Vec<Item> {
     if found.trends_tested == 0 {
         return Vec::new();
@@ -218,9 +218,9 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
         cells
     };
     let caption = format!(
-        "What simulated - measured changes by over the range of what the section table says, by generalised least squares on that \
-         alone, with a 90 % interval; * significant at a false discovery rate of 5 %. Levels that turn with the curve count as in one \
-         direction. r is the correlation of the differences as they are{}",
+        "Change of simulated - measured over the range of a column of the section table, by generalised least squares on that column \
+         alone, with a 90 % interval; * significant at a false discovery rate of 5 %. Levels that change sign with the curve are turned \
+         to one direction. r is the correlation of the differences as simulated{}",
         if named { ", with the effects" } else { "" }
     );
     let mut head = vec![Head::text("Quantity"), Head::short("Band"), Head::text("Over"), Head::number("As simulated")];
@@ -230,7 +230,7 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
     if table.rows.is_empty() { vec![Item::text(text)] } else { vec![Item::text(text), Item::Table { table }] }
 }
 
-/// A covariate with its ends, the unit once.
+/// A covariate with its range; the unit is printed once.
 fn over(trend: &Trend) -> String {
     let unit = |end: &str| end.rsplit_once(' ').map(|(_, unit)| unit.to_owned());
     let same = unit(&trend.from).filter(|of| Some(of) == unit(&trend.to).as_ref());

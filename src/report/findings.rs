@@ -1,4 +1,4 @@
-//! Findings gathered for print: what was found in section after section is one row.
+//! Plausibility findings for print: the same finding in several sections is one row.
 
 use serde::Serialize;
 
@@ -9,13 +9,13 @@ use crate::result::{Consequence, Finding};
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Row {
     pub code: String,
-    /// `Y_1R, measurement`; empty if it is about a section or the campaign.
+    /// `Y_1R, measurement`; empty if it concerns a section or the campaign.
     pub subject: String,
-    /// `S01, S02 and 30 more`; empty if it is about the campaign.
+    /// `S01, S02 and 30 more`; empty if it concerns the campaign.
     pub sections: String,
-    /// The first of them as a sentence.
+    /// The first finding as a sentence.
     pub says: String,
-    /// Empty if none is known.
+    /// The likely cause; empty if none is known.
     pub cause: String,
     /// `noted`, `section not used`, `not assessable`.
     pub consequence: &'static str,
@@ -23,10 +23,10 @@ pub struct Row {
     pub class: &'static str,
 }
 
-/// Sections that are named before the others are counted.
+/// Number of sections that are named before the rest is counted.
 const NAMED_SECTIONS: usize = 4;
 
-/// Rows in the order in which their first finding stands.
+/// Rows in the order of their first finding.
 pub fn rows(findings: &[Finding]) -> Vec<Row> {
     let mut groups: Vec<(&Finding, Vec<&str>)> = Vec::new();
     for finding in findings {

@@ -1,7 +1,7 @@
-//! The HTML report: one file that needs nothing else, filled by minijinja from `templates/`.
+//! The HTML report: one self-contained file, filled by minijinja from `templates/`.
 //!
-//! What comes from users is data: escaped by the engine, invisible signs spelled out. The page's policy admits its own style
-//! and script by their hashes and nothing from elsewhere, so that even an escaping fault could neither run nor call out.
+//! User text is data: it is escaped by the engine, and hidden characters are made visible. The page's policy allows only its own style
+//! and script, by their hashes, so that even a fault in escaping could neither execute code nor load anything.
 
 mod symbols;
 
@@ -48,8 +48,8 @@ const GRAPH: &str = "graph";
 
 /// The report as one HTML page.
 ///
-/// `figures` are SVG texts made by this program, by the names the view gives them ([`super::view::FigureView::name`]); a figure
-/// not handed over is left out. The same arguments give the same bytes.
+/// `figures` are SVG texts of this program by their names in the view ([`super::view::FigureView::name`]); a missing figure is
+/// omitted. The same arguments give the same bytes.
 ///
 /// # Errors
 ///
@@ -58,7 +58,7 @@ pub fn html(data: &ReportData, figures: &[(String, String)]) -> Result<String, P
     filled("report.html", data, figures).map_err(|error| Problems(vec![Problem::error("report-template", error)]))
 }
 
-/// A study as one HTML page, as [`html`] makes one of a certification.
+/// A study as one HTML page.
 ///
 /// # Errors
 ///
@@ -98,7 +98,7 @@ fn filled(frame: &str, data: &impl Serialize, figures: &[(String, String)]) -> R
         .filter(|(name, _)| name != GRAPH)
         .map(|(name, svg)| (name.as_str(), Value::from_safe_string(svg.trim_end().to_owned())))
         .collect();
-    // The graph is wide and has styles of its own: an image keeps both to itself.
+    // The graph is wide and has its own styles: an embedded image keeps both apart from the page.
     let graph =
         figures.iter().find(|(name, _)| name == GRAPH).map(|(_, svg)| format!("data:image/svg+xml;base64,{}", base64(svg.as_bytes())));
     let page = environment.get_template(frame).map_err(said)?;
@@ -113,7 +113,7 @@ fn filled(frame: &str, data: &impl Serialize, figures: &[(String, String)]) -> R
     .map_err(said)
 }
 
-/// The message with the template and line it comes from.
+/// The message with its place in the template.
 fn said(error: minijinja::Error) -> String {
     match (error.name(), error.line()) {
         (Some(name), Some(line)) => format!("{error} ({name}:{line})"),
@@ -121,7 +121,7 @@ fn said(error: minijinja::Error) -> String {
     }
 }
 
-/// Nothing may be loaded or run but this page's own style and script, known by their hashes, and images inside the page.
+/// Content security policy: only the page's own style and script, identified by their hashes, and embedded images are allowed.
 fn policy() -> String {
     let known = |text: &str| format!("'sha256-{}'", base64(&Sha256::digest(text.as_bytes())));
     format!(
@@ -131,7 +131,7 @@ fn policy() -> String {
     )
 }
 
-/// The data as the engine takes them, with every text made visible.
+/// The data as values of the template engine; invisible characters are made visible.
 fn shown(value: &Json) -> Value {
     match value {
         Json::Null => Value::from(()),

@@ -1,11 +1,11 @@
-//! `results.json`: the result for machines, keys in a fixed order, numbers in full precision, `null` with a reason.
+//! `results.json`: the result in machine-readable form; fixed order of keys, full precision, `null` with a reason.
 
 use serde_json::{Map, Value, json};
 
 use super::attached;
 use crate::result::{Certification, ProtocolFile, ProtocolInfo, QuantityResult, StatisticResult, ZoneResult, report};
 
-/// The whole result, ending in a line break.
+/// The complete result, ending in a line break.
 pub fn results(found: &Certification) -> String {
     let mut root = Map::new();
     root.insert("fishplate".into(), json!(env!("CARGO_PKG_VERSION")));
@@ -32,18 +32,18 @@ pub fn results(found: &Certification) -> String {
     text(&Value::Object(root))
 }
 
-/// A tree of values in the form in which results are written, ending in a line break.
+/// A value in the format of the results, ending in a line break.
 pub fn text(value: &Value) -> String {
-    // A tree of plain values always serialises.
+    // Serialisation of plain values cannot fail.
     serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
 }
 
-/// What the results say of zones.
+/// The zones of the results.
 pub fn zones(zones: &[ZoneResult]) -> Value {
     Value::Array(zones.iter().map(|zone| zone_as_number(json!(zone))).collect())
 }
 
-/// What the results say of the protocol.
+/// The protocol of the results.
 pub fn protocol(protocol: &ProtocolInfo) -> Value {
     let file = |(at, file): (usize, &ProtocolFile)| json!({"name": file.name, "sha256": file.sha256, "attached": attached::protocol_name(at, &file.name)});
     json!({
@@ -56,7 +56,7 @@ pub fn protocol(protocol: &ProtocolInfo) -> Value {
     })
 }
 
-/// What the results say of quantities.
+/// The quantities of the results.
 pub fn quantities(quantities: &[QuantityResult]) -> Value {
     Value::Array(quantities.iter().map(quantity).collect())
 }
@@ -81,7 +81,7 @@ fn quantity(quantity: &QuantityResult) -> Value {
         entry.insert("normalised_mean".into(), share(mean));
         entry.insert("normalised_std".into(), share(std));
     } else {
-        // The statistic nearest to its limit stands for the quantity; all of them follow.
+        // The statistic closest to its limit represents the quantity; all statistics follow.
         let worst = quantity.statistics.iter().max_by(|a, b| a.normalised.unwrap_or(-1.0).total_cmp(&b.normalised.unwrap_or(-1.0)));
         entry.insert("metric".into(), json!(quantity.comparison));
         entry.insert("statistic".into(), json!(worst.map(|statistic| statistic.name.as_str())));
@@ -111,7 +111,7 @@ fn quantity(quantity: &QuantityResult) -> Value {
     Value::Object(entry)
 }
 
-/// A zone whose name is a whole number is written as one.
+/// Writes the name of a zone as a number if it is an integer.
 fn zone_as_number(mut entry: Value) -> Value {
     if let Some(zone) = entry.get_mut("zone")
         && let Some(number) = zone.as_str().and_then(|zone| zone.parse::<i64>().ok().filter(|number| number.to_string() == zone))

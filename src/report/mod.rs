@@ -1,6 +1,6 @@
 //! A certification as a document: one view of the result, printed as PDF and as HTML.
 //!
-//! [`view::view`] rounds, sorts and words; the templates only place what it gives.
+//! [`view::view`] rounds, sorts and formulates; the templates only place its data.
 
 pub mod attached;
 pub mod blind;

@@ -1,10 +1,10 @@
-//! Stands for `typst` in a build without the feature `typeset`: the same functions, which refuse.
+//! Replaces `typst` in a build without the feature `typeset`: the same functions, which return an error.
 
 use crate::problem::{Problem, Problems};
 use crate::report::study::Document;
 use crate::report::view::ReportData;
 
-/// A file carried inside the PDF.
+/// A file attached to the PDF.
 #[derive(Clone, Copy, Debug)]
 pub struct Attachment<'a> {
     pub name: &'a str,
@@ -13,7 +13,7 @@ pub struct Attachment<'a> {
     pub description: &'a str,
 }
 
-/// A typeset report; there is none in this build.
+/// A typeset report; not available in this build.
 #[derive(Debug)]
 pub struct Pdf {
     pub bytes: Vec<u8>,
@@ -21,7 +21,7 @@ pub struct Pdf {
     pub warnings: Problems,
 }
 
-/// Refuses: this build has no typesetter.
+/// Not available in this build.
 ///
 /// # Errors
 ///
@@ -30,7 +30,7 @@ pub fn typeset(_: &ReportData, _: &[(String, String)], _: &[Attachment<'_>]) -> 
     Err(refusal())
 }
 
-/// Refuses, as [`typeset`].
+/// Not available, as [`typeset`].
 ///
 /// # Errors
 ///
@@ -40,7 +40,7 @@ pub fn typeset_study(_: &Document, _: &[(String, String)], _: &[Attachment<'_>])
 }
 
 fn refusal() -> Problems {
-    let says = "this program was built without the typesetter, so it cannot write a PDF";
-    let help = "build it with the feature `typeset`, or ask for `--only html` or `--only results`";
+    let says = "this program was built without the typesetter and cannot write a PDF";
+    let help = "build it with the feature `typeset`, or use `--only html` or `--only results`";
     Problems(vec![Problem::error("no-typesetter", says).help(help)])
 }

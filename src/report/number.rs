@@ -1,18 +1,18 @@
-//! Numbers as a report prints them: one formatter for every table, figure and page.
+//! Number format of the report, common to all tables, figures and pages.
 //!
-//! A printed number never says less than what was decided on it: [`beside`] adds decimals until value and limit
-//! compare in print as they did in full precision.
+//! A printed number never hides a decision based on it: [`beside`] adds decimals until the printed value and limit compare as they do in
+//! full precision.
 
-/// Printed where there is no value: an en dash.
+/// Printed for a missing value: an en dash.
 pub const NONE: &str = "–";
 const MINUS: char = '\u{2212}';
 
-/// More decimals than this are no longer read; such numbers are printed with a power of ten.
+/// Maximum number of decimals; smaller numbers are printed with a power of ten.
 const MOST_DECIMALS: usize = 6;
 
 /// Decimals for a column of values in one unit.
 ///
-/// The unit gives the usual number; a column of small values gets more, so that the largest shows two significant digits.
+/// The unit gives the usual number; a column of small values gets more, so that its largest value shows two significant digits.
 pub fn decimals(unit: &str, values: impl IntoIterator<Item = f64>) -> usize {
     let usual = match unit {
         "m/s^2" | "m/s²" | "rad" => 4,
@@ -30,15 +30,15 @@ pub fn decimals(unit: &str, values: impl IntoIterator<Item = f64>) -> usize {
     if needed > MOST_DECIMALS as f64 { usual } else { usual.max(needed as usize) }
 }
 
-/// Decimals that show so many digits of the largest of some values: for values that are read beside each other.
+/// Decimals that show `digits` significant digits of the largest value, for values that are printed side by side.
 pub fn decimals_of(values: impl IntoIterator<Item = f64>, digits: usize) -> usize {
     let largest = values.into_iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, value| largest.max(value.abs()));
     if largest == 0.0 { 0 } else { (digits as f64 - 1.0 - largest.log10().floor()).clamp(0.0, MOST_DECIMALS as f64) as usize }
 }
 
-/// A number with a fixed count of decimals and a true minus sign; never `−0.00`.
+/// A number with a fixed number of decimals and a true minus sign; never `−0.00`.
 ///
-/// Numbers too long or too small for fixed decimals come with a power of ten; what is not finite is [`NONE`].
+/// Very large and very small numbers are printed with a power of ten; a value that is not finite is printed as [`NONE`].
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return NONE.to_owned();
@@ -54,7 +54,7 @@ pub fn optional(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| NONE.to_owned(), |value| fixed(value, decimals))
 }
 
-/// A number with so many significant digits, no trailing zeros after the point: limits, settings, extents.
+/// A number with `digits` significant digits, without trailing zeros after the decimal point: for limits, settings, extents.
 pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return NONE.to_owned();
@@ -70,8 +70,8 @@ pub fn significant(value: f64, digits: usize) -> String {
     signed(trimmed(&format!("{value:.decimals$}")))
 }
 
-/// A value that is compared with a limit, with as many more decimals as it takes for the printed pair to compare as the
-/// exact pair does: 10.0004 against 10 is not printed as `10.00`.
+/// A value that is compared with a limit, with additional decimals until the printed pair compares as the exact pair does: 10.0004 against
+/// 10 is not printed as `10.00`.
 pub fn beside(value: f64, limit: f64, decimals: usize) -> String {
     let shown = |places: usize| format!("{:.places$}", value.abs()).parse::<f64>().unwrap_or(f64::NAN);
     let beyond = value.abs() > limit;
@@ -79,12 +79,12 @@ pub fn beside(value: f64, limit: f64, decimals: usize) -> String {
     fixed(value, places.unwrap_or(decimals))
 }
 
-/// A count, as a power of ten where it is beyond reading.
+/// A count; a large one is printed with a power of ten.
 pub fn large(number: f64) -> String {
     if number < 1e12 { count(number as u64) } else { significant(number, 3) }
 }
 
-/// A count with a narrow no-break space between groups of three digits, from five digits on.
+/// A count with narrow no-break spaces between groups of three digits, from five digits on.
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
     if digits.len() < 5 {
@@ -100,12 +100,12 @@ pub fn count(value: u64) -> String {
     text
 }
 
-/// A printed number with its unit, which a line never breaks apart; a plain number stays alone.
+/// A printed number with its unit and no line break between them; a dimensionless number alone.
 pub fn with_unit(number: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "-" { number.to_owned() } else { format!("{number}\u{a0}{}", self::unit(unit)) }
 }
 
-/// A unit as printed: `m/s^2` becomes `m/s²`, the plain number's `-` an en dash.
+/// A unit as printed: `m/s^2` becomes `m/s²`; `-` for a dimensionless number becomes an en dash.
 pub fn unit(text: &str) -> String {
     if text.is_empty() || text == "-" {
         return NONE.to_owned();
@@ -144,7 +144,7 @@ pub fn formula(text: &str) -> String {
     printed
 }
 
-/// Text that is a number gets a true minus sign; other text stays as it is.
+/// Text that is a number gets a true minus sign; other text is unchanged.
 pub fn in_text(text: &str) -> String {
     if is_number(text) { text.replace('-', "\u{2212}") } else { text.to_owned() }
 }
@@ -172,12 +172,12 @@ fn superscript(digit: char) -> char {
     }
 }
 
-/// Without zeros after the last digit that says something.
+/// Without trailing zeros after the decimal point.
 fn trimmed(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
-/// With a true minus sign, which a number that rounds to zero does not get.
+/// With a true minus sign, but not for a number that rounds to zero.
 fn signed(text: &str) -> String {
     match text.strip_prefix('-') {
         Some(rest) if rest.bytes().all(|byte| matches!(byte, b'0' | b'.')) => rest.to_owned(),

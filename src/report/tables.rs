@@ -1,11 +1,11 @@
-//! Every table of the report as CSV.
+//! All tables of the report as CSV.
 
 use crate::result::Certification;
 
-/// File names and contents, to be put into `tables/`.
+/// File names and contents for the folder `tables/`.
 ///
 /// # Errors
-/// What the CSV writer says; it writes to memory.
+/// An error of the CSV writer, which writes to memory.
 pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Error> {
     let mut all = Vec::new();
     let mut add = |name: &str, header: &[&str], rows: Vec<Vec<String>>| -> Result<(), csv::Error> {
@@ -144,17 +144,17 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
     Ok(all)
 }
 
-/// A cell that a spreadsheet takes for text or a number: what it would take for a formula gets an apostrophe in front, as spreadsheets
-/// themselves mark text (OWASP, CSV Injection).
+/// A cell that a spreadsheet does not interpret as a formula: such text gets an apostrophe in front, the spreadsheets' own mark of text
+/// (OWASP, CSV Injection).
 fn inert(cell: &str) -> std::borrow::Cow<'_, str> {
     let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) && cell.parse::<f64>().is_err();
     if formula { format!("'{cell}").into() } else { cell.into() }
 }
 
-/// A table as a file of its name.
+/// A table as a file.
 ///
 /// # Errors
-/// What the CSV writer says; it writes to memory.
+/// An error of the CSV writer, which writes to memory.
 pub fn csv_file(name: &str, header: &[&str], rows: Vec<Vec<String>>) -> Result<(String, Vec<u8>), csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(header)?;
@@ -191,7 +191,7 @@ fn section_rows(found: &Certification) -> Vec<Vec<String>> {
     found.sections.iter().map(row).collect()
 }
 
-/// Full precision; an empty cell where there is no number.
+/// Full precision; an empty cell for a missing number.
 fn number(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| value.to_string())
 }

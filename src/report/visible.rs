@@ -1,9 +1,9 @@
-//! Text as an assessor must see it: nothing in a name may hide, or make it look like another.
+//! Makes hidden characters visible, so that no name can hide text or look like another.
 
-/// Text with white space as spaces and every sign without a look of its own spelled out: `a\u{202e}b` becomes `a⟨U+202E⟩b`.
+/// Text with white space as spaces and every character without a visible glyph spelled out: `a\u{202e}b` becomes `a⟨U+202E⟩b`.
 ///
-/// Spelled out are control characters, changes of writing direction, signs of no width, private and non-characters: what XML and
-/// HTML forbid is among them.
+/// These are control characters, changes of writing direction, characters of zero width, private and noncharacters, which include those
+/// that XML and HTML forbid.
 pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {

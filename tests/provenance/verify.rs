@@ -50,7 +50,11 @@ fn results_alone_find_their_protocol_by_its_hash() {
     fs::copy(written.results(), &results).expect("copied");
     let ran = verify(&results, None, &[]);
     assert_eq!(ran.code, 3, "{}", ran.stdout);
-    assert!(check(&ran, "protocol text").contains("--protocol") && ran.stdout.contains("Result: the check could not be completed"), "{}", ran.stdout);
+    assert!(
+        check(&ran, "protocol text").contains("--protocol") && ran.stdout.contains("Result: the check could not be completed"),
+        "{}",
+        ran.stdout
+    );
     let ran = verify(&results, Some(&written.campaign()), &[]);
     assert!(ran.code == 3 && check(&ran, "input files").starts_with("agrees"), "{}", ran.stdout);
     let given = text(&written.campaign().join("rules/p.fp"));

@@ -1,4 +1,4 @@
-//! Scales with round numbers at their ticks.
+//! Scales with round tick values.
 
 use crate::report::number;
 
@@ -7,23 +7,23 @@ use crate::report::number;
 pub struct Scale {
     pub low: f64,
     pub high: f64,
-    /// Place of `low`, in points.
+    /// Position of `low`, in points.
     pub from: f64,
-    /// Place of `high`, in points.
+    /// Position of `high`, in points.
     pub to: f64,
 }
 
 impl Scale {
-    /// A scale over all values, with some room at both ends; over -1 to 1 where there are none.
+    /// A scale over all values with a margin at both ends; -1 to 1 without values.
     pub fn over(values: impl IntoIterator<Item = f64>, from: f64, to: f64) -> Self {
         let (low, high) = extent(values).unwrap_or((-1.0, 1.0));
         let room = 0.06 * (high - low);
         Self { low: low - room, high: high + room, from, to }
     }
 
-    /// Place of a value, in points.
+    /// Position of a value, in points.
     pub fn at(&self, value: f64) -> f64 {
-        // Halves, for a range near the largest number.
+        // Halved, so that a very large range does not overflow.
         self.from + (value / 2.0 - self.low / 2.0) / (self.high / 2.0 - self.low / 2.0) * (self.to - self.from)
     }
 
@@ -31,7 +31,7 @@ impl Scale {
         (self.low..=self.high).contains(&value)
     }
 
-    /// Round values within the scale, at most so many.
+    /// At most `most` round values within the scale.
     pub fn ticks(&self, most: usize) -> Vec<Tick> {
         let step = round_step((self.high / 2.0 - self.low / 2.0) * 2.0 / most.max(1) as f64);
         if !(step.is_finite() && step > 0.0) {
@@ -47,14 +47,14 @@ impl Scale {
     }
 }
 
-/// A place on an axis with its number.
+/// A position on an axis with its label.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
     pub value: f64,
     pub label: String,
 }
 
-/// Least and largest of the finite values, widened where they are one value.
+/// Minimum and maximum of the finite values, widened if they are equal.
 pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     let (low, high) = values
         .into_iter()
@@ -71,7 +71,7 @@ pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     Some((low - around, high + around))
 }
 
-/// The least of 1, 2, 5 times a power of ten that is not below a width.
+/// The smallest of 1, 2, 5 times a power of ten that is at least `width`.
 fn round_step(width: f64) -> f64 {
     let power = 10_f64.powf(width.log10().floor());
     let step = [1.0, 2.0, 5.0].into_iter().map(|digit| digit * power).find(|step| *step >= width * (1.0 - 1e-9));

@@ -1,4 +1,4 @@
-//! Box plots of normalised statistics over all selections of sections, in the manner of Götz and Polach, Figures 5, 6 and 8.
+//! Box plots of normalised statistics over all selections of sections, as in Götz and Polach, Figures 5, 6 and 8.
 
 use super::axis::{Scale, Tick};
 use super::canvas::{Canvas, Font, Group};
@@ -9,25 +9,25 @@ use super::symbol::symbol;
 use crate::report::number;
 use crate::result::study::{QuantitySpread, Spread, StatisticSpread};
 
-/// Heights of a panel's plotting area and of what stands below it, in points.
+/// Heights of a panel's plotting area and of its labels, in points.
 const PANEL: f64 = 98.0;
 const LABELS: f64 = 22.0;
-/// From the middle of a count to a line that it stands clear of.
+/// Distance of a number from a line, from its centre, in points.
 const CLEAR: f64 = 3.8;
-/// Widest half of a box.
+/// Maximum half width of a box, in points.
 const HALF: f64 = 9.0;
-/// No scale reaches farther from zero than this; what lies beyond is cut at the frame, and said so.
+/// Maximum of the scale; values beyond are cut at the frame and marked.
 const FARTHEST: f64 = 3.0;
 
-/// A panel: what its axis is called, and a box with its label for every statistic.
+/// A panel: axis title, and one labelled box per statistic.
 struct Panel<'a> {
     title: &'static str,
     boxes: Vec<(String, &'a StatisticSpread, &'a QuantitySpread, Spread)>,
-    /// Values have a sign, and the limit is on both sides.
+    /// Values have a sign, and the limit applies on both sides.
     signed: bool,
 }
 
-/// One panel for means, one for standard deviations, one for all other statistics; empty ones are left out.
+/// One panel each for means, standard deviations and other statistics; empty panels are omitted.
 pub fn boxes(quantities: &[QuantitySpread]) -> String {
     let panels = panels(quantities);
     let legend = Legend::new(
@@ -139,7 +139,7 @@ fn one(layer: &mut super::canvas::Layer<'_>, frame: &Frame, x: f64, half: f64, s
                 layer.mark(Mark::Diamond, (x, place(outlier)), 1.7, VERMILION);
             }
         }
-        // Above the farthest value, and above the line of a limit rather than across it.
+        // Above the largest value, and above the line of a limit.
         let above = (place(spread.max.max(high)) - 5.0).max(frame.top() - 3.0);
         let lines = [1.0, -1.0].map(|limit| frame.y.at(limit));
         let across = lines.into_iter().find(|line| (above - line).abs() < CLEAR);
@@ -151,7 +151,7 @@ fn one(layer: &mut super::canvas::Layer<'_>, frame: &Frame, x: f64, half: f64, s
     }
 }
 
-/// The ground beyond the limits.
+/// Background of the range beyond the limits.
 fn beyond(canvas: &mut Canvas, frame: &Frame, signed: bool) {
     canvas.draw(|layer| {
         layer.rect((frame.left(), frame.top()), (frame.right(), frame.y.at(1.0)), BEYOND);

@@ -1,4 +1,4 @@
-//! A drawing in points, kept as SVG. plotters draws; this gives it a grid finer than its whole pixels, dashes and groups.
+//! A drawing in points, stored as SVG. plotters draws; this adds a grid finer than whole pixels, dashes and groups.
 
 use std::fmt::Write as _;
 
@@ -10,17 +10,17 @@ use plotters::style::{Color, FontDesc, FontFamily, FontStyle, FontTransform, RGB
 use super::style::{Dash, FAMILY, INK, Mark};
 use crate::report::visible::visible;
 
-/// Steps of the grid per point: plotters places by whole steps, 1/20 pt is finer than print resolves.
+/// Grid steps per point: plotters rounds to whole steps; 1/20 pt is finer than print resolution.
 const STEPS: f64 = 20.0;
 /// plotters divides font sizes by this.
 const FONT_SIZE_FACTOR: f64 = 1.24;
-/// Coordinates are kept within this many steps, far outside any figure.
+/// Coordinates are limited to this number of steps, far outside any figure.
 const FARTHEST: f64 = 1e6;
 
-/// A point on the canvas in points, x to the right, y downward.
+/// A point on the canvas in points; x to the right, y downward.
 pub type Point = (f64, f64);
 
-/// A drawing under way.
+/// A drawing in progress.
 #[derive(Debug)]
 pub struct Canvas {
     width: f64,
@@ -28,21 +28,21 @@ pub struct Canvas {
     body: String,
 }
 
-/// What the shapes of a layer have in common.
+/// Common properties of the shapes of a group.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Group<'a> {
-    /// Class names for scripts and style sheets; program text only.
+    /// Class names for scripts and style sheets; not user text.
     pub class: &'a str,
     pub dash: Dash,
-    /// Width of a white edge around filled shapes, in points.
+    /// Width of a white outline around filled shapes, in points.
     pub edge: f64,
-    /// Text shown while the pointer rests on it.
+    /// Tooltip text.
     pub title: Option<&'a str>,
     pub section: Option<&'a str>,
     pub zone: Option<&'a str>,
 }
 
-/// A group of shapes being drawn.
+/// A group of shapes in progress.
 pub struct Layer<'a> {
     backend: SVGBackend<'a>,
 }
@@ -53,7 +53,7 @@ impl std::fmt::Debug for Layer<'_> {
     }
 }
 
-/// Where a text is held; its height is always centred.
+/// Horizontal alignment of a text; vertically it is centred.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Held {
     Start,
@@ -61,20 +61,20 @@ pub enum Held {
     End,
 }
 
-/// How a text stands.
+/// Size, colour and alignment of a text.
 #[derive(Clone, Copy, Debug)]
 pub struct Font {
     pub size: f64,
     pub bold: bool,
     pub color: RGBColor,
-    /// Which of its ends, or its middle, is at the point.
+    /// Alignment at the point.
     pub held: Held,
-    /// Reading upward.
+    /// Rotated to read upward.
     pub upward: bool,
 }
 
 impl Font {
-    /// Starts at the point.
+    /// Left-aligned at the point.
     pub fn left(size: f64) -> Self {
         Self { size, bold: false, color: INK, held: Held::Start, upward: false }
     }
@@ -101,7 +101,7 @@ impl Font {
 }
 
 impl Canvas {
-    /// An empty drawing, sizes in points.
+    /// An empty drawing; sizes in points.
     pub fn new(width: f64, height: f64) -> Self {
         Self { width, height, body: String::new() }
     }
@@ -110,7 +110,7 @@ impl Canvas {
         self.width
     }
 
-    /// Draws shapes that stand alone.
+    /// Draws shapes without a group.
     pub fn draw(&mut self, draw: impl FnOnce(&mut Layer<'_>)) {
         let shapes = self.shapes(draw);
         self.body.push_str(&shapes);
@@ -151,8 +151,8 @@ impl Canvas {
         drop(layer);
         let start = text.find('\n').map_or(0, |at| at + 1);
         let end = text.rfind("</svg>").unwrap_or(text.len());
-        // All quotes in texts are escaped, so these patterns are attributes: full opacity is the default; a filled shape takes
-        // the edge of its group; half an x-height lies below the middle of digits and capitals.
+        // All quotes in texts are escaped, so these patterns are attributes. Full opacity is the default; a filled shape takes the
+        // outline of its group; texts are centred on half the x-height.
         whole_sizes(text.get(start..end).unwrap_or_default())
             .replace(" opacity=\"1\"", "")
             .replace(" stroke=\"none\" stroke-width=\"1\"", "")
@@ -161,7 +161,7 @@ impl Canvas {
             .replace(" \"/>", "\"/>")
     }
 
-    /// The finished SVG text: 17 cm stay 17 cm wherever it is placed.
+    /// The finished SVG text, with its size in points.
     pub fn finish(self) -> String {
         let (width, height) = (step(self.width), step(self.height));
         let mut text = format!(
@@ -195,7 +195,7 @@ impl Layer<'_> {
         let _ = self.backend.draw_rect(corners.0, corners.1, &color.filled(), true);
     }
 
-    /// A filled mark around a point; all shapes have about the same area.
+    /// A filled mark around a point; all shapes have approximately the same area.
     pub fn mark(&mut self, mark: Mark, center: Point, radius: f64, color: RGBColor) {
         if mark == Mark::Circle {
             let _ = self.backend.draw_circle(at(center), step(radius).max(1) as u32, &color.filled(), true);
@@ -219,7 +219,7 @@ impl Layer<'_> {
     }
 }
 
-/// The corners of a mark, the first at the top, clockwise.
+/// The corners of a mark, clockwise from the top.
 fn outline(mark: Mark, (x, y): Point, radius: f64) -> Vec<Point> {
     let (corners, turn, size) = match mark {
         Mark::Triangle => (3, 0.0, 1.35),
@@ -242,7 +242,7 @@ fn outline(mark: Mark, (x, y): Point, radius: f64) -> Vec<Point> {
         .collect()
 }
 
-/// Font sizes without the last digit of rounding that plotters' division leaves.
+/// Removes rounding errors of font sizes that result from the factor of plotters.
 fn whole_sizes(shapes: &str) -> String {
     const SIZE: &str = "font-size=\"";
     let mut pieces = shapes.split(SIZE);
@@ -264,7 +264,7 @@ fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
 }
 
 fn step(length: f64) -> i32 {
-    // The conversion saturates and takes NaN to 0; the clamp keeps sums of coordinates in range.
+    // The conversion saturates and maps NaN to 0; the clamp prevents overflow of sums of coordinates.
     (length * STEPS).round().clamp(-FARTHEST, FARTHEST) as i32
 }
 
@@ -278,7 +278,7 @@ fn attribute(body: &mut String, name: &str, value: Option<&str>) {
     }
 }
 
-/// Text for XML content and attribute values.
+/// Text escaped for XML content and attribute values.
 pub fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in visible(text).chars() {

@@ -1,4 +1,4 @@
-//! Which free choice decides the verdict: for every value of every parameter the largest normalised statistic.
+//! Influence of parameters on the verdict: the largest normalised statistic for every value of every parameter.
 
 use super::axis::Scale;
 use super::canvas::{Canvas, Font, Group};
@@ -9,7 +9,7 @@ use crate::report::number;
 use crate::result::Verdict;
 use crate::result::study::{AtValue, ParameterStudy};
 
-/// Height of a row, and of the line between parameters, in points.
+/// Heights of a row and of the line between parameters, in points.
 const ROW: f64 = 10.0;
 const GAP: f64 = 16.0;
 const NAMES: f64 = 118.0;
@@ -23,7 +23,7 @@ fn sign(verdict: Verdict) -> (Mark, plotters::style::RGBColor) {
     }
 }
 
-/// A row for each value; the limit at 1; shape and colour for the verdict; the share of selections validated at the right.
+/// One row per value: the limit at 1, shape and colour for the verdict, the share of selections validated at the right.
 pub fn choices(study: &ParameterStudy) -> String {
     let legend = Legend::new(
         [Verdict::Validated, Verdict::NotValidated, Verdict::NotAssessable]
@@ -52,7 +52,7 @@ pub fn choices(study: &ParameterStudy) -> String {
     for parameter in &study.parameters {
         let title = cut(&parameter.title, TEXT, WIDTH - SHARES - 8.0);
         canvas.draw(|layer| {
-            // No grid behind the title; the ground beyond the limit stays whole.
+            // No grid lines behind the title; the background beyond the limit is kept.
             let end = (6.0 + text_width(&title, TEXT)).min(x.at(1.0) - 1.0);
             layer.rect((0.0, y + 3.0), (end.max(0.0), y + 13.0), WHITE);
             layer.text(&title, (2.0, y + 8.0), &Font::left(TEXT).bold(parameter.decides));

@@ -1,4 +1,4 @@
-//! Differences (or values of a metric) section by section, against mean, standard deviation and limits.
+//! Differences (or values of a metric) by section, with mean, standard deviation and limits.
 
 use indexmap::IndexMap;
 
@@ -12,14 +12,14 @@ use super::zones::Zones;
 use crate::report::number;
 use crate::result::QuantityResult;
 
-/// Numbers on the y axis at most.
+/// Maximum number of ticks of the y axis.
 pub const TICKS: usize = 6;
-/// Room for the longest section name, reading upward, in points.
+/// Space for the longest section name, rotated, in points.
 const NAME: f64 = 34.0;
-/// Runs of sections of one zone that are named above the diagram; more are left unnamed.
+/// Maximum number of runs of sections of one zone with a label above the diagram.
 const RUNS: usize = 12;
 
-/// The sections of a quantity in the order of its values, a slot each on the x axis.
+/// The sections of a quantity in the order of its values, one slot each on the x axis.
 #[derive(Debug)]
 pub struct Slots<'a> {
     /// Section and zone.
@@ -38,7 +38,7 @@ impl<'a> Slots<'a> {
         Self { sections, signals }
     }
 
-    /// Room below the axis for names and title, in points.
+    /// Space below the axis for names and title, in points.
     pub fn room(&self) -> f64 {
         self.names() + 17.0
     }
@@ -47,14 +47,14 @@ impl<'a> Slots<'a> {
         self.sections.keys().map(|name| text_width(name, SMALL)).fold(8.0, f64::max).min(NAME)
     }
 
-    /// Place of a pair: its section's slot, signals side by side within.
+    /// Position of a pair: its section's slot, with the signals side by side.
     fn place(&self, section: &str, signal: &str) -> f64 {
         let slot = self.sections.get_index_of(section).unwrap_or(0) as f64;
         let nth = self.signals.get_index_of(signal).unwrap_or(0) as f64;
         slot + 0.5 + ((nth + 0.5) / self.signals.len().max(1) as f64 - 0.5) * 0.75
     }
 
-    /// Slots from - to (exclusive) of consecutive sections with the same answer.
+    /// Slots from - to (exclusive) of consecutive sections with the same result.
     fn runs(&self, of: impl Fn(Option<&str>) -> bool) -> Vec<(usize, usize)> {
         let mut runs: Vec<(usize, usize)> = Vec::new();
         for (slot, _) in self.sections.values().enumerate().filter(|(_, zone)| of(**zone)) {
@@ -80,7 +80,7 @@ impl<'a> Slots<'a> {
     }
 }
 
-/// What the differences are drawn against.
+/// Reference levels and zone marks.
 #[derive(Clone, Copy, Debug)]
 pub struct Against<'a> {
     pub zones: &'a Zones,
@@ -94,7 +94,7 @@ pub fn scale(quantity: &QuantityResult, levels: &Levels, bottom: f64, top: f64) 
     Scale::over(differences.chain(levels.values()).chain([0.0]), bottom, top)
 }
 
-/// Draws the diagram from a left edge to the right edge of the figure, between top and bottom, in points.
+/// Draws the diagram from `left` to the right edge of the figure, between `top` and `bottom`, in points.
 pub fn draw(canvas: &mut Canvas, quantity: &QuantityResult, against: &Against<'_>, (left, top, bottom): (f64, f64, f64)) {
     let Against { zones, levels, slots } = *against;
     let x = Scale { low: 0.0, high: slots.sections.len().max(1) as f64, from: left, to: WIDTH - 2.0 };
@@ -147,7 +147,7 @@ fn lines(canvas: &mut Canvas, frame: &Frame, levels: &Levels, slots: &Slots<'_>)
     }
 }
 
-/// Section names below the axis: upright where they fit, else reading upward; where slots are narrower than type, every n-th.
+/// Section names below the axis: horizontal if they fit, else rotated; only every n-th if slots are narrower than the text.
 fn names(canvas: &mut Canvas, frame: &Frame, slots: &Slots<'_>) {
     let wide = frame.x.at(1.0) - frame.x.at(0.0);
     let upright = slots.sections.keys().all(|name| text_width(name, TICK) < wide - 2.0);
@@ -168,7 +168,7 @@ fn names(canvas: &mut Canvas, frame: &Frame, slots: &Slots<'_>) {
     });
 }
 
-/// Zones above the diagram, divided by thin lines.
+/// Zones above the diagram, separated by thin lines.
 fn zone_heads(canvas: &mut Canvas, frame: &Frame, slots: &Slots<'_>) {
     let runs = slots.zone_runs();
     if runs.len() > RUNS || runs.iter().all(|(zone, ..)| zone.is_empty()) {

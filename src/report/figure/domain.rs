@@ -1,4 +1,4 @@
-//! The validity domain: which conditions the sections used cover.
+//! The validity domain: the range of conditions of the sections used.
 
 use indexmap::IndexSet;
 
@@ -22,8 +22,7 @@ const UNUSED: RGBColor = MEASURED;
 /// Distance between the two columns of panels, in points.
 const GUTTER: f64 = 18.0;
 
-/// The range of every condition, zone by zone, with the sections on it; and the first two conditions that vary, one over
-/// the other.
+/// The range of every condition by zone, with the values of its sections; and a scatter diagram of the first two conditions that vary.
 pub fn domain(ranges: &[DomainRange], sections: &[SectionResult], zones: &Zones) -> String {
     let names: IndexSet<(&str, &str)> = ranges.iter().map(|range| (range.name.as_str(), range.unit.as_str())).collect();
     let panels: Vec<Panel<'_>> = names.iter().map(|name| Panel::of(*name, ranges, sections)).collect();
@@ -62,7 +61,7 @@ fn scope(range: &DomainRange) -> String {
     if range.scope == "all" { "all".to_owned() } else { format!("zone {}", range.scope.trim_start_matches("zone ")) }
 }
 
-/// One condition: its ranges and the sections' values.
+/// One condition: its ranges, and the values of the sections.
 struct Panel<'a> {
     name: &'a str,
     unit: &'a str,
@@ -146,7 +145,7 @@ fn zones_of(range: &DomainRange) -> Option<&str> {
     (range.scope != "all").then(|| range.scope.trim_start_matches("zone "))
 }
 
-/// The first two conditions that at least three sections share and that take more than two values each.
+/// The first two conditions with at least three common sections and more than two values each.
 fn scatter_pair<'p, 'a>(panels: &'p [Panel<'a>]) -> Option<(&'p Panel<'a>, &'p Panel<'a>)> {
     let varied: Vec<&Panel<'_>> = panels
         .iter()

@@ -4,7 +4,7 @@ use super::axis::{Scale, Tick};
 use super::canvas::{Canvas, Font};
 use super::style::{GRID, INK, MUTED, TEXT, TICK, text_width};
 
-/// A diagram's plotting area with its two scales; y grows upward.
+/// The plotting area of a diagram with its two scales; y increases upward.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     pub x: Scale,
@@ -28,12 +28,12 @@ impl Frame {
         self.y.from
     }
 
-    /// Room that a y axis takes to its left with numbers and title, in points.
+    /// Space of a y axis with numbers and title to its left, in points.
     pub fn axis_room(ticks: &[Tick]) -> f64 {
         Self::room_for(ticks) + 11.5
     }
 
-    /// Room of the numbers alone.
+    /// Space of the numbers alone.
     fn room_for(ticks: &[Tick]) -> f64 {
         ticks.iter().map(|tick| text_width(&tick.label, TICK)).fold(0.0, f64::max) + 5.0
     }
@@ -64,7 +64,7 @@ impl Frame {
         });
     }
 
-    /// The lines of both axes, drawn over what they frame.
+    /// The lines of both axes, drawn on top of the plot.
     pub fn spine(&self, canvas: &mut Canvas) {
         canvas.draw(|layer| {
             let corners = [(self.left(), self.top()), (self.left(), self.bottom()), (self.right(), self.bottom())];

@@ -1,4 +1,4 @@
-//! A legend of marks, lines and grounds, broken into rows that fit the figure.
+//! A legend of marks, lines and backgrounds, wrapped to the width of the figure.
 
 use plotters::style::RGBColor;
 
@@ -10,7 +10,7 @@ const ROW: f64 = 11.5;
 const KEY: f64 = 15.0;
 const GAP: f64 = 12.0;
 
-/// One entry: a sign and what it stands for.
+/// One entry: a sign and its meaning.
 #[derive(Clone, Debug)]
 pub struct Entry {
     pub sign: Sign,
@@ -42,7 +42,7 @@ impl Entry {
     }
 }
 
-/// Entries with their places.
+/// Entries with their positions.
 #[derive(Debug)]
 pub struct Legend {
     placed: Vec<(Point, Entry)>,
@@ -50,7 +50,7 @@ pub struct Legend {
 }
 
 impl Legend {
-    /// Sets the entries in rows of a width, in points.
+    /// Arranges the entries in rows of a width, in points.
     pub fn new(entries: Vec<Entry>, width: f64) -> Self {
         let mut placed = Vec::with_capacity(entries.len());
         let (mut x, mut row) = (0.0, 0);

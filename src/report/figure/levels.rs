@@ -1,4 +1,4 @@
-//! What a diagram of differences is read against: mean, standard deviation and their limits as levels over sections.
+//! Reference levels of a diagram of differences: mean, standard deviation and their limits.
 
 use plotters::style::RGBColor;
 
@@ -14,11 +14,11 @@ pub struct Level {
     pub color: RGBColor,
     pub width: f64,
     pub dash: Dash,
-    /// `all`, or the zone it speaks of.
+    /// `all`, or a zone.
     pub scope: String,
 }
 
-/// A ground between two values over some of the sections.
+/// A background between two values over some of the sections.
 #[derive(Clone, Debug)]
 pub struct Band {
     pub low: f64,
@@ -26,7 +26,7 @@ pub struct Band {
     pub scope: String,
 }
 
-/// Lines and grounds with the legend that explains them.
+/// Lines and backgrounds with their legend.
 #[derive(Clone, Debug, Default)]
 pub struct Levels {
     pub lines: Vec<Level>,
@@ -35,9 +35,9 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Of the statistics that are in the unit of the values.
+    /// Levels of the statistics in the unit of the values.
     ///
-    /// The limit of a standard deviation stands around the mean, where its band can be compared with it.
+    /// The limit of a standard deviation is drawn around the mean, for comparison with the band of the standard deviation.
     pub fn of(quantity: &QuantityResult) -> Self {
         let mut levels = Self::default();
         let two_sided = quantity.has_sides || quantity.values.iter().any(|pair| pair.difference < 0.0);
@@ -51,7 +51,7 @@ impl Levels {
         levels
     }
 
-    /// Every value a line or ground reaches.
+    /// All values of lines and backgrounds.
     pub fn values(&self) -> impl Iterator<Item = f64> {
         self.lines.iter().map(|line| line.value).chain(self.bands.iter().flat_map(|band| [band.low, band.high]))
     }
@@ -62,7 +62,7 @@ impl Levels {
         self.explain(Entry::line(color, width, dash, text));
     }
 
-    /// One entry stands for the same level of all zones.
+    /// Adds an entry once for the same level of several zones.
     fn explain(&mut self, entry: Entry) {
         if !self.legend.iter().any(|known| known.text == entry.text) {
             self.legend.push(entry);
@@ -102,7 +102,7 @@ impl Levels {
     }
 }
 
-/// What a standard deviation is taken around: the mean of the same scope, stated or not.
+/// The mean of the same scope, around which a standard deviation is drawn.
 fn center(quantity: &QuantityResult, scope: &str) -> f64 {
     let stated = quantity.statistics.iter().find(|one| one.name == "mean" && one.scope == scope).and_then(|one| one.value);
     stated.unwrap_or_else(|| {
@@ -125,13 +125,13 @@ fn sign(two_sided: bool) -> &'static str {
     if two_sided { "±" } else { "" }
 }
 
-/// As the tables print it: with the decimals of the limit.
+/// The value as in the tables, with the decimals of the limit.
 fn shown(statistic: &StatisticResult, value: f64) -> String {
     let decimals = number::decimals(&statistic.unit, statistic.limit.or(Some(value)));
     statistic.limit.map_or_else(|| number::fixed(value, decimals), |limit| number::beside(value, limit, decimals))
 }
 
-/// A statistic and its value; by zone, where values differ, without.
+/// A statistic and its value; without value if it differs between zones.
 fn says(statistic: &StatisticResult, value: &str) -> String {
     if statistic.scope == "all" { format!("{} {value}", statistic.title) } else { format!("{} by zone", statistic.title) }
 }

@@ -1,4 +1,4 @@
-//! The map of a gap: quantity and position by zone and band, as dark as its share of the gap.
+//! Map of the gap: quantity and position by zone and band; the shade is the share of the gap.
 
 use plotters::style::RGBColor;
 
@@ -15,7 +15,7 @@ const SCALE: f64 = 27.0;
 /// Shades of the scale.
 const STEPS: usize = 6;
 
-/// Rows in the order of the shares they hold; a dot marks cells that are significant.
+/// Rows in decreasing order of their shares; a dot marks significant cells.
 pub fn map(places: &[Where]) -> String {
     let mut rows: Vec<(String, f64)> = Vec::new();
     let mut columns: Vec<(String, String)> = Vec::new();
@@ -31,7 +31,7 @@ pub fn map(places: &[Where]) -> String {
         }
     }
     rows.sort_by(|a, b| b.1.total_cmp(&a.1));
-    // Zones in their order; in each, quasi-static first, then bands by frequency.
+    // Zones in order; in each, quasi-static first, then bands by frequency.
     let edge = |band: &str| band.split(' ').next().and_then(|word| word.parse::<f64>().ok()).unwrap_or(-1.0);
     columns.sort_by(|a, b| a.0.cmp(&b.0).then(edge(&a.1).total_cmp(&edge(&b.1))));
     let wide = (WIDTH - NAMES) / columns.len().max(1) as f64;
@@ -79,7 +79,7 @@ pub fn map(places: &[Where]) -> String {
     canvas.finish()
 }
 
-/// What the shades stand for, from none to the largest share.
+/// The scale of shades, from zero to the largest share.
 fn scale(canvas: &mut Canvas, top: f64, most: f64) {
     let wide = (WIDTH - NAMES) / STEPS as f64;
     canvas.draw(|layer| {
@@ -103,7 +103,7 @@ fn name(place: &Where) -> String {
     format!("{}, {position}", place.quantity)
 }
 
-/// From white to dark blue, readable in grey.
+/// From white to dark blue; readable in grey.
 fn shade(share: f64) -> RGBColor {
     let mix = |to: u8| (f64::from(u8::MAX) + share.clamp(0.0, 1.0) * (f64::from(to) - f64::from(u8::MAX))).round() as u8;
     RGBColor(mix(0x0b), mix(0x3c), mix(0x6f))

@@ -1,7 +1,7 @@
-//! The figures of a report as SVG texts: 17 cm wide, in one style, the same bytes for the same result.
+//! Figures of a report as SVG texts: 17 cm wide, in one style, reproducible byte by byte.
 //!
-//! plotters draws. Names of sections, signals and quantities are users' texts and arrive escaped. Marks carry a `<title>` for
-//! the pointer and `data-section`, `data-zone` for the scripts of the HTML report.
+//! plotters draws. Names of sections, signals and quantities are user text and are escaped. Marks have a `<title>` as tooltip, and
+//! `data-section` and `data-zone` for the scripts of the HTML report.
 
 pub mod axis;
 mod boxes;
@@ -35,9 +35,9 @@ pub use zones::Zones;
 
 use crate::result::Certification;
 
-/// All figures of a report by the names the view gives them ([`super::view::FigureView::name`]).
+/// All figures of a report by their names in the view ([`super::view::FigureView::name`]).
 ///
-/// What has nothing to show is left out: a quantity without values, a domain without conditions, a graph not drawn.
+/// Empty figures are omitted: a quantity without values, a domain without conditions, a missing graph.
 pub fn figures(found: &Certification) -> Vec<(String, String)> {
     let zones = Zones::of(found);
     let mut drawn = Vec::new();

@@ -1,4 +1,4 @@
-//! A study along an offset: normalised statistics of one selection (as Götz and Polach, Figure 7) and the share validated.
+//! Study of offsets: normalised statistics of one selection (as Götz and Polach, Figure 7) and the share validated.
 
 use super::axis::{Scale, Tick};
 use super::canvas::{Canvas, Group};
@@ -12,7 +12,7 @@ use crate::result::study::{AtOffset, SyncStudy};
 const PANEL: f64 = 118.0;
 const LABELS: f64 = 26.0;
 
-/// Statistics of one selection: a mark for every offset, one panel for means and one for everything else.
+/// Statistics of one selection: one mark per offset; one panel for means, one for all other statistics.
 pub fn selection(study: &SyncStudy) -> String {
     let entries = study.offsets.iter().enumerate().map(|(n, at)| Entry::mark(Mark::nth(n), color(n), name(study, at)));
     let legend = Legend::new(entries.collect(), WIDTH - 40.0);
@@ -85,7 +85,7 @@ fn panel(canvas: &mut Canvas, study: &SyncStudy, (title, signed): (&str, bool), 
     frame.spine(canvas);
 }
 
-/// The share of selections validated over the offset.
+/// The share of selections validated as a function of the offset.
 pub fn shares(study: &SyncStudy) -> String {
     let points: Vec<(f64, f64)> =
         study.offsets.iter().filter_map(|at| at.study.as_ref().ok().map(|found| (at.offset, 100.0 * found.share.share))).collect();

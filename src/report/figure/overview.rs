@@ -1,4 +1,4 @@
-//! All quantities at a glance: every statistic divided by its limit, with its sign.
+//! Overview of all quantities: every statistic divided by its limit, with its sign.
 
 use indexmap::IndexSet;
 
@@ -11,22 +11,22 @@ use super::symbol::symbol_left_of;
 use crate::report::number;
 use crate::result::{QuantityResult, StatisticResult};
 
-/// Statistics of a quantity on lines of their own; more share one line.
+/// Maximum number of statistics of a quantity on separate lines; more share one line.
 const LINES: usize = 3;
-/// The axis ends here at the latest; what lies beyond becomes an arrow with its number.
+/// Maximum of the axis; values beyond are shown as an arrow with a number.
 const FARTHEST: f64 = 2.0;
-/// Room for the findings at the right, in points.
+/// Space for the results at the right, in points.
 const FINDINGS: f64 = 66.0;
-/// Heights of a line at its best and where many must fit a page, in points.
+/// Normal and reduced height of a line, in points.
 const LINE: (f64, f64) = (7.5, 5.0);
-/// Distance between quantities likewise.
+/// Normal and reduced distance between quantities, in points.
 const GAP: (f64, f64) = (6.0, 3.0);
-/// Lines from which on they are set close.
+/// Number of lines from which the reduced heights are used.
 const CLOSE: usize = 50;
 
-/// Normalised statistics of the quantities, one row each, with the limit at 1 (and -1 where statistics have a sign).
+/// Normalised statistics of the quantities, one row each, with the limit at 1 (and -1 for signed statistics).
 ///
-/// A statistic beyond its limit has its number beside it and the word at the end of the row, so that it shows without colour.
+/// A statistic beyond its limit is labelled with its number and with the word at the end of the row, so that colour is not needed.
 pub fn overview(quantities: &[QuantityResult]) -> String {
     let series = Series::of(quantities);
     let lines: Vec<usize> = quantities.iter().map(line_count).collect();
@@ -56,7 +56,7 @@ pub fn overview(quantities: &[QuantityResult]) -> String {
     canvas.finish()
 }
 
-/// The statistics that are shown: those with a limit.
+/// Statistics with a limit.
 fn shown(quantity: &QuantityResult) -> impl Iterator<Item = &StatisticResult> {
     quantity.statistics.iter().filter(|statistic| statistic.limit.is_some() || statistic.normalised.is_some())
 }
@@ -75,7 +75,7 @@ fn signed(statistic: &StatisticResult) -> Option<f64> {
     Some(if statistic.value.is_some_and(|value| value < 0.0) { -size } else { size })
 }
 
-/// The distinct statistics of all quantities, each with its mark.
+/// The different statistics of all quantities, each with its mark.
 struct Series(IndexSet<(String, String)>);
 
 impl Series {
@@ -150,7 +150,7 @@ fn row(canvas: &mut Canvas, frame: &Frame, quantity: &QuantityResult, series: &S
         let y = top + line * (0.5 + if lines == 1 { 0.0 } else { at as f64 });
         match signed(statistic) {
             Some(value) => {
-                // On a shared line numbers would stand on each other: the largest is named.
+                // On a shared line the numbers would overlap: only the largest is labelled.
                 let named = !shared || value.abs() == farthest;
                 let look = Look { n: series.nth(statistic), stem: !shared, named, size: TEXT.min(line + 0.5) };
                 value_mark(canvas, frame, (&quantity.symbol, statistic), (value, y), &look);
@@ -161,7 +161,7 @@ fn row(canvas: &mut Canvas, frame: &Frame, quantity: &QuantityResult, series: &S
     }
 }
 
-/// The word of a finding with its sign, drawn so that it needs no font.
+/// The word of a result with its sign, drawn without a font.
 fn finding(canvas: &mut Canvas, holds: Option<bool>, (x, y): (f64, f64)) {
     canvas.draw(|layer| {
         let word = match holds {
@@ -189,13 +189,13 @@ fn nothing(canvas: &mut Canvas, frame: &Frame, y: f64, says: &str) {
     });
 }
 
-/// How a statistic is drawn.
+/// Drawing style of a statistic.
 struct Look {
-    /// Which of the series it is.
+    /// Index of the series.
     n: usize,
     /// With a line from zero.
     stem: bool,
-    /// With its number if it fails.
+    /// With its number if the criterion is not met.
     named: bool,
     /// Size of the number, in points.
     size: f64,
@@ -221,7 +221,7 @@ fn value_mark(canvas: &mut Canvas, frame: &Frame, (symbol, statistic): (&str, &S
     if !look.named || !(fails || clipped) {
         return;
     }
-    // Outside the mark where there is room, else on the stem's side, on a ground of its own.
+    // Outside the mark if there is space, else on the stem's side with a background.
     let outward = value.signum();
     let wide = text_width(&says, look.size) + 6.0;
     let room = if outward > 0.0 { frame.right() - x } else { x - frame.left() };

@@ -1,4 +1,4 @@
-//! The values of one quantity: simulated over measured, and their differences section by section.
+//! The values of one quantity: simulated over measured, and the differences by section.
 
 use super::axis::{self, Scale};
 use super::canvas::{Canvas, Font, Group};
@@ -11,17 +11,17 @@ use super::zones::Zones;
 use crate::report::number;
 use crate::result::{PairValue, QuantityResult};
 
-/// Height of the plotting areas, in points: with sides, that of a square.
+/// Height of the plotting areas, in points; the left one is square.
 const HEIGHT: f64 = 158.0;
-/// Least room of y axes, numbers and title, in points: figures under each other are flush where numbers are short.
+/// Minimum width of y axes with numbers and title, in points, so that figures align.
 const AXIS: f64 = 38.0;
 /// Distance between the two diagrams, in points.
 const GUTTER: f64 = 12.0;
-/// Numbers on the axes of the left diagram at most.
+/// Maximum number of ticks of the left diagram.
 const TICKS: usize = 5;
 
-/// Left the simulated over the measured values, right their differences in the order of the sections with mean, standard
-/// deviation and limits. Where a metric gives one number for both signals, only the right diagram, over the full width.
+/// Left, simulated over measured values; right, differences in the order of the sections with mean, standard deviation and limits. If a
+/// metric gives one number for both signals, only the right diagram over the full width.
 pub fn pairs(quantity: &QuantityResult, zones: &Zones) -> String {
     let levels = Levels::of(quantity);
     let marks = Legend::new(zones.legend(quantity.values.iter().map(|pair| pair.zone.as_deref())), WIDTH - AXIS);
@@ -45,7 +45,7 @@ pub fn pairs(quantity: &QuantityResult, zones: &Zones) -> String {
     canvas.finish()
 }
 
-/// Both sides of all pairs: what equal axes must hold.
+/// Simulated and measured values of all pairs, for the common range of both axes.
 fn ends(values: &[(&PairValue, f64, f64)]) -> impl Iterator<Item = f64> {
     values.iter().flat_map(|(_, simulated, measured)| [*simulated, *measured])
 }
@@ -69,7 +69,7 @@ fn scatter(canvas: &mut Canvas, quantity: &QuantityResult, zones: &Zones, values
     }
 }
 
-/// The group of one pair's mark: what scripts find it by.
+/// The group of one pair's mark, identified for scripts.
 pub(super) fn pair_group<'a>(pair: &'a PairValue, title: &'a str) -> Group<'a> {
     Group {
         class: "mark pair",
@@ -81,7 +81,7 @@ pub(super) fn pair_group<'a>(pair: &'a PairValue, title: &'a str) -> Group<'a> {
     }
 }
 
-/// What is shown while the pointer rests on a pair.
+/// Tooltip of a pair.
 pub(super) fn tooltip(pair: &PairValue, unit: &str, decimals: usize) -> String {
     let shown = |value: f64| number::with_unit(&number::fixed(value, decimals), unit);
     let mut text = format!("{}, {}", pair.section, pair.signal);

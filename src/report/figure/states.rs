@@ -1,4 +1,4 @@
-//! A diagnosis in figures: normalised values before and after, and signals of the worst sections in three states.
+//! Figures of a diagnosis: normalised statistics before and after, and signals of the sections with the largest gap.
 
 use super::axis::{self, Scale};
 use super::canvas::{Canvas, Font, Group};
@@ -12,12 +12,12 @@ use crate::result::diagnosis::{Panel, Picture, Shrink};
 const ROW: f64 = 19.0;
 const NAMES: f64 = 84.0;
 
-/// For each quantity its normalised mean and standard deviation, before and with the effects, joined by a line; limit at 1.
+/// For each quantity the normalised mean and standard deviation, before and with the effects, joined by a line; the limit is at 1.
 pub fn before_after(shrink: &Shrink) -> String {
     let legend = Legend::new(
         vec![
             Entry::mark(Mark::Circle, VERMILION, "as simulated"),
-            Entry::mark(Mark::Triangle, BLUE, "with the effects, sections kept out of the fit"),
+            Entry::mark(Mark::Triangle, BLUE, "with the effects, sections excluded from the fit"),
         ],
         WIDTH - NAMES,
     );
@@ -63,11 +63,11 @@ pub fn before_after(shrink: &Shrink) -> String {
     canvas.finish()
 }
 
-// Two pictures of two rows fit one page.
+// Two figures of two rows fit one page.
 const PANEL: f64 = 92.0;
 const BETWEEN: f64 = 40.0;
 
-/// Channels of a section, two in a row: measured broad and light, simulated dashed, with the effects dark.
+/// Channels of a section, two per row: measured wide and light, simulated thin, with the effects thin and dark.
 pub fn signals(picture: &Picture) -> String {
     let mut entries = vec![Entry::line(MEASURED, 2.0, SOLID, "measured"), Entry::line(VERMILION, 0.8, SOLID, "simulated")];
     if picture.panels.iter().any(|panel| !panel.improved.x.is_empty()) {

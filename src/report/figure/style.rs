@@ -1,11 +1,11 @@
-//! One look for all figures: colours, type, marks. Every distinction made by colour is also made by shape or line, so that
-//! a figure reads in grey and for colour-blind readers.
+//! Common style of all figures: colours, type, marks. Every distinction by colour is also made by shape or line, so that a figure is
+//! readable in grey and for colour-blind readers.
 
 use plotters::style::RGBColor;
 
 use crate::report::visible::visible;
 
-/// Type of all text; the families after the first stand in where it is not installed.
+/// Font families of all text; the later ones are fallbacks.
 pub const FAMILY: &str = "IBM Plex Sans, DejaVu Sans, Arial, sans-serif";
 
 /// Width of every figure in points: 17 cm, the text width of an A4 page.
@@ -13,24 +13,24 @@ pub const WIDTH: f64 = 482.0;
 
 /// Text of axes, legends and labels, in points.
 pub const TEXT: f64 = 7.5;
-/// Numbers at ticks.
+/// Numbers at ticks, in points.
 pub const TICK: f64 = 7.0;
-/// Names of sections where many stand side by side: the smallest type in any figure.
+/// Names of sections side by side, in points: the smallest type in any figure.
 pub const SMALL: f64 = 6.0;
 
 pub const INK: RGBColor = RGBColor(0x1f, 0x24, 0x2b);
 pub const WHITE: RGBColor = RGBColor(0xff, 0xff, 0xff);
 pub const MUTED: RGBColor = RGBColor(0x55, 0x5e, 0x6a);
 pub const GRID: RGBColor = RGBColor(0xdd, 0xe1, 0xe6);
-/// Ground of what lies beyond a limit.
+/// Background beyond a limit.
 pub const BEYOND: RGBColor = RGBColor(0xf1, 0xee, 0xea);
-/// Ground of what is singled out: the evaluated section, the band of a standard deviation.
+/// Background of highlighted ranges: the evaluated section, the band of a standard deviation.
 pub const SHADE: RGBColor = RGBColor(0xe4, 0xec, 0xf3);
-/// Broad, light line of a measured signal under the thin, dark one of the simulated.
+/// Wide, light line of a measured signal under the thin, dark line of the simulated one.
 pub const MEASURED: RGBColor = RGBColor(0xa3, 0xa9, 0xb1);
 
 /// Okabe and Ito, "Color Universal Design" (2008): blue, vermilion, bluish green, reddish purple, orange, sky blue, black.
-/// The yellow of the set is left out: it does not show on white paper.
+/// The yellow of the set is omitted, since it is hardly visible on white paper.
 pub const PALETTE: [RGBColor; 7] = [
     RGBColor(0x00, 0x72, 0xb2),
     RGBColor(0xd5, 0x5e, 0x00),
@@ -79,8 +79,8 @@ pub const DASHED: Dash = Some(&[5.0, 2.5]);
 pub const DOTTED: Dash = Some(&[1.2, 2.0]);
 pub const DASH_DOT: Dash = Some(&[6.0, 2.0, 1.2, 2.0]);
 
-/// Approximate width of a text in points, to lay out without a font at hand: advance widths of a humanist sans by kind
-/// of character, a little on the wide side.
+/// Approximate width of a text in points, for layout without font metrics: advance widths of a humanist sans by kind of character,
+/// slightly overestimated.
 pub fn text_width(text: &str, size: f64) -> f64 {
     let em: f64 = text
         .chars()
@@ -96,7 +96,7 @@ pub fn text_width(text: &str, size: f64) -> f64 {
     em * size
 }
 
-/// A text as it is drawn, cut to a width with an ellipsis.
+/// A text cut to a width with an ellipsis.
 pub fn cut(text: &str, size: f64, width: f64) -> String {
     let text = visible(text);
     if text_width(&text, size) <= width {

@@ -1,24 +1,24 @@
-//! Symbols of quantities as labels: subscripts, and dots over letters that no single character has, are drawn.
+//! Symbols of quantities as labels. Subscripts, and dots over letters for which no precomposed character exists, are drawn.
 //!
-//! A font sets them as two drawings for one letter, of which a PDF cannot say what they stand for together.
+//! A font would print a letter and its dots as two glyphs, which a PDF cannot map to one character.
 
 use super::canvas::{Font, Held, Layer, Point};
 use super::style::{Mark, cut, text_width};
 
-/// Two dots over the letter before them.
+/// Combining diaeresis: two dots over the preceding letter.
 const DIAERESIS: char = '\u{308}';
 
-/// Size of a subscript, of that of its letter.
+/// Size of a subscript relative to its letter.
 const SMALLER: f64 = 0.78;
-/// How far below its letter a subscript stands, of the letter's size.
+/// Offset of a subscript below its letter, relative to the letter's size.
 const LOWER: f64 = 0.22;
 
-/// What stands before and after the one underscore of a symbol.
+/// The parts of a symbol before and after its single underscore.
 fn parts(label: &str) -> (&str, &str) {
     label.split_once('_').filter(|(base, sub)| !base.is_empty() && !sub.is_empty() && !sub.contains('_')).unwrap_or((label, ""))
 }
 
-/// A symbol about a point, cut to a width, with its subscript.
+/// A symbol centred at a point, cut to a width, with its subscript.
 pub fn symbol(layer: &mut Layer<'_>, label: &str, at: Point, size: f64, width: f64) {
     let (base, sub) = parts(label);
     let own = NARROWER * SMALLER * text_width(sub, size);
@@ -28,7 +28,7 @@ pub fn symbol(layer: &mut Layer<'_>, label: &str, at: Point, size: f64, width: f
     pieces(layer, (base, sub), at, &Font::middle(size));
 }
 
-/// The same with its end at a point.
+/// The same, right-aligned at a point.
 pub fn symbol_left_of(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: f64) {
     let (base, sub) = parts(label);
     let wide = |base: &str, sub: &str| NARROWER * (text_width(base, font.size) + SMALLER * text_width(sub, font.size));
@@ -52,7 +52,7 @@ fn bare(label: &str) -> String {
     label.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).collect()
 }
 
-/// A label about a point, cut to a width, each diaeresis drawn over its letter; other accents are left out.
+/// A label centred at a point, cut to a width; diaereses are drawn over their letters, other accents are omitted.
 fn plain(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: f64) {
     let size = font.size;
     let shown = cut(&bare(label), size, width);
@@ -60,7 +60,7 @@ fn plain(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: 
         layer.text(&shown, (x, y), font);
         return;
     };
-    // The letter stands about a place of its own, so that the dots are over it whatever the font's widths are.
+    // The letter is placed separately, so that the dots are above it for any font metrics.
     let before: String = shown.chars().take(letter).collect();
     let own: String = shown.chars().skip(letter).take(1).collect();
     let after: String = shown.chars().skip(letter + 1).collect();
@@ -76,10 +76,10 @@ fn plain(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: 
     }
 }
 
-/// What letters take of the width that is kept free for them.
+/// Width of letters relative to the estimated width.
 const NARROWER: f64 = 0.88;
 
-/// Place of the first letter with two dots, among the characters without accents.
+/// Index of the first letter with a diaeresis among the characters without accents.
 fn dotted(label: &str) -> Option<usize> {
     let letters = label.chars().take_while(|c| *c != DIAERESIS).filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count();
     (label.contains(DIAERESIS) && letters > 0).then(|| letters - 1)

@@ -9,7 +9,7 @@ use crate::result::{Curve, Trace};
 
 const HEIGHT: f64 = 128.0;
 
-/// The measured signal broad and light, the simulated thin and dark over it, the evaluated section shaded.
+/// The measured signal wide and light, the simulated thin and dark on top of it, the evaluated section shaded.
 pub fn trace(trace: &Trace) -> String {
     let legend = Legend::new(
         vec![
@@ -52,7 +52,7 @@ pub fn trace(trace: &Trace) -> String {
     canvas.finish()
 }
 
-/// The curve on the canvas, broken where a value is missing.
+/// The curve on the canvas, interrupted at missing values.
 fn pieces(curve: &Curve, frame: &Frame) -> Vec<Vec<(f64, f64)>> {
     let samples: Vec<(f64, f64)> = curve.x.iter().copied().zip(curve.y.iter().copied()).collect();
     samples

@@ -1,4 +1,4 @@
-//! The marks of zones: the same zone looks the same in every figure of a report.
+//! Marks of zones: a zone has the same mark in all figures of a report.
 
 use indexmap::IndexSet;
 use plotters::style::RGBColor;
@@ -14,20 +14,20 @@ pub struct Zones {
 }
 
 impl Zones {
-    /// Zones the protocol names, then those only the sections name.
+    /// Zones of the protocol, then further zones of the sections.
     pub fn of(found: &Certification) -> Self {
         let named = found.zones.iter().map(|zone| zone.zone.clone());
         let given = found.sections.iter().filter_map(|section| section.zone.clone());
         named.chain(given).collect()
     }
 
-    /// Shape and colour; those of no zone are the first.
+    /// Shape and colour; without a zone, the first ones.
     pub fn mark(&self, zone: Option<&str>) -> (Mark, RGBColor) {
         let n = zone.and_then(|zone| self.names.get_index_of(zone)).unwrap_or(0);
         (Mark::nth(n), style::color(n))
     }
 
-    /// Legend of those zones that are there, in their order.
+    /// Legend of the given zones, in order.
     pub fn legend<'a>(&self, there: impl Iterator<Item = Option<&'a str>>) -> Vec<Entry> {
         let there: IndexSet<&str> = there.flatten().collect();
         self.names

@@ -1,4 +1,4 @@
-//! Symbols of quantities as HTML: letters in italics, what stands after the underscore as a subscript.
+//! Symbols of quantities as HTML: letters in italics, the part after the underscore as a subscript.
 
 use minijinja::HtmlEscape;
 

@@ -1,4 +1,4 @@
-//! What a study's templates are filled from. They place and do not calculate; texts of users are data in it.
+//! Input of the templates of a study. The templates place it and do not calculate; user texts are data.
 
 use serde::Serialize;
 
@@ -7,13 +7,13 @@ use crate::report::view::{CampaignView, Fact, FigureView, Finding, ProtocolView}
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Document {
     pub title: String,
-    /// What was studied.
+    /// Subject of the study.
     pub kind: String,
     pub program: String,
     pub headline: Finding,
     pub sentence: String,
     pub key_facts: Vec<Fact>,
-    /// Symbols of the quantities, which the PDF and the page set with subscripts.
+    /// Symbols of the quantities, which are printed with subscripts.
     pub symbols: Vec<String>,
     pub campaign: CampaignView,
     pub protocol: ProtocolView,
@@ -22,7 +22,7 @@ pub struct Document {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chapter {
-    /// Anchor; program text only.
+    /// Anchor; not user text.
     pub id: String,
     pub title: String,
     pub items: Vec<Item>,
@@ -58,9 +58,9 @@ pub struct Table {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Head {
     pub title: String,
-    /// Set to the right.
+    /// Aligned to the right.
     pub numeric: bool,
-    /// Takes the room that is left.
+    /// Takes the remaining width.
     pub wide: bool,
 }
 
@@ -69,7 +69,7 @@ impl Head {
         Self { title: title.into(), numeric: false, wide: true }
     }
 
-    /// No wider than its texts.
+    /// Not wider than its texts.
     pub fn short(title: &str) -> Self {
         Self { title: title.into(), numeric: false, wide: false }
     }

@@ -1,4 +1,4 @@
-//! `study.json`: keys in a fixed order, numbers in full precision, `null` with a reason.
+//! `study.json`: fixed order of keys, full precision, `null` with a reason.
 
 use serde_json::{Map, Value, json};
 
@@ -6,7 +6,7 @@ use crate::result::study::{
     AtOffset, AtValue, Flips, Found, ParameterStudy, QuantitySpread, Selected, SelectionStudy, Spread, StatisticSpread, Study, SyncStudy,
 };
 
-/// The whole study, ending in a line break.
+/// The complete study, ending in a line break.
 pub fn study(study: &Study) -> String {
     let mut root = Map::new();
     root.insert("fishplate".into(), json!(env!("CARGO_PKG_VERSION")));
@@ -28,7 +28,7 @@ pub fn study(study: &Study) -> String {
         Found::Parameters(found) => parameters(&mut root, found),
     }
     root.insert("notes".into(), json!(study.notes));
-    // A tree of plain values always serialises.
+    // Serialisation of plain values cannot fail.
     serde_json::to_string_pretty(&Value::Object(root)).unwrap_or_default() + "\n"
 }
 
@@ -49,7 +49,7 @@ fn selections(root: &mut Map<String, Value>, found: &SelectionStudy) {
     root.insert("methods".into(), json!(found.methods));
 }
 
-/// Counts are whole numbers as long as they are exact.
+/// Counts are integers as long as they are exact.
 fn whole(count: f64) -> Value {
     if count < 9_007_199_254_740_992.0 { json!(count as u64) } else { json!(count) }
 }

@@ -1,4 +1,4 @@
-//! A study as a document: chapters of sentences, tables and figures, printed as PDF and as HTML from the same data.
+//! A study as a document: chapters of text, tables and figures, printed as PDF and HTML from the same data.
 
 mod document;
 pub mod json;
@@ -15,7 +15,7 @@ use crate::report::view::{self, Fact, Finding};
 use crate::result::Verdict;
 use crate::result::study::{Found, Share, Study};
 
-/// The study as both reports print it.
+/// The study as printed in both reports.
 pub fn document(study: &Study) -> Document {
     let (title, opening, mut chapters) = match &study.found {
         Found::Sections(found) => ("Selection of sections", sections::opening(found), sections::chapters(found)),
@@ -40,7 +40,7 @@ pub fn document(study: &Study) -> Document {
     }
 }
 
-/// Symbols of the quantities, each once.
+/// Symbols of the quantities, without repetition.
 fn symbols(found: &Found) -> Vec<String> {
     let all: Vec<&String> = match found {
         Found::Sections(found) => found.quantities.iter().map(|quantity| &quantity.symbol).collect(),
@@ -50,17 +50,17 @@ fn symbols(found: &Found) -> Vec<String> {
     all.into_iter().collect::<indexmap::IndexSet<_>>().into_iter().cloned().collect()
 }
 
-/// That a verdict stays, and which; a good sign only where it is the good one. `None`: it does not stay.
+/// An unchanged verdict as a headline; only `validated` gets the positive sign. `otherwise` if `verdict` is `None`.
 fn stays(verdict: Option<Verdict>, otherwise: &str) -> Finding {
     match verdict {
         Some(Verdict::Validated) => Finding::new(Some(true), "Verdict unchanged: validated", "", ""),
-        // Neither good nor bad: that it does not depend on a choice says nothing for the model.
+        // Neither positive nor negative: that a verdict does not depend on a choice is no statement on the model.
         Some(verdict) => Finding { class: "open", sign: "–", word: format!("Verdict unchanged: {}", verdict.in_words()) },
         None => Finding::new(None, "", "", otherwise),
     }
 }
 
-/// What stands on the cover.
+/// Content of the cover.
 struct Opening {
     headline: Finding,
     sentence: String,
@@ -83,7 +83,7 @@ fn settings(study: &Study) -> Chapter {
     }
 }
 
-/// All figures of a study by the names the document gives them.
+/// All figures of a study by their names in the document.
 pub fn figures(study: &Study) -> Vec<(String, String)> {
     match &study.found {
         Found::Sections(found) => vec![("boxes".into(), figure::boxes(&found.quantities))],
@@ -100,7 +100,7 @@ pub fn figures(study: &Study) -> Vec<(String, String)> {
     }
 }
 
-/// `93.84 %`, with as many decimals as it takes not to read as all or none.
+/// `93.84 %`, with enough decimals that a share below 1 is not printed as all, nor one above 0 as none.
 fn percent(share: f64) -> String {
     let decimals = (2..=6).find(|decimals| {
         let shown: f64 = format!("{:.decimals$}", 100.0 * share).parse().unwrap_or(0.0);
@@ -109,7 +109,7 @@ fn percent(share: f64) -> String {
     format!("{} %", number::fixed(100.0 * share, decimals.unwrap_or(6)))
 }
 
-/// The share with what is known of it.
+/// The share, with its interval if it is estimated.
 fn share(share: &Share) -> String {
     share_with(share.share, share.interval)
 }

@@ -1,4 +1,4 @@
-//! The study of the protocol's parameters, worded.
+//! Text of the study of parameters.
 
 use super::document::{Chapter, Head, Item, Table};
 use super::{Opening, share};
@@ -80,7 +80,7 @@ pub fn chapters(found: &ParameterStudy) -> Vec<Chapter> {
     chapters
 }
 
-/// Values of a parameter in a table of their own; more than this many do not stand abreast.
+/// Maximum number of values side by side in a table.
 const ABREAST: usize = 9;
 
 fn statistics(parameter: &Varied) -> Item {

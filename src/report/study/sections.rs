@@ -1,4 +1,4 @@
-//! The study of selections, worded.
+//! Text of the study of selections.
 
 use super::document::{Chapter, Head, Item, Table};
 use super::{Opening, percent, share};
@@ -7,7 +7,7 @@ use crate::report::view::{Fact, Finding};
 use crate::result::Verdict;
 use crate::result::study::{Importance, QuantitySpread, Reduction, Removal, SelectionStudy, Spread};
 
-/// Sections and selections listed in a table; all of them stand in the tables beside the report.
+/// Maximum number of rows of a table; the CSV tables contain all.
 const MOST_ROWS: usize = 60;
 
 fn fact(name: &str, value: String) -> Fact {
@@ -25,7 +25,7 @@ pub fn opening(found: &SelectionStudy) -> Opening {
         share if share >= 0.5 => "depends on the sections chosen",
         _ => "differs for most selections from that of all sections together",
     };
-    // What stands in the box is the share: good where all are validated, bad where none is.
+    // The result box states the share: positive if all are validated, negative if none is.
     let holds = match all {
         share if share >= 1.0 => Some(true),
         share if share <= 0.0 => Some(false),
@@ -106,7 +106,7 @@ fn strata(found: &SelectionStudy) -> Item {
 /// The box plots and their numbers.
 pub fn spread(quantities: &[QuantitySpread], figure: &str, at: &str) -> Vec<Item> {
     let statistics = || quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
-    // A column that says the same in every row is left out, so that the numbers have room.
+    // Columns with the same content in every row are omitted.
     let scopes = statistics().any(|(_, statistic)| statistic.scope != "all");
     let spreads: Vec<Spread> = statistics().filter_map(|(_, statistic)| statistic.spread).collect();
     let rows: Vec<Vec<String>> = statistics()
@@ -153,7 +153,7 @@ fn shown(value: f64) -> String {
     number::beside(value, 1.0, 3)
 }
 
-/// From the least to the greatest value, and outliers; half the width of an interval where a quartile is estimated.
+/// Minimum, quartiles, maximum and outliers; for an estimated quartile half the width of its interval.
 fn numbers(spread: &Spread) -> Vec<String> {
     let within = |at: usize| {
         let half = spread.intervals.map(|all| 0.5 * (all[at].1 - all[at].0));
@@ -166,7 +166,7 @@ fn numbers(spread: &Spread) -> Vec<String> {
     row
 }
 
-/// How surely the numbers of a table are known.
+/// Accuracy of the numbers of a table.
 fn known(spreads: &[Spread]) -> String {
     let estimated = spreads.iter().any(|spread| !spread.exact && spread.within.is_none());
     let within = spreads.iter().filter_map(|spread| spread.within).fold(0.0, f64::max);
@@ -260,7 +260,7 @@ fn importance(sections: &[Importance], removal: Option<&Removal>) -> Vec<Item> {
     removal.into_iter().chain(table).collect()
 }
 
-/// What is known of the sets whose removal changes the verdict.
+/// A sentence on the sets whose removal changes the verdict.
 fn worded(removal: &Removal) -> String {
     let verdict = removal.verdict.in_words();
     match removal.sets.as_slice() {

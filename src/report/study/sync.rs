@@ -1,4 +1,4 @@
-//! The study of the synchronisation, worded.
+//! Text of the study of the synchronisation.
 
 use super::document::{Chapter, Head, Item, Table};
 use super::{Opening, percent, sections, share};

@@ -1,4 +1,4 @@
-//! Every table of a study as CSV, numbers in full precision.
+//! All tables of a study as CSV, in full precision.
 
 use crate::report::tables::csv_file;
 use crate::result::study::{AtValue, Found, ParameterStudy, QuantitySpread, SelectionStudy, Study, SyncStudy};
@@ -6,10 +6,10 @@ use crate::result::study::{AtValue, Found, ParameterStudy, QuantitySpread, Selec
 type Row = Vec<String>;
 type Tables = Vec<(String, Vec<u8>)>;
 
-/// File names and contents, to be put into `tables/`.
+/// File names and contents for the folder `tables/`.
 ///
 /// # Errors
-/// What the CSV writer says; it writes to memory.
+/// An error of the CSV writer, which writes to memory.
 pub fn tables(study: &Study) -> Result<Tables, csv::Error> {
     match &study.found {
         Found::Sections(found) => sections(found),

@@ -1,9 +1,9 @@
-//! The date of a PDF: that of issue, as the campaign states it, or none.
+//! Date of a PDF: the date of issue that the campaign states, or none.
 
 use typst::foundations::Datetime;
 use typst_pdf::Timestamp;
 
-/// The date of issue, `2026-03-31`, at the beginning of the day. `None` if it is no date.
+/// The date of issue, `2026-03-31`, at 00:00. `None` if the text is not a date.
 pub(super) fn issued(text: &str) -> Option<Timestamp> {
     let mut parts = text.split('-');
     let (year, month, day) = (parts.next()?.parse().ok()?, parts.next()?.parse().ok()?, parts.next()?.parse().ok()?);
@@ -13,13 +13,13 @@ pub(super) fn issued(text: &str) -> Option<Timestamp> {
     Datetime::from_ymd_hms(year, month, day, 0, 0, 0).map(Timestamp::new_utc)
 }
 
-/// The writer of the PDF asks for a date where files are attached. This one is taken out again.
+/// The PDF writer requires a date if files are attached. This one is removed afterwards.
 pub(super) fn placeholder() -> Option<Timestamp> {
     Datetime::from_ymd_hms(1, 1, 1, 0, 0, 0).map(Timestamp::new_utc)
 }
 
-/// The entries of the metadata that hold [`placeholder`]. None can stand in a text of the document: texts are compressed, or
-/// escape `<` and parentheses.
+/// The metadata entries that contain [`placeholder`]. They cannot occur in texts of the document, which are compressed, or escape `<` and
+/// parentheses.
 const PLACEHOLDERS: [&[u8]; 5] = [
     b"/ModDate(D:00010101000000Z)",
     b"/CreationDate(D:00010101000000Z)",
@@ -28,7 +28,7 @@ const PLACEHOLDERS: [&[u8]; 5] = [
     b"<stEvt:when>0001-01-01T00:00:00+00:00</stEvt:when>",
 ];
 
-/// Overwrites them with blanks, which may stand there, so that all offsets in the file stay right.
+/// Overwrites the entries with blanks, which are allowed there, so that all offsets in the file remain valid.
 pub(super) fn remove_placeholder(bytes: &mut [u8]) {
     for entry in PLACEHOLDERS {
         let mut at = 0;

@@ -1,7 +1,7 @@
 //! The PDF report, typeset by Typst from `templates/`.
 //!
-//! What comes from users reaches the templates as data (`/data.json`), never as markup, so that no name can act as code.
-//! Nothing outside the program is read: fonts and templates are embedded, there is no clock and no network.
+//! User text is passed to the templates as data (`/data.json`), never as markup, so that it cannot be executed.
+//! The program reads nothing from outside: fonts and templates are embedded, and neither clock nor network is used.
 
 mod date;
 mod text;
@@ -21,7 +21,7 @@ use crate::report::view::ReportData;
 use text::Printable;
 use world::Files;
 
-/// A file carried inside the PDF.
+/// A file attached to the PDF.
 #[derive(Clone, Copy, Debug)]
 pub struct Attachment<'a> {
     /// File name as readers list it: `results.json`.
@@ -37,18 +37,18 @@ pub struct Attachment<'a> {
 pub struct Pdf {
     pub bytes: Vec<u8>,
     pub pages: usize,
-    /// What Typst remarked without giving up; empty unless a template is at fault.
+    /// Warnings of Typst; empty unless a template is at fault.
     pub warnings: Problems,
 }
 
 /// Typesets a report as PDF/A-3a and PDF/UA-1.
 ///
-/// `figures` are SVG texts by the names the view gives them ([`super::view::FigureView::name`]); a figure not handed over is left out.
+/// `figures` are SVG texts by their names in the view ([`super::view::FigureView::name`]); a missing figure is omitted.
 /// The same arguments give the same bytes.
 ///
 /// # Errors
 ///
-/// `report-template`: a template cannot be filled, or Typst refuses it or a figure. `report-attachment`: a name is no file name.
+/// `report-template`: a template cannot be filled, or Typst refuses it or a figure. `report-attachment`: a name is not a file name.
 pub fn typeset(data: &ReportData, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> Result<Pdf, Problems> {
     framed(filled(data)?, data, figures, attachments)
 }
@@ -62,7 +62,7 @@ pub fn typeset_study(data: &Document, figures: &[(String, String)], attachments:
     framed(world::STUDY.to_owned(), data, figures, attachments)
 }
 
-/// Typesets data in a frame of parts.
+/// Typesets data with a frame and its parts.
 fn framed(frame: String, data: &impl Serialize, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> Result<Pdf, Problems> {
     let printable = Printable::of(world::fonts());
     let mut files = Files::new(frame);
@@ -91,7 +91,7 @@ fn framed(frame: String, data: &impl Serialize, figures: &[(String, String)], at
     let ident = ident(&value, figures, attachments);
     let issued = value.pointer("/campaign/report/issued").and_then(Value::as_str).and_then(date::issued);
     let pdf = compile(&files, ident, issued);
-    // Typst's caches are global and would keep every report of a batch alive.
+    // Typst's caches are global and would keep the data of all reports.
     typst::comemo::evict(0);
     pdf
 }
@@ -117,7 +117,7 @@ fn compile(files: &Files, ident: String, issued: Option<Timestamp>) -> Result<Pd
     Ok(Pdf { bytes, pages: document.pages().len(), warnings })
 }
 
-/// `report.typ` with the parts that this report has.
+/// `report.typ` with the parts of this report.
 fn filled(data: &ReportData) -> Result<String, Problems> {
     let mut environment = minijinja::Environment::new();
     environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
@@ -130,7 +130,7 @@ fn filled(data: &ReportData) -> Result<String, Problems> {
     environment.render_str(world::REPORT, context).map_err(|error| one(Problem::error("report-template", error.to_string())))
 }
 
-/// What the document is known by: the hash of all that went into it.
+/// Document identifier: the hash of all inputs.
 fn ident(value: &Value, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> String {
     let mut hash = Sha256::new();
     let mut part = |bytes: &[u8]| {
@@ -149,7 +149,7 @@ fn ident(value: &Value, figures: &[(String, String)], attachments: &[Attachment<
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// What Typst says, with the place in the template: templates are ours, so there is no user's text to underline.
+/// An error of Typst with its place in the template. Templates are part of the program, so no user text is underlined.
 fn problem(found: &SourceDiagnostic, files: &Files) -> Problem {
     let mut says = found.message.to_string();
     if let Some(place) = files.place(found.span) {

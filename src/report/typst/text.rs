@@ -1,21 +1,21 @@
-//! Text that can be printed: signs without a glyph, or without a look, become visible as `⟨U+4E2D U+6587⟩`.
+//! Printable text: characters without a glyph in the fonts, or without a visible form, are printed as `⟨U+4E2D U+6587⟩`.
 //!
-//! PDF/A forbids text that no font shows, and an assessor must see what a name holds: a control character or a change of
-//! writing direction could make two names look alike.
+//! PDF/A forbids text without glyphs. An assessor must also see the content of a name: a control character or a change of writing
+//! direction could make two names look alike.
 
 use serde_json::Value;
 use typst::text::{Coverage, Font};
 
-/// Words longer than this may be broken anywhere; ordinary words, even German ones, are shorter.
+/// Length from which a word may be broken anywhere; ordinary words, including German ones, are shorter.
 const LONGEST_WORD: usize = 30;
-/// Letters between two break points of such a word.
+/// Number of letters between two break points of such a word.
 const BREAK_EVERY: usize = 8;
-/// Longer texts without a space are cut in the middle: no table can hold them.
+/// Length from which a text without spaces is shortened in the middle, since it would not fit a table.
 const LONGEST_NAME: usize = 160;
-/// Zero-width space: a place to break without a hyphen.
+/// Zero-width space: a break point without a hyphen.
 const BREAK: char = '\u{200b}';
 
-/// What the embedded fonts can show.
+/// The characters that the embedded fonts contain.
 pub(super) struct Printable<'a> {
     fonts: Vec<&'a Coverage>,
 }
@@ -25,14 +25,14 @@ impl<'a> Printable<'a> {
         Self { fonts: fonts.iter().map(|font| &font.info().coverage).collect() }
     }
 
-    /// Every text inside a value made printable. Object keys are ours and stay.
+    /// Makes all texts of a value printable, except object keys, which belong to the program.
     pub(super) fn clean(&self, value: &mut Value) {
         match value {
             Value::String(text) => *text = self.wrappable(&self.visible(text)),
             Value::Array(items) => items.iter_mut().for_each(|item| self.clean(item)),
             Value::Object(map) => {
                 for (key, item) in map.iter_mut() {
-                    // A hash has its own column and must be copied as it is.
+                    // A hash has its own column and must be copied unchanged.
                     if key != "sha256" || !is_hash(item) {
                         self.clean(item);
                     }
@@ -42,8 +42,8 @@ impl<'a> Printable<'a> {
         }
     }
 
-    /// An SVG with the text in it made printable; its markup is ASCII and stays. A box stands for each sign without glyph: a
-    /// drawing has room for one letter, and the tables spell it out.
+    /// Makes the texts of an SVG printable; its markup is ASCII and unchanged. Characters without a glyph are replaced by a box, since a
+    /// drawing has space for one letter only; the tables spell them out.
     pub(super) fn svg(&self, svg: &str) -> String {
         svg.chars().map(|c| if matches!(c, '\n' | '\r' | '\t') || self.has(c) { c } else { '□' }).collect()
     }
@@ -69,7 +69,7 @@ impl<'a> Printable<'a> {
         shown
     }
 
-    /// Whether a sign is printed as it stands: a glyph in an embedded font, from scripts set letter by letter, left to right.
+    /// Whether a character is printed as it is: a glyph in an embedded font, of a script written from left to right without ligatures.
     fn has(&self, c: char) -> bool {
         let simple = matches!(c,
             ' '..='~' | '\u{a0}'..='\u{ac}' | '\u{ae}'..='\u{52f}'  // Latin, Greek, Cyrillic; not the soft hyphen
@@ -80,7 +80,7 @@ impl<'a> Printable<'a> {
         simple && !matches!(c, '\u{2066}'..='\u{2069}') && self.fonts.iter().any(|coverage| coverage.contains(u32::from(c)))
     }
 
-    /// Very long words get places to break, and enormous ones lose their middle.
+    /// Adds break points to long words, and shortens very long ones in the middle.
     fn wrappable(&self, text: &str) -> String {
         if !text.split(' ').any(|word| word.chars().count() > LONGEST_WORD) {
             return text.to_owned();

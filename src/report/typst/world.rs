@@ -1,4 +1,4 @@
-//! What Typst may see: embedded fonts, embedded templates, and the files of one report. Nothing else exists.
+//! The files that Typst can read: embedded fonts, embedded templates, and the files of one report.
 
 use std::sync::LazyLock;
 
@@ -12,13 +12,13 @@ use typst::{Library, LibraryExt, World, WorldExt};
 
 use crate::problem::{Problem, Problems};
 
-/// The frame of the report: which parts, in which order; filled by minijinja.
+/// The frame of the report, which lists its parts in order; filled by minijinja.
 pub(super) const REPORT: &str = include_str!("../../../templates/report.typ");
 
 /// The frame of a study.
 pub(super) const STUDY: &str = include_str!("../../../templates/study.typ");
 
-/// Templates that stay as they are.
+/// Templates that are not filled.
 const TEMPLATES: &[(&str, &str)] = &[
     ("/theme.typ", include_str!("../../../templates/theme.typ")),
     ("/data.typ", "#let data = json(\"/data.json\")\n"),
@@ -74,7 +74,7 @@ impl Files {
         }
     }
 
-    /// A file that templates can read under `path`.
+    /// Adds a file that templates can read under `path`.
     pub(super) fn add(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), Problems> {
         let id = id(path).ok_or_else(|| Problems(vec![Problem::error("report-attachment", format!("`{path}` is no path"))]))?;
         self.files.insert(id, Bytes::new(bytes));
@@ -90,7 +90,7 @@ impl Files {
     }
 }
 
-/// Ids are interned for the life of the process; the paths of reports are the same few every time.
+/// Ids are kept for the life of the process; the paths are the same for every report.
 fn id(path: &str) -> Option<FileId> {
     Some(RootedPath::new(VirtualRoot::Project, VirtualPath::new(path).ok()?).intern())
 }
@@ -123,7 +123,7 @@ impl World for Files {
         fonts().get(index).cloned()
     }
 
-    /// A report has no clock: a template that asks for the date fails at once.
+    /// No clock: a template that requests the date fails.
     fn today(&self, _: Option<Duration>) -> Option<Datetime> {
         None
     }

@@ -1,4 +1,4 @@
-//! By what the report is known, and what an assessor expects it to state: what is not stated is listed as that.
+//! Identification of the report: the items that an assessor expects; missing ones are listed as not stated.
 
 use serde::Serialize;
 
@@ -6,24 +6,24 @@ use super::Fact;
 use crate::result::report::stated;
 use crate::result::{Certification, ReportItem};
 
-/// Printed where the campaign states nothing.
+/// Printed for an item that the campaign does not state.
 const NOT_STATED: &str = "not stated";
 
-/// What stands on the cover and at the head of each page.
+/// Items of the cover and the page header.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ReportHead {
     /// `Report R-17, revision B`; empty if no number is stated.
     pub line: String,
-    /// The date of issue, `2026-03-31`; `None` if none is stated.
+    /// The date of issue, `2026-03-31`; `None` if it is not stated.
     pub issued: Option<String>,
-    /// Items that the cover shows.
+    /// Items on the cover.
     pub cover: Vec<Fact>,
 }
 
 /// A row of the checklist.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct IdentityRow {
-    /// Clause of ISO/IEC 17025:2017; empty if none asks for it.
+    /// Clause of ISO/IEC 17025:2017; empty for an item without a clause.
     pub clause: String,
     pub title: String,
     pub value: String,
@@ -55,7 +55,7 @@ pub(super) fn head(items: &[ReportItem]) -> ReportHead {
     ReportHead { line, issued: stated(items, &["dates", "issue"]).map(str::to_owned), cover: COVER.iter().filter_map(item).collect() }
 }
 
-/// The checklist: what the campaign states, and what the program knows.
+/// The checklist: items stated by the campaign, and items known to the program.
 pub(super) fn checklist(found: &Certification) -> Vec<IdentityRow> {
     let row = |clause: &str, title: &str, value: &str| IdentityRow {
         clause: unbroken(clause),
@@ -84,7 +84,7 @@ pub(super) fn checklist(found: &Certification) -> Vec<IdentityRow> {
     rows
 }
 
-/// A clause never stands on two lines.
+/// A clause number without line breaks.
 fn unbroken(clause: &str) -> String {
     clause.replace(' ', "\u{a0}")
 }

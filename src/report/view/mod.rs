@@ -1,7 +1,7 @@
-//! The result of a certification, ready to print: every number rounded, every list sorted, every sentence worded.
+//! The result of a certification, ready to print: numbers rounded, lists sorted, sentences formulated.
 //!
-//! PDF and HTML are filled from the same [`ReportData`]; neither template calculates. Names and texts of users are passed
-//! on as they are: escaping is the template's task.
+//! PDF and HTML are filled from the same [`ReportData`]; the templates do not calculate. Names and texts of users are passed on
+//! unchanged: escaping is the task of the template.
 
 mod identity;
 mod notation;
@@ -22,43 +22,43 @@ pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair}
 pub use section::{CheckTable, ColumnHead, DomainView, SectionRow, SectionTable, ZoneView};
 pub use summary::{FurtherRow, SummaryRow};
 
-/// Reasons listed on the cover; all of them stand in the summary.
+/// Number of reasons on the cover; the summary lists all.
 const REASONS_ON_COVER: usize = 8;
 
-/// Everything a report prints.
+/// All data of a report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReportData {
     /// Title of the document: `Validation report: <campaign>`.
     pub title: String,
-    /// Program and version that made it.
+    /// Program and version that wrote the report.
     pub program: String,
     pub verdict: Finding,
-    /// What belongs beside the verdict's word.
+    /// A note on the verdict.
     pub verdict_note: Option<String>,
-    /// Who answers for the simulation states this.
+    /// The statement for signature by the person responsible for the simulation.
     pub simulation_statement: String,
     /// The verdict as a sentence.
     pub verdict_sentence: String,
-    /// Why the model is not validated or cannot be assessed.
+    /// Why the model is not validated or not assessable.
     pub reasons: Vec<String>,
-    /// The first of them, as many as the cover holds.
+    /// The first reasons, for the cover.
     pub cover_reasons: Vec<String>,
-    /// Where the others are, if there are others.
+    /// Reference to the other reasons, if any.
     pub more_reasons: Option<String>,
-    /// What an assessor expects a report to state, stated or not.
+    /// The items that an assessor expects in a report, stated or not.
     pub identity: Vec<IdentityRow>,
-    /// Symbols of the quantities, which the PDF and the page set with subscripts.
+    /// Symbols of the quantities, which are printed with subscripts.
     pub symbols: Vec<String>,
     pub notation: NotationView,
-    /// Short facts for the cover, name and value.
+    /// Short facts for the cover: name and value.
     pub key_facts: Vec<Fact>,
     pub campaign: CampaignView,
     pub protocol: ProtocolView,
-    /// Quantities judged by mean and standard deviation over all pairs, a row each, in the manner of EN 14363.
+    /// Quantities judged by mean and standard deviation over all pairs, one row each, as in EN 14363.
     pub summary: Vec<SummaryRow>,
-    /// Every other statistic, a row each.
+    /// All other statistics, one row each.
     pub further: Vec<FurtherRow>,
-    /// Figure of normalised values of all quantities: `None` if no quantity has any.
+    /// Figure of the normalised statistics of all quantities; `None` if there are none.
     pub overview: Option<FigureView>,
     pub quantities: Vec<QuantityView>,
     pub zones: Vec<ZoneView>,
@@ -67,13 +67,13 @@ pub struct ReportData {
     pub traces: Vec<TraceView>,
     pub domain: Vec<DomainView>,
     pub domain_figure: Option<FigureView>,
-    /// What is not plausible in the data.
+    /// Plausibility findings.
     pub findings: Vec<findings::Row>,
     /// Remarks that do not change the verdict.
     pub notes: Vec<String>,
 }
 
-/// What a check or verdict came to, in words, as a sign, and as a class for styling: never by colour alone.
+/// Result of a check or verdict as a word, a sign and a class for styling, so that it does not depend on colour alone.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Finding {
     /// `good`, `bad` or `open`.
@@ -93,12 +93,12 @@ impl Finding {
         Self { class, sign, word: word.to_owned() }
     }
 
-    /// Of a statistic: marginal where the interval of the statistic has its limit inside.
+    /// Of a statistic: marginal if its interval contains the limit.
     pub(crate) fn of_statistic(statistic: Option<&StatisticResult>) -> Self {
         Self::of(statistic.and_then(|one| one.holds)).marginal(statistic.is_some_and(|one| one.marginal))
     }
 
-    /// Of a quantity: marginal where one of its statistics is.
+    /// Of a quantity: marginal if one of its statistics is.
     pub(crate) fn of_quantity(quantity: &QuantityResult) -> Self {
         Self::of(quantity.holds).marginal(quantity.holds.is_some() && quantity.statistics.iter().any(|one| one.marginal))
     }
@@ -122,7 +122,7 @@ pub struct Fact {
     pub value: String,
 }
 
-/// A figure by the name it is handed over under, what stands below it, and what it shows for those who cannot see it.
+/// A figure: its name, its caption, and a text alternative.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FigureView {
     /// `overview`, `domain`, `graph`, `pairs-<index of the quantity>`, `trace-<index of the trace>`; indices from 0.
@@ -136,14 +136,14 @@ pub struct CampaignView {
     pub name: String,
     pub report: ReportHead,
     pub facts: Vec<DataRow>,
-    /// What made the simulated records, as a sentence.
+    /// Origin of the simulated records, as a sentence.
     pub origin: Option<String>,
-    /// Data of the vehicle that a rule reads.
+    /// Data of the vehicle used by a rule.
     pub vehicle_used: Vec<DataRow>,
-    /// All other data of the vehicle.
+    /// Other data of the vehicle.
     pub vehicle_other: Vec<DataRow>,
     pub files: Vec<FileView>,
-    /// Sum of the files' sizes, in bytes, as printed.
+    /// Total size of the files in bytes, as printed.
     pub bytes: String,
 }
 
@@ -152,7 +152,7 @@ pub struct DataRow {
     pub name: String,
     pub value: String,
     pub unit: String,
-    /// The value is a number: to be aligned as such.
+    /// The value is a number: aligned to the right.
     pub numeric: bool,
 }
 
@@ -172,7 +172,7 @@ pub struct TraceView {
     pub why: String,
 }
 
-/// The certification as both reports print it.
+/// The certification as printed in both reports.
 pub fn view(found: &Certification) -> ReportData {
     let verdict_holds = match found.verdict {
         Verdict::Validated => Some(true),
@@ -229,7 +229,7 @@ fn title(found: &Certification) -> String {
     format!("Validation report: {}", found.campaign.name)
 }
 
-/// A sentence about a quantity names it by its symbol.
+/// Replaces the id of a quantity at the start of a sentence by its symbol.
 fn in_symbols(reason: &str, found: &Certification) -> String {
     let of = reason.split_once(": ").and_then(|(id, says)| Some((found.quantities.iter().find(|quantity| quantity.id == id)?, says)));
     of.map_or_else(|| reason.to_owned(), |(quantity, says)| format!("{}: {says}", symbol(&quantity.symbol)))
@@ -247,7 +247,7 @@ fn sentence(verdict: Verdict) -> &'static str {
     }
 }
 
-/// That nothing was changed after the comparison is stated only where no program says that it was.
+/// The statement that nothing was changed after the comparison is printed only if the campaign has no origin that contradicts it.
 fn simulation_statement(found: &Certification) -> String {
     let obtained = "The simulation results named in this report were obtained with the model and the settings described";
     match &found.campaign.origin {
@@ -285,35 +285,35 @@ fn key_facts(found: &Certification) -> Vec<Fact> {
     facts
 }
 
-/// Words that begin the place inside a work.
+/// First words of a place inside a document.
 const PLACES: [&str; 10] = ["Table", "Section", "Clause", "Annex", "Chapter", "Figure", "Equation", "Page", "p.", "§"];
 
-/// Whether a text names a place inside a work, and no work: `Table 1, footnote`.
+/// Whether a text is only a place inside a document: `Table 1, footnote`.
 fn is_place(text: &str) -> bool {
     PLACES.iter().any(|word| {
         text.strip_prefix(word).is_some_and(|rest| rest.trim_start().starts_with(|c: char| c.is_ascii_digit() || c.is_ascii_uppercase()))
     })
 }
 
-/// The source of a rule with the work it belongs to, which is that of the protocol.
+/// The source of a rule, completed by the document that the protocol names.
 fn with_work(source: &str, work: Option<&str>) -> String {
     let Some(work) = work.filter(|_| is_place(source)) else { return source.to_owned() };
-    // The protocol may name a place of the work too.
+    // The protocol may itself name a place of the document.
     let whole = work.rsplit_once(", ").filter(|(_, last)| is_place(last)).map_or(work, |(whole, _)| whole);
     format!("{whole}, {source}")
 }
 
-/// The name of a section, signal or zone short enough for a table.
+/// The name of a section, signal or zone, shortened for a table.
 fn name(text: &str) -> String {
     cut(text, NAME)
 }
 
-/// The symbol of a quantity short enough for a table.
+/// The symbol of a quantity, shortened for a table.
 fn symbol(text: &str) -> String {
     cut(text, SYMBOL)
 }
 
-/// The middle of a longer text is left out, for the ends tell names apart.
+/// Removes the middle of a long text, since names usually differ at their ends.
 fn cut(name: &str, most: usize) -> String {
     let letters: Vec<char> = name.chars().collect();
     if letters.len() <= most {
@@ -323,16 +323,16 @@ fn cut(name: &str, most: usize) -> String {
     letters[..half].iter().chain(&['…']).chain(&letters[letters.len() - half..]).collect()
 }
 
-/// Letters of a name of a section or signal that a report prints.
+/// Maximum length of a printed name of a section or signal.
 const NAME: usize = 80;
-/// Letters of the symbol of a quantity that a report prints.
+/// Maximum length of a printed symbol.
 const SYMBOL: usize = 32;
 
 fn fact(name: &str, value: String) -> Fact {
     Fact { name: name.to_owned(), value }
 }
 
-/// What a report says of the campaign.
+/// The campaign as printed.
 pub fn campaign(campaign: &CampaignInfo) -> CampaignView {
     let of = |used: bool| campaign.vehicle.iter().filter(|item| item.used == used).map(data_row).collect();
     CampaignView {

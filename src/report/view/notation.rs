@@ -1,4 +1,4 @@
-//! Symbols, signs and words that tables and figures use.
+//! Symbols, signs and terms used in tables and figures.
 
 use serde::Serialize;
 
@@ -32,14 +32,14 @@ pub struct SymbolRow {
     pub comparison: String,
 }
 
-/// A word and what it means here.
+/// A term and its meaning.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Term {
     pub word: String,
     pub meaning: String,
 }
 
-/// What stands for a difference, and how to read its sign. Others are explained by their own words.
+/// Comparisons with an explanation of their sign. Others are self-explanatory.
 const COMPARISONS: [(&str, &str); 3] = [
     (
         "sign(measured) * (simulated - measured)",
@@ -50,12 +50,12 @@ const COMPARISONS: [(&str, &str); 3] = [
     ("simulated - measured", "Positive: the simulated value is larger, with its sign."),
 ];
 
-/// Explained in every report.
+/// Terms explained in every report.
 const WORDS: [(&str, &str); 8] = [
     ("Pair", "The simulated and the measured value of one quantity, in one section, for one signal."),
     ("n", "Number of pairs that a statistic is taken over."),
     ("Mean", "Arithmetic mean of the differences of the pairs."),
-    ("Standard deviation", "Scatter of the differences about their mean; its divisor, n − 1 or n, stands beside it."),
+    ("Standard deviation", "Scatter of the differences about their mean. The divisor, n − 1 or n, is stated with it."),
     ("95 % interval", "Confidence interval of the statistic. The mean: Student's t; the standard deviation: chi-square."),
     ("|Value| / limit", "Magnitude of the statistic divided by its limit; the criterion is met up to 1."),
     ("p0.15, p99.85", "Value below which 0.15 % or 99.85 % of the samples of a section lie; other percentiles likewise."),
@@ -98,7 +98,7 @@ pub(super) fn view(found: &Certification) -> NotationView {
         findings: vec![
             finding(Some(true), "The acceptance criterion or requirement is met."),
             finding(Some(false), "It is not met."),
-            finding(None, "It could not be assessed; the reason stands beside it."),
+            finding(None, "It could not be assessed; the reason is stated."),
         ],
     }
 }

@@ -1,4 +1,4 @@
-//! The protocol: what it is, its text line by line, what was set, and what it changes of its parent.
+//! The protocol: identification, text, parameters, and deviations from its parent.
 
 use serde::Serialize;
 
@@ -21,7 +21,7 @@ pub struct ProtocolView {
     pub parameters: Vec<ParameterView>,
     pub filters: Vec<FilterView>,
     pub graph_nodes: usize,
-    /// `None` if no drawing was handed over.
+    /// `None` if there is no drawing.
     pub graph: Option<FigureView>,
 }
 
@@ -36,7 +36,7 @@ pub struct SourceFile {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct SourceLine {
     pub number: usize,
-    /// Tabs as four spaces, no white space at the end.
+    /// Tabs as four spaces, without trailing white space.
     pub text: String,
 }
 
@@ -54,7 +54,7 @@ pub struct ParameterView {
     pub value: String,
     pub default: String,
     pub set_by: String,
-    /// Not the default.
+    /// Differs from the default.
     pub changed: bool,
 }
 
@@ -66,7 +66,7 @@ pub struct FilterView {
     pub source: Option<String>,
 }
 
-/// What a report says of the protocol.
+/// The protocol as printed.
 pub fn view(protocol: &ProtocolInfo) -> ProtocolView {
     ProtocolView {
         name: protocol.name.clone(),

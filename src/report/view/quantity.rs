@@ -1,4 +1,4 @@
-//! One quantity: its statistics against their limits, its worst pairs, and all of its values.
+//! One quantity: its statistics and limits, its worst pairs, and all its values.
 
 use serde::Serialize;
 
@@ -6,9 +6,9 @@ use super::{FigureView, Finding, name, summary};
 use crate::report::number;
 use crate::result::{PairValue, QuantityResult, StatisticResult};
 
-/// Pairs in the list of the worst.
+/// Number of worst pairs listed.
 const WORST: usize = 5;
-/// Signals side by side in one block of values: more do not fit a page.
+/// Number of signals side by side that fit a page, with and without simulated and measured values.
 const SIGNALS_WITH_SIDES: usize = 4;
 const SIGNALS_WITHOUT_SIDES: usize = 10;
 
@@ -30,17 +30,17 @@ pub struct QuantityView {
     pub notes: Vec<String>,
     pub holds: Finding,
     pub reason: Option<String>,
-    /// Values are simulated and measured, not just one number of a metric.
+    /// Whether values are simulated and measured, and not a single number of a metric.
     pub has_sides: bool,
     pub statistics: Vec<StatisticView>,
-    /// The pairs with the largest difference (or metric value), the largest first.
+    /// The pairs with the largest difference (or metric value), in decreasing order.
     pub worst: Vec<WorstPair>,
-    /// What `ratio` of the worst pairs is taken against, e.g. `limit of the standard deviation`.
+    /// Reference of `ratio` of the worst pairs, e.g. `limit of the standard deviation`.
     pub worst_against: Option<String>,
     pub values: Vec<ValueBlock>,
     /// Compared pairs.
     pub count: String,
-    /// `None` if there are no values to draw.
+    /// `None` if there are no values.
     pub figure: Option<FigureView>,
 }
 
@@ -73,11 +73,11 @@ pub struct WorstPair {
     pub difference: String,
     /// |difference| divided by the limit named in `worst_against`.
     pub ratio: String,
-    /// Samples or windows of the measured signal.
+    /// Number of samples or windows of the measured signal.
     pub samples: String,
 }
 
-/// Values of up to four signals (ten without sides), a row for each section.
+/// Values of up to four signals (ten without sides), one row per section.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ValueBlock {
     pub signals: Vec<String>,
@@ -88,7 +88,7 @@ pub struct ValueBlock {
 pub struct ValueRow {
     pub section: String,
     pub zone: String,
-    /// For every signal of the block: simulated, measured, difference; just the value of the metric without sides.
+    /// For every signal: simulated, measured, difference; without sides, only the value of the metric.
     pub cells: Vec<Vec<String>>,
 }
 
@@ -169,7 +169,7 @@ fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<
     (rows, yardstick.map(|(statistic, _)| format!("limit of the {}", statistic.title)))
 }
 
-/// Sections down, signals across, both in the order in which the values first name them.
+/// Sections as rows, signals as columns, both in order of first occurrence.
 fn blocks(quantity: &QuantityResult, decimals: usize) -> Vec<ValueBlock> {
     let signals = first_seen(quantity.values.iter().map(|pair| pair.signal.as_str()));
     let sections = first_seen(quantity.values.iter().map(|pair| pair.section.as_str()));
@@ -207,7 +207,7 @@ fn cell(pair: Option<&PairValue>, has_sides: bool, decimals: usize) -> Vec<Strin
     }
 }
 
-/// Each name once, in the order of first appearance.
+/// Unique names in order of first occurrence.
 fn first_seen<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut seen = indexmap::IndexSet::new();
     seen.extend(names);

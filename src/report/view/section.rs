@@ -1,4 +1,4 @@
-//! The sections, zone by zone, the requirements on them, and the domain they cover.
+//! The sections by zone, their requirements, and the validity domain.
 
 use indexmap::IndexSet;
 use serde::Serialize;
@@ -7,7 +7,7 @@ use super::{Finding, name};
 use crate::report::number;
 use crate::result::{Certification, DomainRange, SectionResult, ZoneResult};
 
-/// Checks side by side in one table: more do not fit a page.
+/// Number of checks side by side that fit a page.
 const CHECKS_ABREAST: usize = 4;
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -32,7 +32,7 @@ pub struct SectionTable {
     pub axis_unit: String,
     pub columns: Vec<ColumnHead>,
     pub rows: Vec<SectionRow>,
-    /// Requirements, up to four abreast; empty if the protocol has none.
+    /// Requirements, up to four side by side; empty if the protocol has none.
     pub checks: Vec<CheckTable>,
 }
 
@@ -40,7 +40,7 @@ pub struct SectionTable {
 pub struct ColumnHead {
     pub title: String,
     pub unit: String,
-    /// All values are numbers: to be aligned as such.
+    /// All values are numbers: aligned to the right.
     pub numeric: bool,
 }
 
@@ -50,7 +50,7 @@ pub struct SectionRow {
     pub start: String,
     pub end: String,
     pub length: String,
-    /// One text for each column.
+    /// One text per column.
     pub values: Vec<String>,
     pub used: Finding,
     pub reason: Option<String>,
@@ -65,7 +65,7 @@ pub struct CheckTable {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CheckRow {
     pub section: String,
-    /// One for each title; `None` where the requirement does not concern the section.
+    /// One per title; `None` where the requirement does not apply to the section.
     pub cells: Vec<Option<CheckCell>>,
 }
 
@@ -207,7 +207,7 @@ fn checks(sections: &[&SectionResult]) -> Vec<CheckTable> {
         .collect()
 }
 
-/// Ranges gathered by condition; the scopes of each in the order found.
+/// Ranges grouped by condition; scopes in order of occurrence.
 pub(super) fn domain(found: &Certification) -> Vec<DomainView> {
     let names: IndexSet<(&str, &str)> = found.domain.iter().map(|range| (range.name.as_str(), range.unit.as_str())).collect();
     names

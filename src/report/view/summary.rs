@@ -1,4 +1,4 @@
-//! The summary: one row per quantity where mean and standard deviation are judged, one row per statistic otherwise.
+//! The summary: one row per quantity with mean and standard deviation, and one row per other statistic.
 
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::result::{QuantityResult, StatisticResult};
 /// The scope of a statistic over all pairs of a quantity.
 const ALL: &str = "all";
 
-/// A quantity in the manner of EN 14363: limits, mean and standard deviation, and both divided by their limits.
+/// A quantity as in EN 14363: limits, mean and standard deviation, and both divided by their limits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SummaryRow {
     pub id: String,
@@ -59,7 +59,7 @@ pub(super) fn tables(quantities: &[QuantityResult]) -> (Vec<SummaryRow>, Vec<Fur
     for quantity in quantities {
         let mean = overall(quantity, "mean");
         let std = overall(quantity, "std");
-        // A quantity that could not be computed at all still stands in the summary, with its reason.
+        // A quantity without statistics is listed with its reason.
         if mean.is_some() || std.is_some() || quantity.statistics.is_empty() {
             summary.push(summary_row(quantity, mean, std));
         }
@@ -121,23 +121,23 @@ fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> Furthe
     }
 }
 
-/// Pairs, and the number of sites that they are of.
+/// Number of pairs and of sites.
 pub(super) fn pairs_and_n(pairs: usize, n: usize) -> String {
     format!("{} / {}", number::count(pairs as u64), number::count(n as u64))
 }
 
-/// The limit with the decimals of the value it stands beside.
+/// The limit, with the decimals of the value.
 pub(super) fn limit(statistic: Option<&StatisticResult>) -> String {
     let Some(statistic) = statistic else { return number::NONE.to_owned() };
     number::optional(statistic.limit, decimals(statistic))
 }
 
-/// Decimals of a statistic: those of its unit, more if the limit (or the value, without one) needs them to show two digits.
+/// Decimals of a statistic: those of its unit, or more if the limit (or else the value) needs them to show two digits.
 pub(super) fn decimals(statistic: &StatisticResult) -> usize {
     number::decimals(&statistic.unit, statistic.limit.or(statistic.value))
 }
 
-/// The value with the decimals of its unit, more where the comparison with the limit needs them.
+/// The value with the decimals of its unit, or more if the comparison with the limit needs them.
 pub(super) fn value(statistic: Option<&StatisticResult>) -> String {
     let Some(statistic) = statistic else { return number::NONE.to_owned() };
     let Some(value) = statistic.value else { return number::NONE.to_owned() };
@@ -147,7 +147,7 @@ pub(super) fn value(statistic: Option<&StatisticResult>) -> String {
     }
 }
 
-/// |value| / limit, two decimals, more where it is close to 1.
+/// |value| / limit with two decimals, or more close to 1.
 pub(super) fn normalised(statistic: Option<&StatisticResult>) -> String {
     statistic.and_then(|statistic| statistic.normalised).map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 2))
 }
