@@ -1,5 +1,4 @@
-//! The hook by which tests let operations fail. A program that nobody tests never sets it: each operation then costs
-//! one look at a flag.
+//! Test hook that lets file operations fail. Without a hook, each operation costs one read of a flag.
 
 use std::fmt::Debug;
 use std::io;
@@ -10,46 +9,46 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Operations that can fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// Metadata, or a path without its links.
+    /// Reading metadata, or resolving links.
     Look,
-    /// The names in a folder.
+    /// Reading the names in a folder.
     List,
     Open,
     Read,
     Create,
     Write,
-    /// Of a file or a folder.
+    /// Syncing a file or a folder.
     Sync,
     Rename,
     Remove,
     MakeFolder,
     Lock,
-    /// Files for this run alone.
+    /// Creating temporary files.
     Scratch,
-    /// Room in memory for a file.
+    /// Reserving memory for a file.
     Reserve,
 }
 
-/// One operation that is about to be done.
+/// An operation that is about to be performed.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'a> {
     pub op: Op,
     pub path: &'a Path,
-    /// Where a rename leads.
+    /// Target of a rename.
     pub to: Option<&'a Path>,
 }
 
-/// What becomes of it.
+/// Result of an operation.
 #[derive(Debug)]
 pub enum Fate {
     Done,
-    /// Nothing is done.
+    /// It is not performed.
     Fails(io::Error),
-    /// A write stops half-way; all else is not done.
+    /// A write stops half-way; any other operation is not performed.
     Torn(io::Error),
 }
 
-/// Decides over operations.
+/// Decides the result of operations.
 pub trait Faults: Debug + Send + Sync {
     fn fate(&self, call: Call<'_>) -> Fate;
 }
@@ -57,7 +56,7 @@ pub trait Faults: Debug + Send + Sync {
 static ARMED: AtomicBool = AtomicBool::new(false);
 static HOOK: Mutex<Option<Arc<dyn Faults>>> = Mutex::new(None);
 
-/// Sets the hook, or takes it away. For tests; it holds for the whole process.
+/// Sets or removes the hook of the process. For tests.
 #[doc(hidden)]
 pub fn set(hook: Option<Arc<dyn Faults>>) {
     ARMED.store(hook.is_some(), Ordering::SeqCst);

@@ -1,17 +1,17 @@
-//! What a set of files replaces: written before the commit point, read where a run was ended after it.
+//! Journal of a set of files: written before the commit point, and read by the next run if a run was interrupted after it.
 
 use std::io;
 use std::path::{Component, Path};
 
-/// The name of the journal beside the files of a set that are not in their places.
+/// Name of the journal next to the files that are not in their places yet.
 pub const JOURNAL: &str = "journal";
-/// First line: the form, so that another version knows what it cannot read.
+/// First line: the format version.
 const HEAD: &str = "fishplate set 1";
 
-/// What a set puts into its folder and takes away. Paths are plain paths inside the folder, with `/`.
+/// The files that a set installs in its folder and removes from it. Paths are relative, without links, with `/`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Journal {
-    /// In the order of their numbers, which name the files until they are in place.
+    /// In the order of their numbers, which are the names of the files until they are in place.
     pub installs: Vec<String>,
     pub removes: Vec<String>,
 }
@@ -41,7 +41,7 @@ impl Journal {
     }
 }
 
-/// Whether a path stays inside the folder it is joined to, and fits a line.
+/// Whether a path stays inside the folder, and fits a line.
 pub fn plain(path: &str) -> bool {
     let parts = Path::new(path).components();
     !path.is_empty() && !path.contains(['\n', '\r', '\0']) && parts.into_iter().all(|part| matches!(part, Component::Normal(_)))

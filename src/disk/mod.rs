@@ -1,15 +1,15 @@
-//! The only way to the file system: every read, write, rename, sync and removal of a run goes through here.
+//! Access to the file system: every read, write, rename, sync and removal goes through this module.
 //!
-//! One place, so that a test can let any single operation fail, or let the program end there, and look at what is
-//! left ([`faults`]). A test of the layers refuses `std::fs` everywhere else.
+//! A test can therefore let any single operation fail, or end the program there, and check the result ([`faults`]). A test of the
+//! layers forbids `std::fs` everywhere else.
 //!
-//! | file | what |
+//! | file | content |
 //! |---|---|
 //! | `mod` | single operations |
-//! | `faults` | the hook that tests use |
-//! | `single` | one file, whole or not at all |
-//! | `set` | files that belong together, with one commit point |
-//! | `journal` | what a set replaces, as written before the commit point |
+//! | `faults` | test hook |
+//! | `single` | one file, completely or not at all |
+//! | `set` | sets of files with one commit point |
+//! | `journal` | files that a set replaces, written before the commit point |
 
 pub mod faults;
 mod journal;
@@ -25,7 +25,7 @@ use faults::{Op, pass, passed};
 pub use set::{Set, SetKind, UNFINISHED};
 pub use single::{create_new, keep, remove, write_whole};
 
-/// What stands at a path.
+/// Kind of the object at a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A plain file and its size in bytes.
@@ -35,10 +35,10 @@ pub enum Kind {
     Other,
 }
 
-/// What stands at a path, symbolic links followed; `None` if there is nothing.
+/// The kind of the object at a path, following symbolic links; `None` if nothing exists.
 ///
 /// # Errors
-/// What the system says, but for a path that does not exist.
+/// The system's error, except for a path that does not exist.
 pub fn kind(path: &Path) -> io::Result<Option<Kind>> {
     pass(Op::Look, path)?;
     match fs::metadata(path) {
@@ -50,13 +50,13 @@ pub fn kind(path: &Path) -> io::Result<Option<Kind>> {
     }
 }
 
-/// Whether an error says that there is nothing at the path.
+/// Whether an error means that nothing exists at the path.
 pub fn missing(error: &io::Error) -> bool {
-    // A name that is too long, or holds a NUL, is the name of nothing.
+    // A name that is too long or contains NUL cannot exist.
     matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory | ErrorKind::InvalidFilename | ErrorKind::InvalidInput)
 }
 
-/// Whether a plain file is there.
+/// Whether a plain file exists.
 ///
 /// # Errors
 /// As [`kind`].
@@ -64,17 +64,17 @@ pub fn is_file(path: &Path) -> io::Result<bool> {
     Ok(matches!(kind(path)?, Some(Kind::File(_))))
 }
 
-/// Whether a plain file is there, or the system cannot say: who reads it then tells why.
+/// Whether a plain file exists, or the system gives an error; the error is then reported when the file is read.
 pub fn may_be_file(path: &Path) -> bool {
     is_file(path).unwrap_or(true)
 }
 
-/// Whether something is there, or the system cannot say.
+/// Whether anything exists, or the system gives an error.
 pub fn may_exist(path: &Path) -> bool {
     kind(path).map_or(true, |kind| kind.is_some())
 }
 
-/// Whether a folder is there.
+/// Whether a folder exists.
 ///
 /// # Errors
 /// As [`kind`].
@@ -82,7 +82,7 @@ pub fn is_folder(path: &Path) -> io::Result<bool> {
     Ok(matches!(kind(path)?, Some(Kind::Folder)))
 }
 
-/// Whether a path is a symbolic link, wherever that leads.
+/// Whether a path is a symbolic link, with or without a target.
 ///
 /// # Errors
 /// As [`kind`].
@@ -95,7 +95,7 @@ pub fn is_link(path: &Path) -> io::Result<bool> {
     }
 }
 
-/// The absolute path without symbolic links; `None` if there is nothing.
+/// The absolute path without symbolic links; `None` if nothing exists.
 ///
 /// # Errors
 /// As [`kind`].
@@ -111,7 +111,7 @@ pub fn real(path: &Path) -> io::Result<Option<PathBuf>> {
 /// The user who owns a file or folder.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 #[cfg(unix)]
 pub fn owner(path: &Path) -> io::Result<u32> {
     use std::os::unix::fs::MetadataExt;
@@ -122,7 +122,7 @@ pub fn owner(path: &Path) -> io::Result<u32> {
 /// The names in a folder, sorted.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn names(folder: &Path) -> io::Result<Vec<OsString>> {
     pass(Op::List, folder)?;
     let mut names = fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect::<io::Result<Vec<_>>>()?;
@@ -137,10 +137,10 @@ pub struct Reader {
     path: PathBuf,
 }
 
-/// Opens a file for reading. What is no plain file should have been refused before: a pipe would wait for ever.
+/// Opens a file for reading. The caller must exclude other kinds before: reading a pipe could block for ever.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn open(path: &Path) -> io::Result<Reader> {
     pass(Op::Open, path)?;
     Ok(Reader { file: File::open(path)?, path: path.to_path_buf() })
@@ -153,15 +153,15 @@ impl Read for Reader {
     }
 }
 
-/// Appends to a buffer what is left of a plain file.
+/// Reads a plain file.
 ///
 /// # Errors
-/// It is no plain file, or has more than `limit` bytes (`FileTooLarge`); what the system says.
+/// Not a plain file; more than `limit` bytes (`FileTooLarge`); the system's error.
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let size = match kind(path)? {
         Some(Kind::File(size)) => size,
         Some(Kind::Folder) => return Err(io::Error::new(ErrorKind::IsADirectory, "it is a folder")),
-        Some(Kind::Other) => return Err(io::Error::other("it is no plain file")),
+        Some(Kind::Other) => return Err(io::Error::other("it is not a plain file")),
         None => return Err(ErrorKind::NotFound.into()),
     };
     let too_large = || io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {} MB", limit >> 20));
@@ -174,10 +174,10 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     if bytes.len() as u64 > limit { Err(too_large()) } else { Ok(bytes) }
 }
 
-/// The variables of a process, each ended by a zero.
+/// The environment variables of a process, each terminated by a zero.
 ///
 /// # Errors
-/// It is gone, or belongs to another user.
+/// The process has ended, or belongs to another user.
 #[cfg(target_os = "linux")]
 pub fn process_variables(id: i32) -> io::Result<Vec<u8>> {
     let path = PathBuf::from(format!("/proc/{id}/environ"));
@@ -186,11 +186,11 @@ pub fn process_variables(id: i32) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Largest variables of a process in bytes: as much as Linux hands to a program.
+/// Maximum size of the environment variables of a process in bytes, which is the limit of Linux.
 #[cfg(target_os = "linux")]
 const LARGEST_VARIABLES: u64 = 4 << 20;
 
-/// Room for more elements, or an error in place of the end of the program.
+/// Reserves memory for more elements; an error instead of an abort.
 ///
 /// # Errors
 /// `OutOfMemory`.
@@ -206,7 +206,7 @@ pub(crate) struct Writer {
     path: PathBuf,
 }
 
-/// Makes a file that does not exist yet.
+/// Creates a file that does not exist yet.
 fn create(path: &Path) -> io::Result<Writer> {
     pass(Op::Create, path)?;
     Ok(Writer { file: File::options().write(true).create_new(true).open(path)?, path: path.to_path_buf() })
@@ -215,7 +215,7 @@ fn create(path: &Path) -> io::Result<Writer> {
 impl Writer {
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         if let Err((error, torn)) = passed(Op::Write, &self.path, None) {
-            // Half of it is on the disk, as where the power went.
+            // For tests: half of the bytes are written, as in a power failure.
             if torn {
                 let _ = self.file.write_all(&bytes[..bytes.len() / 2]);
             }
@@ -224,7 +224,7 @@ impl Writer {
         self.file.write_all(bytes)
     }
 
-    /// On return the bytes are on the disk, not on their way.
+    /// On return the bytes are on the disk.
     fn sync(&self) -> io::Result<()> {
         pass(Op::Sync, &self.path)?;
         self.file.sync_all()
@@ -247,7 +247,7 @@ fn remove_folder(path: &Path) -> io::Result<()> {
     fs::remove_dir(path)
 }
 
-/// Makes a folder and those above it; those that did not exist are added to `made`, outermost first.
+/// Creates a folder and its parents; the created ones are added to `made`, outermost first.
 pub(crate) fn make_folders(folder: &Path, made: &mut Vec<PathBuf>) -> io::Result<()> {
     let mut lacking = Vec::new();
     for above in folder.ancestors().take_while(|above| !above.as_os_str().is_empty()) {
@@ -264,13 +264,13 @@ pub(crate) fn make_folders(folder: &Path, made: &mut Vec<PathBuf>) -> io::Result
             Err(error) => return Err(error),
         }
     }
-    if is_folder(folder)? { Ok(()) } else { Err(io::Error::new(ErrorKind::NotADirectory, "it is no folder")) }
+    if is_folder(folder)? { Ok(()) } else { Err(io::Error::new(ErrorKind::NotADirectory, "it is not a folder")) }
 }
 
-/// Makes a folder and those above it.
+/// Creates a folder and its parents.
 ///
 /// # Errors
-/// What the system says; something else is there.
+/// The system's error; the path exists and is not a folder.
 pub fn make_folder(folder: &Path) -> io::Result<()> {
     make_folders(folder, &mut Vec::new())
 }
@@ -280,14 +280,14 @@ fn sync_folder(folder: &Path) -> io::Result<()> {
     pass(Op::Sync, folder)?;
     #[cfg(unix)]
     match File::open(folder)?.sync_all() {
-        // Some network file systems know no such thing.
+        // Some network file systems do not support syncing a folder.
         Err(error) if matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {}
         other => return other,
     }
     Ok(())
 }
 
-/// A folder held against other runs that write there. It is let go when it is dropped, or the program ends.
+/// A lock on a folder against other runs that write there; released when dropped.
 #[derive(Debug)]
 struct Hold(
     #[cfg(unix)]
@@ -295,7 +295,7 @@ struct Hold(
     File,
 );
 
-/// Holds a folder; `None` where the system cannot.
+/// Locks a folder; `None` if the system does not support it.
 fn hold(folder: &Path) -> io::Result<Option<Hold>> {
     pass(Op::Lock, folder)?;
     #[cfg(unix)]
@@ -304,7 +304,7 @@ fn hold(folder: &Path) -> io::Result<Option<Hold>> {
         match file.try_lock() {
             Ok(()) => Ok(Some(Hold(file))),
             Err(fs::TryLockError::WouldBlock) => Err(io::Error::new(ErrorKind::ResourceBusy, "another run is writing there")),
-            // A file system without locks.
+            // The file system does not support locks.
             Err(fs::TryLockError::Error(_)) => Ok(None),
         }
     }
@@ -312,19 +312,19 @@ fn hold(folder: &Path) -> io::Result<Option<Hold>> {
     Ok(None)
 }
 
-/// A folder for files of this run alone, gone when it is dropped.
+/// A temporary folder, removed when dropped.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn scratch() -> io::Result<tempfile::TempDir> {
     pass(Op::Scratch, Path::new(""))?;
     tempfile::Builder::new().prefix("fishplate-").tempdir()
 }
 
-/// A file without a name, gone when it is dropped.
+/// A temporary file without a name, removed when dropped.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn scratch_file() -> io::Result<File> {
     pass(Op::Scratch, Path::new(""))?;
     tempfile::tempfile()

@@ -1,9 +1,9 @@
-//! Files that belong together, with one commit point.
+//! Sets of files with one commit point.
 //!
-//! The files are written into a folder of their own inside the output folder, each synced, with a journal of what they
-//! replace. One rename of that folder is the commit point. Then the files of the set before go out of their places, and
-//! the new ones in; a run that ended in between is finished by the next one. A set never stands mixed with the one
-//! before it: while files change places, only old ones are there, then only new ones.
+//! The files are written to a folder inside the output folder, each synced, with a journal of the files they replace. One rename of that
+//! folder is the commit point. Then the files of the previous set are removed from their places, and the new ones installed. A run that
+//! was interrupted in between is completed by the next one. Old and new files are never mixed: first only old files are in place, then only
+//! new ones.
 
 use std::collections::HashSet;
 use std::io::{self, ErrorKind};
@@ -16,16 +16,16 @@ use super::{
     Hold, Kind, create, hold, is_file, is_folder, is_link, kind, make_folders, names, read, remove_file, remove_folder, rename, sync_folder,
 };
 
-/// Beginning of the names that this module keeps in an output folder.
+/// Prefix of the names that this module uses in an output folder.
 const OWN: &str = ".fishplate-";
-/// Files of a set before the commit point; after it, nothing that is needed.
+/// Folder of a set before the commit point; after it, its contents are not needed.
 const NEW: &str = ".fishplate-new";
-/// Files of a set after the commit point.
+/// Folder of a set after the commit point.
 pub const UNFINISHED: &str = ".fishplate-unfinished";
-/// Largest manifest and journal in bytes: a hundred thousand files.
+/// Maximum size of manifest and journal in bytes: a hundred thousand files.
 const LARGEST_LIST: u64 = 32 << 20;
 
-/// What the files of a set are together: a set takes the place of one of its own kind, and of no other.
+/// Kind of a set. A set replaces only a set of its own kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SetKind {
     /// A report with its numbers.
@@ -37,7 +37,7 @@ pub enum SetKind {
 }
 
 impl SetKind {
-    /// Lists the files of the last set in the form of `sha256sum`: the next one takes away what it does not replace.
+    /// Lists the files of the last set in the format of `sha256sum`; the next set removes those that it does not replace.
     pub fn manifest(self) -> &'static str {
         match self {
             Self::Report => ".fishplate-report.sha256",
@@ -47,17 +47,17 @@ impl SetKind {
     }
 }
 
-/// Files for one folder. Dropped without [`Set::commit`], nothing is changed.
+/// A set of files for one folder. If dropped without [`Set::commit`], nothing is changed.
 #[derive(Debug)]
 pub struct Set {
     folder: PathBuf,
     kind: SetKind,
-    /// Whether the files are to outlive a loss of power.
+    /// Whether the files must survive a power failure.
     synced: bool,
     /// Paths of the files, by number.
     paths: Vec<String>,
     hashes: Vec<String>,
-    /// Folders that did not exist before, outermost first.
+    /// Folders created for the set, outermost first.
     made: Vec<PathBuf>,
     held: Option<Hold>,
     begun: bool,
@@ -65,7 +65,7 @@ pub struct Set {
 }
 
 impl Set {
-    /// A set in a folder, which is made when the first file is added.
+    /// A set for a folder, which is created when the first file is added.
     pub fn new(folder: impl Into<PathBuf>, kind: SetKind) -> Self {
         let folder: PathBuf = folder.into();
         let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder };
@@ -82,17 +82,17 @@ impl Set {
         }
     }
 
-    /// Nothing of it needs to outlive the run: no time is spent on syncing.
+    /// Disables syncing, for sets that need not survive the run.
     pub fn unsynced(&mut self) {
         self.synced = false;
     }
 
-    /// Whether a set was finished here that a run before left unfinished.
+    /// Whether the set of an interrupted run was completed.
     pub fn mended(&self) -> bool {
         self.mended
     }
 
-    /// Where a file goes.
+    /// The final path of a file.
     pub fn path(&self, inside: &str) -> PathBuf {
         self.folder.join(inside)
     }
@@ -114,10 +114,10 @@ impl Set {
         Ok(())
     }
 
-    /// Adds a file by its path in the folder, with `/`. Its bytes are on the disk on return, not in their place.
+    /// Adds a file by its path in the folder, with `/`. On return its bytes are on the disk, but not in their place.
     ///
     /// # Errors
-    /// What the system says; `InvalidInput` for a path that leads out.
+    /// The system's error; `InvalidInput` for a path outside the folder.
     pub fn add(&mut self, inside: &str, bytes: &[u8]) -> io::Result<()> {
         if !plain(inside) || inside.starts_with(OWN) || self.paths.iter().any(|path| path == inside) {
             return Err(ErrorKind::InvalidInput.into());
@@ -140,11 +140,11 @@ impl Set {
         if self.synced { file.sync() } else { Ok(()) }
     }
 
-    /// Puts every file into its place and takes away files of the set before that this one does not have.
+    /// Moves every file to its place, and removes files of the previous set that this one does not have.
     ///
     /// # Errors
-    /// What the system says. The folder then holds the set before, whole; where not even that could be restored, the
-    /// error says so, and the next set that is written there finishes this one.
+    /// The system's error. The folder then contains the complete previous set. If this could not be restored, the error says so, and the next
+    /// set written there completes this one.
     pub fn commit(mut self) -> io::Result<()> {
         self.begin()?;
         for path in &self.paths {
@@ -162,7 +162,7 @@ impl Set {
         let (staged, unfinished) = (self.folder.join(NEW), self.folder.join(UNFINISHED));
         sync_folder(&staged)?;
         rename(&staged, &unfinished)?;
-        // From here on a run that is ended is finished by the next one.
+        // From here on an interrupted run is completed by the next one.
         let mut done = Done::default();
         let placed = sync_folder(&self.folder).and_then(|()| place(&self.folder, &journal, &mut done));
         if let Err(error) = placed {
@@ -170,11 +170,11 @@ impl Set {
                 Ok(()) => error,
                 Err(_) => io::Error::new(
                     error.kind(),
-                    format!("{error}; the folder is left unfinished, which the next run that writes there mends"),
+                    format!("{error}; the folder is incomplete, and the next run that writes there completes it"),
                 ),
             });
         }
-        // The new set is whole. What is left of the old one lies where the next run clears it, if this one cannot.
+        // The new set is complete. The rest of the old one is in a folder that the next run removes if this one cannot.
         if rename(&unfinished, &staged).is_ok() {
             let _ = clear(&staged);
         }
@@ -190,12 +190,12 @@ impl Drop for Set {
         if self.begun {
             let _ = clear(&self.folder.join(NEW));
         }
-        // Only empty folders go; what someone else put there meanwhile stays.
+        // Only empty folders are removed; files of others are kept.
         self.made.iter().rev().for_each(|folder| drop(remove_folder(folder)));
     }
 }
 
-/// Paths of the set before, as its manifest lists them, that are there and are plain files of this folder.
+/// Paths of the previous set, from its manifest, that are plain files inside this folder.
 fn before(folder: &Path, manifest: &str) -> io::Result<Vec<String>> {
     if kind(&folder.join(manifest))?.is_none() {
         return Ok(Vec::new());
@@ -203,7 +203,7 @@ fn before(folder: &Path, manifest: &str) -> io::Result<Vec<String>> {
     let bytes = read(&folder.join(manifest), LARGEST_LIST)?;
     let mut found = Vec::new();
     for path in String::from_utf8_lossy(&bytes).lines().filter_map(|line| Some(line.split_once("  ")?.1)) {
-        // The list lies where anybody may write: what it names must lie in this folder, not behind a link.
+        // The manifest may have been edited: its paths must be inside this folder and not behind a link.
         if plain(path) && !path.starts_with(OWN) && !behind_link(folder, path)? && is_file(&folder.join(path))? {
             found.push(path.to_string());
         }
@@ -222,7 +222,7 @@ fn behind_link(folder: &Path, path: &str) -> io::Result<bool> {
     Ok(false)
 }
 
-/// What was moved, so that it can be moved back.
+/// Files that were moved, so that the moves can be undone.
 #[derive(Debug, Default)]
 struct Done {
     /// From, to.
@@ -237,19 +237,19 @@ impl Done {
         Ok(())
     }
 
-    /// The set before, in its places again.
+    /// Restores the previous set.
     fn undo(self, folder: &Path) -> io::Result<()> {
         for (from, to) in self.moved.iter().rev() {
             rename(to, from)?;
         }
         self.made.iter().rev().for_each(|folder| drop(remove_folder(folder)));
-        // Where this fails, the names are right all the same, and the next run can only find one set or the other.
+        // If this fails, the names are still correct, and the next run finds one complete set.
         let _ = sync_folder(folder);
         rename(&folder.join(UNFINISHED), &folder.join(NEW))
     }
 }
 
-/// Old files out, then new ones in.
+/// Removes old files, then installs new ones.
 fn place(folder: &Path, journal: &Journal, done: &mut Done) -> io::Result<()> {
     let unfinished = folder.join(UNFINISHED);
     for (number, path) in journal.removes.iter().chain(&journal.installs).enumerate() {
@@ -270,11 +270,11 @@ fn place(folder: &Path, journal: &Journal, done: &mut Done) -> io::Result<()> {
     folders.iter().try_for_each(|folder| sync_folder(folder))
 }
 
-/// Finishes a set after its commit point: what is not in its place yet goes there.
+/// Completes a set after its commit point.
 fn finish(folder: &Path) -> io::Result<()> {
     let unfinished = folder.join(UNFINISHED);
     let unreadable = |error: io::Error| {
-        let says = format!("an unfinished set of files lies there, in `{UNFINISHED}`, and {error}; look at it and remove it");
+        let says = format!("the folder contains an incomplete set of files in `{UNFINISHED}`, and {error}; inspect and remove it");
         io::Error::new(ErrorKind::InvalidData, says)
     };
     let bytes = read(&unfinished.join(JOURNAL), LARGEST_LIST).map_err(unreadable)?;
@@ -299,7 +299,7 @@ fn finish(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Removes a folder of this module with the files in it, if it is there.
+/// Removes a folder of this module with its files, if it exists.
 fn clear(folder: &Path) -> io::Result<()> {
     if is_link(folder)? {
         return remove_file(folder);
@@ -311,7 +311,7 @@ fn clear(folder: &Path) -> io::Result<()> {
     remove_folder(folder)
 }
 
-/// Removes folders of files that were taken away, as far as nothing is left in them.
+/// Removes the folders of removed files if they are empty.
 fn remove_empty(folder: &Path, removed: &[String]) {
     for path in removed {
         for above in Path::new(path).ancestors().skip(1).take_while(|above| !above.as_os_str().is_empty()) {

@@ -1,4 +1,4 @@
-//! One file, whole or not at all.
+//! Writes one file completely or not at all.
 
 use std::fs;
 use std::io::{self, Write};
@@ -7,17 +7,17 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::{Op, Writer, create, names, pass, remove_file, rename, sync_folder};
 
-/// How files begin that are on their way to their place.
+/// Prefix of temporary files.
 const BEGINS: &str = ".fishplate-";
-/// How they end.
+/// Suffix of temporary files.
 const ENDS: &str = ".tmp";
-/// Names that are tried before it is given up: each is taken only where a run with the same number left one.
+/// Number of temporary names tried; a name is taken only if a run with the same process number left one.
 const MOST_NAMES: usize = 100;
 
-/// Writes a file under another name in the same folder, which must exist, and renames it. On return it is on the disk.
+/// Writes a file under a temporary name in the same folder, which must exist, and renames it. On return it is on the disk.
 ///
 /// # Errors
-/// What the system says; the file is then as it was before.
+/// The system's error; the file is then unchanged.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = folder_of(path);
     sweep(folder);
@@ -25,7 +25,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     sync_folder(folder)
 }
 
-/// As [`write_whole`], for what may be lost when the power goes: a cache.
+/// As [`write_whole`], for files that may be lost in a power failure, such as a cache.
 ///
 /// # Errors
 /// As [`write_whole`].
@@ -33,10 +33,10 @@ pub fn keep(path: &Path, bytes: &[u8]) -> io::Result<()> {
     put(path, folder_of(path), bytes, false)
 }
 
-/// Writes a file that must not exist; a secret one only its owner can read. On return it is on the disk.
+/// Writes a file that must not exist; only the owner can read a secret one. On return it is on the disk.
 ///
 /// # Errors
-/// What the system says; there is then no file.
+/// The system's error; there is then no file.
 pub fn create_new(path: &Path, bytes: &[u8], secret: bool) -> io::Result<()> {
     pass(Op::Create, path)?;
     let mut options = fs::OpenOptions::new();
@@ -55,7 +55,7 @@ pub fn create_new(path: &Path, bytes: &[u8], secret: bool) -> io::Result<()> {
 /// Removes a file.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn remove(path: &Path) -> io::Result<()> {
     remove_file(path)
 }
@@ -74,7 +74,7 @@ fn put(path: &Path, folder: &Path, bytes: &[u8], sync: bool) -> io::Result<()> {
     placed
 }
 
-/// A new file that no other run takes for left behind.
+/// Creates a temporary file and locks it, so that no other run removes it.
 fn begin(folder: &Path) -> io::Result<(Writer, PathBuf)> {
     static NEXT: AtomicUsize = AtomicUsize::new(0);
     for _ in 0..MOST_NAMES {
@@ -82,7 +82,7 @@ fn begin(folder: &Path) -> io::Result<(Writer, PathBuf)> {
         let path = folder.join(name);
         match create(&path) {
             Ok(file) if held(&file) => return Ok((file, path)),
-            // Swept away before it was held.
+            // Another run removed it before it was locked.
             Ok(_) => {}
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
@@ -91,12 +91,12 @@ fn begin(folder: &Path) -> io::Result<(Writer, PathBuf)> {
     Err(io::ErrorKind::AlreadyExists.into())
 }
 
-/// Holds a file that was just made, so that it is not swept away; whether it still has a name.
+/// Locks a new file, so that it is not removed; returns whether it still has a name.
 fn held(file: &Writer) -> bool {
     match file.file.try_lock() {
         Ok(()) => linked(file),
         Err(std::fs::TryLockError::WouldBlock) => false,
-        // A file system without locks.
+        // The file system does not support locks.
         Err(std::fs::TryLockError::Error(_)) => true,
     }
 }
@@ -112,12 +112,12 @@ fn linked(_: &Writer) -> bool {
     true
 }
 
-/// Removes what runs that were ended left behind. Nothing depends on it.
+/// Removes temporary files of interrupted runs. Failure has no consequence.
 fn sweep(folder: &Path) {
     for name in names(folder).unwrap_or_default() {
         let Some(name) = name.to_str().filter(|name| name.starts_with(BEGINS) && name.ends_with(ENDS)) else { continue };
         let path = folder.join(name);
-        // Who writes it holds it.
+        // The writer of a file has it locked.
         if super::is_file(&path).unwrap_or(false)
             && let Ok(file) = std::fs::File::options().write(true).open(&path)
             && file.try_lock().is_ok()

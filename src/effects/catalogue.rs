@@ -1,4 +1,4 @@
-//! A catalogue of effects: what a simulation may lack, and how each is added.
+//! A catalogue of effects that a simulation may lack, and how each is added.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::source::{Source, Span};
 use crate::units::Unit;
 use crate::yaml::Node;
 
-/// Effects as a text file declares them.
+/// A catalogue as declared in a text file.
 #[derive(Clone, Debug)]
 pub struct Catalogue {
     pub name: String,
@@ -16,14 +16,14 @@ pub struct Catalogue {
     pub source: Arc<Source>,
     /// Named groups of channels.
     pub groups: Vec<Group>,
-    /// Units of channels that expressions use.
+    /// Units of the channels in expressions.
     pub units: Vec<(String, Unit)>,
     pub effects: Vec<Effect>,
-    /// What the diagnosis needs to know: features, tolerances, discrepancies. Read by the diagnosis.
+    /// The part for the diagnosis: features, tolerances, discrepancies. Interpreted by the diagnosis.
     pub diagnosis: Option<Node>,
 }
 
-/// Channels that belong together.
+/// Channels of the same kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
     pub name: String,
@@ -58,43 +58,43 @@ impl Acts {
 pub struct Effect {
     pub name: String,
     pub title: String,
-    /// The physics in a line.
+    /// Physical meaning, one line.
     pub means: String,
     pub acts: Acts,
     pub parameters: Vec<Parameter>,
     pub action: Action,
-    /// Parameters that are fitted together, each set a candidate of its own.
+    /// Sets of parameters that are fitted together; each set is a candidate.
     pub fits: Vec<Fit>,
     /// Whether the diagnosis may name it.
     pub candidate: bool,
     /// Whether it may be confined to some of the sections.
     pub confinable: bool,
-    /// What measurement would tell it from others.
+    /// The measurement that discriminates it from other effects.
     pub settled_by: Option<String>,
-    /// The declared tolerance that it is the blown form of.
+    /// The declared tolerance of the same parameter.
     pub tolerance: Option<String>,
     pub span: Span,
 }
 
-/// A number of an effect.
+/// A numeric parameter of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// As in model and reports; `<channel>` stands for the channel it acts on.
+    /// Name in model and reports; `<channel>` is replaced by the channel.
     pub name: String,
     pub unit: Unit,
-    /// What it is where the effect does not act; `None`: what the vehicle file says.
+    /// Its value without the effect; `None`: the value of the vehicle file.
     pub neutral: Option<f64>,
-    /// What it is where an effect is asked for without saying how large.
+    /// Its value if the effect is given without a size.
     pub default: f64,
-    /// Plausible values, in the unit.
+    /// Plausible range, in the unit.
     pub low: f64,
     pub high: f64,
     pub meaning: String,
-    /// Whether there is no effect towards the upper end, however large the parameter.
+    /// Whether the effect vanishes towards the upper end of the range.
     pub vanishes_high: bool,
-    /// The parameter of the model that it sets, and the factor to its unit.
+    /// The parameter of the model, and the factor to its unit.
     pub model: Option<(String, f64)>,
-    /// The parameters of other simulators that it sets: simulator, parameter, factor.
+    /// The parameters of other simulators: simulator, parameter, factor.
     pub simulators: Vec<(String, String, f64)>,
 }
 
@@ -103,18 +103,18 @@ pub struct Parameter {
 pub enum Action {
     /// By parameters of the simulator.
     Simulator,
-    /// By an operation on the signals; channels it may act on.
+    /// By an operation on the signals, with the channels on which it may act.
     Signals(Operator, Vec<String>),
-    /// Channels computed anew from channels of the same record.
+    /// By formulas of channels of the same record.
     Formulas(Vec<Formula>),
 }
 
-/// A set of parameters that a fit varies, with the values that are tried.
+/// Parameters that are fitted together, with the values tried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// Parameter by its number, values in its unit, in increasing order.
+    /// Index of the parameter, and its values in increasing order.
     pub axes: Vec<(usize, Vec<f64>)>,
-    /// What operators act on together: one candidate for each list.
+    /// Lists of channels on which an operator acts together; one candidate per list.
     pub channels: Vec<Vec<String>>,
 }
 
@@ -140,7 +140,7 @@ impl Catalogue {
 }
 
 impl Effect {
-    /// The names that its parameters can have, with `<channel>` where one is chosen.
+    /// The names of its parameters, with `<channel>` where a channel is chosen.
     pub fn parameter_names(&self) -> impl Iterator<Item = &str> {
         self.parameters.iter().map(|parameter| parameter.name.as_str())
     }

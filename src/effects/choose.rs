@@ -8,18 +8,18 @@ use crate::problem::Problem;
 use crate::source::{Source, Span};
 use crate::units::Unit;
 
-/// An effect with its size, and where it acts.
+/// An effect with its size and sections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Applied {
     pub effect: String,
-    /// Values of its parameters in their units; parameters that are not there are neutral.
+    /// Values of its parameters in their units; all others are neutral.
     pub values: Vec<(String, f64)>,
-    /// What an operator acts on.
+    /// The channels of an operator.
     pub channels: Vec<String>,
     pub confined: Option<Confined>,
 }
 
-/// The sections that an effect is confined to: those with one of the values in a column of the section table.
+/// The sections to which an effect is confined: those with one of the values in a column of the section table.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Confined {
     /// `zone`, `direction` or `section`.
@@ -28,7 +28,7 @@ pub struct Confined {
 }
 
 impl Confined {
-    /// Whether a section with this value in the column is among them.
+    /// Whether sections with this value in the column are included.
     #[must_use]
     pub fn has(&self, value: &str) -> bool {
         self.values.iter().any(|one| one == value)
@@ -36,14 +36,14 @@ impl Confined {
 }
 
 impl Applied {
-    /// The value of a parameter that is not neutral.
+    /// The value of a parameter, if it is not neutral.
     #[must_use]
     pub fn value(&self, parameter: &str) -> Option<f64> {
         self.values.iter().find(|(name, _)| name == parameter).map(|(_, value)| *value)
     }
 }
 
-/// Words that are numbers in the model.
+/// Words for values of model parameters.
 const WORDS: [(&str, f64); 3] = [("both", 0.0), ("R", 1.0), ("L", -1.0)];
 const COLUMNS: [(&str, &str); 6] = [
     ("zone", "zone"),
@@ -54,10 +54,10 @@ const COLUMNS: [(&str, &str); 6] = [
     ("sections", "section"),
 ];
 
-/// Reads effects as written; parameters of one effect may come one after the other.
+/// Reads effects as written; several parameters of one effect may be given one after the other.
 ///
 /// # Errors
-/// Every text that is none: `unknown-effect`, `unknown-parameter` and `unknown-channel` with the nearest name, `range` with the range,
+/// All invalid texts: `unknown-effect`, `unknown-parameter` and `unknown-channel` with the nearest name, `range` with the range,
 /// `unknown-unit`, `unit-mismatch`, `wrong-kind`.
 pub fn choose(catalogue: &Catalogue, texts: &[String]) -> Result<Vec<Applied>, Vec<Problem>> {
     let mut chosen: Vec<Applied> = Vec::new();
@@ -132,7 +132,7 @@ fn one(catalogue: &Catalogue, text: &str, source: &std::sync::Arc<Source>) -> Re
         })?;
         if channels.is_empty() {
             if parameter.name.contains(CHANNEL) {
-                let says = format!("`{}` acts on one channel or a group: say which", effect.name);
+                let says = format!("`{}` acts on one channel or a group, which must be given", effect.name);
                 return Err(Box::new(
                     Problem::error("channel-missing", says).at(&place(rest)).help(format!("write `{rest} on {}`", allowed[0])),
                 ));
@@ -146,10 +146,10 @@ fn one(catalogue: &Catalogue, text: &str, source: &std::sync::Arc<Source>) -> Re
     Ok(Applied { effect: name.to_string(), values: vec![(parameter.name.clone(), value)], channels, confined })
 }
 
-/// Channels as an operator on pairs takes them: a swap needs two, of a crosstalk either one names the pair.
+/// Channels as pairs, for an operator on pairs: a swap needs two channels; for a crosstalk either channel identifies the pair.
 fn in_pairs(operator: Operator, named: Vec<String>, allowed: &[String]) -> Result<Vec<String>, &'static str> {
     match operator {
-        Operator::Swap if named.len() != 2 || named[0] == named[1] => Err("exchanges two channels: say which"),
+        Operator::Swap if named.len() != 2 || named[0] == named[1] => Err("exchanges two channels, which must be given"),
         Operator::Crosstalk => {
             let chosen = allowed.chunks_exact(2).filter(|pair| pair.iter().any(|channel| named.contains(channel)));
             Ok(chosen.flatten().cloned().collect())
@@ -158,14 +158,14 @@ fn in_pairs(operator: Operator, named: Vec<String>, allowed: &[String]) -> Resul
     }
 }
 
-/// The parameter a text names, wholly or by its last words, and the channel that stands in its name.
+/// The parameter given by its full name or its last words, and the channel in its name.
 fn parameter_named<'a>(
     effect: &'a Effect,
     named: Option<&str>,
     place: &dyn Fn(&str) -> Span,
 ) -> Result<(&'a Parameter, Option<String>), Box<Problem>> {
     let Some(named) = named else {
-        // The first parameter is the one that the effect is about.
+        // The first parameter is the main one.
         return Ok((&effect.parameters[0], None));
     };
     for parameter in &effect.parameters {
@@ -194,7 +194,7 @@ fn number(parameter: &Parameter, written: &str, place: &dyn Fn(&str) -> Span) ->
     let end = written.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(written.len());
     let (digits, unit) = written.split_at(end);
     let wrong = |says: String| Box::new(Problem::error("wrong-kind", says).at(&place(written)));
-    let value: f64 = digits.trim().parse().map_err(|_| wrong(format!("`{written}` is no number")))?;
+    let value: f64 = digits.trim().parse().map_err(|_| wrong(format!("`{written}` is not a number")))?;
     if !value.is_finite() {
         return Err(wrong(format!("`{written}` is too large")));
     }

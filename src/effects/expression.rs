@@ -1,4 +1,4 @@
-//! Effects as expressions of the protocol language: a channel is computed anew, sample by sample, from channels of the same record.
+//! Effects as expressions of the protocol language: a channel is computed sample by sample from channels of the same record.
 
 use super::operators::Signals;
 use crate::catalog::{FUNCTIONS, Function, Signature};
@@ -9,21 +9,21 @@ use crate::syntax::from_pest::expression;
 use crate::syntax::phrase::{Node, Operator, Phrase};
 use crate::units::{Dimension, Unit};
 
-/// What a channel becomes.
+/// The expression for a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
-    /// The channel that is computed anew.
+    /// The channel that is replaced.
     pub channel: String,
     unit: Unit,
     tree: Tree,
 }
 
-/// An expression whose units agree; values in SI.
+/// An expression with consistent units; values in SI.
 #[derive(Clone, Debug)]
 enum Tree {
     Number(f64),
     Channel(String, Unit),
-    /// By its number among the effect's parameters.
+    /// Index of the effect's parameter.
     Parameter(usize, Unit),
     Binary(Operator, Box<[Tree; 2]>),
     Negative(Box<Tree>),
@@ -46,7 +46,7 @@ impl PartialEq for Tree {
     }
 }
 
-/// What names in an expression stand for.
+/// Meaning of the names in an expression.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     /// Channels with their units.
@@ -56,27 +56,27 @@ pub(super) struct Known<'a> {
 }
 
 impl Formula {
-    /// Reads and checks `text`, which says what `channel` becomes.
+    /// Reads and checks `text`, the expression for `channel`.
     ///
-    /// Problems: those of the grammar; `unknown-name` with the nearest, `unit-mismatch`, `not-here`, `power`.
+    /// Problems: those of the grammar; `unknown-name` with the nearest name, `unit-mismatch`, `not-here`, `power`.
     pub(super) fn read(channel: (&str, &Unit), text: &Text, known: Known<'_>, problems: &mut Problems) -> Option<Self> {
         let phrase = expression(text, problems)?;
         let mut checker = Checker { text, known, problems };
         let (tree, dimension) = checker.tree(&phrase)?;
         let (name, unit) = channel;
         if dimension != unit.dimension {
-            let says = format!("`{name}` is {}, and what it becomes is {}", unit.dimension.in_words(), dimension.in_words());
+            let says = format!("`{name}` is {}, but its expression is {}", unit.dimension.in_words(), dimension.in_words());
             problems.push(Problem::error("unit-mismatch", says).at(&text.span));
             return None;
         }
         Some(Self { channel: name.to_string(), unit: unit.clone(), tree })
     }
 
-    /// The channel's new values in its unit; `None` if the record lacks a channel of the expression. `parameters` are in their units, in
-    /// the order of the effect.
+    /// The new values of the channel in its unit; `None` if the record lacks a channel of the expression. `parameters` are in their
+    /// units, in the order of the effect.
     ///
     /// # Errors
-    /// A value is not finite, with its position.
+    /// A value is not finite; the message gives its position.
     pub(super) fn values(&self, signals: &Signals, parameters: &[f64]) -> Option<Result<Vec<f64>, String>> {
         signals.channel(&self.channel)?;
         let values = self.tree.values(signals, parameters)?;
@@ -91,7 +91,7 @@ impl Formula {
     }
 }
 
-/// One value for all samples, or one each.
+/// One value for all samples, or one per sample.
 enum Values {
     One(f64),
     All(Vec<f64>),
@@ -153,7 +153,7 @@ impl Checker<'_> {
         None
     }
 
-    /// The grammar bounds how deep an expression may lie.
+    /// The grammar limits the depth of an expression.
     fn tree(&mut self, phrase: &Phrase) -> Option<(Tree, Dimension)> {
         let span = self.text.place(phrase.range.clone());
         match &phrase.node {
@@ -178,14 +178,12 @@ impl Checker<'_> {
                     Operator::Add | Operator::Subtract => {
                         return self.refuse("unit-mismatch", format!("{} and {} cannot be added", a.in_words(), b.in_words()), &span);
                     }
-                    _ => return self.refuse("not-here", "a condition is no signal".to_string(), &span),
+                    _ => return self.refuse("not-here", "a condition is not a signal".to_string(), &span),
                 };
                 Some((Tree::Binary(*operator, Box::new([left, right])), dimension))
             }
             Node::Call(name, arguments) => self.call(&name.node, &arguments.iter().collect::<Vec<_>>(), &span),
-            _ => {
-                self.refuse("not-here", "an effect is computed sample by sample: numbers, channels, parameters and functions".into(), &span)
-            }
+            _ => self.refuse("not-here", "an effect may contain only numbers, channels, parameters and functions of samples".into(), &span),
         }
     }
 
@@ -211,7 +209,7 @@ impl Checker<'_> {
         };
         let needed = if function.signature == Signature::PairSame { 2 } else { 1 };
         if arguments.len() != needed {
-            return self.refuse("wrong-kind", format!("`{name}` takes {needed} and gets {}", arguments.len()), span);
+            return self.refuse("wrong-kind", format!("`{name}` takes {needed}, but {} are given", arguments.len()), span);
         }
         let found: Vec<(Tree, Dimension)> = arguments.iter().map(|argument| self.tree(argument.borrow())).collect::<Option<_>>()?;
         let first = found[0].1;

@@ -1,4 +1,4 @@
-//! Reads what a catalogue says in the protocol language: `signals` of an effect, and the units of channels.
+//! Reads the parts of a catalogue in the protocol language: `signals` of an effect, and the units of channels.
 
 use super::catalogue::{Action, Parameter};
 use super::expression::{Formula, Known};
@@ -9,10 +9,10 @@ use crate::units::Unit;
 use crate::yaml::{Node, Value};
 
 impl Reader<'_> {
-    /// `units`: groups or channels, each with its unit.
+    /// `units`: groups or channels with their units.
     pub fn units(&mut self, node: &Node, units: &mut Vec<(String, Unit)>) {
         if !matches!(node.value, Value::Map(_)) {
-            self.fault("wrong-kind", format!("`units` is a map of channels and units; this is {}", node.kind_in_words()), Some(node));
+            self.fault("wrong-kind", format!("`units` must be a map of channels and units, not {}", node.kind_in_words()), Some(node));
         }
         for (key, written) in node.entries() {
             let Some(unit) = self.unit(written.scalar_text().unwrap_or_default(), written) else { continue };
@@ -24,16 +24,16 @@ impl Reader<'_> {
         }
     }
 
-    /// `signals`: channels, each with the expression of what it becomes.
+    /// `signals`: channels with their expressions.
     pub fn formulas(&mut self, effect: &Node, signals: &Node, parameters: &[Parameter]) -> Option<Action> {
         for key in ["operator", "channels", "each", "together"] {
             if let Some((key, _)) = effect.entry(key) {
-                let says = format!("`{}` has no place beside `signals`, which says what happens to which channel", key.text);
+                let says = format!("`{}` cannot be combined with `signals`, which defines the channels itself", key.text);
                 self.problems.push(Problem::error("contradiction", says).at(&key.span));
             }
         }
         if signals.entries().is_empty() {
-            let says = format!("`signals` is a map of channels and expressions; this is {}", signals.kind_in_words());
+            let says = format!("`signals` must be a map of channels and expressions, not {}", signals.kind_in_words());
             self.fault("wrong-kind", says, Some(signals));
             return None;
         }
@@ -53,7 +53,7 @@ impl Reader<'_> {
                 continue;
             };
             let Some(text) = written.scalar_text() else {
-                self.fault("wrong-kind", format!("an expression is text; this is {}", written.kind_in_words()), Some(written));
+                self.fault("wrong-kind", format!("an expression must be text, not {}", written.kind_in_words()), Some(written));
                 continue;
             };
             let text = Text { text: text.to_string(), span: written.span.clone(), exact: written.exact };

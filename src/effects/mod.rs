@@ -1,4 +1,4 @@
-//! Effects: what a simulation may lack, declared in a text, and how each is added.
+//! Effects that a simulation may lack, declared in a text file, and how each is added.
 
 #![allow(clippy::cast_precision_loss)]
 

@@ -3,7 +3,7 @@
 use super::expression::Formula;
 use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
 
-/// A record as it goes through the chain. Values are in the unit of their channel.
+/// The signals of a record. Values are in the unit of their channel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Signals {
     /// Position on the axis, in m for a record over distance.
@@ -21,24 +21,24 @@ pub struct Channel {
     pub values: Vec<f64>,
 }
 
-/// What is done to channels.
+/// An operation on channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Operator {
-    /// A share of the partner channel is added. First in the chain.
+    /// Adds a share of the partner channel. First in the chain.
     Crosstalk,
-    /// Causal low-pass of second order, in the steady state of the first sample.
+    /// Causal second-order low-pass, initialised in the steady state of the first sample.
     LowPass,
     Gain,
     Polarity,
     Offset,
-    /// Grows with time since the start of the record.
+    /// Increases linearly with time from the start of the record.
     Drift,
     Noise,
-    /// Nothing beyond a bound.
+    /// Limits the values to a bound.
     Clip,
-    /// Pairs of channels exchanged.
+    /// Exchanges pairs of channels.
     Swap,
-    /// The recorded position is the true one plus a shift. Last in the chain.
+    /// Shifts the recorded position against the true one. Last in the chain.
     Shift,
 }
 
@@ -73,7 +73,7 @@ impl Operator {
     }
 }
 
-/// Order of the low-pass of the chain.
+/// Order of the low-pass.
 const LOW_PASS_ORDER: usize = 2;
 
 impl Signals {
@@ -82,10 +82,10 @@ impl Signals {
         self.channels.iter().find(|channel| channel.name == name)
     }
 
-    /// Computes channels anew, all from the record as it was; formulas whose channels the record has not are passed over.
+    /// Replaces channels by formulas of the original channels; formulas with a channel that the record does not have are skipped.
     ///
     /// # Errors
-    /// A value is not finite, in words.
+    /// A value is not finite; a message.
     pub fn compute(&mut self, formulas: &[Formula], parameters: &[f64]) -> Result<(), String> {
         let mut made = Vec::new();
         for formula in formulas {
@@ -105,13 +105,13 @@ impl Signals {
         self.channels.iter().position(|channel| channel.name == name)
     }
 
-    /// Applies an operator with its value to channels; channels that the record has not are passed over.
+    /// Applies an operator with its value to channels; channels that the record does not have are skipped.
     ///
-    /// For [`Operator::Crosstalk`] and [`Operator::Swap`] the channels come in pairs: the one acted on, its partner.
-    /// `seed` makes the noise repeatable; it goes with the section.
+    /// For [`Operator::Crosstalk`] and [`Operator::Swap`] the channels are pairs: the changed channel and its partner.
+    /// `seed` makes the noise reproducible; it depends on the section.
     ///
     /// # Errors
-    /// The low-pass cannot be made at this sampling rate, in words.
+    /// The low-pass is not possible at this sampling rate; a message.
     pub fn apply(&mut self, operator: Operator, value: f64, channels: &[String], seed: u64) -> Result<(), String> {
         match operator {
             Operator::Shift => self.axis.iter_mut().for_each(|x| *x += value),
@@ -168,7 +168,7 @@ fn each(operator: Operator, value: f64, values: &mut [f64], rate: f64, seed: u64
     }
 }
 
-/// Random numbers, the same for the same seed on every machine.
+/// Random numbers, reproducible from a seed on every machine.
 #[derive(Clone, Debug)]
 pub struct Gauss(fastrand::Rng);
 
@@ -178,12 +178,12 @@ impl Gauss {
         Self(fastrand::Rng::with_seed(seed))
     }
 
-    /// Uniform in 0 to 1, both excluded.
+    /// Uniform between 0 and 1, both excluded.
     pub fn uniform(&mut self) -> f64 {
         self.0.f64().max(f64::MIN_POSITIVE)
     }
 
-    /// A whole number below `bound`.
+    /// A uniform integer below `bound`.
     pub fn below(&mut self, bound: usize) -> usize {
         self.0.usize(..bound)
     }
@@ -229,7 +229,7 @@ mod tests {
         assert_eq!(after(Operator::Crosstalk, 0.1, &["a", "b"]), [vec![1.4, 1.5, 3.6], untouched]);
     }
 
-    /// Mean and variance of a hundred thousand numbers, within four standard errors.
+    /// Mean and variance of a hundred thousand numbers are within four standard errors.
     #[test]
     fn noise_is_normal() {
         let mut gauss = Gauss::new(7);

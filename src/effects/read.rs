@@ -1,4 +1,4 @@
-//! Reads a catalogue of effects: a YAML text, every fault with its place.
+//! Reads a catalogue of effects from YAML, and reports every fault with its place.
 
 use std::sync::Arc;
 
@@ -27,15 +27,15 @@ const EFFECT: [&str; 14] = [
     "tolerance",
 ];
 const PARAMETER: [&str; 9] = ["unit", "neutral", "default", "range", "trials", "means", "model", "simulators", "vanishes"];
-/// What stands for a channel in the name of a parameter.
+/// Placeholder for a channel in the name of a parameter.
 pub const CHANNEL: &str = "<channel>";
 
-/// Finds the text of the catalogue that another extends.
+/// Finds the text of an extended catalogue.
 pub type Find<'a> = &'a dyn Fn(&str, &Source) -> Result<Arc<Source>, Box<Problem>>;
 
-/// Reads a catalogue; what it extends is read first, and effects of the same name replace those.
+/// Reads a catalogue. An extended catalogue is read first; effects of the same name replace its effects.
 ///
-/// `known` says whether the built-in model has a parameter, and suggests names.
+/// `known` lists the parameters of the built-in model.
 ///
 /// Problems: `yaml`, `unknown-key`, `key-missing`, `wrong-kind`, `unknown-unit`, `unit-mismatch`, `range`, `unknown-operator`,
 /// `unknown-channel`, `unknown-parameter`, `extends-loop`; those of expressions: `unit-missing`, `unknown-name`, `not-here`,
@@ -136,7 +136,7 @@ impl Reader<'_> {
 
     fn keys(&mut self, node: &Node, known: &[&str], what: &str) {
         if !matches!(node.value, Value::Map(_)) {
-            return self.fault("wrong-kind", format!("{what} is a map of keys and values; this is {}", node.kind_in_words()), Some(node));
+            return self.fault("wrong-kind", format!("{what} must be a map of keys and values, not {}", node.kind_in_words()), Some(node));
         }
         for (key, _) in node.entries() {
             if !known.contains(&key.text.as_str()) {
@@ -151,7 +151,7 @@ impl Reader<'_> {
         if let Some(text) = found.scalar_text() {
             return Some(text.trim().to_string());
         }
-        self.fault("wrong-kind", format!("`{key}` is text; this is {}", found.kind_in_words()), Some(found));
+        self.fault("wrong-kind", format!("`{key}` must be text, not {}", found.kind_in_words()), Some(found));
         None
     }
 
@@ -167,7 +167,7 @@ impl Reader<'_> {
             None => default,
             Some(Value::Bool(flag)) => *flag,
             Some(_) => {
-                self.fault("wrong-kind", format!("`{key}` is true or false"), node.get(key));
+                self.fault("wrong-kind", format!("`{key}` must be true or false"), node.get(key));
                 default
             }
         }
@@ -180,7 +180,7 @@ impl Reader<'_> {
         }
         let texts: Vec<String> = node.items().iter().filter_map(|item| Some(item.scalar_text()?.to_string())).collect();
         if !matches!(node.value, Value::List(_)) || texts.len() != node.items().len() {
-            self.fault("wrong-kind", "a list of names is needed here", Some(node));
+            self.fault("wrong-kind", "expected a list of names", Some(node));
         }
         texts
     }
@@ -188,7 +188,7 @@ impl Reader<'_> {
     fn number(&mut self, node: &Node, key: &str) -> Option<f64> {
         let found = node.get(key)?;
         if found.number().is_none() {
-            self.fault("wrong-kind", format!("`{key}` is a number; this is {}", found.kind_in_words()), Some(found));
+            self.fault("wrong-kind", format!("`{key}` must be a number, not {}", found.kind_in_words()), Some(found));
         }
         found.number()
     }
@@ -197,7 +197,7 @@ impl Reader<'_> {
         let found = node.get(key)?;
         let numbers: Option<Vec<f64>> = found.items().iter().map(Node::number).collect();
         if numbers.is_none() || !matches!(found.value, Value::List(_)) {
-            self.fault("wrong-kind", format!("`{key}` is a list of numbers"), Some(found));
+            self.fault("wrong-kind", format!("`{key}` must be a list of numbers"), Some(found));
         }
         numbers
     }
@@ -213,7 +213,8 @@ impl Reader<'_> {
             } else {
                 let names: Vec<String> =
                     self.groups.iter().flat_map(|group| [vec![group.name.clone()], group.channels.clone()].concat()).collect();
-                let problem = Problem::error("unknown-channel", format!("`{name}` is no group and no channel of one")).at(&node.span);
+                let problem =
+                    Problem::error("unknown-channel", format!("`{name}` is neither a group nor a channel of a group")).at(&node.span);
                 self.problems.push(problem.suggest(&name, names.iter().map(String::as_str)));
             }
         }
@@ -238,7 +239,7 @@ impl Reader<'_> {
             }
         }
         if parameters.is_empty() {
-            // Where all are faulty, that is said already.
+            // If all parameters are faulty, this is reported already.
             if node.get("parameters").is_some_and(|node| !node.entries().is_empty()) {
                 return None;
             }
@@ -281,8 +282,8 @@ impl Reader<'_> {
         Some(Action::Signals(operator, channels))
     }
 
-    /// What the diagnosis tries: `fit` says which parameters go together, else each that has trials is one; `each` and `together` say
-    /// on which channels operators act.
+    /// Candidates of the diagnosis. `fit` lists the parameters that are varied together; otherwise each parameter with trials is varied by
+    /// itself. `each` and `together` list the channels on which operators act.
     fn fits(&mut self, node: &Node, parameters: &[Parameter], trials: &[Vec<f64>], action: &Action) -> Vec<Fit> {
         let mut lists = Vec::new();
         if let Some(each) = node.get("each") {
@@ -304,7 +305,7 @@ impl Reader<'_> {
                     let found: Vec<usize> =
                         names.iter().filter_map(|name| parameters.iter().position(|known| known.name == *name)).collect();
                     if found.len() < names.len() || found.iter().any(|at| trials[*at].is_empty()) {
-                        self.fault("unknown-parameter", "`fit` names parameters of this effect that have `trials`", Some(item));
+                        self.fault("unknown-parameter", "`fit` must list parameters of this effect that have `trials`", Some(item));
                     } else {
                         sets.push(found);
                     }
@@ -321,11 +322,15 @@ impl Reader<'_> {
         let unit = self.unit(&unit, node.get("unit")?)?;
         let range = self.numbers(node, "range").unwrap_or_default();
         let [low, high] = range[..] else {
-            self.fault("range", format!("`range` of `{name}` is a list of two numbers, the least and the most plausible"), Some(node));
+            self.fault(
+                "range",
+                format!("`range` of `{name}` must be two numbers, the smallest and the largest plausible value"),
+                Some(node),
+            );
             return None;
         };
         if low > high {
-            self.fault("range", format!("the range of `{name}` ends before it begins: {low} to {high}"), node.get("range"));
+            self.fault("range", format!("the range of `{name}` is empty: {low} to {high}"), node.get("range"));
             return None;
         }
         let mut trials = self.numbers(node, "trials").unwrap_or_default();

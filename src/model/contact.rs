@@ -4,11 +4,11 @@
 //! Z. Y. Shen, J. K. Hedrick, J. A. Elkins: A comparison of alternative creep force models for rail vehicle dynamic analysis,
 //! Vehicle System Dynamics 12 (1983) 79-83.
 //!
-//! Or, where the vehicle asks for it, saturated by one of two other laws: O. Polach, Creep forces in simulations of traction
-//! vehicles running on adhesion limit, Wear 258 (2005) 992-1000, with his reduction factors of the areas of adhesion and of slip;
-//! or Chartet's, as in J.-P. Pascal and G. Sauvage, Vehicle System Dynamics 22 (1993) 263-282.
+//! Alternatively, as set in the vehicle file: O. Polach, Creep forces in simulations of traction vehicles running on adhesion limit,
+//! Wear 258 (2005) 992-1000, with reduction factors for the areas of adhesion and of slip; or Chartet's law, as in J.-P. Pascal and
+//! G. Sauvage, Vehicle System Dynamics 22 (1993) 263-282.
 //!
-//! The eight wheels are worked side by side, so that the compiler can put several into one instruction.
+//! The eight wheels are computed side by side, for vector instructions.
 
 use super::parameters::Vehicle;
 
@@ -17,16 +17,16 @@ pub const WHEELS: usize = 8;
 /// One number per wheel.
 pub type Wheels = [f64; WHEELS];
 
-/// Passes of the fixed point of the normal force.
+/// Iterations of the fixed point of the normal force.
 const PASSES: usize = 3;
-/// Smallest normal force in N: keeps the ellipse defined on a wheel that is off the rail.
+/// Smallest normal force in N, so that the ellipse is defined for a wheel off the rail.
 const LEAST_NORMAL_FORCE: f64 = 100.0;
 /// Least share of the vertical force in the normal force.
 const LEAST_SHARE: f64 = 0.2;
 /// Least cosine of the contact angle in the lateral creepage.
 const LEAST_COSINE: f64 = 0.3;
 
-/// Upper bits of the guess of an inverse cube root.
+/// Upper bits of the initial value of an inverse cube root.
 const GUESS: u64 = 0x553E_F400;
 
 /// Constants of the contact of one vehicle.
@@ -44,17 +44,17 @@ pub struct Contact {
     law: Law,
 }
 
-/// How creep forces saturate.
+/// Saturation of the creep forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Law {
     ShenHedrickElkins,
-    /// Factors of the areas of adhesion and of slip.
+    /// Reduction factors for the areas of adhesion and of slip.
     Polach(f64, f64),
-    /// The exponent: the larger, the later and the sharper.
+    /// Exponent; a larger value gives a later and sharper saturation.
     Chartet(f64),
 }
 
-/// What a wheel does on its rail; lateral quantities mirrored, positive towards the own flange.
+/// Motion of the wheels on the rails; lateral quantities mirrored, positive towards the own flange.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Motion {
     pub vertical_force: Wheels,
@@ -62,7 +62,7 @@ pub struct Motion {
     pub longitudinal_creepage: Wheels,
     /// Before the division by the cosine of the contact angle.
     pub lateral_slip: Wheels,
-    /// Spin by the yaw rate, in 1/m; that of the contact angle is added here.
+    /// Spin due to the yaw rate, in 1/m; that of the contact angle is added here.
     pub yaw_spin: Wheels,
     /// Displacement towards the flange in m.
     pub towards_flange: Wheels,
@@ -106,7 +106,7 @@ impl Contact {
     /// Creep forces in N before saturation.
     #[inline(always)]
     fn linear(&self, normal: f64, xi: f64, eta: f64, zeta: f64) -> (f64, f64) {
-        // ab grows with N^(2/3), ab^1.5 with N.
+        // ab is proportional to N^(2/3), ab^1.5 to N.
         let load = normal * self.per_reference_load;
         let area = load * inverse_cube_root(load);
         (-self.f11 * area * xi, -self.f22 * area * eta - self.f23 * load * zeta)
@@ -131,7 +131,7 @@ impl Contact {
     #[inline(always)]
     #[must_use]
     pub fn forces(&self, motion: &Motion) -> Forces {
-        // Apart, so that the usual law stays free of branches.
+        // Separate loops, so that the default law has no branches.
         match self.law {
             Law::ShenHedrickElkins => self.forces_by(motion, |n, xi, eta, zeta| self.creep(n, xi, eta, zeta)),
             Law::Polach(adhesion, slip) => self.forces_saturated(motion, |r| polach(r, (adhesion, slip))),
@@ -139,7 +139,7 @@ impl Contact {
         }
     }
 
-    /// By a law that gives the share of the linear force at the linear force per limit of friction.
+    /// With a law that gives the ratio to the linear force as a function of linear force / friction limit.
     #[inline(never)]
     fn forces_saturated(&self, motion: &Motion, share: impl Fn(f64) -> f64) -> Forces {
         self.forces_by(motion, |n, xi, eta, zeta| {
@@ -178,7 +178,7 @@ impl Contact {
     }
 }
 
-/// Force per linear force, at the linear force per limit of friction `r`. The gradient of the stress is eps = pi r / 4, so that
+/// Ratio to the linear force as a function of `r` = linear force / friction limit. The gradient of the stress is eps = pi r / 4, so that
 /// without reduction small creepages give the linear force.
 #[inline(never)]
 fn polach(r: f64, (adhesion, slip): (f64, f64)) -> f64 {
@@ -190,22 +190,22 @@ fn polach(r: f64, (adhesion, slip): (f64, f64)) -> f64 {
     std::f64::consts::FRAC_2_PI * (reduced / (1.0 + reduced * reduced) + (slip * eps).atan()) / r
 }
 
-/// The greater of two numbers, without the care for NaN that costs instructions.
+/// The larger of two numbers, without the additional instructions for NaN.
 #[inline(always)]
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// `x^(-1/3)` of a positive number to the last digits, by an iteration of fourth order without divisions from a guess by the
-/// exponent. Branchless, and the same on every machine.
+/// `x^(-1/3)` of a positive number to full precision, by a division-free fourth-order iteration from an estimate by the exponent. Without
+/// branches, and the same on every machine.
 #[inline(always)]
 fn inverse_cube_root(x: f64) -> f64 {
-    // A third of the upper bits is a third of the exponent; the bias is put right. 3.4 % off at most.
+    // A third of the upper bits is a third of the exponent, with corrected bias; error at most 3.4 %.
     let third = ((x.to_bits() >> 32) * 0x5555_5556) >> 32;
     let mut root = f64::from_bits((GUESS - third) << 32);
     // 0.034^4 * 12 = 2e-5, and again: 1e-18.
     for _ in 0..2 {
-        // In an order in which little has to wait for little.
+        // The order reduces dependencies between instructions.
         let rest = 1.0 - (x * root) * (root * root);
         let series = (1.0 / 3.0 + rest * (2.0 / 9.0)) + (rest * rest) * (14.0 / 81.0);
         root += (root * rest) * series;
@@ -213,10 +213,10 @@ fn inverse_cube_root(x: f64) -> f64 {
     root
 }
 
-/// Sine and cosine for contact angles (magnitude below 1.6 rad), by their series; error below 1e-12.
+/// Sine and cosine for contact angles (magnitude below 1.6 rad) by series; error below 1e-12.
 #[inline(always)]
 fn sin_cos(x: f64) -> (f64, f64) {
-    // Half the angle keeps the series short; the double-angle formulas give it back.
+    // The half angle shortens the series; the double-angle formulas restore it.
     let h = 0.5 * x;
     let z = h * h;
     let series = |terms: [f64; 7]| terms.iter().rev().fold(0.0, |sum, term| term + z * sum);
@@ -237,7 +237,7 @@ mod tests {
         }
     }
 
-    /// Without reduction the initial slope is Kalker's; far beyond, all of the friction is used: 2/pi (1/x + pi/2 - 1/x) -> 1.
+    /// Without reduction the initial slope is Kalker's; at large creepage the friction limit is reached: 2/pi (1/x + pi/2 - 1/x) -> 1.
     #[test]
     fn polach_is_linear_at_first_and_saturates() {
         assert!((polach(1e-6, (1.0, 1.0)) - 1.0).abs() < 1e-9);

@@ -1,8 +1,8 @@
 //! The equations of motion: forces of suspension, contact and gravity on seven bodies.
 //!
-//! Symbols are those of the description in `docs/model.md`: y lateral (right), z vertical (down), phi roll, chi pitch, psi yaw; c car
-//! body, b bogie frame, w wheelset. Every body is described in its own track frame; E, Phi, Theta are the lateral offset, the
-//! roll and the yaw of one frame seen from another.
+//! Symbols as in `docs/model.md`: y lateral (right), z vertical (down), phi roll, chi pitch, psi yaw; c car body, b bogie frame, w
+//! wheelset. Every body is described in its own track frame; E, Phi, Theta are the lateral offset, the roll and the yaw of one frame
+//! relative to another.
 
 use super::G;
 use super::contact::{Contact, Forces, Motion, WHEELS, Wheels};
@@ -14,7 +14,7 @@ use super::track::{Hint, Irregularity, Line, Track};
 /// Exponent of the elastic slip element.
 const SHARPNESS: i32 = 8;
 
-/// A vehicle at a constant speed, ready to run.
+/// A vehicle at a constant speed.
 #[derive(Debug)]
 pub struct Equations<'a> {
     pub vehicle: &'a Vehicle,
@@ -24,13 +24,13 @@ pub struct Equations<'a> {
     pub speed: f64,
     q0: f64,
     car_mass: f64,
-    /// One over the mass or inertia of each displacement.
+    /// Reciprocal mass or inertia of each displacement.
     mobility: [f64; State::BODIES],
     bending_omega: f64,
     has: Has,
 }
 
-/// What a vehicle has at all: what it has not costs no time.
+/// Components that the vehicle has; others are skipped.
 #[derive(Clone, Copy, Debug)]
 struct Has {
     yaw_damper: bool,
@@ -40,7 +40,7 @@ struct Has {
     bending: bool,
 }
 
-/// The line under a body seen from another.
+/// The track frame of one body relative to that of another.
 #[derive(Clone, Copy, Debug, Default)]
 struct Offset {
     e: f64,
@@ -49,13 +49,13 @@ struct Offset {
 }
 
 impl Offset {
-    /// Frame p at `sp` seen from frame q at `sq`.
+    /// Frame p at `sp` relative to frame q at `sq`.
     fn new(p: &Line, sp: f64, q: &Line, sq: f64) -> Self {
         Self { e: p.y - q.y - q.theta * (sp - sq), phi: p.cant - q.cant, theta: p.theta - q.theta }
     }
 }
 
-/// The track under all bodies at one moment.
+/// The track under all bodies at one time.
 #[derive(Clone, Debug, Default)]
 pub struct Input {
     car: Line,
@@ -68,11 +68,11 @@ pub struct Input {
     roundness: [Wheels; 2],
 }
 
-/// Where the last looks into the track were.
+/// Intervals of the last track lookups.
 #[derive(Clone, Debug, Default)]
 pub struct Hints([Hint; 7]);
 
-/// Forces between wheel and rail and accelerations, as the outputs need them.
+/// Wheel-rail forces and accelerations, for the outputs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outputs {
     /// Lateral force on the rail in N, positive to the right.
@@ -88,7 +88,7 @@ pub struct Outputs {
     pub widest: (f64, usize),
 }
 
-/// What happens under the wheels.
+/// Results of the wheel-rail contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OnRails {
     forces: Forces,
@@ -123,19 +123,19 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// Where wheelset `j` (0 to 3) stands when the car body's centre is at `s`.
+    /// Position of wheelset `j` (0 to 3) when the car body's centre is at `s`.
     #[must_use]
     pub fn wheelset_position(&self, s: f64, j: usize) -> f64 {
         s + [1.0, 1.0, -1.0, -1.0][j] * self.vehicle.half_bogie_spacing + lever(j) * self.vehicle.half_wheelbase
     }
 
-    /// The displacements between which the contact table speaks, in m.
+    /// Range of displacements of the contact table, in m.
     #[must_use]
     pub fn table(&self) -> (f64, f64) {
         self.profile.range()
     }
 
-    /// Fastest rate in 1/s that an explicit integrator has to follow: the spin of a wheelset against creep.
+    /// Fastest rate in 1/s, which limits the step of an explicit integrator: the spin of a wheelset against creep.
     #[must_use]
     pub fn fastest_rate(&self) -> f64 {
         let v = self.vehicle;
@@ -147,7 +147,7 @@ impl<'a> Equations<'a> {
         load * spin.max(yaw).max(lateral)
     }
 
-    /// Which entries of [`State::to_vec`] this vehicle moves; the others stay 0.
+    /// Entries of [`State::to_vec`] that this vehicle uses; the others stay 0.
     #[must_use]
     pub fn states(&self) -> Vec<usize> {
         let first_order = 2 * State::BODIES;
@@ -178,7 +178,7 @@ impl<'a> Equations<'a> {
         input
     }
 
-    /// As [`Self::input`], into an input that was made by this vehicle before, or the default.
+    /// As [`Self::input`], into an existing input of this vehicle, or the default.
     #[inline(always)]
     pub(super) fn look(&self, track: &Track, s: f64, hints: &mut Hints, input: &mut Input) {
         let v = self.vehicle;
@@ -233,7 +233,7 @@ impl<'a> Equations<'a> {
         self.outputs(state, input, rates, &wheels)
     }
 
-    /// Rates of all states that the vehicle has, and what the outputs need besides.
+    /// Rates of all states in use, and the further results for the outputs.
     #[inline(always)]
     pub(super) fn motion(&self, state: &State, input: &Input, rates: &mut State) -> OnRails {
         let mut load = [0.0; State::BODIES];
@@ -469,7 +469,7 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// Payload makes the car body's inertias grow with its mass.
+/// The payload increases the inertias of the car body in proportion to its mass.
 fn mobility(v: &Vehicle, car_mass: f64) -> [f64; State::BODIES] {
     let scale = car_mass / v.car_mass;
     let car = [car_mass, car_mass, v.car_inertia_roll * scale, v.car_inertia_pitch * scale, v.car_inertia_yaw * scale];
@@ -485,7 +485,7 @@ fn mobility(v: &Vehicle, car_mass: f64) -> [f64; State::BODIES] {
     mass.map(|mass| 1.0 / mass)
 }
 
-/// Of wheelset `j` in its bogie: 1 leading, -1 trailing.
+/// Sign of the lever of wheelset `j` in its bogie: 1 leading, -1 trailing.
 #[inline(always)]
 fn lever(j: usize) -> f64 {
     [1.0, -1.0, 1.0, -1.0][j]

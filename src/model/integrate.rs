@@ -1,47 +1,47 @@
 //! Time integration: the classical Runge-Kutta method of fourth order with a fixed step.
 //!
-//! Explicit, because nothing in the model is stiff at a millisecond but the spin of the wheelsets at low speed, for which the step is
-//! divided.
+//! Explicit, since at a step of 1 ms only the spin of the wheelsets at low speed is stiff, for which the step is divided.
 
 use super::equations::{Equations, Hints, Input, Outputs};
 use super::state::State;
 use super::track::Track;
 
-/// Step in s, and distance of the samples.
+/// Step in s, and sampling interval.
 pub const SAMPLE: f64 = 1e-3;
-/// Largest product of step and fastest rate; the method is stable up to 2.78.
+/// Largest product of step and fastest rate; the stability limit of the method is 2.78.
 const STABLE: f64 = 2.45;
-/// Largest rate of any state, in SI units, of a vehicle at rest: rounding. In the seconds before the track it moves nothing by a
+/// Largest rate of any state of a vehicle at rest, in SI units, due to rounding. In the seconds before the track it causes less than a
 /// nanometre.
 const AT_REST: f64 = 1e-10;
-/// Most steps that a sample is divided into: those of the reference vehicles at 1 m/s are some ten. A run then takes a hundred times as long.
+/// Maximum number of steps per sample. The reference vehicles need about ten at 1 m/s; a run with the maximum takes a hundred times as
+/// long.
 const MOST_STEPS: f64 = 1000.0;
-/// Longest run in s: at 30 m/s some 54 km. Its channels take 317 MB.
+/// Longest run in s: about 54 km at 30 m/s. Its channels take 317 MB.
 pub const LONGEST: f64 = 1800.0;
-/// Longest that a wheelset may be beyond the contact table, in s.
+/// Longest time of a wheelset beyond the contact table, in s.
 const BEYOND: f64 = 0.2;
 
-/// A run that came to no result.
+/// A run without a result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Failure {
-    /// Since the start of the run, s.
+    /// Time since the start of the run, s.
     pub time: f64,
-    /// Of the car body's centre, m.
+    /// Distance of the car body's centre, m.
     pub distance: f64,
     pub kind: FailureKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FailureKind {
-    /// A state is no finite number.
+    /// A state is not finite.
     Diverged,
-    /// A wheelset (1 to 4) was beyond the contact table for long, or far beyond it; displacement in m.
+    /// A wheelset (1 to 4) was beyond the contact table for too long, or too far beyond it; displacement in m.
     Derailed { wheelset: usize, displacement: f64 },
-    /// The vehicle is so stiff for its masses, or so light, that a millisecond would have to be divided into so many steps.
+    /// The vehicle is too stiff for its masses: 1 ms would have to be divided into this number of steps.
     TooStiff { steps: f64 },
-    /// The run would last so many s.
+    /// The run would take this time in s.
     TooLong { seconds: f64 },
-    /// The run would have to begin before its start, by so many m.
+    /// The run would have to begin this distance in m before its start.
     TooEarly { by: f64 },
 }
 
@@ -57,10 +57,10 @@ impl std::fmt::Display for Failure {
             ),
             FailureKind::TooStiff { steps } => write!(
                 f,
-                "a millisecond would have to be divided into {steps:.0e} steps, more than {MOST_STEPS:.0}: look at masses, inertias and stiffnesses"
+                "a millisecond would have to be divided into {steps:.0e} steps, more than {MOST_STEPS:.0}: check masses, inertias and stiffnesses"
             ),
             FailureKind::TooLong { seconds } => {
-                write!(f, "the run would last {seconds:.0} s, longer than {LONGEST:.0} s: look at the length of the track and the speed")
+                write!(f, "the run would last {seconds:.0} s, longer than {LONGEST:.0} s: check the length of the track and the speed")
             }
             FailureKind::TooEarly { by } => write!(f, "the record would begin {by:.1} m before the run does"),
         }
@@ -69,7 +69,7 @@ impl std::fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// Runs from `state` at distance `from` for `samples` samples and gives each to `sample` with its number.
+/// Integrates from `state` at distance `from` for `samples` samples, and calls `sample` with each and its number.
 ///
 /// # Errors
 /// The run diverges, or a wheelset leaves the contact table.
@@ -82,7 +82,7 @@ pub fn run(
     steps_per_sample: usize,
     sample: impl FnMut(usize, &State, &Outputs),
 ) -> Result<(), Failure> {
-    // The widest vector instructions that the processor has. They change the time, not one bit of the result.
+    // The widest vector instructions of the processor. They change the time, but not the result.
     pulp::Arch::new().dispatch(Run { equations, track, state, from, samples, steps_per_sample, sample })
 }
 
@@ -96,7 +96,7 @@ struct Run<'a, F> {
     sample: F,
 }
 
-/// Where in the step the stages are, and what they count for in it.
+/// Positions of the stages in the step, and their weights.
 const STAGES: [(f64, f64); 4] = [(0.5, 1.0 / 6.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 3.0), (0.0, 1.0 / 6.0)];
 
 impl<F: FnMut(usize, &State, &Outputs)> pulp::NullaryFnOnce for Run<'_, F> {
@@ -112,7 +112,7 @@ impl<F: FnMut(usize, &State, &Outputs)> pulp::NullaryFnOnce for Run<'_, F> {
         let mut beyond = 0;
         let mut hints = Hints::default();
         let mut rates = State::default();
-        // At the beginning, in the middle and at the end of the step; then the end is the beginning.
+        // At the beginning, in the middle and at the end of the step; the end is the beginning of the next one.
         let mut inputs = [equations.input(track, self.from, &mut hints), Input::default(), Input::default()];
         let (mut begin, mut end) = (0, 2);
         let still = self.still(&inputs[0]);
@@ -152,7 +152,7 @@ impl<F: FnMut(usize, &State, &Outputs)> pulp::NullaryFnOnce for Run<'_, F> {
 }
 
 impl<F: FnMut(usize, &State, &Outputs)> Run<'_, F> {
-    /// Gives the samples of a vehicle at rest that has not reached the track yet, and how many they are.
+    /// Outputs the samples of a vehicle at rest before the track; returns their number.
     fn still(&mut self, input: &Input) -> usize {
         let mut rates = State::default();
         let outputs = self.equations.rates(&self.state, input, &mut rates);
@@ -168,10 +168,10 @@ impl<F: FnMut(usize, &State, &Outputs)> Run<'_, F> {
     }
 }
 
-/// Steps per sample that the vehicle needs at its speed.
+/// Number of steps per sample for the vehicle at its speed.
 ///
 /// # Errors
-/// They are too many to be computed: [`FailureKind::TooStiff`].
+/// The number is too large: [`FailureKind::TooStiff`].
 pub fn steps_per_sample(equations: &Equations<'_>) -> Result<usize, FailureKind> {
     let steps = (equations.fastest_rate() * SAMPLE / STABLE).ceil().max(1.0);
     if steps <= MOST_STEPS { Ok(steps as usize) } else { Err(FailureKind::TooStiff { steps }) }

@@ -1,7 +1,7 @@
 //! The reference vehicle model: a four-axle bogie vehicle at constant speed on a canted, curved, irregular track.
 //!
-//! Small displacements, 31 degrees of freedom and four spin speeds, non-linear contact and suspension. `docs/model.md` has the
-//! equations. In: a [`Vehicle`], its [`Profile`], a [`TrackTable`] and a speed. Out: a [`Record`].
+//! Small displacements, 31 degrees of freedom and four spin speeds, non-linear contact and suspension; equations in `docs/model.md`.
+//! Inputs: a [`Vehicle`], its [`Profile`], a [`TrackTable`] and a speed. Output: a [`Record`].
 
 #![allow(clippy::inline_always, clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 

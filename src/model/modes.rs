@@ -1,8 +1,8 @@
 //! Small motions about a state: linearisation by central differences, eigenvalues and mode shapes.
 //!
-//! Straight, level, even track, so that the equations do not depend on time: x' = A x near a state of rest. The eigenvalues of
-//! A give frequency and damping of each mode; the speed at which the first real part becomes positive is the linear critical
-//! speed (A. H. Wickens, Fundamentals of Rail Vehicle Dynamics, 2003, chapter 5).
+//! The track is straight, level and even, so that the equations do not depend on time: x' = A x near a state of rest. The eigenvalues of
+//! A give frequency and damping of each mode. The speed at which the first real part becomes positive is the linear critical speed
+//! (A. H. Wickens, Fundamentals of Rail Vehicle Dynamics, 2003, chapter 5).
 
 use nalgebra::linalg::{Schur, balancing};
 use nalgebra::{Complex, DMatrix, DVector};
@@ -10,26 +10,25 @@ use nalgebra::{Complex, DMatrix, DVector};
 use super::equations::{Equations, Input};
 use super::state::State;
 
-/// Passes of the inverse iteration for a mode shape; each shrinks what is not of the mode many orders of magnitude.
+/// Iterations of the inverse iteration for a mode shape; each reduces all other modes by many orders of magnitude.
 const PASSES: usize = 4;
-/// Most iterations of the QR method.
+/// Maximum number of iterations of the QR method.
 const ITERATIONS: usize = 5_000;
-/// What counts as zero in it, relative; the next if it does not converge, as happens with the many equal eigenvalues of equal
-/// wheelsets.
+/// Relative tolerances of the QR method; the next is tried if it does not converge, as with multiple eigenvalues of equal wheelsets.
 const PRECISIONS: [f64; 4] = [f64::EPSILON, 1e-15, 1e-14, 1e-13];
-/// Relative distance from the eigenvalue at which the inverse iteration solves.
+/// Relative shift from the eigenvalue in the inverse iteration.
 const BESIDE: f64 = 1e-7;
 
-/// The equations of motion near a state.
+/// The equations of motion linearised about a state.
 #[derive(Clone, Debug)]
 pub struct Linear {
     /// Square, one row and column per entry of `places`, SI units.
     pub matrix: DMatrix<f64>,
-    /// Which entries of [`State::to_vec`] the rows and columns are: those that the vehicle has.
+    /// Entries of [`State::to_vec`] of the rows and columns: those in use.
     pub places: Vec<usize>,
 }
 
-/// A motion that keeps its shape: exp(`eigenvalue` t).
+/// An eigenmode: exp(`eigenvalue` t).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// In 1/s; of a conjugate pair the one with the positive imaginary part.
@@ -37,13 +36,13 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// Of the damped motion, in Hz; 0 if it does not oscillate.
+    /// Frequency of the damped motion in Hz; 0 if it does not oscillate.
     #[must_use]
     pub fn frequency(&self) -> f64 {
         self.eigenvalue.im / std::f64::consts::TAU
     }
 
-    /// Of the same motion without damping, in Hz.
+    /// Natural frequency without damping, in Hz.
     #[must_use]
     pub fn natural_frequency(&self) -> f64 {
         self.eigenvalue.norm() / std::f64::consts::TAU
@@ -57,9 +56,8 @@ impl Mode {
 }
 
 impl Linear {
-    /// The matrix about `state`, from differences of `step` (m, rad, m/s, rad/s) to either side; first-order forces and torques
-    /// are moved by `step` times 1e6. A step well below the point distance of the contact table (a micrometre, say) gives the
-    /// slopes of the table at the state.
+    /// The matrix about `state` by central differences of `step` (m, rad, m/s, rad/s); first-order forces and torques are changed by `step`
+    /// times 1e6. A step well below the point distance of the contact table (e.g. a micrometre) gives the slopes of the table at the state.
     #[must_use]
     pub fn about(equations: &Equations<'_>, state: &State, step: f64) -> Self {
         let at = state.to_vec();
@@ -82,12 +80,12 @@ impl Linear {
         Self { matrix, places }
     }
 
-    /// All modes, the fastest growing first; a conjugate pair is one mode. By the QR method on the balanced matrix; `None` if that
-    /// does not converge.
+    /// All modes in decreasing order of growth; a conjugate pair is one mode. QR method on the balanced matrix; `None` if it does not
+    /// converge.
     #[must_use]
     pub fn modes(&self) -> Option<Vec<Mode>> {
         let mut balanced = self.matrix.clone();
-        // Forces and displacements differ by ten powers of ten: their rows and columns are brought to one size.
+        // Forces and displacements differ by ten orders of magnitude: rows and columns are scaled.
         balancing::balance_parlett_reinsch(&mut balanced);
         let schur = PRECISIONS.iter().find_map(|precision| Schur::try_new(balanced.clone(), *precision, ITERATIONS));
         let eigenvalues = schur?.complex_eigenvalues();
@@ -96,14 +94,14 @@ impl Linear {
         Some(modes)
     }
 
-    /// The fastest growing mode; `None` as of [`Self::modes`].
+    /// The fastest growing mode; `None` as in [`Self::modes`].
     #[must_use]
     pub fn least_damped(&self) -> Option<Mode> {
         self.modes()?.into_iter().next()
     }
 
-    /// The shape of a mode over [`State::to_vec`], its largest displacement 1; entries that the vehicle has not are 0. By inverse
-    /// iteration (Wilkinson); `None` if the system beside the eigenvalue has no solution.
+    /// The shape of a mode over [`State::to_vec`], normalised to a largest displacement of 1; entries not in use are 0. Inverse iteration
+    /// (Wilkinson); `None` if the system near the eigenvalue has no solution.
     #[must_use]
     pub fn shape(&self, mode: &Mode) -> Option<Vec<Complex<f64>>> {
         let n = self.places.len();
@@ -126,10 +124,10 @@ impl Linear {
     }
 }
 
-/// The speed in m/s, to 0.01 m/s, at which a small motion about rest begins to grow, between two speeds.
+/// The speed in m/s, to 0.01 m/s, at which small motions about rest begin to grow, between two speeds.
 ///
-/// `equations` gives the vehicle at a speed; one change of sign between the speeds is assumed. `None` if the motion does not die
-/// out at the lower or not grow at the higher speed, or eigenvalues are not found.
+/// `equations` gives the vehicle at a speed; one change of sign between the speeds is assumed. `None` if the motion is not damped at the
+/// lower speed, does not grow at the higher speed, or the eigenvalues are not found.
 pub fn critical_speed<'a>(equations: impl Fn(f64) -> Equations<'a>, mut stable: f64, mut unstable: f64) -> Option<f64> {
     let grows = |speed: f64| {
         let equations = equations(speed);

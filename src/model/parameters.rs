@@ -1,6 +1,6 @@
 //! The parameters of the vehicle model: one table of key, unit, admissible values, neutral value and meaning.
 
-/// Which values a parameter can have at all. What is plausible is narrower: catalogues of effects say that.
+/// Admissible values of a parameter. The plausible range is narrower and is given by catalogues of effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Admissible {
     Any,
@@ -42,14 +42,14 @@ impl Admissible {
     }
 }
 
-/// A parameter as the user sees it.
+/// A parameter of the vehicle file.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     /// As in the vehicle file, nested keys joined by dots.
     pub key: &'static str,
     pub unit: &'static str,
     pub admissible: Admissible,
-    /// The value that stands if none is given; a vehicle file must give those that have none.
+    /// Default value; a vehicle file must give the parameters without one.
     pub neutral: Option<f64>,
     pub meaning: &'static str,
     field: fn(&mut Vehicle) -> &mut f64,
@@ -57,7 +57,7 @@ pub struct Parameter {
 
 macro_rules! parameters {
     ($($field:ident $key:literal [$unit:literal] $admissible:ident $(= $neutral:literal)?, $meaning:literal;)*) => {
-        /// A vehicle: every number of the model, in SI units unless its entry in [`PARAMETERS`] says otherwise.
+        /// A vehicle: all parameters of the model, in SI units unless its entry in [`PARAMETERS`] states otherwise.
         #[derive(Clone, Debug, Default, PartialEq)]
         pub struct Vehicle {
             $(#[doc = $meaning] pub $field: f64,)*
@@ -122,7 +122,7 @@ parameters! {
     yaw_damper_stiffness "secondary.yaw_damper_series_stiffness" ["N/m"] NotNegative = 0.0, "series stiffness of a yaw damper, one per side";
     yaw_damper_damping "secondary.yaw_damper_damping" ["N s/m"] NotNegative = 0.0, "damping of a yaw damper";
     yaw_damper_half_spacing "secondary.yaw_damper_half_spacing" ["m"] NotNegative = 0.0, "track centre to yaw damper";
-    yaw_damper_remaining "secondary.yaw_damper_remaining" ["-"] Share = 1.0, "share of the yaw dampers that is left";
+    yaw_damper_remaining "secondary.yaw_damper_remaining" ["-"] Share = 1.0, "remaining share of the yaw dampers";
     bumpstop_gap "secondary.bumpstop_gap" ["m"] NotNegative, "lateral play to either side before the bump stop";
     bumpstop_stiffness "secondary.bumpstop_stiffness" ["N/m"] NotNegative, "bump stop per bogie";
     centre_friction_torque "secondary.centre_friction_torque" ["N m"] NotNegative = 0.0, "friction torque against bogie rotation, per bogie";
@@ -142,7 +142,7 @@ parameters! {
     polach_adhesion "contact.polach_adhesion" ["-"] NotNegative = 0.0, "creep law of Polach: reduction in the area of adhesion; 0: the law of Shen, Hedrick and Elkins";
     polach_slip "contact.polach_slip" ["-"] NotNegative = 0.4, "creep law of Polach: reduction in the area of slip";
     chartet_exponent "contact.chartet_exponent" ["-"] NotNegative = 0.0, "creep law of Chartet: its exponent, about 2; 0: another law";
-    worn_share "profile.worn_share" ["-"] Share = 0.0, "0 the profile as given, 1 the worn one, a blend between";
+    worn_share "profile.worn_share" ["-"] Share = 0.0, "0: the given profile; 1: the worn profile; blended in between";
     conicity_scale "profile.conicity_scale" ["-"] NotNegative = 1.0, "factor of the radius deviations";
     payload_mass "payload.mass" ["kg"] NotNegative = 0.0, "payload in the car body";
     payload_offset "payload.lateral_offset" ["m"] Any = 0.0, "centre of gravity of the car body to the right of the centre line";
@@ -157,22 +157,22 @@ parameters! {
     roundness_amplitude "out_of_roundness.amplitude" ["m"] NotNegative = 0.0, "amplitude of the radius deviation";
     roundness_harmonic "out_of_roundness.harmonic" ["-"] NotNegative = 1.0, "waves per revolution";
     irregularity_scale "track.irregularity_scale" ["-"] NotNegative = 1.0, "factor of all track irregularities";
-    residual_irregularity "track.residual_irregularity" ["mm"] NotNegative = 0.0, "short waves that the recording car did not see: standard deviation of what is added to each irregularity";
+    residual_irregularity "track.residual_irregularity" ["mm"] NotNegative = 0.0, "short waves not measured by the recording car: standard deviation added to each irregularity";
     curvature_scale "track.curvature_scale" ["-"] Positive = 1.0, "factor of the curvature";
     gauge_error "track.gauge_error" ["mm"] Any = 0.0, "gauge widening added everywhere";
     cant_error "track.cant_error" ["mm"] Any = 0.0, "cant added in curves, at full curvature";
 }
 
-/// Why a vehicle is none.
+/// Why values do not give a vehicle.
 #[derive(Clone, Copy, Debug)]
 pub enum VehicleFault {
-    /// No value where there is no neutral one.
+    /// No value for a parameter without a default.
     Missing(&'static Parameter),
     Inadmissible(&'static Parameter, f64),
 }
 
 impl Vehicle {
-    /// A vehicle from named values; where `value` gives none, the neutral value stands.
+    /// A vehicle from named values; defaults where `value` gives none.
     ///
     /// # Errors
     /// Every parameter that is missing or not admissible.

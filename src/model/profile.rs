@@ -2,10 +2,10 @@
 
 use super::parameters::Vehicle;
 
-/// A table over the displacement, strictly increasing. Lengths in mm, angles in rad; sides right, left.
+/// A table over the lateral displacement, strictly increasing. Lengths in mm, angles in rad; sides right, left.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileTable {
-    /// Wheelset relative to the track, positive to the right.
+    /// Displacement of the wheelset relative to the track, positive to the right.
     pub displacement: Vec<f64>,
     pub radius_deviation: [Vec<f64>; 2],
     pub contact_angle: [Vec<f64>; 2],
@@ -18,18 +18,18 @@ pub struct Geometry {
     pub gamma: f64,
 }
 
-/// The profile of one vehicle: blended, scaled, in SI.
+/// The profile of one vehicle: blended, scaled, in SI units.
 #[derive(Clone, Debug)]
 pub struct Profile {
     displacement: Vec<f64>,
-    /// 1 / (distance of the points) if they are all alike.
+    /// 1 / (distance of the points), if constant.
     density: Option<f64>,
     table: [Vec<Geometry>; 2],
 }
 
 impl Profile {
-    /// The profile as the vehicle's wear and conicity make it; `None` if it is worn and there is no worn table, or the two tables
-    /// are not over the same displacements.
+    /// The profile with the vehicle's wear and conicity; `None` if it is worn and there is no worn table, or if the two tables have
+    /// different displacements.
     #[must_use]
     pub fn new(new: &ProfileTable, worn: Option<&ProfileTable>, vehicle: &Vehicle) -> Option<Self> {
         let share = vehicle.worn_share;
@@ -52,13 +52,13 @@ impl Profile {
         Some(Self { density: even.then_some(1.0 / width), table: [side(0), side(1)], displacement })
     }
 
-    /// The displacements between which the table speaks, in m.
+    /// Range of displacements of the table, in m.
     #[must_use]
     pub fn range(&self) -> (f64, f64) {
         (self.displacement[0], self.displacement[self.displacement.len() - 1])
     }
 
-    /// Linear between the points, held constant beyond them. `side`: 0 right, 1 left; `delta` in m.
+    /// Interpolates linearly; constant beyond the ends. `side`: 0 right, 1 left; `delta` in m.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, side: usize, delta: f64) -> Geometry {

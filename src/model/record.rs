@@ -35,29 +35,29 @@ pub const CHANNELS: [(&str, &str); 22] = [
 
 /// Sampling rate of a record in Hz.
 pub const SAMPLING_RATE: f64 = 200.0;
-/// Samples of the run per sample of the record.
+/// Decimation factor from run to record.
 const DECIMATION: usize = 5;
-/// Edge of the low-pass before the decimation, in Hz, of each of its two passes.
+/// Cut-off frequency of the low-pass before decimation in Hz, for each of its two passes.
 const ANTI_ALIAS: f64 = 40.0;
 const ANTI_ALIAS_ORDER: usize = 2;
-/// Before the first table point, in s of the trailing wheelset.
+/// Time of the trailing wheelset before the first table point, in s.
 const RUN_IN: f64 = 2.5;
-/// Behind the last sample, in s, so that the filter has passed its end.
+/// Time after the last sample in s, so that the filter's transient is outside the record.
 const RUN_OUT: f64 = 0.1;
-/// Recorded before and behind a section, in m.
+/// Length recorded before and after a section, in m.
 pub const BEFORE: f64 = 36.0;
 pub const BEHIND: f64 = 34.0;
 
 /// A simulated record.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
-    /// Of the car body's centre, in m; one per sample, at [`SAMPLING_RATE`].
+    /// Distance of the car body's centre in m; one per sample, at [`SAMPLING_RATE`].
     pub distance: Vec<f64>,
-    /// One list per entry of [`CHANNELS`], in its unit.
+    /// One vector per entry of [`CHANNELS`], in its unit.
     pub channels: Vec<Vec<f64>>,
 }
 
-/// Where the record begins at the latest and ends at the earliest, in m.
+/// Latest begin and earliest end of the record, in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     pub from: f64,
@@ -65,7 +65,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// Of a section, with what the filters need before and behind it.
+    /// The window of a section with the margins for the filters.
     #[must_use]
     pub fn around(start: f64, end: f64) -> Self {
         Self { from: start - BEFORE, to: end + BEHIND }
@@ -89,7 +89,7 @@ pub fn simulate(setup: &Setup<'_>, window: Window) -> Result<Record, Failure> {
     simulate_with(setup, window, None)
 }
 
-/// As [`simulate`], with a step of 1 ms divided by `divided` instead of the default choice.
+/// As [`simulate`], with a step of 1 ms / `divided` instead of the default.
 ///
 /// # Errors
 /// As [`simulate`].
@@ -127,7 +127,7 @@ pub fn simulate_with(setup: &Setup<'_>, window: Window, divided: Option<usize>) 
     Ok(Record { distance: (first..=last).step_by(DECIMATION).map(at).collect(), channels: smooth.into_iter().map(kept).collect() })
 }
 
-/// Where the run starts: the trailing wheelset reaches the first point of the track after the run-in.
+/// Start of the run: the trailing wheelset reaches the first point of the track after the run-in.
 #[must_use]
 pub fn start(equations: &Equations<'_>, track: &Track) -> f64 {
     track.start() + equations.vehicle.half_bogie_spacing + equations.vehicle.half_wheelbase - RUN_IN * equations.speed

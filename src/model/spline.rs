@@ -31,7 +31,7 @@ impl Spline {
         Self { values, bends }
     }
 
-    /// Coefficients of the powers 0 to 3 of the distance from point `i` in the interval behind it, which has `width`.
+    /// Coefficients of the powers 0 to 3 of the distance from point `i`, in the interval of length `width` after it.
     #[must_use]
     pub fn cubic(&self, i: usize, width: f64) -> [f64; 4] {
         let (low, high) = (self.values[i], self.values[i + 1]);

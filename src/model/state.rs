@@ -4,12 +4,12 @@
 pub const CAR: usize = 0;
 /// First displacement of the leading bogie frame; five later, of the trailing one.
 pub const BOGIE: usize = 5;
-/// Places in the five displacements of a body, where not 0 (y) or 3 (chi).
+/// Offsets within the five displacements of a body; y is 0 and chi is 3.
 pub const Z: usize = 1;
 pub const PHI: usize = 2;
 pub const PSI: usize = 4;
 
-/// First places of the four wheelsets' displacements.
+/// Indices of the first displacements of the four wheelsets.
 #[derive(Debug)]
 pub struct WheelsetPlaces {
     pub y: usize,
@@ -46,10 +46,10 @@ impl State {
     pub const BODIES: usize = 31;
     /// All states.
     pub const ALL: usize = 2 * Self::BODIES + 22;
-    /// Which of the states in [`State::to_vec`] are forces and torques.
+    /// Indices of forces and torques in [`State::to_vec`].
     pub const FORCES: std::ops::Range<usize> = 2 * Self::BODIES + 4..Self::ALL - 2;
 
-    /// Becomes `start` plus `step` times `rates`.
+    /// Sets `self` to `start` plus `step` times `rates`.
     #[inline(always)]
     pub fn follow(&mut self, start: &Self, step: f64, rates: &Self) {
         fn each<const N: usize>(to: &mut [f64; N], start: &[f64; N], step: f64, rates: &[f64; N]) {
@@ -85,7 +85,7 @@ impl State {
         each(&mut self.bending, step, &rates.bending);
     }
 
-    /// The states one after the other.
+    /// The states as a vector of length [`State::ALL`].
     #[must_use]
     pub fn to_vec(&self) -> Vec<f64> {
         let parts: [&[f64]; 8] =
@@ -93,7 +93,7 @@ impl State {
         parts.concat()
     }
 
-    /// Writes the states one after the other into [`State::ALL`] numbers.
+    /// Writes the states to a slice of length [`State::ALL`].
     pub fn write(&self, to: &mut [f64]) {
         let parts: [&[f64]; 8] =
             [&self.x, &self.v, &self.spin, &self.yaw_damper, &self.centre_friction, &self.friction_z, &self.friction_y, &self.bending];
@@ -105,7 +105,7 @@ impl State {
         }
     }
 
-    /// The inverse of [`State::to_vec`]; `values` has [`State::ALL`] numbers.
+    /// The inverse of [`State::to_vec`]; `values` has length [`State::ALL`].
     #[must_use]
     pub fn from_slice(values: &[f64]) -> Self {
         fn take<const N: usize>(values: &mut &[f64]) -> [f64; N] {
@@ -128,7 +128,7 @@ impl State {
         }
     }
 
-    /// Whether every displacement, rate and spin is a finite number.
+    /// Whether all displacements, rates and spins are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         // 0 times infinity or NaN is NaN.
@@ -142,7 +142,7 @@ impl State {
         sum == 0.0
     }
 
-    /// The largest magnitude of all.
+    /// The largest magnitude of all states.
     #[must_use]
     pub fn largest(&self) -> f64 {
         self.to_vec().into_iter().fold(0.0, |most, value| value.abs().max(most))

@@ -1,9 +1,9 @@
-//! What the vehicle runs over: curvature, cant and irregularities along the line.
+//! Track input: curvature, cant and irregularities along the line.
 
 use super::parameters::Vehicle;
 use super::spline::Spline;
 
-/// A track as measured: one number per point, distance strictly increasing.
+/// A measured track: one value per point, distance strictly increasing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrackTable {
     /// In m.
@@ -22,20 +22,20 @@ pub struct TrackTable {
     pub gauge: Vec<f64>,
 }
 
-/// Over which the irregularities are faded in, in m.
+/// Length over which the irregularities are faded in, in m.
 const FADE: f64 = 10.0;
 
-/// A track made ready for one vehicle: interpolated, and with the effects on the track input of that vehicle.
+/// A track prepared for one vehicle: interpolated, with the track parameters of that vehicle.
 #[derive(Clone, Debug)]
 pub struct Track {
     distance: Vec<f64>,
     /// One per interval of `distance`.
     pieces: Vec<Piece>,
-    /// What stands behind the last point.
+    /// The line behind the last point.
     end: Line,
 }
 
-/// Cubic polynomials of the distance u into an interval, side by side: c0 + u (c1 + u (c2 + u c3)) of four functions each.
+/// Four cubic polynomials in the distance u within an interval: c0 + u (c1 + u (c2 + u c3)).
 #[derive(Clone, Copy, Debug, Default)]
 struct Piece {
     /// Curvature, cant angle, heading (integral of the curvature), lateral position (integral of the heading).
@@ -63,7 +63,7 @@ pub struct Irregularity {
     pub slope: [f64; 2],
 }
 
-/// Where the last look into the table was: positions only go forward.
+/// Interval of the last lookup; positions increase.
 pub type Hint = usize;
 
 impl Track {
@@ -132,7 +132,7 @@ impl Track {
         i
     }
 
-    /// Straight and level before the table; as at its end behind it.
+    /// Straight and level before the table; constant behind it.
     #[inline(always)]
     pub fn line(&self, s: f64, hint: &mut Hint) -> Line {
         if s <= self.start() {
@@ -167,10 +167,10 @@ impl Track {
     }
 }
 
-/// Corner of the short waves, as a length in m: a noise of first order, twice.
+/// Corner wavelength of the short waves in m; filtered twice with a first-order low-pass.
 const SHORT_WAVES: f64 = 0.6;
 
-/// A random function of the distance with a standard deviation of 1 and waves of some metres and less, the same at every call.
+/// A random function of the distance with standard deviation 1 and wavelengths of some metres and less; reproducible.
 fn short_waves(distance: &[f64], function: u64) -> Vec<f64> {
     let mut random = fastrand::Rng::with_seed(function.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ distance.len() as u64);
     let mut state = [0.0; 2];
@@ -180,7 +180,7 @@ fn short_waves(distance: &[f64], function: u64) -> Vec<f64> {
         .map(|s| {
             let share = 1.0 - (-(s - last) / SHORT_WAVES).exp();
             last = *s;
-            // Uniform numbers do: the filter makes their sum nearly normal.
+            // Uniform numbers are sufficient: after the filter they are nearly normal.
             state[0] += share * (random.f64() - 0.5 - state[0]);
             state[1] += share * (state[0] - state[1]);
             state[1]

@@ -1,4 +1,4 @@
-//! Diagnoses scored against truths that were withheld: plain data, in the form of `blind.json`.
+//! Scores of diagnoses against withheld truths: plain data, in the form of `blind.json`.
 
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -8,15 +8,15 @@ pub struct Blind {
     pub fishplate: &'static str,
     pub cases: Vec<Case>,
     pub scores: Vec<Score>,
-    /// Named first, by what is true: counts.
+    /// Number of cases by truth and by the effect named first.
     pub confusion: IndexMap<String, IndexMap<String, usize>>,
-    /// Single effects by detectability, upwards.
+    /// Single effects by detectability, in increasing order.
     pub by_detectability: Vec<BySize>,
     /// Bins of the probability of the first cause.
     pub calibration: Vec<Calibration>,
 }
 
-/// Single effects of a detectability from `from` on, as far as the next: how many, how many named first, and the interval of the share
+/// Single effects with a detectability from `from` to the next bin: number, number named first, and the interval of the share
 /// (Wilson, 95 %).
 #[derive(Clone, Debug, Serialize)]
 pub struct BySize {
@@ -27,7 +27,7 @@ pub struct BySize {
     pub high: f64,
 }
 
-/// First causes of about the same probability: its mean, how many are right, and the interval of the share (Wilson, 95 %).
+/// First causes of similar probability: mean probability, number of correct ones, and the interval of the share (Wilson, 95 %).
 #[derive(Clone, Debug, Serialize)]
 pub struct Calibration {
     pub said: f64,
@@ -37,7 +37,7 @@ pub struct Calibration {
     pub high: f64,
 }
 
-/// One campaign.
+/// Result of one campaign.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Case {
     pub campaign: String,
@@ -46,30 +46,30 @@ pub struct Case {
     pub verdict: String,
     pub named: Vec<String>,
     pub ambiguity_set: Vec<String>,
-    /// Whitened size of the true effects.
+    /// Length of the whitened change by the true effects, in standard deviations.
     pub detectability: Option<f64>,
-    /// Of several true effects: the least that one adds which no size of the others would, in standard deviations.
+    /// With several true effects: the smallest part of one that no size of the others reproduces, in standard deviations.
     pub weakest: Option<f64>,
     pub first_is_right: bool,
     pub in_first_two: bool,
     pub in_set: bool,
-    /// Of the first named effect against the truth, relative.
+    /// Relative error of the parameter of the first named effect.
     pub parameter_error: Option<f64>,
-    /// Share of the gap removed: as said, and with the true effects.
+    /// Share of the gap removed: as predicted, and with the true effects.
     pub shrink_said: Option<f64>,
     pub shrink_true: Option<f64>,
     pub probability: Option<f64>,
-    /// Cells of the map: moved by what is true, called significant, and both. Nothing where no catalogue has the truth.
+    /// Cells of the map: changed by the truth, called significant, and both. Nothing if the truth is not in the catalogue.
     pub cells: Option<Places>,
-    /// Whether what is true moves the first cell of the map; nothing where it moves none.
+    /// Whether the truth changes the first cell of the map; nothing if it changes none.
     pub first_cell_moved: Option<bool>,
-    /// Sections in which the effects act that are named and true: in truth, as named, and both. Nothing where they act everywhere.
+    /// Sections of the effects that are both named and true: true ones, named ones, and both. Nothing if they act in all sections.
     pub sections: Option<Places>,
     /// Why there is no diagnosis or no truth.
     pub fault: Option<String>,
 }
 
-/// How many places are true, how many were told, and how many both.
+/// Number of true places, of reported places, and of both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Places {
     pub truly: usize,
@@ -77,7 +77,7 @@ pub struct Places {
     pub both: usize,
 }
 
-/// A share of cases, or of places in them, with its interval (Wilson, 95 %), or a median.
+/// A share of cases, or of places, with its interval (Wilson, 95 %), or a median.
 #[derive(Clone, Debug, Serialize)]
 pub struct Score {
     pub name: String,

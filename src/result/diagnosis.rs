@@ -1,55 +1,55 @@
-//! What a diagnosis found: plain data, in the form of `diagnosis.json`.
+//! Result of a diagnosis: plain data, in the form of `diagnosis.json`.
 
 use indexmap::IndexMap;
 use serde::Serialize;
 
-/// The answer.
+/// A diagnosis.
 #[derive(Clone, Debug, Serialize)]
 pub struct Diagnosis {
     pub fishplate: &'static str,
     pub campaign: String,
     /// `explained`, `ambiguous`, `unexplained` or `no significant gap`.
     pub verdict: &'static str,
-    /// The verdict in a sentence or two.
+    /// The verdict in sentences.
     pub says: Vec<String>,
-    /// Faults of the recording; the channels are left out of everything else.
+    /// Faults of the recording; their channels are excluded.
     pub faults: Vec<Fault>,
     pub r#where: Vec<Where>,
     pub invariants: Vec<Invariant>,
-    /// Those with a probability of less than 0.05 before or after, the least probable first.
+    /// Trends with a p-value below 0.05 before or after, in increasing order of p-value.
     pub trends: Vec<Trend>,
-    /// How many were looked at.
+    /// Number of trends tested.
     pub trends_tested: usize,
-    /// Covariates that go together, so that the campaign cannot tell which of them a trend follows.
+    /// Correlated covariates, between which the campaign does not discriminate.
     pub together: Vec<String>,
-    /// How the sizes of operations on the signals change over the campaign: one size should do.
+    /// Variation of the sizes of operations on the signals over the campaign; a correct effect has one size.
     pub drifts: Vec<Drift>,
     pub shapes: Vec<Shape>,
     pub causes: Vec<Cause>,
     pub vetoed: Vec<Vetoed>,
     pub shrink: Option<Shrink>,
-    /// Share of the gap beyond what is allowed for that the answer leaves.
+    /// Share of the excess of the gap that remains with the answer.
     pub unexplained_share: f64,
     pub discriminating_measurement: Option<String>,
-    /// Per effect, the smallest size that would have been seen.
+    /// Per effect, the smallest detectable size.
     pub detectable: Vec<Detectable>,
-    /// What would be named next, for what the named effects leave.
+    /// Closest candidates for the residual that are not named.
     pub nearest: Vec<Nearest>,
     pub how: How,
     pub notes: Vec<String>,
     pub simulations_run: usize,
-    /// Simulated time of all runs in s, inside the sections. Not the clock's, so that the same input gives the same bytes.
+    /// Simulated time of all runs in s, inside the sections. Not wall-clock time, so that the same input gives the same bytes.
     pub seconds: f64,
-    /// Signals of the worst sections, for figures.
+    /// Signals of the sections with the largest gap, for figures.
     #[serde(skip)]
     pub pictures: Vec<Picture>,
 }
 
-/// Signals of one section, three states of each.
+/// Signals of one section.
 #[derive(Clone, Debug, Default)]
 pub struct Picture {
     pub section: String,
-    /// Where it is, in words.
+    /// Description of the section.
     pub says: String,
     pub axis: String,
     pub start: f64,
@@ -67,7 +67,7 @@ pub struct Panel {
     pub improved: super::Curve,
 }
 
-/// A channel that cannot be used.
+/// A faulty channel.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fault {
     /// `dropout` or `clipping`.
@@ -77,7 +77,7 @@ pub struct Fault {
     pub says: String,
 }
 
-/// A place where the gap lies.
+/// A cell of the gap.
 #[derive(Clone, Debug, Serialize)]
 pub struct Where {
     pub quantity: String,
@@ -86,36 +86,36 @@ pub struct Where {
     pub zones: Vec<String>,
     pub sections: Vec<String>,
     pub wavelength_or_band: String,
-    /// Mean difference, simulated - measured: levels in the unit of the channel, towards the side of the measured one, that is
-    /// sign(measured) (simulated - measured); bands as rms simulated over measured, less one.
+    /// Mean difference, simulated - measured. Levels in the unit of the channel, as sign(measured) (simulated - measured); bands as the
+    /// ratio of the rms, simulated / measured - 1.
     pub difference: f64,
-    /// Root mean square of the same differences: more than their mean where they are not alike in all its sections and wheels.
+    /// Root mean square of the same differences; larger than the mean where they vary between sections and wheels.
     pub difference_rms: f64,
     pub unit: String,
     pub share_of_gap: f64,
     pub p_value: f64,
-    /// Below the limit of the false discovery rate.
+    /// At the false discovery rate of the diagnosis.
     pub significant: bool,
     pub says: String,
 }
 
-/// A sum of quasi-static values that only some causes can move, mean over the sections, simulated - measured.
+/// A sum of quasi-static values that only some causes can change: mean over the sections, simulated - measured.
 #[derive(Clone, Debug, Serialize)]
 pub struct Invariant {
     pub name: String,
-    /// Off to the same side in all sections, or turning with the curve.
+    /// Whether the deviation has the same sign in all sections, or changes sign with the curve.
     pub parity: &'static str,
     pub unit: String,
     pub before: f64,
-    /// With the causes added.
+    /// With the effects added.
     pub after: f64,
-    /// One standard deviation of what is allowed for.
+    /// One standard deviation of the allowed difference.
     pub allowed: f64,
-    /// The same beside the causes.
+    /// The same with the effects.
     pub allowed_after: f64,
 }
 
-/// How a difference changes with something that the section table says, over all sections: generalised least squares on that alone.
+/// Trend of a difference over a column of the section table: generalised least squares on that column alone.
 #[derive(Clone, Debug, Serialize)]
 pub struct Trend {
     pub quantity: String,
@@ -123,73 +123,73 @@ pub struct Trend {
     pub signals: Vec<String>,
     pub wavelength_or_band: String,
     pub covariate: String,
-    /// What the table says where it is least, and where it is most.
+    /// The table's text for its minimum and its maximum.
     pub from: String,
     pub to: String,
-    /// Of the changes; `-` for ratios.
+    /// Unit of the changes; `-` for ratios.
     pub unit: String,
     pub before: Slope,
-    /// With the causes added.
+    /// With the effects added.
     pub after: Slope,
 }
 
-/// What the size of an effect changes by over the range of a covariate, with a 90 % interval.
+/// Change of the size of an effect over the range of a covariate, with a 90 % interval.
 #[derive(Clone, Debug, Serialize)]
 pub struct Drift {
     pub effect: String,
     pub signals: Vec<String>,
     pub parameter: String,
-    /// Of the change.
+    /// Unit of the change.
     pub unit: String,
     pub covariate: String,
-    /// What the table says where it is least, and where it is most.
+    /// The table's text for its minimum and its maximum.
     pub from: String,
     pub to: String,
     pub change: f64,
     pub low: f64,
     pub high: f64,
-    /// That the size is the same everywhere.
+    /// Probability of the data if the size is the same everywhere.
     pub p_value: f64,
 }
 
-/// What simulated - measured grows by over the range of a covariate, with a 90 % interval: levels in their unit, in curves turned to one
-/// side where they turn with the curve; bands as rms simulated over measured, less one.
+/// Change of simulated - measured over the range of a covariate, with a 90 % interval. Levels in their unit, turned to one direction if
+/// they change sign with the curve; bands as the ratio of the rms, simulated / measured - 1.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Slope {
     pub change: f64,
     pub low: f64,
     pub high: f64,
-    /// Of the differences themselves with the covariate, whatever may differ.
+    /// Correlation of the differences with the covariate, without weighting.
     pub correlation: f64,
-    /// That there is no such trend.
+    /// Probability of the data if there is no trend.
     pub p_value: f64,
-    /// Below the limit of the false discovery rate.
+    /// At the false discovery rate of the diagnosis.
     pub significant: bool,
 }
 
-/// How the dynamic content of a group of channels differs, over all sections.
+/// Difference of the dynamic content of a group of channels, over all sections.
 #[derive(Clone, Debug, Serialize)]
 pub struct Shape {
     pub quantity: String,
     pub signals: Vec<String>,
-    /// Measured over simulated.
+    /// Measured / simulated.
     pub rms: Ratio,
-    /// Of the percentile that is called the peak, to the larger side of the median.
+    /// Ratio of the peaks, the percentiles farthest from the median.
     pub peak: Ratio,
-    /// Of peak over rms.
+    /// Ratio of peak / rms.
     pub crest: Ratio,
-    /// What the differences of spectra keep to from section to section, if either: `frequency` or `wavelength`.
+    /// The scaling of the differences of spectra between sections, if significant: `frequency` or `wavelength`.
     pub keeps_to: Option<&'static str>,
-    /// Why it is not said; where it is, nothing.
+    /// The reason if `keeps_to` is missing.
     pub reason: Option<&'static str>,
-    /// Share of their scatter that is alike in all sections, compared at the same frequency, and at the same wavelength.
+    /// Share of their variance that is common to all sections, compared at equal frequency, and at equal wavelength.
     pub alike_by_frequency: Option<f64>,
     pub alike_by_wavelength: Option<f64>,
     pub strongest: Option<Strongest>,
     pub says: String,
 }
 
-/// A ratio with the interval that 90 % of resamples of the sections lie in.
+/// A ratio with its 90 % interval by resampling sections.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Ratio {
     pub value: f64,
@@ -197,20 +197,20 @@ pub struct Ratio {
     pub high: f64,
 }
 
-/// Where spectra differ most for sure.
+/// The most significant difference of the spectra.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Strongest {
-    /// Amplitude, measured over simulated.
+    /// Ratio of amplitudes, measured / simulated.
     pub ratio: f64,
-    /// In Hz at the mean speed.
+    /// In Hz, at the mean speed.
     pub frequency: f64,
     /// In m.
     pub wavelength: Option<f64>,
-    /// Waves to one turn of a wheel.
+    /// Number of waves per wheel revolution.
     pub per_wheel_turn: Option<f64>,
 }
 
-/// Effects that together may be the cause.
+/// Effects that together are a possible cause.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cause {
     pub rank: usize,
@@ -227,32 +227,32 @@ pub struct NamedEffect {
     pub name: String,
     pub title: String,
     pub parameters: IndexMap<String, Value>,
-    /// Channels that it acts on.
+    /// Channels on which it acts.
     #[serde(skip)]
     pub channels: Vec<String>,
     pub confined_to: Option<IndexMap<String, serde_json::Value>>,
-    /// How it was added: by which simulator, or an operation on the signals.
+    /// How it is added: by which simulator, or by an operation on the signals.
     pub added_by: String,
-    /// Share of resamples of the sections in which no other effect has more evidence; of the answer, not of its rivals.
+    /// Share of resamples of the sections in which no other effect has more evidence; only for members of the answer.
     pub stability: Option<f64>,
 }
 
-/// Parameters as they are told: what several channels have alike is one.
+/// A parameter as reported; equal parameters of several channels are combined.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Told<'a> {
     pub parameter: String,
     pub value: &'a Value,
-    /// Channels that it is of.
+    /// Channels to which it applies.
     pub channels: Vec<String>,
 }
 
 impl NamedEffect {
-    /// Its parameters, to be read.
+    /// Its parameters for a report.
     #[must_use]
     pub fn told(&self) -> Vec<Told<'_>> {
         let mut told: Vec<Told<'_>> = Vec::new();
         for (name, value) in &self.parameters {
-            // A list of names says on which channels the one before acts.
+            // A list of names gives the channels of the preceding parameter.
             if let (Some(names), Some(last)) = (value.names(), told.last_mut()) {
                 last.channels = names;
                 continue;
@@ -266,7 +266,7 @@ impl NamedEffect {
         told
     }
 
-    /// Where it is confined to, such as `, only in zones 3, 4`; nothing where it is everywhere.
+    /// Its confinement, such as `, only in zones 3, 4`; empty if it acts in all sections.
     #[must_use]
     pub fn only_in(&self) -> String {
         let parts = self.confined_to.iter().flatten().map(|(column, values)| format!("{column} {}", flat(values)));
@@ -276,7 +276,7 @@ impl NamedEffect {
 }
 
 impl Told<'_> {
-    /// Its channels, such as ` on Y_1R, Y_1L`; nothing where it has none.
+    /// Its channels, such as ` on Y_1R, Y_1L`; empty if there are none.
     #[must_use]
     pub fn on(&self) -> String {
         if self.channels.is_empty() { String::new() } else { format!(" on {}", self.channels.join(", ")) }
@@ -284,19 +284,19 @@ impl Told<'_> {
 }
 
 impl Value {
-    /// What it says where it is no number.
+    /// Its text if it is not a number.
     #[must_use]
     pub fn text(&self) -> String {
         flat(&self.value)
     }
 
-    /// The names that it lists.
+    /// Its list of names.
     fn names(&self) -> Option<Vec<String>> {
         self.value.as_array()?.iter().map(|name| name.as_str().map(str::to_owned)).collect()
     }
 }
 
-/// What a list holds, lists in it as well, with commas.
+/// The elements of a nested list, separated by commas.
 fn flat(value: &serde_json::Value) -> String {
     match value {
         serde_json::Value::Array(all) => all.iter().map(flat).collect::<Vec<_>>().join(", "),
@@ -305,7 +305,7 @@ fn flat(value: &serde_json::Value) -> String {
     }
 }
 
-/// A parameter with its interval (90 %).
+/// A parameter with its 90 % interval.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Value {
     pub value: serde_json::Value,
@@ -314,7 +314,7 @@ pub struct Value {
     pub high: Option<f64>,
 }
 
-/// An effect that improves something and contradicts something else.
+/// An effect that improves the overall fit but is contradicted by a part of the data.
 #[derive(Clone, Debug, Serialize)]
 pub struct Vetoed {
     pub name: String,
@@ -324,14 +324,14 @@ pub struct Vetoed {
     pub says: String,
 }
 
-/// How far the gap shrinks on sections that the fit did not see.
+/// Reduction of the gap on sections excluded from the fit.
 #[derive(Clone, Debug, Serialize)]
 pub struct Shrink {
     pub measure: String,
     pub before: f64,
     pub after: f64,
     pub fraction_removed: f64,
-    /// 90 %, by resampling sections.
+    /// 90 % interval, by resampling sections.
     pub low: f64,
     pub high: f64,
     pub held_out: bool,
@@ -340,21 +340,21 @@ pub struct Shrink {
     pub verdict_after: String,
     /// The same over the quantities that the effects change.
     pub touched: Option<Touched>,
-    /// Share of the whitened excess that each effect removes, if several act.
+    /// Share of the whitened excess that each effect removes, if there are several.
     pub shares: Vec<(String, f64)>,
 }
 
-/// How far the gap shrinks where the effects act.
+/// Reduction of the gap in the quantities that the effects change.
 #[derive(Clone, Debug, Serialize)]
 pub struct Touched {
     pub quantities: Vec<String>,
     pub before: f64,
     pub after: f64,
     pub fraction_removed: f64,
-    /// 90 %, by resampling sections.
+    /// 90 % interval, by resampling sections.
     pub low: f64,
     pub high: f64,
-    /// Share removed of the squared differences of all values, each divided by the limit of its quantity's standard deviation.
+    /// Removed share of the squared differences of all values, each divided by the limit of its quantity's standard deviation.
     pub variance_explained: f64,
 }
 
@@ -365,13 +365,13 @@ pub struct QuantityShrink {
     pub normalised_std_after: Option<f64>,
     pub normalised_mean_before: Option<f64>,
     pub normalised_mean_after: Option<f64>,
-    /// Of the sum of squared differences, the share removed.
+    /// Removed share of the sum of squared differences.
     pub variance_explained: Option<f64>,
-    /// Share of the sum of squared differences that the declared noise of the channels makes by itself; nothing where none is declared.
+    /// Share of the sum of squared differences that is due to the declared noise of the channels; nothing where no noise is declared.
     pub noise_floor: Option<f64>,
-    /// The share removed of what is above the noise; nothing where nothing is.
+    /// Removed share of the part above the noise; nothing where there is no such part.
     pub variance_explained_above_noise: Option<f64>,
-    /// Share removed of the root mean square of its normalised values, 90 % by resampling sections.
+    /// Removed share of the root mean square of its normalised values; 90 % interval by resampling sections.
     pub fraction_removed: f64,
     pub low: f64,
     pub high: f64,
@@ -382,27 +382,27 @@ pub struct Detectable {
     pub effect: String,
     pub parameter: String,
     pub unit: String,
-    /// The size at which nothing changes.
+    /// The size without influence.
     pub neutral: f64,
-    /// Change from neutral at which the whitened change is 5 long; nothing if the range ends before. Of an effect on one of several
-    /// channels, where that takes most: on any of them so much would have been seen.
+    /// Distance from neutral at which the whitened change has length 5; nothing if the range ends before. For an effect on one of several
+    /// channels, the largest of these distances.
     pub smallest: Option<f64>,
     /// The same on either side of neutral.
     pub below: Option<f64>,
     pub above: Option<f64>,
 }
 
-/// An effect that is nearly named.
+/// An effect that is close to being named.
 #[derive(Clone, Debug, Serialize)]
 pub struct Nearest {
     pub effect: String,
     pub says: String,
     pub evidence: f64,
-    /// What it wants for being looked at further.
+    /// The criterion it does not meet.
     pub wants: String,
 }
 
-/// With what the answer was found.
+/// Settings of the diagnosis.
 #[derive(Clone, Debug, Serialize)]
 pub struct How {
     pub catalogue: String,
@@ -417,7 +417,7 @@ pub struct How {
     pub chi_squared_after: f64,
 }
 
-/// Names that are whole numbers are written as such.
+/// Writes names that are integers as numbers.
 fn as_numbers<S: serde::Serializer>(names: &[String], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(names.iter().map(|name| name.parse::<i64>().map_or_else(|_| name.as_str().into(), serde_json::Value::from)))
 }
@@ -450,7 +450,7 @@ mod tests {
         let alike = [("measurement.gain.Y_1R", json!(0.8)), ("measurement.gain.Y_1L", json!(0.8)), ("measurement.gain.Q_1R", json!(0.8))];
         assert_eq!(told(&alike), ["measurement.gain 0.8 on Y_1R, Y_1L, Q_1R"]);
         assert_eq!(told(&alike[..1]), ["measurement.gain 0.8 on Y_1R"]);
-        // What only has the same value is another parameter.
+        // Equal values of different parameters are not combined.
         let others = [("out_of_roundness.wheelset", json!(2)), ("out_of_roundness.harmonic", json!(2))];
         assert_eq!(told(&others), ["out_of_roundness.wheelset 2", "out_of_roundness.harmonic 2"]);
         let low_pass = [("measurement.lowpass", json!(6)), ("measurement.lowpass_channels", json!(["Y_1R", "Y_1L"]))];

@@ -1,37 +1,37 @@
-//! What is not plausible in the data, with the number found and what it should be near.
+//! Plausibility findings of the data, with the value found and the expected value.
 
 use serde::{Deserialize, Serialize};
 
-/// Something in the campaign that an assessor has to look at.
+/// A finding for the attention of the assessor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
-    /// What kind of finding: the name of the protocol's rule, or a code of the program in kebab case.
+    /// Kind of finding: the name of the protocol's rule, or a code of the program in kebab case.
     pub code: String,
-    /// The channel, position or field that it is about; `None` if it is about a section or the campaign.
+    /// The channel, position or field concerned; `None` if it concerns a section or the campaign.
     pub channel: Option<String>,
-    /// `None` if it is about the campaign as a whole.
+    /// `None` if it concerns the campaign.
     pub section: Option<String>,
     /// The kind of record: `simulation`, `measurement` or `track`.
     pub record: Option<String>,
-    /// What was found, in `unit`.
+    /// The value found, in `unit`.
     pub value: Option<f64>,
-    /// What it should be near, or the bound that it passes, in `unit`.
+    /// The expected value, or the bound that is exceeded, in `unit`.
     pub expected: Option<f64>,
     pub unit: Option<String>,
-    /// The fact as a sentence without a full stop, complete by itself.
+    /// The finding as a sentence without a full stop.
     pub says: String,
-    /// The likely cause, where the numbers suggest one.
+    /// The likely cause, if known.
     pub cause: Option<String>,
     pub consequence: Consequence,
 }
 
-/// What a finding does to the verdict.
+/// Influence of a finding on the verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Consequence {
-    /// It is told and changes nothing.
+    /// Reported only.
     Note,
-    /// Its section is not used.
+    /// The section is not used.
     NotUsed,
     /// The campaign is not assessable.
     NotAssessable,
@@ -48,7 +48,7 @@ impl Consequence {
 }
 
 impl Finding {
-    /// A finding about the campaign as a whole that changes nothing.
+    /// A finding about the campaign that is reported only.
     pub fn note(code: impl Into<String>, says: impl Into<String>) -> Self {
         Self {
             code: code.into(),

@@ -1,6 +1,6 @@
-//! What a certification run found: plain data, no logic, no I/O.
+//! Result of a certification: plain data, without logic or input/output.
 //!
-//! Numbers are in the display unit named beside them. What could not be computed is `None` with a reason, never NaN.
+//! Numbers are in the unit named beside them. A value that could not be computed is `None` with a reason, never NaN.
 
 pub mod blind;
 pub mod diagnosis;
@@ -15,27 +15,27 @@ pub use finding::{Consequence, Finding};
 pub use origin::{FittedTo, OriginInfo};
 pub use report::ReportItem;
 
-/// Everything a report prints, in the order of the protocol and of the campaign.
+/// All results of a certification, in the order of the protocol and of the campaign.
 #[derive(Clone, Debug, Serialize)]
 pub struct Certification {
     pub protocol: ProtocolInfo,
     pub campaign: CampaignInfo,
     pub verdict: Verdict,
-    /// What belongs beside the verdict: how the simulation was made, where it was changed after the comparison.
+    /// Note on the verdict if the simulation was changed after the comparison.
     pub verdict_note: Option<String>,
     /// Why the verdict is not "validated"; empty if it is.
     pub reasons: Vec<String>,
     pub quantities: Vec<QuantityResult>,
     pub sections: Vec<SectionResult>,
-    /// Empty if the protocol knows no zones.
+    /// Empty if the protocol has no zones.
     pub zones: Vec<ZoneResult>,
     /// Range of each numeric section column over the used sections: the validity domain.
     pub domain: Vec<DomainRange>,
-    /// Distance or time plots of the sections that matter most.
+    /// Plots of the most relevant sections.
     pub traces: Vec<Trace>,
-    /// What is not plausible in the data, in the order of the protocol's rules and of the sections.
+    /// Plausibility findings, in the order of the protocol's rules and of the sections.
     pub findings: Vec<Finding>,
-    /// Remarks that do not change the verdict (a short filter margin, a unit converted).
+    /// Remarks that do not change the verdict (a short filter margin, a converted unit).
     pub notes: Vec<String>,
 }
 
@@ -78,9 +78,9 @@ pub struct ProtocolInfo {
     pub scope: Option<String>,
     pub notes: Vec<String>,
     pub sha256: String,
-    /// The files the protocol came from, the protocol first, then its parent, and so on.
+    /// The files of the protocol: the protocol first, then its parent, and so on.
     pub files: Vec<ProtocolFile>,
-    /// What differs in meaning from the parent, rule by rule; empty without a parent.
+    /// Differences in meaning from the parent, rule by rule; empty without a parent.
     pub deviations: Vec<Deviation>,
     pub parameters: Vec<ParameterInfo>,
     pub filters: Vec<FilterInfo>,
@@ -90,7 +90,7 @@ pub struct ProtocolInfo {
     pub graph_nodes: usize,
     /// The processing graph drawn, one SVG text.
     pub graph_svg: String,
-    /// What "validated" asks for, in a sentence.
+    /// Criterion of the verdict "validated", in a sentence.
     pub verdict_rule: String,
 }
 
@@ -101,10 +101,10 @@ pub struct ProtocolFile {
     pub text: String,
 }
 
-/// One rule that a variant changed.
+/// A rule that differs from the parent.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Deviation {
-    /// What it is about: `quantity ay_max, limit std`.
+    /// Subject of the rule: `quantity ay_max, limit std`.
     pub rule: String,
     /// Text in the parent; `None` if it is new.
     pub before: Option<String>,
@@ -136,7 +136,7 @@ pub struct ChannelInfo {
 pub struct FilterInfo {
     pub name: String,
     pub title: String,
-    /// The steps in words, numbers filled in: `low-pass 20 Hz, Butterworth order 4, zero-phase`.
+    /// The steps in words, with numbers: `low-pass 20 Hz, Butterworth order 4, zero-phase`.
     pub steps: String,
     pub source: Option<String>,
 }
@@ -146,13 +146,13 @@ pub struct CampaignInfo {
     pub name: String,
     /// Every input file with its hash, in the order read.
     pub files: Vec<FileHash>,
-    /// Vehicle data: those the protocol uses first, then all others of the file.
+    /// Vehicle data: first those used by the protocol, then all others.
     pub vehicle: Vec<DataItem>,
-    /// Other keys of campaign.yaml, in its order.
+    /// Other keys of campaign.yaml, in their order.
     pub facts: Vec<DataItem>,
-    /// What made the simulated records, where the campaign says so.
+    /// Origin of the simulated records, where stated.
     pub origin: Option<OriginInfo>,
-    /// What the campaign says the report is known by, stated or not.
+    /// Identification of the report, stated or not.
     #[serde(serialize_with = "as_tree")]
     pub report: Vec<ReportItem>,
 }
@@ -166,11 +166,11 @@ pub struct FileHash {
     pub path: String,
     pub sha256: String,
     pub bytes: u64,
-    /// What it is a record of; `None` for the campaign's own files.
+    /// The record it belongs to; `None` for the campaign's own files.
     pub record: Option<RecordOf>,
 }
 
-/// Which record a file is.
+/// Identification of a record.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RecordOf {
     /// `measurement`, `simulation` or `track`.
@@ -178,12 +178,12 @@ pub struct RecordOf {
     pub section: String,
 }
 
-/// Where a rule stands.
+/// Place of a rule in the protocol.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RulePlace {
-    /// Name of one of [`ProtocolInfo::files`].
+    /// One of the names in [`ProtocolInfo::files`].
     pub file: String,
-    /// From 1.
+    /// Line, from 1.
     pub line: usize,
 }
 
@@ -193,20 +193,20 @@ pub struct DataItem {
     pub name: String,
     pub value: String,
     pub unit: Option<String>,
-    /// Whether a rule of the protocol reads it.
+    /// Whether a rule of the protocol uses it.
     pub used: bool,
-    /// The campaign states no unit: `unit` is the protocol's.
+    /// The campaign states no unit: `unit` is that of the protocol.
     pub unit_assumed: bool,
 }
 
-/// One quantity of the protocol: what was done, what came out, whether it holds.
+/// One quantity of the protocol: its processing, its values and its verdict.
 #[derive(Clone, Debug, Serialize)]
 pub struct QuantityResult {
     pub id: String,
     pub title: String,
-    /// As printed in tables, if the protocol gives one (`(Y/Q)max`); else the id.
+    /// Symbol for tables, if the protocol gives one (`(Y/Q)max`), else the id.
     pub symbol: String,
-    /// Unit of the compared values, `-` for a plain number.
+    /// Unit of the compared values; `-` for a dimensionless number.
     pub unit: String,
     /// Signals in words: `Y at wheelsets 1, 3`.
     pub of: String,
@@ -214,60 +214,60 @@ pub struct QuantityResult {
     pub filter: String,
     /// Processing in words: `median`, `larger of |p0.15|, |p99.85|`.
     pub processing: String,
-    /// How simulated and measured are compared: `simulated - measured`, or the metric.
+    /// Comparison of simulated and measured: `simulated - measured`, or the metric.
     pub comparison: String,
     pub clause: Option<String>,
     pub source: Option<String>,
     pub notes: Vec<String>,
-    /// True if `values` hold simulated and measured values; false where a metric gives one number for the two signals.
+    /// Whether `values` contain simulated and measured values; false for a metric that gives one number for both signals.
     pub has_sides: bool,
     pub statistics: Vec<StatisticResult>,
-    /// Number of sites that the values are of.
+    /// Number of sites of the values.
     pub n: usize,
     pub values: Vec<PairValue>,
-    /// All statistics hold; `None` if not assessable.
+    /// All criteria are met; `None` if not assessable.
     pub holds: Option<bool>,
     /// Why it is not assessable.
     pub reason: Option<String>,
-    /// Where the protocol defines it.
+    /// Place of its definition in the protocol.
     pub rule: RulePlace,
 }
 
-/// One statistic over section x signal pairs against its limit.
+/// One statistic over pairs of section and signal, and its limit.
 #[derive(Clone, Debug, Serialize)]
 pub struct StatisticResult {
     /// `mean`, `std`, `p95`, `each`, ...
     pub name: String,
     /// In words: `mean`, `standard deviation (n-1)`, `95 % value`, `each value`.
     pub title: String,
-    /// Pairs it is taken over: `all`, `zone 1`.
+    /// Pairs included: `all`, `zone 1`.
     pub scope: String,
     /// Number of pairs.
     pub count: usize,
-    /// Number of sites that the pairs are of. Pairs of one site (its positions, its repeats) are not independent of each other.
+    /// Number of sites of the pairs. Pairs of one site (its positions, its repeats) are not independent.
     pub n: usize,
     /// Unit of value and limit.
     pub unit: String,
     pub value: Option<f64>,
-    /// 95 % confidence interval where defined, with sites independent of each other and n - 1 degrees of freedom (mean: Student t,
-    /// standard deviation: chi-square).
+    /// 95 % confidence interval where defined, for independent sites and n - 1 degrees of freedom (mean: Student's t; standard deviation:
+    /// chi-square).
     pub interval: Option<(f64, f64)>,
-    /// The interval has the limit inside: another choice of sites could well have met it, or not.
+    /// The interval contains the limit: another choice of sections could change the result.
     pub marginal: bool,
     pub limit: Option<f64>,
     /// |value| / limit.
     pub normalised: Option<f64>,
     pub holds: Option<bool>,
-    /// Factors that are in the limit because of vehicle data.
+    /// Factors of the limit that depend on vehicle data.
     pub factors: Vec<LimitFactor>,
-    /// The limit as the protocol words it: `2/3 of std`.
+    /// The limit in the words of the protocol: `2/3 of std`.
     pub limit_text: String,
     pub reason: Option<String>,
-    /// Where the protocol states the limit.
+    /// Place of the limit in the protocol.
     pub rule: RulePlace,
 }
 
-/// A factor by which vehicle data multiply a limit.
+/// A factor of a limit that depends on vehicle data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LimitFactor {
     pub by: f64,
@@ -284,16 +284,16 @@ pub struct PairValue {
     pub signal: String,
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
-    /// Difference, or the value of the metric.
+    /// Difference, or value of the metric.
     pub difference: f64,
-    /// Samples (or windows) the measured value was taken from.
+    /// Number of samples (or windows) of the measured value.
     pub samples: usize,
 }
 
 #[derive(Clone, Debug, Serialize)]
 pub struct SectionResult {
     pub section: String,
-    /// The first section of its site: repeats have the same.
+    /// The first section of its site; repeats have the same site.
     pub site: String,
     pub zone: Option<String>,
     pub used: bool,
@@ -303,7 +303,7 @@ pub struct SectionResult {
     pub start: f64,
     pub end: f64,
     pub axis_unit: String,
-    /// Columns of sections.csv the protocol declares, as printed: title, value, unit.
+    /// Columns of sections.csv that the protocol declares: title, value, unit.
     pub columns: Vec<DataItem>,
     pub checks: Vec<CheckResult>,
 }
@@ -313,9 +313,9 @@ pub struct SectionResult {
 pub struct CheckResult {
     pub name: String,
     pub title: String,
-    /// `None`: could not be checked, see `says`.
+    /// `None`: could not be checked; the reason is in `says`.
     pub holds: Option<bool>,
-    /// What was found: `length 250 m, at least 250 m`.
+    /// The result in words: `length 250 m, at least 250 m`.
     pub says: String,
 }
 
@@ -325,16 +325,16 @@ pub struct ZoneResult {
     pub title: String,
     /// The zone's condition in words.
     pub condition: String,
-    /// Sections used.
+    /// Number of sections used.
     pub used: usize,
-    /// Sites that these are of: repeats do not count twice.
+    /// Number of their sites; repeats do not count twice.
     pub sites: usize,
     pub given: usize,
     pub minimum: usize,
     pub holds: bool,
 }
 
-/// Extent of a numeric section column over the used sections.
+/// Range of a numeric section column over the sections used.
 #[derive(Clone, Debug, Serialize)]
 pub struct DomainRange {
     pub name: String,
@@ -343,11 +343,11 @@ pub struct DomainRange {
     pub scope: String,
     pub low: f64,
     pub high: f64,
-    /// Sections with a value.
+    /// Number of sections with a value.
     pub count: usize,
 }
 
-/// Simulated and measured signal of one section, filtered as the quantity asks, thinned for plotting.
+/// Simulated and measured signal of one section, filtered as specified for the quantity, thinned for plotting.
 #[derive(Clone, Debug, Serialize)]
 pub struct Trace {
     pub quantity: String,

@@ -1,19 +1,19 @@
-//! Where simulated records come from, as a report tells it.
+//! Origin of simulated records, for a report.
 
 use serde::Serialize;
 
-/// What made the simulated records of a campaign, where the campaign says so.
+/// Origin of the simulated records of a campaign, where stated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OriginInfo {
     /// `fishplate 0.1.0, diagnose`
     pub made_by: String,
-    /// The same and the effects as a sentence without a full stop, complete by itself.
+    /// The same with the effects, as a sentence without a full stop.
     pub says: String,
     /// `friction = 0.23`, one for each effect.
     pub effects: Vec<String>,
     /// Measured records that the simulation was fitted to: path and SHA-256.
     pub fitted_to: Vec<FittedTo>,
-    /// How many of them are measured records of this campaign, byte by byte.
+    /// Number of these that are measured records of this campaign, byte by byte.
     pub fitted_to_these: usize,
 }
 
@@ -24,7 +24,7 @@ pub struct FittedTo {
 }
 
 impl OriginInfo {
-    /// What follows the verdict, after a comma.
+    /// Text after the verdict, following a comma.
     pub fn note(&self) -> Option<String> {
         if self.fitted_to_these > 0 {
             return Some("with a simulation fitted to the same measurements".into());

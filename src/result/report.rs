@@ -1,20 +1,20 @@
-//! By what a report is known, as the campaign states it.
+//! Identification of a report, as stated by the campaign.
 
 use serde_json::{Map, Value};
 
-/// Something that an assessor expects a report to state.
+/// An item that an assessor expects in a report.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReportItem {
-    /// Where it stands in the block `report` of the campaign: its key, with that of a map before it if it stands in one.
+    /// Path in the block `report` of the campaign: its key, preceded by the key of the enclosing map, if any.
     pub path: Vec<String>,
     pub title: String,
-    /// Clause of ISO/IEC 17025:2017 that asks for it, if one does.
+    /// Clause of ISO/IEC 17025:2017 that requires it, if any.
     pub clause: Option<String>,
     /// `None`: not stated.
     pub value: Option<String>,
 }
 
-/// All of them as the campaign writes them, keys in their order; what is not stated is `null`.
+/// All items in the structure of the campaign; missing ones are `null`.
 #[must_use]
 pub fn tree(items: &[ReportItem]) -> Value {
     let mut root = Map::new();
@@ -31,7 +31,7 @@ pub fn tree(items: &[ReportItem]) -> Value {
     Value::Object(root)
 }
 
-/// What is stated under a path.
+/// The value under a path, if stated.
 #[must_use]
 pub fn stated<'a>(items: &'a [ReportItem], path: &[&str]) -> Option<&'a str> {
     items.iter().find(|item| item.path == path)?.value.as_deref()

@@ -1,10 +1,10 @@
-//! What a study found: how the verdict depends on the sections chosen, on the synchronisation, on the protocol's parameters.
+//! Result of a study: dependence of the verdict on the selection of sections, the synchronisation, and the parameters of the protocol.
 
 use serde::Serialize;
 
 use super::{CampaignInfo, ProtocolInfo, Verdict};
 
-/// A study with what it was made of.
+/// A study with its inputs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Study {
     pub protocol: ProtocolInfo,
@@ -20,49 +20,49 @@ pub enum Found {
     Parameters(ParameterStudy),
 }
 
-/// Every selection of sections, or as many as could be looked at.
+/// All selections of sections, or a random sample of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SelectionStudy {
     pub strata: Vec<Stratum>,
-    /// Number of selections; beyond 2^53 a rounded one.
+    /// Number of selections; rounded beyond 2^53.
     pub combinations: f64,
     pub share: Share,
     /// Verdict over all usable sections.
     pub verdict: Verdict,
     pub quantities: Vec<QuantitySpread>,
     pub sections: Vec<Importance>,
-    /// The selection that is worst in each limit that some selection breaks.
+    /// The worst selection for each limit that some selection does not meet.
     pub worst: Vec<WorstSelection>,
-    /// Where it was looked for.
+    /// Absent where it was not computed.
     pub removal: Option<Removal>,
     pub reduction: Option<Reduction>,
-    /// How it was computed, a sentence each.
+    /// Methods used, one sentence each.
     pub methods: Vec<String>,
 }
 
-/// A zone, or all sections where there are none.
+/// A zone, or all sections if there are no zones.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Stratum {
     pub zone: String,
     pub title: String,
-    /// Sections of a selection.
+    /// Number of sections in a selection.
     pub take: usize,
     /// Usable sections.
     pub sections: Vec<String>,
-    /// Sections with their reason that are not usable.
+    /// Sections that are not usable, with the reason.
     pub not_used: Vec<(String, String)>,
 }
 
-/// Selections that are validated.
+/// Share of the selections that are validated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Share {
-    /// Of the selections looked at.
+    /// Number of validated selections among those evaluated.
     pub validated: u64,
     pub looked_at: u64,
     pub share: f64,
-    /// All selections were looked at.
+    /// All selections were evaluated.
     pub exact: bool,
-    /// 95 % Wilson interval where they were drawn at random.
+    /// 95 % Wilson interval for random selections.
     pub interval: Option<(f64, f64)>,
     pub seed: Option<u64>,
 }
@@ -73,7 +73,7 @@ pub struct QuantitySpread {
     pub title: String,
     pub symbol: String,
     pub unit: String,
-    /// Share of the selections that break one of its limits, and of those that break no other quantity's.
+    /// Share of the selections that do not meet one of its limits, and of those in which no other quantity fails.
     pub failing: f64,
     pub alone: Option<f64>,
     pub statistics: Vec<StatisticSpread>,
@@ -85,14 +85,14 @@ pub struct StatisticSpread {
     pub name: String,
     pub title: String,
     pub scope: String,
-    /// In the unit of the quantity; values are divided by it unless it is not above zero.
+    /// In the unit of the quantity. Values are divided by it if it is above zero.
     pub limit: f64,
     pub at_least: bool,
     /// `None` where no selection has a value.
     pub spread: Option<Spread>,
-    /// Share of the selections that break it.
+    /// Share of the selections that do not meet it.
     pub failing: f64,
-    /// Values of all sections together.
+    /// The statistic of all sections together.
     pub overall: Option<f64>,
 }
 
@@ -103,27 +103,27 @@ pub struct Spread {
     pub median: f64,
     pub q3: f64,
     pub max: f64,
-    /// Selections beyond 1.5 interquartile ranges.
+    /// Number of selections beyond 1.5 interquartile ranges.
     pub outliers: u64,
-    /// Selections with a value.
+    /// Number of selections with a value.
     pub count: f64,
-    /// Exact over all selections, not estimated from some.
+    /// Computed for all selections, not estimated from a sample.
     pub exact: bool,
-    /// Where all selections are counted but not told apart to the last digit: how far the quartiles are from the true ones at most.
+    /// Largest error of the quartiles where all selections are counted with a finite resolution.
     pub within: Option<f64>,
-    /// 95 % intervals of the three quartiles where they are estimated from selections drawn at random.
+    /// 95 % intervals of the three quartiles where they are estimated from random selections.
     pub intervals: Option<[(f64, f64); 3]>,
 }
 
 impl Spread {
-    /// Where the whiskers of a box plot end.
+    /// Ends of the whiskers of a box plot.
     pub fn whiskers(&self) -> (f64, f64) {
         let reach = 1.5 * (self.q3 - self.q1);
         (self.min.max(self.q1 - reach), self.max.min(self.q3 + reach))
     }
 }
 
-/// What one section does to the share.
+/// Influence of one section on the share.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Importance {
     pub section: String,
@@ -143,23 +143,23 @@ pub struct WorstSelection {
     pub sections: Vec<String>,
 }
 
-/// The smallest sets of sections without which all others together give another verdict.
+/// The smallest sets of sections whose removal changes the verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Removal {
     pub verdict: Verdict,
-    /// Sections of each smallest set; empty where none was found.
+    /// Sections of each smallest set; empty if none was found.
     pub sets: Vec<Vec<String>>,
-    /// How many such sets there are; only the first are kept.
+    /// Number of such sets; only the first are listed.
     pub count: usize,
-    /// Every set of up to so many sections was tried.
+    /// All sets up to this size were tried.
     pub tried: usize,
-    /// Nothing more can be removed without falling short of what the protocol needs.
+    /// No more sections can be removed without falling below the number that the protocol requires.
     pub complete: bool,
-    /// Where none of the sets tried changes it: a larger one that does, not surely the smallest of its kind.
+    /// If no set that was tried changes the verdict: a larger one that does, not necessarily the smallest.
     pub larger: Option<Vec<String>>,
 }
 
-/// A smaller set of sections that keeps the scatter of all.
+/// A reduced set of sections with nearly the same scatter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reduction {
     pub most: usize,
@@ -173,12 +173,12 @@ pub struct Reduction {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SyncStudy {
     pub axis_unit: String,
-    /// In the order asked for, 0 among them.
+    /// In the given order; 0 is included.
     pub offsets: Vec<AtOffset>,
     pub estimates: Vec<Estimated>,
-    /// Whether the estimates were taken out before the offsets were put in.
+    /// Whether the estimated offsets were corrected first.
     pub corrected: bool,
-    /// The one selection of the first figure, by section.
+    /// The selection of the first figure, by section.
     pub selection: Vec<String>,
 }
 
@@ -189,29 +189,29 @@ pub struct AtOffset {
     /// Verdict over all usable sections.
     pub verdict: Verdict,
     pub reasons: Vec<String>,
-    /// Normalised statistics of the one selection.
+    /// Normalised statistics of the single selection.
     pub selected: Vec<Selected>,
-    /// `None` where too few sections are usable at this offset: why.
+    /// The reason if too few sections are usable at this offset.
     pub study: Result<SelectionStudy, String>,
-    /// What is otherwise than without offset.
+    /// Differences from the case without offset.
     pub changes: Vec<String>,
-    /// Selections whose verdict is otherwise than without offset, or why there is none to compare.
+    /// Selections whose verdict differs from that without offset, or the reason why they cannot be compared.
     pub flips: Result<Flips, String>,
     /// Sections that cannot be used at this offset, with the reason.
     pub lost: Vec<(String, String)>,
 }
 
-/// Selections whose verdict is another than before.
+/// Selections whose verdict changes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Flips {
-    /// Selections compared: all that both have, or those drawn at random.
+    /// Number of selections compared: all common ones, or random ones.
     pub compared: f64,
-    /// Share of them validated before and no longer.
+    /// Share of them that are no longer validated.
     pub lost: f64,
-    /// Share of them validated now and not before.
+    /// Share of them that are newly validated.
     pub gained: f64,
     pub exact: bool,
-    /// 95 % Wilson intervals where they were drawn.
+    /// 95 % Wilson intervals for random selections.
     pub lost_interval: Option<(f64, f64)>,
     pub gained_interval: Option<(f64, f64)>,
 }
@@ -227,19 +227,19 @@ pub struct Selected {
     pub holds: bool,
 }
 
-/// How a section's measurement lies against its simulation, in the unit of the axis.
+/// Estimated offset of a section's measurement against its simulation, in the unit of the axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Estimated {
     pub section: String,
     pub zone: Option<String>,
-    /// To be added to the measurement's axis; `None` where the signals do not tell.
+    /// To be added to the measurement's axis; `None` if it cannot be estimated.
     pub shift: Option<f64>,
     pub low: Option<f64>,
     pub high: Option<f64>,
     pub correlation: Option<f64>,
 }
 
-/// The verdict along the protocol's parameters, each varied by itself.
+/// The verdict as a function of the protocol's parameters, each varied by itself.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParameterStudy {
     pub base: AtValue,
@@ -250,17 +250,17 @@ pub struct ParameterStudy {
 pub struct Varied {
     pub name: String,
     pub title: String,
-    /// Value without variation.
+    /// Baseline value.
     pub base: String,
     pub values: Vec<AtValue>,
-    /// Verdicts differ.
+    /// The verdict changes.
     pub decides: bool,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AtValue {
     pub value: String,
-    /// It is the one that is used without variation.
+    /// Whether it is the baseline value.
     pub is_base: bool,
     pub verdict: Verdict,
     pub reasons: Vec<String>,

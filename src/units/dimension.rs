@@ -3,13 +3,13 @@
 use std::fmt;
 use std::ops::{Div, Mul};
 
-/// Exponents of length, mass, time, temperature and electric current. An angle is a plain number.
+/// Exponents of length, mass, time, temperature and electric current. An angle is dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct Dimension(pub [i8; 5]);
 
 const BASE: [&str; 5] = ["m", "kg", "s", "K", "A"];
 
-/// Dimensions that engineers have a word for.
+/// Dimensions with a name.
 const WORDS: [(Dimension, &str); 22] = [
     (Dimension::ONE, "a plain number"),
     (Dimension([1, 0, 0, 0, 0]), "a length"),
@@ -41,7 +41,7 @@ impl Dimension {
     pub const TIME: Self = Self([0, 0, 1, 0, 0]);
     pub const FREQUENCY: Self = Self([0, 0, -1, 0, 0]);
 
-    /// `self` to a whole power, or `None` beyond what any quantity has.
+    /// `self` to an integer power; `None` if an exponent exceeds the range.
     pub fn power(self, exponent: i8) -> Option<Self> {
         let mut out = [0; 5];
         for (to, from) in out.iter_mut().zip(self.0) {
@@ -50,7 +50,7 @@ impl Dimension {
         Some(Self(out))
     }
 
-    /// The square root, where all exponents are even.
+    /// The square root, if all exponents are even.
     pub fn root(self) -> Option<Self> {
         self.0.iter().all(|exponent| exponent % 2 == 0).then(|| Self(self.0.map(|exponent| exponent / 2)))
     }

@@ -1,6 +1,6 @@
-//! Units as types: a [`Dimension`] is what an expression must agree in, a [`Unit`] how a number is read and printed.
+//! Units: a [`Dimension`] is the type of an expression; a [`Unit`] is for reading and printing numbers.
 //!
-//! Inside the program every number is in SI base units; conversion happens where text becomes a number and back.
+//! Inside the program all numbers are in SI base units; conversion takes place where text is read or printed.
 
 mod dimension;
 pub mod number;
@@ -15,7 +15,7 @@ use std::fmt;
 /// A unit of measurement: `value_in_SI = number * factor`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
-    /// As printed, for instance `m/s^2`; `-` for a plain number.
+    /// As printed, for instance `m/s^2`; `-` for a dimensionless number.
     pub text: String,
     pub factor: f64,
     pub dimension: Dimension,
@@ -25,12 +25,12 @@ impl Unit {
     /// Reads `kN`, `m/s^2`, `m/s²`, `N s/m`, `1/m`, `kN*m`, `-`, `%` and the like.
     ///
     /// # Errors
-    /// The part of the text that is no unit, with the nearest known symbol.
+    /// The part of the text that is not a unit, with the nearest known symbol.
     pub fn parse(text: &str) -> Result<Self, UnknownUnit> {
         parse::unit(text)
     }
 
-    /// The unit of a plain number.
+    /// The unit of a dimensionless number.
     pub fn one() -> Self {
         Self { text: "-".into(), factor: 1.0, dimension: Dimension::ONE }
     }
@@ -43,7 +43,7 @@ impl Unit {
         value / self.factor
     }
 
-    /// ` kN`, or nothing for a plain number: what follows a number in text.
+    /// The unit after a number in text: ` kN`, or nothing for a dimensionless number.
     pub fn suffix(&self) -> String {
         if self.text == "-" { String::new() } else { format!(" {}", self.text) }
     }
@@ -55,7 +55,7 @@ impl fmt::Display for Unit {
     }
 }
 
-/// A word in a unit text that is no known unit.
+/// A word in a unit text that is not a known unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownUnit {
     pub word: String,

@@ -1,27 +1,27 @@
-//! A number with its unit as people write it in a file of data: `54.5 kN`, `1.2e7 N/m`, `0.35`.
+//! A number with its unit in a data file: `54.5 kN`, `1.2e7 N/m`, `0.35`.
 
 use super::{Dimension, SYMBOLS, Unit};
 
-/// A number that was read in the unit that is expected.
+/// A number read in an expected unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Read {
     /// In SI.
     pub si: f64,
-    /// Whether the text says the unit; else the expected one was taken.
+    /// Whether the text states the unit; otherwise the expected one is assumed.
     pub unit_stated: bool,
 }
 
-/// Why a text is no number of the expected dimension, and how to mend it.
+/// Why a text is not a number of the expected dimension, and a proposed correction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused {
     pub says: String,
     pub help: Option<String>,
 }
 
-/// Reads a finite number. A unit may follow, also in brackets; without one the number is in the expected unit.
+/// Reads a finite number. A unit may follow, also in brackets; otherwise the expected unit is assumed.
 ///
 /// # Errors
-/// No number, a decimal comma, an unknown unit, a unit of another dimension.
+/// Not a number, a decimal comma, an unknown unit, a unit of another dimension.
 pub fn read(text: &str, expected: &Unit) -> Result<Read, Refused> {
     let text = text.trim();
     let refused = |says: String, help: Option<String>| Refused { says, help };
@@ -51,12 +51,12 @@ pub fn read(text: &str, expected: &Unit) -> Result<Read, Refused> {
     Ok(Read { si: unit.to_si(number), unit_stated: true })
 }
 
-/// ` (in kN)`, or nothing for a plain number.
+/// ` (in kN)`, or nothing for a dimensionless number.
 fn place(expected: &Unit) -> String {
     if expected.text == "-" { String::new() } else { format!(" (in {expected})") }
 }
 
-/// Units in which a number would lie in a range (in SI), of the dimension of another unit: the likely ones that were forgotten.
+/// Units of the given dimension in which a number lies in a range (in SI): candidates for a unit that was omitted.
 #[must_use]
 pub fn units_within(number: f64, like: &Unit, range: (f64, f64)) -> Vec<&'static str> {
     let within = |factor: f64| (range.0..=range.1).contains(&(number * factor));
@@ -64,7 +64,7 @@ pub fn units_within(number: f64, like: &Unit, range: (f64, f64)) -> Vec<&'static
     alike.filter(|known| within(known.factor)).map(|known| known.symbol).collect()
 }
 
-/// A mass where a force is asked for is likely the load itself: what it weighs.
+/// Help for a mass given instead of a force: its weight.
 fn weight(number: f64, unit: &Unit, expected: &Unit) -> Option<String> {
     let gravity = SYMBOLS.iter().find(|known| known.symbol == "gn")?;
     let mass: Dimension = expected.dimension / gravity.dimension;
@@ -74,7 +74,7 @@ fn weight(number: f64, unit: &Unit, expected: &Unit) -> Option<String> {
     })
 }
 
-/// Where the number at the start of a text ends: sign, digits with one point, exponent.
+/// End of the number at the start of a text: sign, digits with one point, exponent.
 fn number_end(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
@@ -93,7 +93,7 @@ fn number_end(text: &str) -> usize {
     end
 }
 
-/// `54,5 kN` as `54.5 kN`, if that makes a number of it.
+/// Replaces `54,5 kN` by `54.5 kN`, if that is a number.
 fn decimal_comma(text: &str) -> Option<String> {
     let (before, after) = text.split_once(',')?;
     let mended = format!("{before}.{after}");

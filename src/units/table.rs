@@ -26,7 +26,7 @@ const POWER: [i8; 5] = [2, 1, -3, 0, 0];
 const PRESSURE: [i8; 5] = [-1, 1, -2, 0, 0];
 const PI: f64 = std::f64::consts::PI;
 
-/// Every symbol, a prefix being part of it, so that nothing is guessed (`mN` is not offered, `kN` is).
+/// All symbols including their prefixes, so that none is composed (`kN` is known, `mN` is not).
 pub const SYMBOLS: &[Symbol] = &[
     unit("-", "plain number", 1.0, ONE),
     unit("1", "plain number", 1.0, ONE),

@@ -1,6 +1,6 @@
 //! From parser events to the tree.
 //!
-//! The events are those of the parser below `serde-saphyr`: serde would hide quotes, aliases and every problem after the first.
+//! The events are those of the parser of `serde-saphyr`: serde would hide quotes, aliases and all problems after the first.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -13,20 +13,20 @@ use super::{Key, Node, Value, scalar};
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span};
 
-/// Aliases can make a small file a huge tree; no protocol or vehicle comes near this.
+/// Limit of nodes: aliases can expand a small file to a very large tree. Real protocols and vehicles are far below it.
 const NODES: usize = 100_000;
 const DEPTH: usize = 64;
 
-/// The one document of a YAML text; an empty text is [`Value::Null`].
+/// The single document of a YAML text; an empty text is [`Value::Null`].
 ///
-/// Repeated keys, tags and endless numbers are problems too, all of them reported; after a syntax error nothing more is read.
+/// Repeated keys, tags and numbers that are not finite are also problems, and all are reported. Reading stops at a syntax error.
 pub fn load(source: &Arc<Source>, problems: &mut Problems) -> Option<Node> {
     let before = problems.errors();
     read(source, problems, false).filter(|_| problems.errors() == before)
 }
 
-/// As [`load`], but the tree comes back in spite of any problem except a syntax error, and repeated keys stand in it as
-/// written without being one: for readers that judge them by what they mean.
+/// As [`load`], but the tree is returned in spite of all problems except a syntax error, and repeated keys are kept without a problem, for
+/// readers that interpret them.
 pub fn load_as_written(source: &Arc<Source>, problems: &mut Problems) -> Option<Node> {
     read(source, problems, true)
 }
@@ -46,15 +46,15 @@ fn read(source: &Arc<Source>, problems: &mut Problems, repeats: bool) -> Option<
 /// A comment of a YAML text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
-    /// Without the `#` and one leading blank.
+    /// Without the `#` and one leading space.
     pub text: String,
-    /// With the `#`.
+    /// Including the `#`.
     pub span: Span,
-    /// Whether something else stands before it on its line.
+    /// Whether it follows other text on its line.
     pub beside: bool,
 }
 
-/// The comments of a text in their order, up to the first syntax error.
+/// The comments of a text in order, up to the first syntax error.
 pub fn remarks(source: &Arc<Source>) -> Vec<Remark> {
     Parser::new_from_str(&source.text)
         .map_while(Result::ok)
@@ -68,13 +68,13 @@ pub fn remarks(source: &Arc<Source>) -> Vec<Remark> {
         .collect()
 }
 
-/// Boxed, as a problem is large beside the values that travel the same way.
+/// Boxed, since a problem is large compared with the values returned.
 type Fault = Box<Problem>;
 
 struct Loader<'a> {
     source: &'a Arc<Source>,
     events: Parser<'a, yaml::StrInput<'a>>,
-    /// Complete anchored values only, so that a value cannot hold itself. Each with its number of nodes.
+    /// Complete anchored values with their number of nodes; an incomplete one is not included, so that a value cannot contain itself.
     anchors: HashMap<usize, (Node, usize)>,
     nodes: usize,
     depth: usize,
@@ -181,7 +181,7 @@ impl<'a> Loader<'a> {
     fn map(&mut self, start: Span) -> Result<Node, Fault> {
         self.deeper(&start)?;
         let mut entries: Vec<(Key, Node)> = Vec::new();
-        // Only to find repeated keys; a map of 100 000 keys must not take their square.
+        // For repeated keys only; keeps the time linear for large maps.
         let mut places: HashMap<String, usize> = HashMap::new();
         let end = loop {
             let (event, span) = self.inside()?;
@@ -228,7 +228,7 @@ impl<'a> Loader<'a> {
         Node { value, span, raw, exact }
     }
 
-    /// Whether the tag makes a scalar text. Any other tag asks for a type that is not known here.
+    /// Whether the tag makes a scalar text. All other tags are unknown.
     fn tag(&mut self, tag: Option<&yaml::Tag>, span: &Span) -> bool {
         let Some(tag) = tag else { return false };
         if tag.is_yaml_core_schema_tag("str") || tag.original() == "!" {
@@ -244,7 +244,7 @@ impl<'a> Loader<'a> {
             .byte_offset()
             .unwrap_or_else(|| self.source.text.char_indices().nth(marker.index()).map_or(self.source.text.len(), |(at, _)| at));
         let tab = is_tab(error.kind());
-        // The parser points at the value that a tab comes to stand in.
+        // The parser points to the value that contains the tab.
         let at = self.source.text.get(at..).and_then(|rest| rest.find('\t')).filter(|_| tab).map_or(at, |tab| at + tab);
         let span = self.source.span(at..at);
         let (says, help) = in_words(error.kind());
@@ -269,15 +269,15 @@ fn bytes(place: &yaml::Span) -> Option<Range<usize>> {
     place.byte_range()
 }
 
-/// From the start of a list or map to its bracket, or, where there is none, to the end of what it holds.
+/// From the start of a list or map to its closing bracket, or to the end of its last element.
 fn around(start: &Span, last: Option<&Span>, end: &Span) -> Span {
-    // In block style the end event lies where the next token begins and covers nothing.
+    // In block style the end event is at the next token and is empty.
     let to = if end.end > end.start { end } else { last.unwrap_or(start) };
-    // An alias lies where its anchor is, which may be before the list.
+    // An alias has the span of its anchor, which may be before the list.
     if to.end < start.end { start.clone() } else { start.to(to) }
 }
 
-/// Text, place and exactness of a scalar: quotes are left out where the bytes between them are the text.
+/// Text, span and exactness of a scalar; quotes are excluded if the bytes between them are the text.
 fn written(text: Cow<'_, str>, style: ScalarStyle, span: Span) -> (String, Span, bool) {
     let inner = match style {
         ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted => span.part(1..(span.end - span.start).saturating_sub(1)),
@@ -298,13 +298,13 @@ fn is_tab(kind: &ErrorKind) -> bool {
     )
 }
 
-/// The fact and the remedy for the faults people make; the parser's own words for the rest.
+/// Message and help for frequent errors; the parser's own message for all others.
 fn in_words(kind: &ErrorKind) -> (String, Option<&'static str>) {
     let (says, help) = match kind {
-        kind if is_tab(kind) => ("a tab stands in the indentation", Some("YAML is indented with blanks")),
-        ErrorKind::UnclosedQuotedScalar => ("a quote is opened and never closed", None),
+        kind if is_tab(kind) => ("the indentation contains a tab", Some("indent YAML with spaces")),
+        ErrorKind::UnclosedQuotedScalar => ("this quote is not closed", None),
         ErrorKind::MappingValueNotAllowed => {
-            ("a second `:` stands where a value is expected", Some("quote a value that holds `: `, and give each key its own line"))
+            ("a second `:` stands where a value is expected", Some("quote a value that contains `: `, and write each key on its own line"))
         }
         ErrorKind::ExpectedBlockMappingKey | ErrorKind::InvalidIndentation | ErrorKind::SimpleKeyExpected => {
             ("a line `key: value` is expected here", Some("the keys of one map begin in the same column, each followed by `: `"))

@@ -1,8 +1,8 @@
-//! What a plain scalar means: the core schema of YAML 1.2.2, section 10.3.2.
+//! Values of plain scalars by the core schema of YAML 1.2.2, section 10.3.2.
 
 use super::Value;
 
-/// The value of a plain scalar, or the number it spells that is not finite.
+/// The value of a plain scalar, or a number that is not finite.
 pub(super) fn resolve(text: &str) -> Result<Value, f64> {
     Ok(match text {
         "" | "~" | "null" | "Null" | "NULL" => Value::Null,
@@ -19,7 +19,7 @@ pub(super) fn resolve(text: &str) -> Result<Value, f64> {
 fn number(text: &str) -> Option<f64> {
     for (mark, radix) in [("0o", 8), ("0x", 16)] {
         if let Some(digits) = text.strip_prefix(mark) {
-            // `from_str_radix` takes a sign, YAML does not.
+            // `from_str_radix` accepts a sign; YAML does not.
             let plain = digits.chars().all(|digit| digit.is_digit(radix));
             return plain.then(|| u32::from_str_radix(digits, radix).ok().map(f64::from)).flatten();
         }
@@ -30,7 +30,7 @@ fn number(text: &str) -> Option<f64> {
         ".nan" | ".NaN" | ".NAN" if unsigned == text => return Some(f64::NAN),
         _ => {}
     }
-    // Rust reads `inf` and `nan` too; YAML numbers start with a digit or with a point and a digit.
+    // Rust also reads `inf` and `nan`; YAML numbers start with a digit, or with a point and a digit.
     let digits = unsigned.strip_prefix('.').unwrap_or(unsigned);
     digits.starts_with(|digit: char| digit.is_ascii_digit()).then(|| text.parse().ok()).flatten()
 }
@@ -41,7 +41,7 @@ mod tests {
 
     #[test]
     fn the_core_schema_and_nothing_more() {
-        // Examples of YAML 1.2.2, sections 10.3.2 and 10.3.3, and what YAML 1.1 read differently.
+        // Examples of YAML 1.2.2, sections 10.3.2 and 10.3.3, and values that YAML 1.1 reads differently.
         for (text, value) in [
             ("0", 0.0),
             ("0o7", 7.0),

@@ -63,7 +63,7 @@ fn effects_that_are_none() {
     wrong("payload=20 t", &["range", "0 to 15000 kg"]);
     wrong("payload=3 kN", &["unit-mismatch", "`payload.mass` is in kg, not in kN"]);
     wrong("payload=3 tonnes", &["unknown-unit", "`tonnes` is no unit"]);
-    wrong("friction=much", &["wrong-kind", "`much` is no number"]);
+    wrong("friction=much", &["wrong-kind", "`much` is not a number"]);
     wrong("friction=1e999", &["wrong-kind", "too large"]);
     wrong("friction=0.5 on Y_1R", &["acts on the environment, not on channels"]);
     wrong("sensor_gain=0.8", &["channel-missing", "sensor_gain=0.8 on Y_1R"]);
