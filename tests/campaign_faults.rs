@@ -92,7 +92,7 @@ fn one_faulty_section_is_not_used() {
         (
             "uneven step",
             |campaign| cell(&campaign.join(M), 100, "time [s]", "0.994"),
-            "the step of `time` is 0.014 s at row 101 of `measurement/S01.csv`, 0.01 s on average: records are sampled at a constant step",
+            "the step of `time` is 0.014 s at row 101 of `measurement/S01.csv`, 0.01 s on average: records must have a constant sampling rate",
         ),
         (
             "NaN",
@@ -579,7 +579,7 @@ fn a_link_out_of_the_campaign_is_refused() {
         std::os::unix::fs::symlink(outside.path().join("measurement/S01.csv"), campaign.join("measurement/S01.csv")).expect("linked");
     });
     assert_eq!(found.ran.code, 1);
-    let reason = "`measurement/S01.csv` is a symbolic link out of the campaign's folder (sections.csv, row 2): paths are relative to the campaign's folder and stay inside it";
+    let reason = "`measurement/S01.csv` is a symbolic link out of the campaign's folder (sections.csv, row 2): paths must be relative to the campaign's folder and stay inside it";
     assert_eq!(found.reason("S01").as_deref(), Some(reason));
 }
 

@@ -210,6 +210,6 @@ fn a_figure_that_is_none_is_refused_with_a_reason() {
     let problems = typeset(&view(&found), &figures, &[]).expect_err("this is no SVG");
     assert_eq!(problems.0.first().map(|problem| problem.code), Some("report-template"));
     let attachment = Attachment { name: "../results.json", ..attached() };
-    let problems = typeset(&view(&found), &[], &[attachment]).expect_err("this is no file name");
+    let problems = typeset(&view(&found), &[], &[attachment]).expect_err("this is not a file name");
     assert_eq!(problems.0.first().map(|problem| problem.code), Some("report-attachment"));
 }

@@ -1,6 +1,6 @@
-//! A campaign folder: what it is, its vehicle, its sections, and where the records of each are.
+//! A campaign folder: description, vehicle, sections, and the places of the records.
 //!
-//! Only the keys of the folder layout are known here; all others are facts that are printed, or asked for by name.
+//! Only the keys of the folder layout are defined here; all others are facts, which are printed or requested by name.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -20,10 +20,10 @@ use crate::yaml::{self, Key, Node, Value};
 
 /// The file that makes a folder a campaign.
 pub const CAMPAIGN_FILE: &str = "campaign.yaml";
-/// The column of the section table that names the sections; without it, the first column does.
+/// The column of the section table with the names of the sections; the first column if it is missing.
 const SECTION_KEY: &str = "section";
 
-/// The kinds of records that a campaign has, each in a folder of its own with a file per section.
+/// The kinds of records of a campaign, each in its own folder with one file per section.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RecordKind {
     Measurement,
@@ -44,14 +44,14 @@ impl RecordKind {
     }
 }
 
-/// Something that `campaign.yaml` says beyond the layout.
+/// An entry of `campaign.yaml` beyond the layout.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fact {
-    /// The key of the map that it stands in; empty at the top.
+    /// The key of the enclosing map; empty at the top level.
     pub group: String,
     /// The key without its unit.
     pub name: String,
-    /// What stood in brackets after the name.
+    /// The text in brackets after the name.
     pub unit: Option<String>,
     /// As written.
     pub text: String,
@@ -68,7 +68,7 @@ pub struct Parameter {
 /// A file that was read, and its fingerprint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadFile {
-    /// Inside the campaign, with `/`.
+    /// Path inside the campaign, with `/`.
     pub path: String,
     pub sha256: String,
     pub bytes: u64,
@@ -78,35 +78,35 @@ pub struct ReadFile {
 pub struct Campaign {
     pub name: String,
     pub source: Arc<Source>,
-    /// All of `campaign.yaml`, for who asks for a key by name.
+    /// The whole of `campaign.yaml`.
     pub tree: Node,
     pub facts: Vec<Fact>,
     pub parameters: Vec<Parameter>,
-    /// What the block `report` states.
+    /// Contents of the block `report`.
     pub report: Vec<Stated>,
-    /// Name or path of the protocol that is used if none is given.
+    /// Name or path of the default protocol.
     pub protocol: Option<Spanned<String>>,
-    /// What made the simulated records, where a program says so.
+    /// Origin of the simulated records, if they were written by a program.
     pub origin: Option<Origin>,
-    /// All of the vehicle file; an empty map if the campaign names none.
+    /// The whole vehicle file; an empty map if the campaign has none.
     pub vehicle: Node,
-    /// Absent if the campaign has no section table: then every measured record is evaluated as a whole.
+    /// Absent if the campaign has no section table; every measured record is then evaluated as a whole.
     pub sections: Option<Table>,
-    /// The names of the sections in the order of the table; without one, of the measured records, sorted.
+    /// The names of the sections in the order of the table, or of the measured records, sorted.
     pub names: Vec<Cell>,
-    /// `campaign.yaml`, the vehicle file and the section table, as far as there are any.
+    /// `campaign.yaml`, the vehicle file and the section table, if present.
     pub files: Vec<ReadFile>,
     folder: Folder,
     record_folders: Vec<(RecordKind, Spanned<String>)>,
-    /// Files in a folder of records that are of no section, by kind; listed where a record is missing.
+    /// Files in a folder of records that belong to no section, by kind; listed if a record is missing.
     strangers: [OnceLock<Vec<String>>; RecordKind::ALL.len()],
 }
 
-/// Most comparisons of names with names that are made to suggest what was meant for missing records of a campaign.
+/// Maximum number of name comparisons for suggestions of missing records.
 const MOST_COMPARISONS: usize = 1_000_000;
 
 impl Campaign {
-    /// Opens a campaign by its folder or its `campaign.yaml`. Records are not read yet.
+    /// Opens a campaign by its folder or its `campaign.yaml`. Records are read later.
     ///
     /// Problems: those of [`read_text`], [`yaml::load`] and [`Table::read`]; `folder-missing`, `path-outside`, `path-invalid`,
     /// `key-missing`, `wrong-kind`, `no-records`.
@@ -118,11 +118,11 @@ impl Campaign {
         let place = folder.place(CAMPAIGN_FILE, &nowhere).map_err(|problem| problems.push(problem)).ok()?;
         let mut opening = Opening { folder, files: Vec::new(), problems };
         if disk::is_folder(&opening.folder.real().join(disk::UNFINISHED)).unwrap_or(false) {
-            let says = format!("`{}` is unfinished: a run was ended while it wrote this campaign", path.display());
-            opening.problems.push(Problem::error("unfinished-set", says).help("run what wrote it again, with the same `--out`"));
+            let says = format!("`{}` is incomplete: the run that wrote this campaign was interrupted", path.display());
+            opening.problems.push(Problem::error("unfinished-set", says).help("repeat that run, with the same `--out`"));
             return None;
         }
-        // A fault of the disk is told by who reads the file.
+        // Disk errors are reported when the file is read.
         if matches!(disk::is_file(&place.path), Ok(false)) {
             let says = format!("there is no file `{}`", place.shown);
             opening.problems.push(Problem::error("file-missing", says).help("a campaign is a folder with a file `campaign.yaml`"));
@@ -131,7 +131,7 @@ impl Campaign {
         let (source, tree) = opening.yaml(&place, None)?;
         if !matches!(tree.value, Value::Map(_)) {
             problems.push(
-                Problem::error("wrong-kind", format!("a campaign is a map of keys and values; this is {}", tree.kind_in_words()))
+                Problem::error("wrong-kind", format!("a campaign must be a map of keys and values, not {}", tree.kind_in_words()))
                     .at(&tree.span),
             );
             return None;
@@ -215,7 +215,7 @@ impl Campaign {
 
     fn record_folder(&self, kind: RecordKind) -> Result<(Place, &Span), Problem> {
         let Some((_, written)) = self.record_folders.iter().find(|(known, _)| *known == kind) else {
-            return Err(Problem::error("key-missing", format!("the campaign has no `{}`: the folder of its records", kind.key()))
+            return Err(Problem::error("key-missing", format!("the campaign has no `{}`, the folder of its records", kind.key()))
                 .at(&self.tree.span.part(0..0)));
         };
         Ok((self.folder.place(&written.value, &written.span)?, &written.span))
@@ -226,7 +226,7 @@ impl Campaign {
         self.record_folders.iter().any(|(known, _)| *known == kind)
     }
 
-    /// Where the record of a section is, which must exist.
+    /// The place of the record of a section, which must exist.
     ///
     /// # Errors
     /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in that folder).
@@ -256,14 +256,14 @@ impl Campaign {
         Err(problem.suggest(&format!("{}.csv", section.value), others.iter().map(String::as_str)))
     }
 
-    /// Files of a folder but the records of sections: the record of another section is not what was meant.
+    /// Files of a folder that are not records of sections. Records of other sections are not suggested.
     fn strangers(&self, folder: &Path) -> Vec<String> {
         let sections: HashSet<&str> = self.names.iter().map(|name| name.value.as_str()).collect();
         let names = disk::names(folder).unwrap_or_default().into_iter().filter_map(|name| name.into_string().ok());
         names.filter(|name| !name.strip_suffix(".csv").is_some_and(|name| sections.contains(name))).collect()
     }
 
-    /// Folders and files that the campaign is read from, as far as they are named, without symbolic links.
+    /// The folders and files of the campaign, without symbolic links.
     pub fn inputs(&self) -> Inputs {
         let real = |place: &Place| disk::real(&place.path).ok().flatten().unwrap_or_else(|| place.path.clone());
         let folders = RecordKind::ALL.into_iter().filter_map(|kind| Some(real(&self.record_folder(kind).ok()?.0)));
@@ -272,7 +272,7 @@ impl Campaign {
         Inputs { folder: self.folder.real().to_path_buf(), folders: folders.collect(), files: files.map(|place| real(&place)).collect() }
     }
 
-    /// Reads the wanted columns of a section's record. Its faults go into results, which must be the same wherever the campaign lies:
+    /// Reads the wanted columns of a section's record. Problems are part of the results and must not depend on the place of the campaign:
     /// they name the record by its path inside the campaign.
     ///
     /// # Errors
@@ -284,11 +284,11 @@ impl Campaign {
         Ok((record, file))
     }
 
-    /// Every file that the campaign names but its `campaign.yaml` and the records of one kind, with its path inside and its bytes:
-    /// what a copy of the campaign needs.
+    /// All files of the campaign except its `campaign.yaml` and the records of one kind, with their paths inside and their bytes, for a
+    /// copy of the campaign.
     ///
     /// # Errors
-    /// A file cannot be read, or lies outside.
+    /// A file cannot be read, or is outside the campaign.
     pub fn other_files(&self, but: RecordKind) -> Result<Vec<(String, Vec<u8>)>, Problem> {
         let mut inside: Vec<String> = self.files.iter().map(|file| file.path.clone()).filter(|path| path != CAMPAIGN_FILE).collect();
         for kind in RecordKind::ALL.into_iter().filter(|kind| *kind != but && self.has(*kind)) {
@@ -308,10 +308,10 @@ impl Campaign {
         inside.into_iter().map(read).collect()
     }
 
-    /// Files that the vehicle names, as far as they are there.
+    /// Files that the vehicle file names, if they exist.
     ///
     /// # Errors
-    /// A name leads outside.
+    /// A path leads out of the campaign.
     pub fn vehicle_files(&self) -> Result<Vec<Place>, Problem> {
         let mut named = vec!["profile.csv".to_string(), "profile_worn.csv".to_string()];
         let maps = self.vehicle.entries().iter().flat_map(|(_, node)| node.entries());
@@ -327,12 +327,12 @@ impl Campaign {
         Ok(found)
     }
 
-    /// The path inside the campaign of a file that a message names by the folder as it was given.
+    /// The path inside the campaign of a file named in a message.
     pub fn inside<'a>(&self, shown: &'a str) -> &'a str {
         self.folder.inside(shown)
     }
 
-    /// A file that the campaign or its vehicle names; it need not exist.
+    /// The place of a file named by the campaign or its vehicle; it need not exist.
     ///
     /// # Errors
     /// `path-outside`, `path-invalid`.
@@ -341,21 +341,21 @@ impl Campaign {
     }
 }
 
-/// What a campaign is read from: absolute paths.
+/// Absolute paths of a campaign's inputs.
 #[derive(Clone, Debug)]
 pub struct Inputs {
-    /// Of the campaign.
+    /// Folder of the campaign.
     pub folder: PathBuf,
-    /// Of its records.
+    /// Folders of its records.
     pub folders: Vec<PathBuf>,
     pub files: Vec<PathBuf>,
 }
 
-/// Size of a file that was just read.
+/// Size of a file that was read before.
 fn size(place: &Place) -> Result<u64, Problem> {
     match disk::kind(&place.path) {
         Ok(Some(disk::Kind::File(size))) => Ok(size),
-        Ok(_) => Err(Problem::error("file-missing", format!("`{}` went away while it was read", place.shown))),
+        Ok(_) => Err(Problem::error("file-missing", format!("`{}` was removed while it was read", place.shown))),
         Err(error) => Err(Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.shown))),
     }
 }
@@ -371,7 +371,7 @@ fn parent(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// A problem of a file as a whole is shown where the file is named.
+/// Shows a problem of a whole file where the file is named.
 fn named_at(problem: Problem, span: Option<&Span>) -> Problem {
     match span {
         Some(span) if problem.at.is_none() => problem.at(span),
@@ -398,20 +398,20 @@ impl Opening<'_> {
         Some((source, tree))
     }
 
-    /// The text of a key, if it is there; it must be a single value then.
+    /// The text of a key, if present; it must be a single value.
     fn text(&mut self, tree: &Node, key: &str) -> Option<Spanned<String>> {
         let node = tree.get(key)?;
         match node.scalar_text() {
             Some(text) if !text.trim().is_empty() => Some(Spanned::new(text.to_string(), node.span.clone())),
             _ => {
-                let says = format!("`{key}` must be text; this is {}", node.kind_in_words());
+                let says = format!("`{key}` must be text, not {}", node.kind_in_words());
                 self.problems.push(Problem::error("wrong-kind", says).at(&node.span));
                 None
             }
         }
     }
 
-    /// A key of the layout that is one letter off would be printed as a fact and otherwise ignored.
+    /// Reports a misspelt key of the layout, which would otherwise be printed as a fact and have no effect.
     fn misspelt(&mut self, tree: &Node) {
         let layout = || LAYOUT.into_iter().chain(RecordKind::ALL.into_iter().map(RecordKind::key));
         for (key, _) in tree.entries() {
@@ -434,7 +434,7 @@ impl Opening<'_> {
         if matches!(vehicle.value, Value::Map(_)) {
             return Some(vehicle);
         }
-        let says = format!("a vehicle is a map of keys and values; this is {}", vehicle.kind_in_words());
+        let says = format!("a vehicle must be a map of keys and values, not {}", vehicle.kind_in_words());
         self.problems.push(Problem::error("wrong-kind", says).at(&vehicle.span));
         None
     }
@@ -454,7 +454,7 @@ impl Opening<'_> {
         Some(table)
     }
 
-    /// A file, or what stands in `campaign.yaml` itself.
+    /// From a file, or from `campaign.yaml` itself.
     fn origin(&mut self, tree: &Node) -> Option<Origin> {
         let node = tree.get(ORIGIN_KEY)?;
         if matches!(node.value, Value::Map(_)) {
@@ -470,12 +470,12 @@ impl Opening<'_> {
     fn parameters(&mut self, tree: &Node) -> Vec<Parameter> {
         let Some(node) = tree.get("parameters") else { return Vec::new() };
         if !matches!(node.value, Value::Map(_) | Value::Null) {
-            let says = format!("`parameters` must be a map of names and values; this is {}", node.kind_in_words());
+            let says = format!("`parameters` must be a map of names and values, not {}", node.kind_in_words());
             self.problems.push(Problem::error("wrong-kind", says).at(&node.span));
         }
         for (key, value) in node.entries() {
             if value.scalar_text().is_none() {
-                let says = format!("the parameter `{}` must be a single value; this is {}", key.text, value.kind_in_words());
+                let says = format!("the parameter `{}` must be a single value, not {}", key.text, value.kind_in_words());
                 self.problems.push(Problem::error("wrong-kind", says).at(&value.span));
             }
         }
@@ -483,10 +483,10 @@ impl Opening<'_> {
     }
 }
 
-/// Keys of `campaign.yaml` beside those of the records.
+/// Keys of `campaign.yaml` in addition to those of the records.
 const LAYOUT: [&str; 7] = ["name", "vehicle", "sections", "parameters", "protocol", ORIGIN_KEY, REPORT_KEY];
 
-/// Scalars at the top and one map below it, in the order written.
+/// Scalars at the top level and one map below it, in the order written.
 fn facts(tree: &Node) -> Vec<Fact> {
     let layout = |key: &str| LAYOUT.contains(&key) || RecordKind::ALL.iter().any(|kind| kind.key() == key);
     let mut facts = Vec::new();
@@ -499,7 +499,7 @@ fn facts(tree: &Node) -> Vec<Fact> {
 
 fn fact(group: &str, key: &Key, node: &Node) -> Option<Fact> {
     let text = match &node.value {
-        // A short list of scalars reads well in a line; anything deeper is no fact to print.
+        // A list of scalars is printed on one line; deeper structures are not facts.
         Value::List(items) => items.iter().map(Node::scalar_text).collect::<Option<Vec<_>>>()?.join(", "),
         _ => node.scalar_text()?.to_string(),
     };

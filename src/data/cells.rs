@@ -1,7 +1,6 @@
 //! One line of a CSV file: its cells with their places, and column headings `name [unit]`.
 //!
-//! The `csv` crate tells the row of a field but not its column, which every message needs; its reading of a line is what the
-//! tests compare with.
+//! The `csv` crate gives the row of a field but not its column, which messages need. Tests compare the cells with those of the crate.
 
 use std::ops::Range;
 
@@ -9,7 +8,7 @@ use crate::problem::Problem;
 use crate::source::Span;
 use crate::units::{Dimension, Unit};
 
-/// A cell without the blanks around it.
+/// A cell without surrounding blanks.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RawCell {
     pub text: String,
@@ -17,11 +16,11 @@ pub(super) struct RawCell {
     pub place: Range<usize>,
 }
 
-/// A quote that is not closed, or text after it, at this place of the line.
+/// Place of a quote that is not closed, or of text after it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct StrayQuote(pub Range<usize>);
 
-/// Splits a line without its line break. Quotes may hold commas and doubled quotes, not line breaks.
+/// Splits a line without its line break. Quoted cells may contain commas and doubled quotes, but no line breaks.
 pub(super) fn split(line: &str) -> Result<Vec<RawCell>, StrayQuote> {
     let mut cells = Vec::new();
     let mut from = 0;
@@ -46,7 +45,7 @@ fn trimmed(line: &str, place: Range<usize>) -> RawCell {
     RawCell { text: text.to_string(), place: start..start + text.len() }
 }
 
-/// The cell whose opening quote stands at `open`, and where its comma or the end of the line is.
+/// The cell with its opening quote at `open`, and the place of its comma or of the end of the line.
 fn quoted(line: &str, open: usize) -> Result<(RawCell, usize), StrayQuote> {
     let mut close = open + 1;
     loop {
@@ -86,7 +85,7 @@ impl Heading {
     /// The unit of the column, of the wanted dimension if one is given.
     ///
     /// # Errors
-    /// `unit-missing`, `unknown-unit`, `unit-mismatch`, each at its place in the header.
+    /// `unit-missing`, `unknown-unit`, `unit-mismatch`, each with its place in the header.
     pub fn unit(&self, wanted: Option<Dimension>) -> Result<Unit, Problem> {
         let name = &self.name;
         let Some(written) = &self.unit else {
@@ -119,7 +118,7 @@ impl Heading {
     }
 }
 
-/// `cant deficiency [mm]` into name and the range of the unit.
+/// Splits `cant deficiency [mm]` into the name and the range of the unit.
 pub(super) fn name_and_unit(text: &str) -> (&str, Option<Range<usize>>) {
     let inner = text.strip_suffix(']').and_then(|inner| Some((inner.rfind('[')?, inner.len())));
     match inner {
@@ -128,7 +127,7 @@ pub(super) fn name_and_unit(text: &str) -> (&str, Option<Range<usize>>) {
     }
 }
 
-/// The headings in the first line of a file, given as the place of that line.
+/// The headings in the first line of a file, whose place is given.
 pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<Heading>> {
     if let Some(problem) = other_separator(line) {
         problems.push(problem);
@@ -161,7 +160,7 @@ pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<H
     (problems.len() == before).then_some(headings)
 }
 
-/// A header without a comma that is parted by something else.
+/// A header without commas but with another separator.
 fn other_separator(line: &Span) -> Option<Problem> {
     let text = line.text();
     [(';', "semicolon-separated", "semicolons"), ('\t', "tab-separated", "tabs")].into_iter().find_map(|(separator, code, word)| {
@@ -178,11 +177,11 @@ pub(super) fn stray_quote(span: &Span) -> Problem {
     Problem::error("stray-quote", "a quoted cell is not closed, or text follows its closing quote").at(span)
 }
 
-/// A line with too few or too many cells, where a decimal comma is the likeliest reason for too many.
+/// A line with too few or too many cells; too many are most likely due to decimal commas.
 pub(super) fn ragged(line: &Span, cells: &[RawCell], columns: usize) -> Problem {
     let whole = |cell: &RawCell| cell.text.trim_start_matches(['-', '+']).bytes().all(|byte| byte.is_ascii_digit());
     let counts = format!("the row has {} values, the header {columns} columns", cells.len());
-    // The excess is one for each number with a comma, which are most of them, and then no cell has a point.
+    // With decimal commas there is an additional cell for most numbers, and no cell contains a point.
     let excess = cells.len().saturating_sub(columns);
     if 2 * excess >= columns && excess <= columns && cells.iter().rev().take(columns).all(whole) {
         return Problem::error("decimal-comma", format!("{counts}: the numbers seem to have decimal commas"))
@@ -212,7 +211,7 @@ pub(super) fn number(text: &str) -> Result<f64, (&'static str, String)> {
     }
 }
 
-/// Cell text for a message; a cell can be as long as the file.
+/// Cell text for a message, shortened, since a cell can be as long as the file.
 pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 40;
     if text.chars().count() <= MOST { text.to_string() } else { text.chars().take(MOST).chain(['…']).collect() }
@@ -246,7 +245,7 @@ mod tests {
     }
 
     proptest! {
-        /// What the `csv` crate writes is split as the `csv` crate reads it.
+        /// Lines written by the `csv` crate are split as the crate reads them.
         #[test]
         fn splits_as_the_csv_crate(cells in prop::collection::vec(r#"[a-z",; é]{0,6}"#, 1..6)) {
             let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());

@@ -1,4 +1,4 @@
-//! Whether the samples of a record can be evaluated: an even clock without gaps, an axis that increases, the section inside.
+//! Checks of the samples of a record: constant sampling rate without gaps, increasing axis, section inside the record.
 
 use std::ops::Range;
 
@@ -6,40 +6,40 @@ use super::record::{Column, Record};
 use crate::problem::Problem;
 use crate::source::Span;
 
-/// A step of the clock this much longer than the usual one is a gap.
+/// A step of the clock longer than the median by this factor is a gap.
 const GAP: f64 = 1.5;
-/// Steps may differ by this share of a step, or by what the rounding of the time stamps explains.
+/// Allowed deviation of a step, as a share of the median step, in addition to the rounding of the time stamps.
 const JITTER: f64 = 0.01;
-/// A sampling rate this near to a whole number is that number.
+/// A sampling rate within this share of an integer is set to the integer.
 const WHOLE: f64 = 1e-3;
-/// Most gaps that are told one by one.
+/// Maximum number of gaps reported individually.
 const TOLD: usize = 5;
 
-/// How a record is sampled.
+/// Sampling of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Samples per SI unit of the clock; Hz for a clock in seconds.
     pub sampling_rate: f64,
-    /// The samples with start <= axis <= end; all of them if no section was given.
+    /// Range of the samples with start <= axis <= end; all samples if no section is given.
     pub rows: Range<usize>,
-    /// What is recorded before the first of these, in SI units of the clock.
+    /// Length recorded before the first of these, in SI units of the clock.
     pub before: f64,
-    /// What is recorded after the last of these, in SI units of the clock.
+    /// Length recorded after the last of these, in SI units of the clock.
     pub after: f64,
 }
 
-/// The stretch of the axis that is evaluated, in SI.
+/// The evaluated range of the axis, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
     pub start: f64,
     pub end: f64,
-    /// Where start and end are written.
+    /// Place where start and end are written.
     pub at: Option<Span>,
 }
 
-/// Checks the column `clock`, which must step evenly, and the column `axis`, in which a section is given; they may be one.
+/// Checks the column `clock`, which must have constant steps, and the column `axis`, on which the section is given; both may be the same.
 ///
-/// The rate is (n - 1) / (last - first), as a whole number if it is within 0.1 % of one: time stamps are often rounded.
+/// The rate is (n - 1) / (last - first), rounded to an integer if it is within 0.1 % of one: time stamps are often rounded.
 ///
 /// # Errors
 /// `unknown-channel` if the record was read without the column; `too-short`; `time-not-increasing`; `gap`; `uneven-step`;
@@ -84,13 +84,15 @@ fn not_increasing(code: &'static str, record: &Record, column: &Column, row: usi
     )
 }
 
-/// The sampling rate, if the steps are even.
+/// The sampling rate, if the steps are constant.
 fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> Option<f64> {
     let times = &clock.values;
     let (&[first, ..], &[.., last]) = (times.as_slice(), times.as_slice()) else { return None };
     if times.len() < 3 {
-        problems
-            .push(Problem::error("too-short", format!("`{}` has {} samples; a sampling rate cannot be told", record.shown, times.len())));
+        problems.push(Problem::error(
+            "too-short",
+            format!("`{}` has {} samples; a sampling rate cannot be determined", record.shown, times.len()),
+        ));
         return None;
     }
     if let Some(row) = first_fall(times) {
@@ -99,8 +101,8 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
     }
     let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let resolution = resolution(clock);
-    // The median is the usual step whatever the gaps. Rounded stamps make many steps longer or shorter by the resolution, so where
-    // hardly any step differs from the usual one, rounding is not the reason.
+    // The median is the usual step even with gaps. Rounded stamps change many steps by the resolution; if only few steps differ, rounding
+    // is not the reason.
     let usual = median(&steps);
     let unusual = steps.iter().filter(|step| (*step - usual).abs() > 1e-6 * usual).count();
     let rounding = if unusual * 100 < steps.len() { 0.0 } else { resolution };
@@ -137,20 +139,21 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
             record.shown,
             number(clock, mean)
         );
-        problems.push(placed(Problem::error("uneven-step", says), record, row + 1, clock).help("records are sampled at a constant step"));
+        problems
+            .push(placed(Problem::error("uneven-step", says), record, row + 1, clock).help("records must have a constant sampling rate"));
         return None;
     }
     Some(if (rate - rate.round()).abs() < WHOLE * rate { rate.round() } else { rate })
 }
 
-/// The power of ten that all time stamps of the file are multiples of, in SI; what they were rounded to.
+/// The power of ten of which all time stamps of the file are multiples, in SI units: the resolution of their rounding.
 fn resolution(clock: &Column) -> f64 {
     const MOST_DECIMALS: i32 = 9;
     let factor = clock.unit.factor;
     (0..=MOST_DECIMALS)
         .map(|decimals| 10f64.powi(decimals))
         .find(|scale| {
-            // A stamp of 1000 s has an error of 1e-13 s, one part in 10^4 of the finest unit looked for.
+            // A stamp of 1000 s has an error of 1e-13 s, one part in 10^4 of the smallest resolution tested.
             clock.values.iter().all(|time| {
                 let scaled = time / factor * scale;
                 (scaled - scaled.round()).abs() < 1e-3
@@ -201,7 +204,7 @@ fn check_section(record: &Record, axis: &Column, section: &Section) -> Result<Ra
     Ok(rows)
 }
 
-/// A value in the unit of the file, with no more decimals than tell something.
+/// A value in the unit of the file, without insignificant decimals.
 fn number(column: &Column, value: f64) -> String {
     let text = format!("{:.6}", column.unit.from_si(value));
     format!("{}{}", text.trim_end_matches('0').trim_end_matches('.'), column.unit.suffix())
@@ -226,7 +229,7 @@ mod tests {
         std::fs::write(file.path(), format!("time [s],distance [m]\n{text}")).expect("writable");
         let wanted = [Wanted::new("time", Dimension::TIME), Wanted::new("distance", Dimension::LENGTH)];
         let record = read_record(file.path(), "r.csv", &wanted).expect("well formed");
-        // Messages read the line again, so the file has to stay.
+        // The file is kept, since messages read the line again.
         file.keep().expect("kept");
         record
     }
@@ -245,7 +248,7 @@ mod tests {
 
     #[test]
     fn rates_survive_rounded_time_stamps() {
-        // Closed form: n samples at a known rate, printed with few decimals.
+        // n samples at a known rate, printed with few decimals.
         for (rate, decimals) in [(200.0, 3), (300.0, 3), (400.0, 3), (256.0, 3), (1000.0, 3), (333.0, 4), (2048.0, 6)] {
             let axis = check(even(2000, rate, decimals), None).unwrap_or_else(|faults| panic!("{rate}: {faults:?}"));
             assert_eq!((axis.sampling_rate, axis.rows), (rate, 0..2000), "{rate}");

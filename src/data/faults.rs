@@ -1,8 +1,8 @@
-//! The first problems of a file, and how many more there are: a file in the wrong form has one in every row.
+//! The first problems of a file and the number of further ones: a file in a wrong format has one in every row.
 
 use crate::problem::{Problem, Problems};
 
-/// Enough to see what is wrong with a file.
+/// Maximum number of problems shown per file.
 const SHOWN: usize = 5;
 
 #[derive(Debug)]
@@ -17,7 +17,7 @@ impl<'a> Faults<'a> {
         Self { file, problems: Vec::new(), more: 0 }
     }
 
-    /// The problem is only put into words if it is going to be shown.
+    /// Formats the problem only if it is shown.
     pub fn push(&mut self, problem: impl FnOnce() -> Problem) {
         if self.problems.len() < SHOWN { self.problems.push(problem()) } else { self.more += 1 }
     }

@@ -1,4 +1,4 @@
-//! Files of a campaign as they lie on the disk now, for who compares them with what a report says of them.
+//! Hashes of the present files of a campaign, for comparison with a report.
 
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::disk::{self, Kind};
 use crate::problem::Problem;
 use crate::source::Source;
 
-/// Read at a time; the size changes no result.
+/// Block size for reading; it does not change the result.
 const BLOCK: usize = 1 << 16;
 
 /// SHA-256 and size of a file named by its path inside a campaign; `None` if there is no such file.
@@ -23,7 +23,7 @@ pub fn fingerprint(campaign: &Path, inside: &str) -> Result<Option<(String, u64)
     let unreadable = |why: &dyn std::fmt::Display| Problem::error("file-unreadable", format!("`{inside}` cannot be read: {why}"));
     match disk::kind(&place.path) {
         Ok(Some(Kind::File(_))) => {}
-        Ok(Some(_)) => return Err(unreadable(&"it is no plain file")),
+        Ok(Some(_)) => return Err(unreadable(&"it is not a plain file")),
         Ok(None) => return Ok(None),
         Err(error) => return Err(unreadable(&error)),
     }

@@ -1,4 +1,4 @@
-//! The folder of a campaign, which nothing in the campaign may lead out of.
+//! The folder of a campaign; no path in the campaign may lead out of it.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -8,20 +8,20 @@ use crate::source::Span;
 
 #[derive(Clone, Debug)]
 pub(super) struct Folder {
-    /// As given by the user; the beginning of file names in messages.
+    /// As given by the user; the prefix of file names in messages.
     shown: PathBuf,
-    /// Without symbolic links, to compare with.
+    /// Without symbolic links, for comparison.
     real: PathBuf,
 }
 
 /// A file or folder of the campaign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
-    /// Where it is.
+    /// Path of the file.
     pub path: PathBuf,
-    /// How messages name it: the folder as the user gave it, and the path inside.
+    /// Name for messages: the folder as given by the user, and the path inside.
     pub shown: String,
-    /// Path inside the campaign with `/` on every system; how results name it.
+    /// Path inside the campaign, with `/` on all systems; the name in results.
     pub inside: String,
 }
 
@@ -41,25 +41,25 @@ impl Folder {
         &self.real
     }
 
-    /// What [`Place::shown`] says after the folder; other names as they are.
+    /// The part of [`Place::shown`] after the folder; other names unchanged.
     pub fn inside<'a>(&self, shown: &'a str) -> &'a str {
         Path::new(shown).strip_prefix(&self.shown).ok().and_then(Path::to_str).unwrap_or(shown)
     }
 
-    /// A path written in the campaign, which must stay in the folder, also by way of symbolic links. It need not exist.
+    /// A path in the campaign, which must stay in the folder, also after symbolic links are resolved. It need not exist.
     pub fn place(&self, written: &str, at: &Span) -> Result<Place, Problem> {
         let outside = |how: &str| {
             Problem::error("path-outside", format!("`{written}` {how}"))
                 .at(at)
-                .help("paths are relative to the campaign's folder and stay inside it")
+                .help("paths must be relative to the campaign's folder and stay inside it")
         };
-        // `\` and a drive letter are looked for by hand, so that a campaign is judged alike on every system.
+        // `\` and drive letters are checked explicitly, so that the result is the same on all systems.
         let drive = written.as_bytes().get(1) == Some(&b':') && written.starts_with(|letter: char| letter.is_ascii_alphabetic());
         if written.starts_with(['/', '\\']) || drive {
             return Err(outside("is an absolute path"));
         }
         if written.trim().is_empty() || written.contains('\0') {
-            return Err(Problem::error("path-invalid", "this is no path").at(at));
+            return Err(Problem::error("path-invalid", "this is not a path").at(at));
         }
         let mut inside = Vec::new();
         for part in written.split(['/', '\\']) {
@@ -71,7 +71,7 @@ impl Folder {
         }
         let inside = inside.join("/");
         let path = self.real.join(&inside);
-        // A path that does not exist yet cannot lead anywhere; whoever opens it is told that it is missing.
+        // A path that does not exist is accepted; the error is reported when it is opened.
         let real =
             disk::real(&path).map_err(|error| Problem::error("file-unreadable", format!("`{written}` cannot be read: {error}")).at(at))?;
         if real.is_some_and(|real| !real.starts_with(&self.real)) {
@@ -82,17 +82,17 @@ impl Folder {
     }
 }
 
-/// A name that becomes part of a file name.
+/// Checks a name that becomes part of a file name.
 ///
 /// # Errors
-/// `path-outside` for what is no single file name on every system.
+/// `path-outside` if it is not a single file name on every system.
 pub(super) fn check_file_name(name: &str, at: &Span) -> Result<(), Problem> {
     let says = if name.contains(['/', '\\', ':']) || name.starts_with('.') {
-        format!("`{name}` names a file, so it can hold no `/`, `\\` or `:` and cannot begin with a point")
+        format!("`{name}` is used as a file name and must not contain `/`, `\\` or `:` or begin with a point")
     } else if name.chars().any(char::is_control) {
-        "the name of a file holds a control character".to_string()
+        "a file name must not contain control characters".to_string()
     } else if name.is_empty() || name.len() > 200 {
-        "a name of a file must have 1 to 200 bytes".to_string()
+        "a file name must have 1 to 200 bytes".to_string()
     } else {
         return Ok(());
     };

@@ -1,4 +1,4 @@
-//! Fingerprints of files.
+//! Hashes of files.
 
 use sha2::{Digest, Sha256};
 

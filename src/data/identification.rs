@@ -1,4 +1,4 @@
-//! What `campaign.yaml` says under `report`: by what a report is known, for whom it is, of what, with what, and when.
+//! The block `report` of `campaign.yaml`: identification of the report, customer, test item, equipment and dates.
 
 use crate::problem::{Problem, Problems};
 use crate::yaml::{Key, Node, Value};
@@ -6,14 +6,14 @@ use crate::yaml::{Key, Node, Value};
 /// The key of the block.
 pub const REPORT_KEY: &str = "report";
 
-/// Something that an assessor expects a test report to state.
+/// An item that an assessor expects in a test report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// The map inside the block that it stands in, if it stands in one.
+    /// The enclosing map inside the block, if any.
     pub group: Option<&'static str>,
     pub key: &'static str,
     pub title: &'static str,
-    /// Clause of ISO/IEC 17025:2017 that asks for it, if one does.
+    /// Clause of ISO/IEC 17025:2017 that requires it, if any.
     pub clause: Option<&'static str>,
 }
 
@@ -25,10 +25,10 @@ impl Field {
 
 const ITEM: Option<&str> = Some("test item");
 const DATES: Option<&str> = Some("dates");
-/// The date that a report bears.
+/// The date of issue of the report.
 const ISSUE: &str = "issue";
 
-/// In the order in which they are printed.
+/// In the order of printing.
 pub const FIELDS: &[Field] = &[
     Field::new(None, "number", "Report number", Some("7.8.2.1 d)")),
     Field::new(None, "revision", "Revision", Some("7.8.8")),
@@ -53,12 +53,12 @@ pub const FIELDS: &[Field] = &[
     Field::new(None, "distribution", "Distribution", None),
 ];
 
-/// A field of [`FIELDS`] and what is stated.
+/// A field of [`FIELDS`] and its value.
 pub type Stated = (&'static Field, Option<String>);
 
-/// All fields, in the order of [`FIELDS`]; what is not stated is `None`.
+/// All fields in the order of [`FIELDS`]; missing ones are `None`.
 ///
-/// Problems: `unknown-key` (with the nearest one), `key-twice`, `wrong-kind`, `report-date` (a date of issue that is none).
+/// Problems: `unknown-key` (with the nearest one), `key-twice`, `wrong-kind`, `report-date` (not a date).
 pub fn read(tree: &Node, problems: &mut Problems) -> Vec<Stated> {
     let mut found: Vec<Stated> = FIELDS.iter().map(|field| (field, None)).collect();
     let Some(block) = tree.get(REPORT_KEY) else { return found };
@@ -70,7 +70,7 @@ pub fn read(tree: &Node, problems: &mut Problems) -> Vec<Stated> {
             }
         }
         _ => {
-            let says = format!("`{REPORT_KEY}` must be a map of keys and values; this is {}", block.kind_in_words());
+            let says = format!("`{REPORT_KEY}` must be a map of keys and values, not {}", block.kind_in_words());
             problems.push(Problem::error("wrong-kind", says).at(&block.span));
         }
     }
@@ -90,7 +90,7 @@ fn entry(key: &Key, node: &Node, found: &mut [Stated], problems: &mut Problems) 
                     }
                 }
             }
-            // A test item in a word or two.
+            // A test item given as text.
             _ if node.scalar_text().is_some() && members(group).any(|key| key == "description") => {
                 let at = FIELDS.iter().position(|field| field.group == Some(group) && field.key == "description");
                 at.into_iter().for_each(|at| state(at, key, node, found, problems));
@@ -98,13 +98,13 @@ fn entry(key: &Key, node: &Node, found: &mut [Stated], problems: &mut Problems) 
             Value::Null => {}
             _ => {
                 let keys = members(group).map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
-                let says = format!("`{group}` must be a map with {keys}; this is {}", node.kind_in_words());
+                let says = format!("`{group}` must be a map with {keys}, not {}", node.kind_in_words());
                 problems.push(Problem::error("wrong-kind", says).at(&node.span));
             }
         }
         return;
     }
-    // `date of issue` beside the others is `issue` among the dates.
+    // `date of issue` at the top level is `issue` of the dates.
     let dated = name.strip_prefix("date of ");
     let at = FIELDS.iter().position(|field| match field.group {
         None => field.key == name,
@@ -142,7 +142,7 @@ fn state(at: usize, key: &Key, node: &Node, found: &mut [Stated], problems: &mut
         _ => node.scalar_text().map(str::to_owned),
     };
     let Some(text) = text else {
-        let says = format!("`{}` must be text or a list of texts; this is {}", key.text, node.kind_in_words());
+        let says = format!("`{}` must be text or a list of texts, not {}", key.text, node.kind_in_words());
         return problems.push(Problem::error("wrong-kind", says).at(&node.span));
     };
     let text = text.trim().to_owned();
@@ -150,7 +150,7 @@ fn state(at: usize, key: &Key, node: &Node, found: &mut [Stated], problems: &mut
         return;
     }
     if (field.group, field.key) == (DATES, ISSUE) && date(&text).is_none() {
-        let says = format!("`{text}` is no date of issue");
+        let says = format!("`{text}` is not a valid date of issue");
         return problems.push(Problem::error("report-date", says).at(&node.span).help("write year-month-day, such as 2026-03-31"));
     }
     if found[at].1.is_some() {
@@ -159,12 +159,12 @@ fn state(at: usize, key: &Key, node: &Node, found: &mut [Stated], problems: &mut
     found[at].1 = Some(text);
 }
 
-/// Underscores join words as spaces do.
+/// Underscores are equivalent to spaces.
 fn plain(key: &str) -> String {
     key.trim().replace('_', " ")
 }
 
-/// Year, month and day of `2026-03-31`; `None` if there is no such day.
+/// Year, month and day of `2026-03-31`; `None` if this is not a valid date.
 pub fn date(text: &str) -> Option<(i32, u8, u8)> {
     let form = text.len() == 10
         && text.bytes().enumerate().all(|(at, byte)| if at == 4 || at == 7 { byte == b'-' } else { byte.is_ascii_digit() });
@@ -220,7 +220,7 @@ mod tests {
             ("report:\n  dates: 2026-01-01\n", "must be a map"),
             ("report: [a]\n", "must be a map"),
             ("report:\n  number: {a: b}\n", "text or a list"),
-            ("report:\n  date of issue: 2026-02-30\n", "is no date of issue"),
+            ("report:\n  date of issue: 2026-02-30\n", "is not a valid date of issue"),
             ("report:\n  date of issue: 2026-02-01\n  dates: {issue: 2026-02-02}\n", "stated twice"),
         ] {
             let problems = stated(text).1;

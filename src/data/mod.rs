@@ -1,18 +1,18 @@
-//! Reads and writes campaigns. Nothing read is trusted before it is checked, and no channel, quantity or column is known here:
-//! what is needed is asked for by the caller.
+//! Reads and writes campaigns. All input is checked. No names of channels, quantities or columns are defined here; the caller requests
+//! them.
 //!
-//! | file | what |
+//! | file | content |
 //! |---|---|
 //! | `campaign` | a campaign folder: `campaign.yaml`, the vehicle, the sections, where the records are |
-//! | `identification` | what the campaign says the report is known by |
-//! | `record` | one sampled record, the hot path |
+//! | `identification` | identification of the report |
+//! | `record` | one sampled record; optimised for speed |
 //! | `table` | a small table such as `sections.csv` |
-//! | `crate::yaml` | YAML with the place of every word |
-//! | `origin` | what made the records of a campaign that a program wrote |
-//! | `sites` | which sections are the same stretch of track |
-//! | `checks` | whether the samples of a record can be evaluated |
-//! | `fingerprint` | a file of a campaign as it lies on the disk now |
-//! | `write` | every file the program makes |
+//! | `crate::yaml` | YAML with places of all values |
+//! | `origin` | origin of the records of a campaign written by a program |
+//! | `sites` | sections on the same stretch of track |
+//! | `checks` | checks of the samples of a record |
+//! | `fingerprint` | hash of a present file of a campaign |
+//! | `write` | output files |
 
 pub mod campaign;
 mod cells;

@@ -1,29 +1,29 @@
-//! What made the records of a campaign that a program wrote: `origin.yaml` beside `campaign.yaml`, named by its key `origin`.
+//! Origin of the records of a campaign written by a program: `origin.yaml`, named by the key `origin` of `campaign.yaml`.
 
 use super::write::yaml_text;
 use crate::problem::{Problem, Problems};
 use crate::yaml::{Node, Value};
 
-/// The file that a program writes.
+/// Name of the file.
 pub const ORIGIN_FILE: &str = "origin.yaml";
 /// The key of `campaign.yaml`.
 pub const ORIGIN_KEY: &str = "origin";
 
-/// Where the simulated records of a campaign come from.
+/// Origin of the simulated records of a campaign.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Origin {
     /// Program and version.
     pub program: String,
     /// `simulate` or `diagnose`.
     pub command: String,
-    /// Name of the campaign whose simulation was changed first.
+    /// Name of the campaign whose simulation was first changed.
     pub campaign: String,
     pub simulator: Option<String>,
     /// Effects in the simulated records, in the order in which they were added.
     pub effects: Vec<OriginEffect>,
-    /// Measured records that the sizes of effects were fitted to.
+    /// Measured records to which the sizes of the effects were fitted.
     pub fitted_to: Vec<OriginFile>,
-    /// What the records were made from.
+    /// Files from which the records were computed.
     pub sources: Vec<OriginFile>,
 }
 
@@ -33,13 +33,13 @@ pub struct OriginEffect {
     pub effect: String,
     /// Name, value, unit.
     pub parameters: Vec<(String, f64, String)>,
-    /// Channels that it acts on; empty for an effect on the vehicle.
+    /// Channels of the effect; empty for an effect on the vehicle.
     pub channels: Vec<String>,
-    /// Where it acts, if not everywhere: `zone 3, 4`.
+    /// Sections of the effect, if not all: `zone 3, 4`.
     pub confined_to: Option<String>,
 }
 
-/// A file by its path in the campaign that it was read from.
+/// A file by its path in its campaign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OriginFile {
     pub path: String,
@@ -65,24 +65,24 @@ impl OriginEffect {
     }
 }
 
-/// Three digits are enough to be told; the file has all of them.
+/// Three significant digits for a sentence; the file has all digits.
 fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     format!("{rounded}")
 }
 
 impl Origin {
-    /// Effects as they stand in a sentence: `friction = 0.23 and payload = 3500 kg`.
+    /// Effects for a sentence: `friction = 0.23 and payload = 3500 kg`.
     pub fn effects_in_words(&self, equals: &str) -> String {
         self.effects.iter().map(|effect| effect.in_words(equals)).collect::<Vec<_>>().join(" and ")
     }
 
-    /// Reads what a file, or the map in `campaign.yaml`, says. Keys of other programs are left alone.
+    /// Reads the file, or the map in `campaign.yaml`. Unknown keys, from other programs, are ignored.
     ///
     /// Problems: `wrong-kind`.
     pub fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
         if !matches!(node.value, Value::Map(_)) {
-            let says = format!("an origin is a map of keys and values; this is {}", node.kind_in_words());
+            let says = format!("an origin must be a map of keys and values, not {}", node.kind_in_words());
             problems.push(Problem::error("wrong-kind", says).at(&node.span));
             return None;
         }
@@ -136,7 +136,7 @@ impl Origin {
     }
 }
 
-/// The items of a list that may be missing.
+/// The items of an optional list.
 fn items<'a>(node: &'a Node, key: &str, problems: &mut Problems) -> Vec<&'a Node> {
     match node.get(key) {
         None => Vec::new(),
@@ -144,7 +144,7 @@ fn items<'a>(node: &'a Node, key: &str, problems: &mut Problems) -> Vec<&'a Node
             Value::List(items) => items.iter().collect(),
             Value::Null => Vec::new(),
             _ => {
-                let says = format!("`{key}` is a list; this is {}", list.kind_in_words());
+                let says = format!("`{key}` must be a list, not {}", list.kind_in_words());
                 problems.push(Problem::error("wrong-kind", says).at(&list.span));
                 Vec::new()
             }
@@ -155,7 +155,7 @@ fn items<'a>(node: &'a Node, key: &str, problems: &mut Problems) -> Vec<&'a Node
 fn text(node: &Node, key: &str, problems: &mut Problems) -> Option<String> {
     let found = node.get(key).and_then(Node::scalar_text).map(str::to_string);
     if found.is_none() {
-        problems.push(Problem::error("wrong-kind", format!("`{key}` must be here, as text")).at(&node.span));
+        problems.push(Problem::error("wrong-kind", format!("`{key}` must be given, as text")).at(&node.span));
     }
     found
 }
@@ -169,7 +169,7 @@ fn effect(node: &Node, problems: &mut Problems) -> Option<OriginEffect> {
     let mut parameters = Vec::new();
     for one in items(node, "parameters", problems) {
         let Some(value) = one.get("value").and_then(Node::number) else {
-            problems.push(Problem::error("wrong-kind", "a parameter has a `value`, which is a number").at(&one.span));
+            problems.push(Problem::error("wrong-kind", "a parameter must have a `value` that is a number").at(&one.span));
             continue;
         };
         parameters.push((text(one, "name", problems)?, value, text(one, "unit", problems)?));

@@ -1,7 +1,7 @@
-//! One sampled record: the columns that are asked for, as numbers in SI.
+//! One sampled record: the requested columns as numbers in SI units.
 //!
-//! Records are nearly all of what a campaign weighs, so a row is read in one pass over its bytes (`rows`) and only a row that is not
-//! as it should be is looked at again, cell by cell, for what is wrong with it (`fault`).
+//! Records are almost all of the data of a campaign. A row is therefore parsed in one pass over its bytes (`rows`); only an irregular row
+//! is parsed again cell by cell to determine the fault (`fault`).
 
 mod fault;
 mod marks;
@@ -19,14 +19,14 @@ use crate::problem::Problem;
 use crate::source::{Source, Span};
 use crate::units::{Dimension, Unit};
 
-/// A column that the caller needs.
+/// A column requested by the caller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
-    /// Without the unit.
+    /// Name without the unit.
     pub name: String,
-    /// What the unit must measure; `None` takes any unit.
+    /// Required dimension; `None` accepts any unit.
     pub dimension: Option<Dimension>,
-    /// Whether a record without the column is at fault.
+    /// Whether the column must exist.
     pub required: bool,
 }
 
@@ -35,19 +35,19 @@ impl Wanted {
         Self { name: name.into(), dimension: Some(dimension), required: true }
     }
 
-    /// The same column, left out of the record without complaint where the file has none.
+    /// The same column, optional.
     #[must_use]
     pub fn if_there(self) -> Self {
         Self { required: false, ..self }
     }
 }
 
-/// The wanted columns of a record, all of one length.
+/// The requested columns of a record, of equal length.
 #[derive(Clone, Debug)]
 pub struct Record {
     /// Name of the file for messages.
     pub shown: String,
-    /// In the order they were asked for.
+    /// In the order of the request.
     pub columns: Vec<Column>,
     /// Every column name in the file.
     pub channels: Vec<String>,
@@ -60,15 +60,15 @@ pub struct Record {
     path: PathBuf,
 }
 
-/// A channel: finite values at every sample.
+/// A channel: one finite value per sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
     pub name: String,
-    /// As in the file.
+    /// Unit in the file.
     pub unit: Unit,
-    /// In SI.
+    /// In SI units.
     pub values: Vec<f64>,
-    /// Which column of the file it is, counted from 0.
+    /// Index of the column in the file, from 0.
     pub position: usize,
 }
 
@@ -82,12 +82,12 @@ impl Record {
         &self.path
     }
 
-    /// The line of the file that sample `row` (from 0) was read from, or the cell of one of its columns. The file is read again.
+    /// The place in the file of sample `row` (from 0), or of its cell in a column. The file is read again.
     pub fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
         let mut bytes = Vec::new();
         read_large(&self.path, &self.shown, &mut bytes).ok()?;
         let text = decode(&bytes, &self.shown).ok()?;
-        // A record has no blank lines between its rows, so sample 0 is always in line 2.
+        // There are no blank lines between rows, so sample 0 is in line 2.
         let line = text.split('\n').nth(row + 1)?.trim_end_matches('\r');
         let whole = Source::excerpt(self.shown.as_str(), line, row + 2).whole();
         let cell = column.and_then(|column| Some(cells::split(line).ok()?.get(column.position)?.place.clone()));
@@ -95,15 +95,15 @@ impl Record {
     }
 }
 
-/// Reads the wanted columns of a record; the cells of all others are not looked at.
+/// Reads the requested columns of a record; all other cells are ignored.
 ///
 /// `shown` is the name of the file in messages.
 ///
 /// # Errors
-/// At most a handful of problems and how many more there are. Of the file: `file-missing`, `file-unreadable`, `file-empty`,
-/// `file-too-large`, `encoding`, `no-rows`. Of its header: `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`,
-/// `unknown-channel`, `unit-missing`, `unknown-unit`, `unit-mismatch`. Of a row: `ragged-row`, `truncated-row`, `blank-line`,
-/// `stray-quote`, `not-a-number`, `not-finite`, `decimal-comma`.
+/// A few problems and the number of further ones. File: `file-missing`, `file-unreadable`, `file-empty`,
+/// `file-too-large`, `encoding`, `no-rows`. Header: `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`,
+/// `unknown-channel`, `unit-missing`, `unknown-unit`, `unit-mismatch`. Row: `ragged-row`, `truncated-row`, `blank-line`, `stray-quote`,
+/// `not-a-number`, `not-finite`, `decimal-comma`.
 pub fn read_record(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
     let mut buffer = BUFFER.take();
     let record = read_into(&mut buffer, path, shown, wanted);
@@ -113,11 +113,11 @@ pub fn read_record(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record
     record
 }
 
-/// A buffer up to this size stays with its thread.
+/// Buffers up to this size are kept by the thread.
 const KEPT: usize = 32 << 20;
 
 thread_local! {
-    /// Text of the record before, read over: fresh memory would cost about as much as the reading.
+    /// Buffer for the text of a record, reused since allocation costs about as much as reading.
     static BUFFER: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
 }
 
@@ -132,7 +132,7 @@ fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -
     Ok(Record { shown: shown.to_string(), columns, channels, rows, sha256: sha256(bytes), bytes: bytes.len(), path: path.to_path_buf() })
 }
 
-/// The headings of a record, for a caller that wants to know what there is.
+/// The headings of a record.
 ///
 /// # Errors
 /// As [`read_record`], of the file and its header.
@@ -142,7 +142,7 @@ pub fn read_headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Probl
     header(text, shown).map(|(headings, _)| headings)
 }
 
-/// The headings and where the first row begins.
+/// The headings, and the start of the first row.
 fn header(text: &str, shown: &str) -> Result<(Vec<Heading>, usize), Vec<Problem>> {
     let end = text.find('\n').unwrap_or(text.len());
     let line = Source::new(shown, text[..end].trim_end_matches('\r')).whole();
@@ -168,7 +168,7 @@ fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<
             continue;
         };
         match headings[position].unit(wanted.dimension) {
-            // Asked for twice, a column is read once.
+            // A column requested twice is read once.
             Ok(_) if columns.iter().any(|column| column.position == position) => {}
             Ok(unit) => columns.push(Column { name: wanted.name.clone(), unit, values: Vec::new(), position }),
             Err(problem) => faults.push(|| problem),
@@ -180,7 +180,7 @@ fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<
     faults.finish(columns)
 }
 
-/// Units in a row of their own below the names, which no heading has.
+/// Detects units in a separate row below the names.
 fn units_in_row(text: &str, body: usize, headings: &[Heading], shown: &str) -> Option<Problem> {
     let line = text[body..].lines().next().filter(|_| headings.iter().all(|heading| heading.unit.is_none()))?;
     let cells = cells::split(line).ok()?;
@@ -190,20 +190,20 @@ fn units_in_row(text: &str, body: usize, headings: &[Heading], shown: &str) -> O
     }
     let (name, unit) = (&headings.first()?.name, cells.first()?.text.trim_matches(['[', ']', '(', ')']));
     Some(
-        Problem::error("units-in-row", "the units stand in a row of their own")
+        Problem::error("units-in-row", "the units are in a separate row")
             .at(&Source::excerpt(shown, line, 2).whole())
             .help(format!("write each unit behind its name, in one header line: `{name} [{unit}]`")),
     )
 }
 
-/// `Y_1R (kN)`, `Y_1R_kN`, `Y_1R/kN` for a column `Y_1R`: the unit.
+/// The unit in `Y_1R (kN)`, `Y_1R_kN` or `Y_1R/kN` for a column `Y_1R`.
 fn unit_otherwise<'a>(heading: &'a str, name: &str) -> Option<&'a str> {
     let rest = heading.strip_prefix(name)?;
     let unit = rest.trim_matches(|c: char| c.is_whitespace() || "()<>{}_/-,".contains(c));
     (unit.len() < rest.len() && !unit.is_empty() && Unit::parse(unit).is_ok()).then_some(unit)
 }
 
-/// One problem for all columns that the header lacks: it is shown once.
+/// One problem for all missing columns.
 fn missing(headings: &[Heading], names: &[&str], shown: &str) -> Problem {
     let known = || headings.iter().map(|heading| heading.name.as_str()).filter(|name| !name.is_empty());
     let problem = match names {

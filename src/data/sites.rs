@@ -1,25 +1,24 @@
-//! Which sections are of one site: the same stretch of track measured more than once. Sites are independent of each other,
-//! sections of one site are not.
+//! Sections of the same site: the same stretch of track measured more than once. Sites are independent, sections of one site are not.
 
 use super::table::{Cell, Table};
 use crate::problem::{Problem, Problems};
 
-/// Columns of the section table that tell the site of a section.
+/// Columns of the section table that define the site of a section.
 const SITE: &str = "site";
 const REPEAT_OF: &str = "repeat of";
 const TRACK: &str = "track";
 const START: &str = "start";
 const END: &str = "end";
-/// Two sections of one track are one site where they share at least this part of the shorter one. Sections that follow each
-/// other may touch or share a few metres; two that have most of their irregularities in common do not count twice.
+/// Two sections of one track are one site if they share at least this part of the shorter one. Successive sections may share a few metres;
+/// sections that share most of their irregularities do not count twice.
 const SHARED: f64 = 0.5;
 
-/// For each row the row that stands for its site: the first of it.
+/// For each row, the first row of its site.
 ///
-/// Rows are of one site where the column `site` says so, where one is the other's `repeat of`, or where a column `track` names
-/// the same track for both and they overlap by half. `site` is believed before the others.
+/// Rows belong to one site if the column `site` says so, if one is the other's `repeat of`, or if a column `track` names the same track for
+/// both and they overlap by half. `site` has priority.
 ///
-/// Problems: `unknown-section` where `repeat of` names no other row.
+/// Problems: `unknown-section` if `repeat of` names no other row.
 pub fn sites(table: &Table, problems: &mut Problems) -> Vec<usize> {
     let rows = table.rows.len();
     let site = Column::of(table, SITE);
@@ -51,7 +50,7 @@ pub fn sites(table: &Table, problems: &mut Problems) -> Vec<usize> {
 }
 
 fn no_repeat(table: &Table, row: usize, cell: &Cell) -> Problem {
-    let says = format!("`{REPEAT_OF}` names `{}`, which is no other section", cell.value);
+    let says = format!("`{REPEAT_OF}` names `{}`, which is not another section", cell.value);
     let others = table.names().enumerate().filter(|(other, _)| *other != row).map(|(_, name)| name.value.as_str());
     let problem = Problem::error("unknown-section", says).at(&cell.span).suggest(&cell.value, others);
     match problem.help {
@@ -78,7 +77,7 @@ fn overlaps(table: &Table) -> Vec<(usize, usize)> {
     found
 }
 
-/// A column that may be missing.
+/// An optional column.
 struct Column<'a> {
     table: &'a Table,
     index: Option<usize>,
@@ -89,7 +88,7 @@ impl<'a> Column<'a> {
         Self { table, index: table.column(name) }
     }
 
-    /// A cell that is not empty.
+    /// A non-empty cell.
     fn cell(&self, row: usize) -> Option<&'a Cell> {
         self.table.cell(row, self.index?).filter(|cell| !cell.value.trim().is_empty())
     }
@@ -141,7 +140,7 @@ mod tests {
     fn repeats_of_repeats_are_of_one_site() {
         let (found, problems) = of("section,repeat of\nA,B\nB,C\nC,\nD,\nE,D\n");
         assert_eq!((found, problems.0.len()), (vec![0, 0, 0, 3, 3], 0));
-        // Each the repeat of the other: one site all the same.
+        // Repeats of each other are also one site.
         assert_eq!(of("section,repeat of\nA,B\nB,A\n").0, [0, 0]);
     }
 

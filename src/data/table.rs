@@ -1,4 +1,4 @@
-//! A small CSV table such as `sections.csv`: one row per named thing, every cell with its place.
+//! A small CSV table such as `sections.csv`: named rows, and cells with their places.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span, Spanned};
 use crate::units::Dimension;
 
-/// A table with the same number of cells in every row, and a name for each row if it was read with a key.
+/// A table with the same number of cells in every row, and a name per row if it was read with a key.
 #[derive(Clone, Debug)]
 pub struct Table {
     pub source: Arc<Source>,
@@ -20,15 +20,15 @@ pub struct Table {
     pub columns: Vec<Heading>,
     /// One cell per column, in the order of the file.
     pub rows: Vec<Vec<Cell>>,
-    /// The column that holds the names of the rows, if they have names.
+    /// The column with the names of the rows, if they have names.
     key: Option<usize>,
 }
 
-/// The text of a cell without quotes and blanks around it, and its place.
+/// The text of a cell without quotes and surrounding blanks, and its place.
 pub type Cell = Spanned<String>;
 
 impl Table {
-    /// Reads a table. With a key, its rows are named by the column of that name, or, where there is none, by the first column.
+    /// Reads a table. With a key, the column of that name, or else the first column, has the names of the rows.
     ///
     /// Problems: those of [`read_text`]; `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`; per row `blank-line`,
     /// `ragged-row`, `decimal-comma`, `name-missing`, `duplicate-name`; `no-rows`.
@@ -83,7 +83,7 @@ impl Table {
         }
     }
 
-    /// The names of the rows, in the order of the file; none if it was read without a key.
+    /// The names of the rows in order; none if it was read without a key.
     pub fn names(&self) -> impl Iterator<Item = &Cell> {
         self.rows.iter().filter_map(|row| row.get(self.key?))
     }
@@ -97,7 +97,7 @@ impl Table {
         self.columns.iter().position(|column| column.name == name)
     }
 
-    /// The index of a column that is needed.
+    /// The index of a required column.
     ///
     /// # Errors
     /// `unknown-column`, at the header, with the nearest names.
@@ -117,7 +117,7 @@ impl Table {
     /// A column as numbers in SI; `None` where a cell is empty.
     ///
     /// # Errors
-    /// Of the heading (see [`Heading::unit`]) or of every cell that is no finite number: `not-a-number`, `not-finite`, `decimal-comma`.
+    /// Of the heading (see [`Heading::unit`]) or of every cell that is not a finite number: `not-a-number`, `not-finite`, `decimal-comma`.
     pub fn numbers(&self, column: usize, dimension: Option<Dimension>) -> Result<Vec<Option<f64>>, Vec<Problem>> {
         let Some(heading) = self.columns.get(column) else { return Ok(Vec::new()) };
         let unit = heading.unit(dimension).map_err(|problem| vec![problem])?;
@@ -134,10 +134,10 @@ impl Table {
     }
 }
 
-/// The lines of a text without line breaks; blank lines at its end are left out.
+/// The lines of a text without line breaks and without blank lines at its end.
 fn lines(source: &Arc<Source>) -> impl Iterator<Item = Span> {
     let text = source.text.trim_end_matches(['\n', '\r', ' ', '\t']);
-    // What is trimmed may be blanks of the last line, which belong to no cell either.
+    // The trimmed part may contain blanks of the last line, which belong to no cell.
     let mut from = 0;
     text.split('\n').map(move |line| {
         let start = from;
@@ -148,7 +148,7 @@ fn lines(source: &Arc<Source>) -> impl Iterator<Item = Span> {
 
 fn row(line: &Span, columns: &[Heading], faults: &mut Faults<'_>) -> Option<Vec<Cell>> {
     if line.text().trim().is_empty() {
-        faults.push(|| Problem::error("blank-line", "a blank line stands between the rows").at(line));
+        faults.push(|| Problem::error("blank-line", "blank line between the rows").at(line));
         return None;
     }
     match cells::split(line.text()) {

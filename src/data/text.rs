@@ -1,4 +1,4 @@
-//! From a file to its text: readable, not empty, UTF-8.
+//! Reads the text of a file: readable, not empty, UTF-8.
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -9,22 +9,22 @@ use crate::disk::{self, Kind};
 use crate::problem::Problem;
 use crate::source::{Source, Span};
 
-/// Largest YAML file or table in bytes; protocols, vehicles and section tables have a few thousand.
+/// Maximum size of a YAML file or table in bytes; typical ones have a few thousand.
 const SMALL: u64 = 16 << 20;
-/// Largest record in bytes: a hundred channels at 1 kHz for some twenty minutes. A worker holds one such text, and its
-/// numbers, which take about as much again.
+/// Maximum size of a record in bytes: a hundred channels at 1 kHz for about twenty minutes. A worker holds one such text and its numbers,
+/// which take about the same again.
 pub const LARGEST_RECORD: u64 = 1 << 30;
-/// Longest line of a record in bytes: ten thousand channels with headings of a hundred characters. A file without lines
-/// (zeros, a picture, a hole on the disk) is told after so many bytes, not after all of them.
+/// Maximum length of a line of a record in bytes: ten thousand channels with headings of a hundred characters. A file without lines (zeros,
+/// an image, a sparse file) is reported after this number of bytes.
 pub const LONGEST_LINE: usize = 1 << 20;
-/// Longest line of a small text in bytes: a table with a thousand columns.
+/// Maximum length of a line of a small text in bytes: a table with a thousand columns.
 const LONGEST_TEXT_LINE: usize = 64 << 10;
-/// Bytes that are read at a time.
+/// Bytes read at a time.
 const CHUNK: u64 = 1 << 20;
-/// Bytes of a long line that a message shows.
+/// Number of bytes of a long line in a message.
 const SHOWN: usize = 80;
 
-/// A small text file, its byte order mark left out, and the SHA-256 of its bytes.
+/// Reads a small text file without its byte order mark, and the SHA-256 of its bytes.
 ///
 /// # Errors
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`, `encoding`.
@@ -39,7 +39,7 @@ pub fn read_text(path: &Path, shown: &str) -> Result<(Arc<Source>, String), Prob
     Ok((Source::new(shown, text), sha256(&bytes)))
 }
 
-/// Refuses a text with a line that nobody wrote: it would be shown, whole, with every problem in it.
+/// Refuses a text with an excessively long line, which would be printed with every problem in it.
 ///
 /// # Errors
 /// `line-too-long`.
@@ -47,18 +47,18 @@ pub fn check_lines(text: &str, shown: &str) -> Result<(), Problem> {
     match text.split('\n').position(|line| line.len() > LONGEST_TEXT_LINE) {
         Some(at) => {
             let says = format!("line {} of `{shown}` has more than {} kB", at + 1, LONGEST_TEXT_LINE >> 10);
-            Err(Problem::error("line-too-long", says).help("break the line, or look whether this is the right file"))
+            Err(Problem::error("line-too-long", says).help("break the line, or check whether this is the right file"))
         }
         None => Ok(()),
     }
 }
 
-/// All bytes of a record file, in the place of what the buffer held.
+/// Reads all bytes of a record into the buffer, replacing its content.
 pub(super) fn read_large(path: &Path, shown: &str, buffer: &mut Vec<u8>) -> Result<(), Problem> {
     read_bounded(path, shown, LARGEST_RECORD, Some(LONGEST_LINE), buffer)
 }
 
-/// All bytes of a file that a campaign is made of, whatever they are.
+/// Reads all bytes of any file of a campaign.
 ///
 /// # Errors
 /// As [`read_text`], but for `encoding`; a file may be empty.
@@ -70,13 +70,13 @@ pub fn read_any(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
     }
 }
 
-/// A line that has no end where the longest should have one; the place of its beginning.
+/// A problem for a line that exceeds the maximum length, at its start.
 pub(super) fn long_line(start: &[u8], line: usize, shown: &str) -> Problem {
     let start = String::from_utf8_lossy(&start[..start.len().min(SHOWN)]).into_owned();
     let says = format!("line {line} of `{shown}` has more than {} MB", LONGEST_LINE >> 20);
     Problem::error("line-too-long", says)
         .at(&Source::excerpt(shown, start, line).whole())
-        .help("a record is a text with one line for each sample; export it again")
+        .help("a record is a text file with one line per sample; export it again")
 }
 
 /// The first line of a record file.
@@ -92,28 +92,28 @@ pub(super) fn read_line(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
     if line.is_empty() { Err(empty(shown)) } else { Ok(line) }
 }
 
-/// Words of every message that a file or folder of a campaign is there and cannot be read.
+/// Words of every message about a file or folder that exists but cannot be read.
 pub const UNREADABLE: &str = "cannot be read:";
 
 fn unreadable(shown: &str, why: &dyn std::fmt::Display) -> Problem {
     Problem::error("file-unreadable", format!("`{shown}` {UNREADABLE} {why}"))
 }
 
-/// The size of a plain file. What is none is refused before it is opened: a pipe would wait for ever.
+/// The size of a plain file. Other kinds are refused before they are opened, since reading a pipe could block for ever.
 fn size(path: &Path, shown: &str, limit: u64) -> Result<u64, Problem> {
     match disk::kind(path).map_err(|error| unreadable(shown, &error))? {
         None => Err(Problem::error("file-missing", format!("there is no file `{shown}`"))),
         Some(Kind::Folder) => Err(unreadable(shown, &"it is a folder")),
-        Some(Kind::Other) => Err(unreadable(shown, &"it is no plain file")),
+        Some(Kind::Other) => Err(unreadable(shown, &"it is not a plain file")),
         Some(Kind::File(size)) if size > limit => {
-            Err(Problem::error("file-too-large", format!("`{shown}` has {} MB; the most that is read is {} MB", size >> 20, limit >> 20))
+            Err(Problem::error("file-too-large", format!("`{shown}` has {} MB; the maximum is {} MB", size >> 20, limit >> 20))
                 .help("split it, or leave out channels and samples that are not needed"))
         }
         Some(Kind::File(size)) => Ok(size),
     }
 }
 
-/// All bytes of a plain file that is not empty and not larger than a limit.
+/// Reads a plain file that is not empty and not larger than a limit.
 ///
 /// # Errors
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`.
@@ -121,7 +121,7 @@ pub fn read_bytes(path: &Path, shown: &str, limit: u64, buffer: &mut Vec<u8>) ->
     read_bounded(path, shown, limit, None, buffer)
 }
 
-/// With a longest line, a file is not read beyond a longer one.
+/// With a maximum line length, reading stops at a longer line.
 fn read_bounded(path: &Path, shown: &str, limit: u64, longest: Option<usize>, buffer: &mut Vec<u8>) -> Result<(), Problem> {
     if let Some(problem) = other_format(path, shown) {
         return Err(problem);
@@ -139,7 +139,7 @@ fn read_bounded(path: &Path, shown: &str, limit: u64, longest: Option<usize>, bu
             return Err(long_line(buffer, 1, shown));
         }
     }
-    // One more than there is, so that the end is seen without growing.
+    // One byte more than the size, so that the end is detected without reallocation.
     let rest = usize::try_from(size).unwrap_or(usize::MAX).saturating_sub(buffer.len()).saturating_add(1);
     disk::reserve(buffer, rest, path).map_err(unreadable)?;
     let mut line = memchr::memrchr(b'\n', buffer).map_or(0, |end| end + 1);
@@ -162,7 +162,7 @@ fn read_bounded(path: &Path, shown: &str, limit: u64, longest: Option<usize>, bu
     if buffer.is_empty() { Err(empty(shown)) } else { Ok(()) }
 }
 
-/// Formats that measuring systems and simulation programs write and that are not read.
+/// File formats of measuring systems and simulation programs that are not supported.
 const OTHER_FORMATS: [(&str, &str); 12] = [
     ("mat", "a MATLAB file"),
     ("xlsx", "an Excel workbook"),
@@ -178,7 +178,7 @@ const OTHER_FORMATS: [(&str, &str); 12] = [
     ("nc", "a NetCDF file"),
 ];
 
-/// A problem for a file whose name says that it is of a format that is not read.
+/// A problem for a file whose extension is of an unsupported format.
 pub(super) fn other_format(path: &Path, shown: &str) -> Option<Problem> {
     let ending = path.extension()?.to_str()?.to_lowercase();
     let (_, what) = OTHER_FORMATS.iter().find(|(known, _)| *known == ending)?;
@@ -195,14 +195,14 @@ fn empty(shown: &str) -> Problem {
 /// The text of a file without its byte order mark.
 ///
 /// # Errors
-/// `encoding`: the encoding by name where it can be told, else the first byte that is not UTF-8, with its row.
+/// `encoding`: the name of the encoding if it can be detected, else the first byte that is not UTF-8, with its row.
 pub fn decode<'a>(bytes: &'a [u8], shown: &str) -> Result<&'a str, Problem> {
     const HELP: &str = "save the file as UTF-8";
     let wide = match bytes {
-        // Longer marks first: UTF-32 begins like UTF-16.
+        // Longer marks first: a UTF-32 mark begins like one of UTF-16.
         [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => Some("UTF-32"),
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Some("UTF-16"),
-        // Latin text in UTF-16 without a mark has every other byte zero.
+        // In UTF-16 without a mark, every other byte of Latin text is zero.
         [0, second, 0, fourth, ..] | [second, 0, fourth, 0, ..] if *second != 0 && *fourth != 0 => Some("UTF-16"),
         _ => None,
     };
@@ -221,13 +221,13 @@ pub fn decode<'a>(bytes: &'a [u8], shown: &str) -> Result<&'a str, Problem> {
     })
 }
 
-/// What the byte is in the encoding most old measuring systems write; only those that mean a letter or unit sign.
+/// The character of a byte in Windows-1252, which many measuring systems write; only letters and unit signs.
 fn latin(byte: u8) -> Option<char> {
     let letter = char::from(byte);
     (letter.is_alphabetic() || matches!(letter, '°' | '²' | '³' | 'µ' | '±' | '·')).then_some(letter)
 }
 
-/// The line around a byte that is no text, shown with replacement characters.
+/// The line around an invalid byte, with replacement characters.
 fn line_of_bytes(bytes: &[u8], at: usize, shown: &str) -> Span {
     let start = memchr::memrchr(b'\n', &bytes[..at]).map_or(0, |before| before + 1);
     let end = memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |after| at + after);

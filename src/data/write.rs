@@ -1,4 +1,4 @@
-//! Every file the program makes: whole or not at all.
+//! Output files, written completely or not at all.
 
 mod format;
 
@@ -10,15 +10,15 @@ use std::path::Path;
 use crate::disk::{self, Set, SetKind};
 use crate::problem::Problem;
 
-/// Writes a file under a temporary name in the same folder, then renames it. The folder is made if missing.
+/// Writes a file under a temporary name in the same folder, then renames it. The folder is created if missing.
 ///
 /// # Errors
-/// `write-failed`; the file is then as it was before.
+/// `write-failed`; the file is then unchanged.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
     written(path, bytes, disk::write_whole)
 }
 
-/// As [`write_whole`], for what may be lost when the power goes: a cache.
+/// As [`write_whole`], for files that may be lost in a power failure, such as a cache.
 ///
 /// # Errors
 /// As [`write_whole`].
@@ -28,7 +28,7 @@ pub fn keep(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
 
 fn written(path: &Path, bytes: &[u8], how: fn(&Path, &[u8]) -> io::Result<()>) -> Result<(), Problem> {
     if path.file_name().is_none() {
-        return Err(failed(path, &"this is no file name"));
+        return Err(failed(path, &"this is not a file name"));
     }
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let done = disk::make_folder(folder).and_then(|()| match disk::is_folder(path)? {
@@ -42,10 +42,9 @@ fn failed(path: &Path, why: &dyn std::fmt::Display) -> Problem {
     Problem::error("write-failed", format!("`{}` cannot be written: {why}", path.display()))
 }
 
-/// Files that belong together: none is in its place before all are on the disk, and a set that was there before goes out of
-/// its places first.
+/// A set of files: none is in its place before all are on the disk, and a previous set is removed from its places first.
 ///
-/// Dropped without [`Outputs::commit`], nothing is left behind.
+/// If dropped without [`Outputs::commit`], nothing is changed.
 #[derive(Debug)]
 pub struct Outputs {
     folder: std::path::PathBuf,
@@ -53,7 +52,7 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// A report in a folder, which is made when the first file is added.
+    /// A report in a folder, which is created when the first file is added.
     pub fn new(folder: impl Into<std::path::PathBuf>) -> Self {
         Self::of(SetKind::Report, folder)
     }
@@ -71,29 +70,29 @@ impl Outputs {
         self
     }
 
-    /// Adds a file, named by its path in the folder such as `tables/values.csv`.
+    /// Adds a file by its path in the folder, such as `tables/values.csv`.
     ///
     /// # Errors
     /// `write-failed`, `path-outside`.
     pub fn add(&mut self, inside: &str, bytes: &[u8]) -> Result<(), Problem> {
         self.set.add(inside, bytes).map_err(|error| match error.kind() {
             io::ErrorKind::InvalidInput => {
-                Problem::error("path-outside", format!("`{inside}` is no path inside the output folder, or is there twice"))
+                Problem::error("path-outside", format!("`{inside}` is not a path inside the output folder, or is given twice"))
             }
             _ => failed(&self.set.path(inside), &error),
         })
     }
 
-    /// A warning if a set was finished here that a run before left unfinished.
+    /// A warning if the set of an interrupted run was completed.
     pub fn mended(&self) -> Option<Problem> {
-        let says = format!("a run before this one was ended while it wrote to `{}`; its files were put into place", self.folder.display());
+        let says = format!("an earlier run was interrupted while it wrote to `{}`; its files were put into place", self.folder.display());
         self.set.mended().then(|| Problem::warning("unfinished-set", says))
     }
 
-    /// Puts every file into its place, and takes away files of the set before that have none in this one.
+    /// Puts every file into its place, and removes files of the previous set that are not in this one.
     ///
     /// # Errors
-    /// `write-failed`; the set before is then whole.
+    /// `write-failed`; the previous set is then complete.
     pub fn commit(self) -> Result<(), Problem> {
         let Self { folder, set } = self;
         set.commit().map_err(|error| failed(&folder, &error))

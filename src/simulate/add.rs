@@ -1,21 +1,21 @@
-//! Adds effects to a section: what the simulator is told, and what is done to its signals.
+//! Adds effects to a section: parameters of the simulator, and operations on its signals.
 
 use super::{Section, Simulator, Task};
 use crate::effects::{Action, Applied, Catalogue, Formula, Operator, Parameter, Signals};
 use crate::problem::Problem;
 
-/// What effects mean for one section.
+/// Effects on one section.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
     /// Parameters of the simulator, in its units.
     pub settings: Vec<(String, f64)>,
-    /// Before the measuring chain, in the order chosen: formulas of an effect and the values of all its parameters.
+    /// Before the measuring chain, in the order chosen: formulas of an effect, with the values of all its parameters.
     pub formulas: Vec<(Vec<Formula>, Vec<f64>)>,
     /// In the order of the measuring chain.
     pub operators: Vec<(Operator, f64, Vec<String>)>,
 }
 
-/// A record with effects, and what it took.
+/// A record with effects, and the number of runs.
 #[derive(Clone, Debug)]
 pub struct Simulated {
     pub signals: Signals,
@@ -24,10 +24,10 @@ pub struct Simulated {
 }
 
 impl Plan {
-    /// What `effects` mean for `section` on a simulator; effects confined to other sections mean nothing.
+    /// The part of `effects` that acts on `section`, for a simulator.
     ///
     /// # Errors
-    /// The catalogue does not say how this simulator adds an effect.
+    /// The catalogue does not define an effect for this simulator.
     pub fn new(catalogue: &Catalogue, effects: &[Applied], section: &Section, simulator: Option<&str>) -> Result<Self, Problem> {
         let mut plan = Self::default();
         for applied in effects {
@@ -47,7 +47,7 @@ impl Plan {
             }
             for parameter in &effect.parameters {
                 let Some(value) = applied.value(&parameter.name) else { continue };
-                // The simulator is told even what is neutral: the vehicle file may say otherwise. A signal is left as it is.
+                // Neutral values are set as well, since the vehicle file may differ. Operations with neutral values are skipped.
                 if parameter.neutral == Some(value) && effect.action != Action::Simulator {
                     continue;
                 }
@@ -82,10 +82,10 @@ impl Plan {
         self.operators.iter().filter(|(operator, ..)| *operator == Operator::Shift).map(|(_, value, _)| value).sum()
     }
 
-    /// Does to the signals of a section what its measuring chain does.
+    /// Applies the operations of the measuring chain to the signals of a section.
     ///
     /// # Errors
-    /// An operator cannot be applied, with the section.
+    /// An operation cannot be applied; the message names the section.
     pub fn operate(&self, signals: &mut Signals, section: &Section) -> Result<(), Problem> {
         let seed = section.name().bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3));
         for (formulas, values) in &self.formulas {
@@ -102,7 +102,7 @@ impl Plan {
     }
 }
 
-/// What effects are confined to must be there: a column that no section has, or a value that none has in it, is a slip.
+/// Checks that confinements refer to an existing column and value of the section table.
 ///
 /// # Errors
 /// `no-such-section`, with the nearest value.
@@ -114,7 +114,7 @@ pub fn check_confined(effects: &[Applied], sections: &[Section]) -> Vec<Problem>
             if sections.iter().any(|section| section.fact(&confined.column) == Some(value)) {
                 continue;
             }
-            let says = format!("`{}` is confined to the {} `{value}`, which no section has", applied.effect, confined.column);
+            let says = format!("`{}` is confined to the {} `{value}`, but no section has this value", applied.effect, confined.column);
             let mut known: Vec<&str> = sections.iter().filter_map(|section| section.fact(&confined.column)).collect();
             known.sort_unstable();
             known.dedup();
@@ -129,15 +129,15 @@ pub fn check_confined(effects: &[Applied], sections: &[Section]) -> Vec<Problem>
 }
 
 fn unsaid(effect: &str, parameter: &str, simulator: &str) -> Problem {
-    Problem::error("not-simulated", format!("the catalogue does not say how {simulator} adds `{parameter}` of `{effect}`"))
+    Problem::error("not-simulated", format!("the catalogue does not define how {simulator} adds `{parameter}` of `{effect}`"))
         .help("name the simulator's parameter under `simulators` or `model` of the effect's parameter")
 }
 
-/// Makes a section's record with effects. With `recorded`, a simulation that was made elsewhere, the effects come as an increment:
-/// recorded + (simulator with effects - simulator without), so that what the two simulators differ in drops out.
+/// Simulates a section with effects. With `recorded`, a simulation from elsewhere, the effects are an increment: recorded + (simulator with
+/// effects - simulator without), so that differences between the two simulators cancel.
 ///
 /// # Errors
-/// Of the simulator, of the catalogue (see [`Plan::new`]) and of operators.
+/// Of the simulator, of the catalogue (see [`Plan::new`]) and of operations.
 pub fn simulate(
     simulator: &dyn Simulator,
     catalogue: &Catalogue,
@@ -159,7 +159,7 @@ pub fn simulate(
     Ok(made)
 }
 
-/// `recorded + (with - without)`, position by position; channels that the simulator does not make stay as recorded.
+/// `recorded + (with - without)`, by position; channels that the simulator does not have are unchanged.
 #[must_use]
 pub fn incremented(recorded: &Signals, with: &Signals, without: &Signals) -> Signals {
     let mut sum = recorded.clone();
@@ -174,7 +174,7 @@ pub fn incremented(recorded: &Signals, with: &Signals, without: &Signals) -> Sig
     sum
 }
 
-/// Linear between samples, constant beyond the ends; `at` is where the last look was.
+/// Linear interpolation, constant beyond the ends; `at` is the interval of the last call.
 pub(super) fn interpolated(axis: &[f64], values: &[f64], x: f64, at: &mut usize) -> f64 {
     let last = axis.len().min(values.len()).saturating_sub(1);
     while *at + 1 < last && axis[*at + 1] <= x {

@@ -1,4 +1,4 @@
-//! The reference vehicle model as a simulator of a campaign's sections.
+//! The reference vehicle model as a simulator for the sections of a campaign.
 
 use std::path::Path;
 
@@ -17,10 +17,10 @@ use crate::units::number::{self, Refused};
 use crate::units::{Dimension, Unit};
 use crate::yaml::Node;
 
-/// Sides of a wheelset as the vehicle file writes them.
+/// Sides of a wheelset in the vehicle file.
 const SIDES: [(&str, f64); 3] = [("both", 0.0), ("R", 1.0), ("L", -1.0)];
 
-/// The parameters of the model, as catalogues may name them: key and unit.
+/// Keys and units of the parameters of the model, for catalogues.
 #[must_use]
 pub fn model_parameters() -> Vec<(&'static str, &'static str)> {
     PARAMETERS.iter().map(|parameter| (parameter.key, parameter.unit)).collect()
@@ -36,11 +36,11 @@ pub struct Builtin<'a> {
 }
 
 impl<'a> Builtin<'a> {
-    /// The model for a campaign; `None`, with the reasons, if the campaign lacks what it needs.
+    /// The model for a campaign; `None`, with problems, if the campaign lacks an input.
     pub fn new(campaign: &'a Campaign, problems: &mut Problems) -> Option<Self> {
         let vehicle = vehicle(&campaign.vehicle, problems)?;
         if !campaign.has(RecordKind::Track) {
-            let says = "the campaign has no `track`: the folder of what the vehicle ran over, which the model needs";
+            let says = "the campaign has no `track`, the folder of track files that the model needs";
             let problem = Problem::error("key-missing", says).at(&campaign.tree.span.part(0..0));
             problems.push(misspelt(problem, &campaign.tree, "track"));
             return None;
@@ -75,7 +75,7 @@ impl<'a> Builtin<'a> {
         }
         let profile = Profile::new(&self.new, self.worn.as_ref(), &vehicle).ok_or_else(|| {
             Problem::error("profile", "a worn profile needs a second profile table over the same displacements")
-                .help("put `profile_worn.csv` beside `profile.csv`")
+                .help("put `profile_worn.csv` into the folder of `profile.csv`")
         })?;
         Ok((vehicle, profile))
     }
@@ -118,7 +118,7 @@ fn made(setup: &Setup<'_>, window: Window) -> Result<Signals, Problem> {
     Ok(Signals { axis: record.distance, over_time: false, rate: SAMPLING_RATE, channels: channels.collect() })
 }
 
-/// The vehicle of a vehicle file. Numbers may carry their unit; without one they are in the unit of the parameter.
+/// The vehicle of a vehicle file. Numbers may have a unit; otherwise that of the parameter is assumed.
 pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
     let before = problems.errors();
     let mut values: Vec<(&str, f64)> = Vec::new();
@@ -157,12 +157,8 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
                 let problem = inadmissible(&fault, &tree.lookup(key).map(|node| node.span.clone())).or_at(tree);
                 problems.push(match (&fault, tree.lookup(key)) {
                     (VehicleFault::Missing(parameter), Some(node)) => {
-                        let says = format!(
-                            "`{key}` ({}) must be a number in {}; this is {}",
-                            parameter.meaning,
-                            parameter.unit,
-                            node.kind_in_words()
-                        );
+                        let says =
+                            format!("`{key}` ({}) must be a number in {}, not {}", parameter.meaning, parameter.unit, node.kind_in_words());
                         Problem::error("wrong-kind", says).at(&node.span)
                     }
                     (VehicleFault::Missing(_), None) => misspelt(problem, tree, key),
@@ -174,19 +170,19 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
     }
 }
 
-/// A number of a vehicle file in the unit of the model's parameter of that key; a number that the model does not know has no unit.
+/// A number of a vehicle file in the unit of the parameter with this key; for an unknown key, without unit.
 #[must_use]
 pub fn number_of(node: &Node, key: &str) -> Option<f64> {
     node.number().or_else(|| stated(model::parameter(key)?, node.scalar_text()?).ok())
 }
 
-/// A text as a number in the unit of a parameter.
+/// Converts a text to a number in the unit of a parameter.
 fn stated(parameter: &Parameter, text: &str) -> Result<f64, Refused> {
     let unit = Unit::parse(parameter.unit).unwrap_or_else(|_| Unit::one());
     number::read(text, &unit).map(|read| unit.from_si(read.si))
 }
 
-/// Where a key is missing, a key beside it that no parameter has and that looks like it is shown.
+/// Shows a similar unknown key in place of a missing one.
 fn misspelt(problem: Problem, tree: &Node, key: &str) -> Problem {
     let (group, name) = key.rsplit_once('.').unwrap_or(("", key));
     let beside = if group.is_empty() { Some(tree) } else { tree.lookup(group) };
@@ -226,11 +222,11 @@ fn inadmissible(fault: &VehicleFault, at: &Option<crate::source::Span>) -> Probl
     }
 }
 
-/// A vehicle on a track that belong to no campaign, over the whole track; `profile.csv` stands beside the vehicle file unless that
-/// names another.
+/// Simulates a single vehicle over the whole of a track, without a campaign. `profile.csv` is in the folder of the vehicle file, unless
+/// that names another file.
 ///
 /// # Errors
-/// Every fault of the files; the run diverges.
+/// All faults of the files, or the run diverges.
 pub fn single(
     vehicle_file: (&Path, &Node),
     track_file: &Path,
@@ -275,7 +271,7 @@ fn track_of(campaign: &Campaign, section: &Cell) -> Result<TrackTable, Problem> 
     read_track(&place.path, &place.inside)
 }
 
-/// Reads a track file. Lengths of irregularities in mm, as the model takes them.
+/// Reads a track file. Irregularities in mm, the unit of the model.
 fn read_track(path: &Path, shown: &str) -> Result<TrackTable, Problem> {
     let length = Dimension::LENGTH;
     let wanted = [
@@ -335,11 +331,11 @@ fn numbers(record: &Record, name: &str, factor: f64) -> Vec<f64> {
     record.column(name).map(|column| column.values.iter().map(|value| value * factor).collect()).unwrap_or_default()
 }
 
-/// A table needs two points, one behind the other.
+/// A table needs at least two points in increasing order.
 fn increasing(record: &Record, name: &str, values: &[f64]) -> Result<(), Problem> {
     let at = |row: usize| record.place(row, record.column(name)).unwrap_or_else(|| Source::new(record.shown.as_str(), "").whole());
     if values.len() < 2 {
-        return Err(Problem::error("too-short", format!("{} has {} rows; two are needed at least", record.shown, values.len())));
+        return Err(Problem::error("too-short", format!("{} has {} rows; at least two are needed", record.shown, values.len())));
     }
     match values.windows(2).position(|pair| pair[1] <= pair[0]) {
         Some(row) => Err(Problem::error("not-increasing", format!("`{name}` does not increase here")).at(&at(row + 1))),

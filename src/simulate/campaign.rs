@@ -9,12 +9,12 @@ use crate::effects::{Channel, Signals};
 use crate::problem::Problem;
 use crate::units::Unit;
 
-/// Units of the channels that are written, by name.
+/// Units of channels, by name.
 pub type Units = Vec<(String, Unit)>;
 
-/// Column of the time.
+/// Column with the time.
 const TIME: &str = "time";
-/// The axis of a record; without it, the time.
+/// Column with the axis of a record; the time if it is missing.
 const AXIS: &str = "distance";
 
 /// A record of a section with all its channels, each in its own unit, and those units.
@@ -31,7 +31,7 @@ pub fn recorded(campaign: &Campaign, kind: RecordKind, section: &Section) -> Res
     Ok((signals, units, file))
 }
 
-/// As [`recorded`], for a file that is no campaign's.
+/// As [`recorded`], for a file outside a campaign.
 ///
 /// # Errors
 /// Of reading; the record has no `time`.
@@ -63,16 +63,16 @@ fn signals(record: &Record) -> Result<(Signals, Units), Vec<Problem>> {
     Ok((Signals { axis: axis.values.clone(), over_time, rate: (record.rows - 1) as f64 / span, channels }, units))
 }
 
-/// Turns channels into other units; those for which `to` has none stay in their own.
+/// Converts channels to other units; those for which `to` has none are unchanged.
 ///
 /// # Errors
-/// `unit-mismatch`: a channel is another quantity than it should be.
+/// `unit-mismatch`: a channel has another dimension.
 pub fn in_units(signals: &mut Signals, units: &Units, to: &dyn Fn(&str) -> Option<Unit>) -> Result<(), Problem> {
     for channel in &mut signals.channels {
         let from = units.iter().find(|(name, _)| *name == channel.name).map(|(_, unit)| unit);
         let (Some(from), Some(to)) = (from, to(&channel.name)) else { continue };
         if from.dimension != to.dimension {
-            let says = format!("the channel `{}` is in {from}, which is another quantity than {to}", channel.name);
+            let says = format!("the channel `{}` is in {from}, which cannot be converted to {to}", channel.name);
             return Err(Problem::error("unit-mismatch", says));
         }
         if from.factor != to.factor {
@@ -82,11 +82,11 @@ pub fn in_units(signals: &mut Signals, units: &Units, to: &dyn Fn(&str) -> Optio
     Ok(())
 }
 
-/// A record as text: time from 0 and distance, or the time as it is where that is the axis; channels: forces in kN to 0.01,
-/// accelerations in m/s^2 to 0.0001, all else to six decimals.
+/// A record as text: time from 0 and distance, or the time alone if it is the axis; forces in kN to 0.01, accelerations in m/s^2 to
+/// 0.0001, all other channels to six decimals.
 ///
 /// # Errors
-/// A value is not finite: a fault of the simulator, found before anything is written.
+/// A value is not finite, which is a fault of the simulator; detected before any file is written.
 pub fn record_text(signals: &Signals, units: &dyn Fn(&str) -> Unit) -> Result<String, Problem> {
     let time: Vec<f64> = (0..signals.axis.len()).map(|n| n as f64 / signals.rate).collect();
     let (seconds, metres) = (Unit::parse("s").unwrap_or_else(|_| Unit::one()), Unit::parse("m").unwrap_or_else(|_| Unit::one()));

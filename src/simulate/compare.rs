@@ -1,11 +1,11 @@
-//! How far a simulator is from a record that was made elsewhere.
+//! Deviation of a simulator from a record from elsewhere.
 
 use super::add::interpolated;
 use super::{Section, Simulator};
 use crate::effects::Signals;
 use crate::problem::Problem;
 
-/// How far one channel of one section is off.
+/// Deviation of one channel in one section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviation {
     pub section: String,
@@ -17,17 +17,17 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// The difference as a share of the channel; 0 where both are nothing.
+    /// The deviation as a share of the channel's rms; 0 if both are zero.
     #[must_use]
     pub fn share(&self) -> f64 {
         if self.rms == 0.0 { 0.0 } else { self.rms / self.of }
     }
 }
 
-/// The deviations of all channels that both have, in the order of the record. Both must be in the same units.
+/// The deviations of all common channels, in the order of the record. Both must be in the same units.
 ///
 /// # Errors
-/// `too-short`: fewer than two samples of the section lie in both.
+/// `too-short`: fewer than two samples of the section are in both.
 pub fn deviations(made: &Signals, recorded: &Signals, section: &Section) -> Result<Vec<Deviation>, Problem> {
     let ends = |signals: &Signals| signals.axis.first().copied().zip(signals.axis.last().copied());
     let (from, to) = match (ends(made), ends(recorded)) {
@@ -36,7 +36,7 @@ pub fn deviations(made: &Signals, recorded: &Signals, section: &Section) -> Resu
     };
     let inside: Vec<usize> = (0..recorded.axis.len()).filter(|at| (from..=to).contains(&recorded.axis[*at])).collect();
     if inside.len() < 2 {
-        let says = format!("section `{}`: the simulator's record and the campaign's have no place in common", section.name());
+        let says = format!("section `{}`: the records of the simulator and of the campaign do not overlap", section.name());
         return Err(Problem::error("too-short", says).at(&section.cell.span));
     }
     let mut found = Vec::new();
@@ -55,14 +55,14 @@ pub fn deviations(made: &Signals, recorded: &Signals, section: &Section) -> Resu
     Ok(found)
 }
 
-/// Says how far a simulator without effects is from the campaign's simulation, if it is further than the tolerance anywhere.
+/// A warning if a simulator without effects deviates from the campaign's simulation by more than the tolerance in any channel.
 #[must_use]
 pub fn baseline_warning(simulator: &dyn Simulator, tolerance: f64, deviations: &[Deviation]) -> Option<Problem> {
     let beyond: Vec<&Deviation> = deviations.iter().filter(|one| one.share() > tolerance).collect();
     let worst = beyond.iter().max_by(|a, b| a.share().total_cmp(&b.share()))?;
     let says = format!(
-        "{} without effects is not the campaign's simulation: `{}` of section `{}` is off by {:.1} % (rms of the difference over rms of \
-         the channel); {} of {} channels are off by more than {} %",
+        "{} without effects does not reproduce the campaign's simulation: `{}` of section `{}` deviates by {:.1} % (rms of the difference / \
+         rms of the channel); {} of {} channels deviate by more than {} %",
         simulator.name(),
         worst.channel,
         worst.section,
@@ -71,6 +71,6 @@ pub fn baseline_warning(simulator: &dyn Simulator, tolerance: f64, deviations: &
         deviations.len(),
         100.0 * tolerance
     );
-    let help = "compare the vehicle and the tracks that both ran on, or add effects to the campaign's own records with `--increment`";
+    let help = "check that both used the same vehicle and tracks, or add effects to the campaign's own records with `--increment`";
     Some(Problem::warning("baseline", says).help(help))
 }

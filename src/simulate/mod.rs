@@ -1,4 +1,4 @@
-//! Simulators: what turns a section and settings of parameters into a record.
+//! Simulators: from a section and parameter settings to a record.
 
 #![allow(clippy::cast_precision_loss)]
 
@@ -24,34 +24,34 @@ use crate::effects::Signals;
 use crate::problem::Problem;
 use crate::units::Unit;
 
-/// A record to be made.
+/// A record to be simulated.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
     pub section: &'a Section,
     /// Parameters of the simulator that differ from the vehicle file, in its units.
     pub settings: &'a [(String, f64)],
-    /// Recorded minus true position in m: the record is made where it will be shifted to.
+    /// Recorded minus true position in m: the record is extended by it.
     pub shift: f64,
-    /// Whether nothing but what lies inside the section is asked for; a simulator may make more.
+    /// Whether only the part inside the section is needed; a simulator may give more.
     pub inside_only: bool,
 }
 
-/// Something that makes records.
+/// A simulator.
 pub trait Simulator: Sync {
-    /// What reports call it.
+    /// Name in reports.
     fn name(&self) -> &str;
 
-    /// The name by which a catalogue says which parameters of it an effect moves; `None` for the built-in model.
+    /// Name under which catalogues list its parameters; `None` for the built-in model.
     fn catalogue_name(&self) -> Option<&str>;
 
-    /// The unit that it makes a channel in; `None`: that of the campaign's simulation.
+    /// Unit of a channel; `None`: that of the campaign's simulation.
     fn unit(&self, _channel: &str) -> Option<Unit> {
         None
     }
 
-    /// Makes a record.
+    /// Simulates a record.
     ///
     /// # Errors
-    /// What went wrong, and where: a run that diverges, a program that fails, an input that cannot be read.
+    /// The run diverges, the program fails, or an input cannot be read; with its place.
     fn run(&self, task: &Task<'_>) -> Result<Signals, Problem>;
 }

@@ -1,4 +1,4 @@
-//! What a simulated campaign says of how it was made.
+//! Origin of a simulated campaign.
 
 use crate::data::hash::sha256;
 use crate::data::origin::{Origin, OriginEffect, OriginFile};
@@ -7,10 +7,10 @@ use crate::disk;
 use crate::effects::{Applied, Catalogue};
 use crate::problem::Problem;
 
-/// Largest record that is fingerprinted [bytes]: what any record may have.
+/// Maximum size of a record in bytes.
 const LARGEST: u64 = 1 << 30;
 
-/// How simulated records were made.
+/// Description of how simulated records were made.
 #[derive(Clone, Debug)]
 pub struct Made<'a> {
     /// The command that made them.
@@ -19,14 +19,14 @@ pub struct Made<'a> {
     pub simulator: Option<&'a str>,
     /// See [`effects_of_origin`].
     pub effects: Vec<OriginEffect>,
-    /// The effects were added to the campaign's own simulation, with whatever is in that already.
+    /// The effects were added to the campaign's own simulation and its existing effects.
     pub added: bool,
     /// Their sizes were fitted to the campaign's measurement.
     pub fitted: bool,
 }
 
 impl Made<'_> {
-    /// The origin of the new records: with `added`, what the campaign's own simulation came from is part of it.
+    /// The origin of the new records; with `added`, including the origin of the campaign's own simulation.
     ///
     /// # Errors
     /// A file of the campaign cannot be read.
@@ -71,7 +71,7 @@ impl Made<'_> {
     }
 }
 
-/// Effects as an origin states them, with the units of the catalogue.
+/// Effects for an origin, with the units of the catalogue.
 #[must_use]
 pub fn effects_of_origin(effects: &[Applied], catalogue: &Catalogue) -> Vec<OriginEffect> {
     effects.iter().map(|applied| effect(applied, catalogue)).collect()

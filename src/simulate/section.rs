@@ -1,4 +1,4 @@
-//! The sections of a campaign as a simulator needs them.
+//! The sections of a campaign for simulators.
 
 use crate::data::table::{Cell, Table};
 use crate::data::{Campaign, Heading};
@@ -10,7 +10,7 @@ use crate::units::{Dimension, Unit};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
     pub cell: Cell,
-    /// Where it begins and ends on the axis, in SI; infinite for a record without a section table.
+    /// Start and end on the axis in SI units; infinite for a record without a section table.
     pub start: f64,
     pub end: f64,
     /// In m/s, if the table has speeds.
@@ -19,18 +19,18 @@ pub struct Section {
     pub facts: Vec<Fact>,
 }
 
-/// What a column of the section table says of a section.
+/// A cell of the section table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fact {
     /// The column, without its unit.
     pub name: String,
     pub text: String,
-    /// The unit of the column, where the heading has one that is known.
+    /// The unit of the column, if known.
     pub unit: Option<Unit>,
 }
 
 impl Section {
-    /// A place that belongs to no campaign.
+    /// A section without a campaign.
     #[must_use]
     pub fn nowhere() -> Self {
         let cell = Cell::new("record".to_string(), Source::new("", "").whole());
@@ -51,7 +51,7 @@ impl Section {
         self.facts.iter().find(|fact| fact.name == column).map(|fact| fact.text.as_str())
     }
 
-    /// The number in a column, in SI; as it stands where the column has no unit.
+    /// The number in a column in SI units; unchanged if the column has no unit.
     #[must_use]
     pub fn number(&self, column: &str) -> Option<f64> {
         let fact = self.facts.iter().find(|fact| fact.name == column)?;
@@ -59,7 +59,7 @@ impl Section {
         Some(fact.unit.as_ref().map_or(number, |unit| unit.to_si(number)))
     }
 
-    /// A column in words, `radius 280 m`; nothing where its cell is empty.
+    /// A column in words, `radius 280 m`; nothing if its cell is empty.
     #[must_use]
     pub fn says(&self, column: &str) -> Option<String> {
         let fact = self.facts.iter().find(|fact| fact.name == column).filter(|fact| !fact.text.is_empty())?;
@@ -68,7 +68,7 @@ impl Section {
     }
 }
 
-/// The sections of a campaign, in the order of its table; none where a cell of it cannot be read.
+/// The sections of a campaign in the order of its table; none if a cell cannot be read.
 pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Option<Vec<Section>> {
     let Some(table) = &campaign.sections else {
         let whole =
@@ -82,7 +82,7 @@ pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Option<Vec<Sect
         Some(_) => column(table, "speed", Some(Dimension::LENGTH / Dimension::TIME), &mut faults),
         None => Vec::new(),
     };
-    // A number in a unit that is not known would be taken for one in SI.
+    // A number in an unknown unit would be taken as SI.
     let unit_of = |heading: &Heading| heading.unit.as_ref().map(|_| heading.unit(None)).transpose();
     let units: Vec<Option<Unit>> =
         table.columns.iter().map(|heading| unit_of(heading).map_err(|fault| faults.push(fault)).ok().flatten()).collect();

@@ -1,4 +1,4 @@
-//! A simulated campaign as a folder.
+//! Writes a simulated campaign.
 
 use super::origin::Made;
 use crate::data::origin::{ORIGIN_FILE, ORIGIN_KEY};
@@ -6,14 +6,13 @@ use crate::data::write::{Entry, Outputs, campaign_yaml};
 use crate::data::{Campaign, RecordKind};
 use crate::problem::Problem;
 
-/// Keys of `campaign.yaml` that are another campaign's.
+/// Keys of `campaign.yaml` that are not copied.
 const OWN: [&str; 4] = ["name", "simulation", "simulation_ran_on", ORIGIN_KEY];
 
-/// A campaign like another, with other simulated records. Everything that the other has is copied beside them, and an origin says
-/// how they were made; without it for copies that are evaluated and thrown away.
+/// Writes a copy of a campaign with other simulated records. All other files are copied, and an origin is added; none for temporary copies.
 ///
 /// # Errors
-/// Of reading the other, and of writing; nothing is in its place before [`Outputs::commit`].
+/// Of reading the campaign, or of writing; no file is in its place before [`Outputs::commit`].
 pub fn write_campaign(
     outputs: &mut Outputs,
     campaign: &Campaign,
@@ -28,7 +27,7 @@ pub fn write_campaign(
     let mut origin = None;
     if let Some(made) = made {
         let whole = made.origin(campaign, &copied)?;
-        // What is not in the new simulation any more leaves its name, too.
+        // The name contains only effects that are still in the new simulation.
         name.clone_from(&whole.campaign);
         if !whole.effects.is_empty() {
             name = format!("{name}, with {}", whole.effects_in_words(" "));

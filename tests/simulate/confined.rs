@@ -47,7 +47,7 @@ fn sizes_by_zone() {
 fn to_nothing_is_a_slip() {
     let place = Place::new();
     for (effect, words) in [
-        ("friction=0.2 in zones 3, 7", ["`7`, which no section has", "known here: 1, 2, 3, 4"]),
+        ("friction=0.2 in zones 3, 7", ["`7`, but no section has this value", "known here: 1, 2, 3, 4"]),
         ("friction=0.2 in direction lefft", ["`lefft`", "did you mean `left`?"]),
         ("friction=0.2 in section S06b", ["`S06b`", "did you mean `S06`?"]),
         ("friction=0.2 in zones ", ["confined", "in zones 3, 4"]),

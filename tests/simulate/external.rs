@@ -166,12 +166,12 @@ fn effects_that_the_program_cannot_add() {
     let place = twin();
     let ran = place.simulate("out", &arguments(&["--effect", "cant_error=20"]));
     assert_eq!(ran.code, 2, "{}", ran.stderr);
-    assert!(ran.stderr.contains("the catalogue does not say how twin adds `track.cant_error`"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("the catalogue does not define how twin adds `track.cant_error`"), "{}", ran.stderr);
     place.replace("sim.yaml", ", '{set}'", "");
     place.replace("sim.yaml", "set: [--effect, '{name}={value}']\n", "");
     let ran = place.simulate("out", &arguments(&["--effect", "friction=0.5"]));
     assert_eq!(ran.code, 3, "{}", ran.stderr);
-    assert!(ran.stderr.contains("`twin` takes no parameters"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("`twin` accepts no parameters"), "{}", ran.stderr);
     let alone = ["simulate", "--vehicle", "small/vehicle.yaml", "--track", "t", "-o", "x.csv", "--speed", "20", "--simulator", "sim.yaml"];
     assert_eq!(crate::program::fishplate(&alone).code, 2, "one record is a call of the program itself");
 }
@@ -196,7 +196,7 @@ mod programs {
     fn time_out() {
         let place = place("[sh, -c, 'echo warming up >&2; sleep 300 & echo $! > child; wait', '{out}']", "timeout: 0.3 s\n");
         let started = Instant::now();
-        fails(&place, &["simulator-timeout", "section `S01`: twin was ended after 0.3 s", "warming up"]);
+        fails(&place, &["simulator-timeout", "section `S01`: twin was terminated after 0.3 s", "warming up"]);
         assert!(started.elapsed().as_secs() < 30);
         let child = place.text("child").trim().to_string();
         let gone = |_| {
@@ -271,7 +271,7 @@ mod programs {
 
     #[test]
     fn no_record_and_wrong_records() {
-        fails(&place("[sh, -c, ':', '{out}']", ""), &["simulator-output", "ended well and wrote no record"]);
+        fails(&place("[sh, -c, ':', '{out}']", ""), &["simulator-output", "ended without an error, but wrote no record"]);
         let write = |script: &str| place(&format!("[sh, -c, '{script}', sh, 'small/simulation/{{section}}.csv', '{{out}}']"), "");
         fails(&write("echo hello > $2"), &["section `S01`", "S01.csv of twin"]);
         fails(&write(": > $2"), &["section `S01`: the record of twin", "empty"]);

@@ -1,4 +1,4 @@
-//! A row that is not as it should be: read with patience, and told what is wrong.
+//! Slow parsing of an irregular row, with a description of its fault.
 
 use super::rows::Sink;
 use crate::data::cells::{self, StrayQuote};
@@ -11,23 +11,23 @@ pub(super) struct Line<'a> {
     pub text: &'a str,
     /// From 1.
     pub number: usize,
-    /// Whether the file ends with it, without a line break.
+    /// Whether it is the last line and has no line break.
     pub last: bool,
     pub shown: &'a str,
 }
 
 impl Line<'_> {
-    /// Only this line is kept with a problem, not the file.
+    /// The problem keeps only this line, not the file.
     fn span(&self) -> Span {
         Source::excerpt(self.shown, self.text, self.number).whole()
     }
 }
 
-/// Rows before the last one that say how many decimals its last number should have.
+/// Number of rows before the last one that determine the expected decimals of its last number.
 const BEFORE: usize = 8;
 
-/// A file that was cut off inside its last number: there is no line break at its end, and the number has fewer decimals than those above
-/// it, which all have the same. Where their number varies, nothing can be told.
+/// Detects a file that was cut off inside its last number: it ends without a line break, and the number has fewer decimals than those above
+/// it, which all have the same number. If these vary, truncation cannot be detected.
 pub(super) fn cut_number(rows: &str, ended: bool, line: usize, shown: &str, faults: &mut Faults<'_>) {
     let mut lines = rows.rsplit('\n').take(1 + BEFORE);
     let (false, Some(last)) = (ended, lines.next()) else { return };
@@ -47,10 +47,10 @@ pub(super) fn cut_number(rows: &str, ended: bool, line: usize, shown: &str, faul
     }
 }
 
-/// Reads a row that holds quotes or blanks, or finds what is wrong with it. Columns may end with different lengths if there is a fault.
+/// Parses a row with quotes or blanks, or reports its fault. After a fault, columns may have different lengths.
 pub(super) fn slow_row(line: &Line<'_>, width: usize, sinks: &mut [Sink], faults: &mut Faults<'_>) {
     if line.text.trim().is_empty() {
-        faults.push(|| Problem::error("blank-line", "a blank line stands between the rows").at(&line.span()));
+        faults.push(|| Problem::error("blank-line", "blank line between the rows").at(&line.span()));
         return;
     }
     let cells = match cells::split(line.text) {

@@ -1,28 +1,28 @@
-//! Where the cells of a stretch of text begin.
+//! Index of the cells of a block of text.
 
-/// Bytes indexed at a time: their index stays in the nearest cache.
+/// Bytes indexed at a time; the index fits the first-level cache.
 const STRETCH: usize = 1 << 14;
-/// Bytes judged at a time.
+/// Bytes compared at a time.
 const CHUNK: usize = 64;
 
-/// The places after each comma, line feed and quote of a stretch.
+/// The positions after each comma, line feed and quote of a block.
 #[derive(Debug, Default)]
 pub(super) struct Marks {
     places: Vec<usize>,
     count: usize,
-    /// Up to where the text has been searched.
+    /// End of the indexed block.
     pub end: usize,
 }
 
 impl Marks {
-    /// In order, beginning with the start of the stretch.
+    /// The positions in order, beginning with the start of the block.
     pub fn after(&self) -> &[usize] {
         &self.places[..self.count]
     }
 
-    /// Searches the stretch that begins at `start`.
+    /// Indexes the block that begins at `start`.
     pub fn find(&mut self, text: &[u8], start: usize) {
-        // One for the start and one for each byte, were all of them marks; whole chunks are written to.
+        // Space for the start and for one mark per byte; whole chunks are written.
         self.places.resize(1 + STRETCH + CHUNK, 0);
         self.places[0] = start;
         self.count = 1;
@@ -50,9 +50,9 @@ impl Marks {
     }
 }
 
-/// A bit for each byte that ends a cell, the first lowest.
+/// A bit for each byte that ends a cell; the first byte is the lowest bit.
 fn bits(chunk: &[u8; CHUNK]) -> u64 {
-    // Two plain loops: the first becomes vector instructions, and the product of the second gathers eight flags into one byte.
+    // The first loop is vectorised; the product in the second one combines eight flags into one byte.
     let mut flags = [0; CHUNK];
     for (flag, byte) in flags.iter_mut().zip(chunk) {
         *flag = u8::from(matches!(byte, b',' | b'\n' | b'"'));

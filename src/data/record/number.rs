@@ -1,17 +1,17 @@
 //! Plain decimal numbers such as `-12.34`, eight bytes at a time.
 //!
-//! Nearly every number of a record has no exponent and so few digits that, read as one whole number, they fit the 53 bits of a double.
-//! That number and the power of ten it is to be divided by are exact, so the quotient, rounded once, is the double nearest to the
-//! decimal (Clinger, "How to read floating point numbers accurately", PLDI 1990). All other numbers are left to a general reader.
+//! Nearly all numbers of a record have no exponent and few enough digits that, read as an integer, they fit the 53 bits of a double. The
+//! integer and the divisor, a power of ten, are then exact, and the quotient, rounded once, is the double nearest to the decimal
+//! (Clinger, "How to read floating point numbers accurately", PLDI 1990). All other numbers use a general parser.
 
 use std::ops::Range;
 
-/// Most digits before or after the point.
+/// Maximum number of digits before or after the point.
 const MOST: usize = 8;
-/// Signed, like all whole numbers here: those a processor turns into a double in one step.
+/// Signed, since conversion of signed integers to double is a single instruction.
 const TENS: [i64; MOST + 1] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
 
-/// The finite number in a cell of a text; `None` where there is none.
+/// The finite number in a cell; `None` if it is not one.
 #[inline]
 pub(super) fn read(text: &[u8], cell: Range<usize>) -> Option<f64> {
     plain(text, cell.clone()).or_else(|| general(text, cell))
@@ -22,7 +22,7 @@ fn general(text: &[u8], cell: Range<usize>) -> Option<f64> {
     fast_float2::parse(text.get(cell)?).ok().filter(|number: &f64| number.is_finite())
 }
 
-/// The number in a cell if it is plain, has few digits and stands away from both ends of the text.
+/// The number in a cell if it has a plain form, few digits, and is not close to either end of the text.
 #[inline]
 fn plain(text: &[u8], cell: Range<usize>) -> Option<f64> {
     let sign = usize::from(text.get(cell.start) == Some(&b'-'));
@@ -46,7 +46,7 @@ fn plain(text: &[u8], cell: Range<usize>) -> Option<f64> {
         Some(_) => return None,
     };
     let size = digits as f64 / TENS[decimals] as f64;
-    // Signs come as they please: a branch would be guessed wrong every other time.
+    // Without a branch, which could not be predicted.
     Some(f64::from_bits(size.to_bits() | (sign as u64) << 63))
 }
 
@@ -56,34 +56,34 @@ fn eight_bytes(text: &[u8], at: usize) -> Option<u64> {
     text.get(at..)?.first_chunk().map(|bytes| u64::from_le_bytes(*bytes))
 }
 
-/// The same byte in every place.
+/// A word with this byte in every place.
 const fn every(byte: u8) -> u64 {
     u64::from_le_bytes([byte; MOST])
 }
 
-/// Where a byte stands first among eight; 8 if nowhere.
+/// Index of the first occurrence of a byte among eight; 8 if there is none.
 #[inline]
 fn first(bytes: u64, byte: u8) -> usize {
     let others = bytes ^ every(byte);
-    // The borrow of a zero byte sets its high bit, and reaches only bytes after it.
+    // The borrow of a zero byte sets its high bit, and affects only later bytes.
     let zeros = others.wrapping_sub(every(1)) & !others & every(0x80);
     zeros.trailing_zeros() as usize / 8
 }
 
-/// The first bytes of eight moved to the high end, with zeros before them; `None` for no byte.
+/// Moves the first `count` of eight bytes to the high end, filled with zeros; `None` for a count of 0.
 #[inline]
 fn high_end(digits: u64, count: usize) -> Option<u64> {
     if (1..=MOST).contains(&count) { Some(digits << (8 * (MOST - count))) } else { None }
 }
 
-/// The number that eight digits from 0 to 9 make; `None` if one of them is greater.
+/// The number formed by eight digits from 0 to 9; `None` if a byte is larger than 9.
 #[inline]
 fn number(digits: u64) -> Option<i64> {
-    // 10 + 0x76 is the first sum to reach the high bit; a sum that carries has a high bit to begin with.
+    // 10 + 0x76 is the smallest sum that sets the high bit; a sum with a carry has it set before.
     if (digits.wrapping_add(every(0x76)) | digits) & every(0x80) != 0 {
         return None;
     }
-    // Neighbours join to numbers of two, four and eight digits.
+    // Combines neighbours to numbers of two, four and eight digits.
     let digits = (digits * 10 + (digits >> 8)) & 0x00ff_00ff_00ff_00ff;
     let digits = (digits * 100 + (digits >> 16)) & 0x0000_ffff_0000_ffff;
     Some(((digits * 10_000 + (digits >> 32)) & 0xffff_ffff) as i64)

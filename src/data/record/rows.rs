@@ -5,10 +5,10 @@ use crate::data::faults::Faults;
 use crate::data::text::{LONGEST_LINE, long_line};
 use crate::problem::Problem;
 
-/// Rows reserved for before the first is read are bounded by what a row of one-digit numbers takes.
+/// Shortest cell in bytes, which bounds the number of rows reserved.
 const SHORTEST_CELL: usize = 2;
 
-/// Fills the columns from the text below the header, which begins at `start`; the number of rows.
+/// Fills the columns from the text below the header, which begins at `start`; returns the number of rows.
 pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column], shown: &str) -> Result<usize, Vec<Problem>> {
     let bytes = text.as_bytes();
     let expected = expected_rows(&bytes[start..], width);
@@ -18,7 +18,7 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
         factor: column.unit.factor,
         values: Vec::with_capacity(expected),
     };
-    // In the order of the file, in which their faults are told.
+    // In the order of the file, so that faults are reported in order.
     let mut columns: Vec<&mut Column> = columns.iter_mut().collect();
     columns.sort_by_key(|column| column.position);
     let mut sinks: Vec<Sink> = columns.iter().map(|column| sink(column)).collect();
@@ -26,7 +26,7 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
     let mut marks = Marks::default();
     let mut rows = 0;
     let mut at = start;
-    // Blank lines at the end are no rows.
+    // Blank lines at the end are not rows.
     let end_of_rows = start + text[start..].trim_end().len();
     'file: while at < end_of_rows {
         let stretch = at;
@@ -44,7 +44,7 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
             }
             let end = memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |found| at + found);
             if end >= marks.end && at > stretch {
-                // Cut off by the end of the stretch: the next one begins with it.
+                // Cut off by the end of the block: the next block begins with it.
                 break;
             }
             if end - at > LONGEST_LINE {
@@ -52,7 +52,7 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
                 break 'file;
             }
             let line = fault::Line { text: text[at..end].trim_end_matches('\r'), number: rows + 2, last: end == bytes.len(), shown };
-            // A faulty row still counts, so that the rows after it keep their numbers.
+            // A faulty row is counted, so that later rows have the right numbers.
             fault::slow_row(&line, width, &mut sinks, &mut faults);
             rows += 1;
             at = end + 1;
@@ -71,31 +71,31 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
     faults.finish(rows)
 }
 
-/// Where the numbers of a column go.
+/// Destination of the numbers of a column.
 pub(super) struct Sink {
     pub name: String,
-    /// Which cell of a row.
+    /// Index of the cell in a row.
     pub position: usize,
     pub factor: f64,
     pub values: Vec<f64>,
 }
 
-/// A guess from the first row, so that columns seldom grow.
+/// Estimate from the first row, so that columns seldom grow.
 fn expected_rows(bytes: &[u8], width: usize) -> usize {
     let first = memchr::memchr(b'\n', bytes).unwrap_or(bytes.len()) + 1;
-    // A first row that is shorter than the others would reserve too much, so it is taken for at least as long as a row can be.
+    // A short first row would reserve too much, so its length is at least the minimum.
     let rows = bytes.len() / first.max(SHORTEST_CELL * width);
     rows + rows / 16 + 1
 }
 
-/// Reads the row whose cells begin at the first `width` marks; the mark after them is where the next row begins.
+/// Parses the row whose cells begin at the first `width` marks; the next mark is the start of the next row.
 ///
-/// `None` if anything about it is unusual; some columns may then have a value more.
-// Inlined, it would compete with the loop around it for registers.
+/// `None` if the row is irregular; some columns may then have one value more.
+// Not inlined, since it would compete with the surrounding loop for registers.
 #[inline(never)]
 fn row(bytes: &[u8], cells: &[usize], width: usize, sinks: &mut [Sink]) -> Option<()> {
     let (cells, next) = (cells.get(..width)?, *cells.get(width)?);
-    // Quotes and missing cells show up where only commas should be.
+    // Quotes and missing cells are detected where only commas are expected.
     if bytes[next - 1] != b'\n' || !cells[1..].iter().all(|cell| bytes[cell - 1] == b',') {
         return None;
     }

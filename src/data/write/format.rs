@@ -1,4 +1,4 @@
-//! Records, tables and `campaign.yaml` as text, in the form that the readers take.
+//! Records, tables and `campaign.yaml` as text, in the format of the readers.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use crate::problem::Problem;
 use crate::units::Unit;
 use crate::yaml::{Node, Value};
 
-/// A column to be written: values in SI, printed in its unit with so many decimals.
+/// A column to be written: values in SI units, its unit, and its number of decimals.
 #[derive(Clone, Copy, Debug)]
 pub struct OutColumn<'a> {
     pub name: &'a str,
@@ -15,10 +15,10 @@ pub struct OutColumn<'a> {
     pub decimals: usize,
 }
 
-/// A record with a header line `name [unit],...` and one line per sample; as many as the shortest column has.
+/// A record with a header line `name [unit],...` and one line per sample of the shortest column.
 ///
 /// # Errors
-/// `not-finite`: the first value that is no number, by column and row of the file.
+/// `not-finite`: the first value that is not finite, by column and row of the file.
 pub fn record_csv(columns: &[OutColumn<'_>]) -> Result<String, Problem> {
     let rows = columns.iter().map(|column| column.values.len()).min().unwrap_or(0);
     let mut text = header(columns.iter().map(|column| (column.name, column.unit)));
@@ -41,7 +41,7 @@ fn header<'a>(columns: impl Iterator<Item = (&'a str, &'a Unit)>) -> String {
     table_csv(&[columns.map(|(name, unit)| format!("{name} [{unit}]")).collect::<Vec<_>>()])
 }
 
-/// `-0.00` is no number that anyone means.
+/// Writes a number, but never `-0.00`.
 fn push_number(text: &mut String, value: f64, decimals: usize) {
     let start = text.len();
     // Writing to a string cannot fail.
@@ -54,7 +54,7 @@ fn push_number(text: &mut String, value: f64, decimals: usize) {
 /// Rows of cells as CSV, quoted where needed; the header is the first row.
 pub fn table_csv<S: AsRef<[u8]>>(rows: &[Vec<S>]) -> String {
     let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
-    // Neither writing to memory nor rows of different length can fail.
+    // Writing to memory and rows of different length cannot fail.
     rows.iter().for_each(|row| drop(writer.write_record(row)));
     writer.into_inner().ok().and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_default()
 }
@@ -64,11 +64,11 @@ pub fn table_csv<S: AsRef<[u8]>>(rows: &[Vec<S>]) -> String {
 pub enum Entry<'a> {
     Text(&'a str),
     Number(f64),
-    /// As it was read from another file.
+    /// As read from another file.
     Node(&'a Node),
 }
 
-/// `campaign.yaml` or any other map of keys and values.
+/// `campaign.yaml` or another map of keys and values.
 pub fn campaign_yaml(entries: &[(&str, Entry<'_>)]) -> String {
     let mut text = String::new();
     for (key, entry) in entries {
@@ -89,7 +89,7 @@ pub fn campaign_yaml(entries: &[(&str, Entry<'_>)]) -> String {
     text
 }
 
-/// What follows a key or a dash, with its line break.
+/// The value after a key or a dash, with its line break.
 fn push_node(text: &mut String, node: &Node, depth: usize) {
     match &node.value {
         Value::List(items) if items.is_empty() => text.push_str(" []\n"),
@@ -129,10 +129,10 @@ pub fn yaml_text(value: &str) -> String {
     text
 }
 
-/// Plain where that is surely read back as the same text, else in double quotes.
+/// Plain if this is certainly read back as the same text, else in double quotes.
 fn push_text(text: &mut String, value: &str) {
     const WORDS: [&str; 10] = ["true", "false", "null", "yes", "no", "on", "off", "y", "n", "~"];
-    // A unit in brackets may follow a word; `: ` and ` #` may not, so colons and hashes are quoted altogether.
+    // A unit in brackets may follow a word; `: ` and ` #` may not, so texts with colons and hashes are quoted.
     let plain = value.starts_with(|letter: char| letter.is_alphabetic() || letter == '_')
         && value.chars().all(|letter| letter.is_alphanumeric() || " _-./^()[]²³µ°%,;+*=".contains(letter))
         && !value.ends_with(' ')
@@ -171,7 +171,7 @@ mod tests {
         yaml::load(&Source::new("t", text), &mut problems).unwrap_or_else(|| panic!("{text}\n{}", problems.render(false)))
     }
 
-    /// The meaning of a tree without places.
+    /// Equality of trees without places.
     fn same(a: &Node, b: &Node) -> bool {
         match (&a.value, &b.value) {
             (Value::List(a), Value::List(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),

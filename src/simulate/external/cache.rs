@@ -1,4 +1,4 @@
-//! Records that were made before, by what they were made from.
+//! Cache of records of external simulators, keyed by their inputs.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -9,39 +9,39 @@ use crate::data::write::keep;
 use crate::disk;
 use crate::problem::Problem;
 
-/// Where records of other simulators are kept between runs; or nowhere.
+/// Folder of the cached records, if any.
 #[derive(Clone, Debug, Default)]
 pub struct Cache {
     folder: Option<PathBuf>,
-    /// Entries that are not what was kept.
+    /// Entries whose checksum does not match.
     damaged: Arc<Mutex<Vec<PathBuf>>>,
 }
 
-/// What a line at the end of an entry begins with; the checksum of the key and the record follows.
+/// Start of the last line of an entry; the checksum of key and record follows.
 const SEAL: &str = "# fishplate record, SHA-256 ";
 
 impl Cache {
-    /// A cache in a folder, which is made.
+    /// A cache in a folder, which is created.
     ///
     /// # Errors
-    /// `write-failed`: it cannot be made.
+    /// `write-failed`: it cannot be created.
     pub fn at(folder: &Path) -> Result<Self, Problem> {
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
         disk::make_folder(&folder)
-            .map_err(|error| Problem::error("write-failed", format!("the cache `{}` cannot be made: {error}", folder.display())))?;
+            .map_err(|error| Problem::error("write-failed", format!("the cache `{}` cannot be created: {error}", folder.display())))?;
         Ok(Self { folder: Some(folder), damaged: Arc::default() })
     }
 
-    /// Keeps nothing.
+    /// A cache that stores nothing.
     #[must_use]
     pub fn none() -> Self {
         Self::default()
     }
 
-    /// The cache that is used unless another is named: `fishplate-cache` in the system's folder for temporary files.
+    /// The default cache: `fishplate-cache` in the system's temporary folder.
     ///
     /// # Errors
-    /// `write-failed`: it cannot be made, or belongs to another user, who could put records there.
+    /// `write-failed`: it cannot be created, or belongs to another user, who could change its records.
     pub fn temporary() -> Result<Self, Problem> {
         let cache = Self::at(&std::env::temp_dir().join("fishplate-cache"))?;
         #[cfg(unix)]
@@ -49,17 +49,17 @@ impl Cache {
             && !disk::owner(folder).is_ok_and(|owner| owner == rustix::process::getuid().as_raw())
         {
             let says = format!("the cache `{}` belongs to another user", folder.display());
-            return Err(Problem::error("write-failed", says).help("name a folder with `--cache DIR`, or keep none with `--no-cache`"));
+            return Err(Problem::error("write-failed", says).help("give a folder with `--cache DIR`, or use none with `--no-cache`"));
         }
         Ok(cache)
     }
 
-    /// The file of a key, whether it is there or not.
+    /// The path of an entry, whether it exists or not.
     fn file(&self, key: &str) -> Option<PathBuf> {
         Some(self.folder.as_ref()?.join(key.get(..2)?).join(format!("{key}.csv")))
     }
 
-    /// The record of a key as it was kept; nothing if there is none, or if what is there is not that.
+    /// The record of a key; nothing if there is none or its checksum does not match.
     pub(super) fn get(&self, key: &str) -> Option<Vec<u8>> {
         let path = self.file(key)?;
         let bytes = match disk::kind(&path) {
@@ -78,26 +78,26 @@ impl Cache {
         record
     }
 
-    /// Notes that the entry of a key cannot be used.
+    /// Marks the entry of a key as damaged.
     pub(super) fn is_damaged(&self, key: &str) {
         if let (Some(path), Ok(mut damaged)) = (self.file(key), self.damaged.lock()) {
             damaged.push(path);
         }
     }
 
-    /// A warning of entries that were not what was kept; their records were made anew.
+    /// A warning of damaged entries; their records were simulated again.
     pub(super) fn warning(&self) -> Option<Problem> {
         let mut damaged = self.damaged.lock().ok()?;
         let first = damaged.iter().min()?.display().to_string();
         let says = match damaged.len() {
-            1 => format!("the cache entry `{first}` is damaged; its record was made anew"),
-            count => format!("{count} cache entries are damaged, `{first}` among them; their records were made anew"),
+            1 => format!("the cache entry `{first}` is damaged; its record was simulated again"),
+            count => format!("{count} cache entries are damaged, among them `{first}`; their records were simulated again"),
         };
         damaged.clear();
         Some(Problem::warning("cache-damaged", says))
     }
 
-    /// Keeps a record, whole or not at all.
+    /// Stores a record, completely or not at all.
     pub(super) fn keep(&self, key: &str, bytes: &[u8]) -> Result<(), Problem> {
         let Some(path) = self.file(key) else { return Ok(()) };
         let sealed = [bytes, SEAL.as_bytes(), seal(key, bytes).as_bytes(), b"\n"].concat();
@@ -105,19 +105,19 @@ impl Cache {
     }
 }
 
-/// Ties a record to the key that it is kept under: one that was exchanged for another is seen, too.
+/// Checksum of key and record, so that an entry under a wrong key is detected as well.
 fn seal(key: &str, bytes: &[u8]) -> String {
     sha256(&[key.as_bytes(), b"\n", bytes].concat())
 }
 
-/// What a record depends on, gathered into a key.
+/// Hash of all inputs of a record.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Key {
     text: String,
 }
 
 impl Key {
-    /// Adds a part; no two lists of parts give the same text.
+    /// Adds a part; different lists of parts give different texts.
     pub fn add(&mut self, what: &str, value: &str) {
         self.text += &format!("{what}:{}:{value}\n", value.len());
     }
@@ -157,7 +157,7 @@ mod tests {
         let paths = keys.each_ref().map(|key| cache.file(key).expect("a path"));
         let first = std::fs::read(&paths[0]).expect("read");
 
-        // Every byte changed, and every length but the whole.
+        // Every byte changed, and every length except the full one.
         for at in 0..first.len() - 1 {
             let mut bytes = first.clone();
             bytes[at] ^= 1;
@@ -166,7 +166,7 @@ mod tests {
             std::fs::write(&paths[0], &first[..at]).expect("written");
             assert_eq!(cache.get(&keys[0]), None, "{at} bytes");
         }
-        // Another record, itself whole.
+        // Another record, itself undamaged.
         std::fs::copy(&paths[1], &paths[0]).expect("copied");
         assert_eq!(cache.get(&keys[0]), None);
         let warning = cache.warning().expect("told");
@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(cache.warning(), None);
     }
 
-    /// What would wait for ever, or has no end.
+    /// Pipes and devices could block or have no end.
     #[cfg(unix)]
     #[test]
     fn only_plain_files_are_read() {

@@ -1,4 +1,4 @@
-//! The files that records of a program depend on.
+//! Files on which the records of a program depend.
 
 use std::path::{Path, PathBuf};
 
@@ -17,8 +17,8 @@ pub(super) fn vehicle_file(campaign: &Campaign) -> Result<Option<PathBuf>, Probl
     Ok(Some(absolute(&campaign.place(&written)?.path)))
 }
 
-/// What all records of a program depend on: its description, the files that its command and the description name, the vehicle and what
-/// that names.
+/// Hash of the common inputs of all records of a program: its description, the files named in the command and the description, the vehicle
+/// file and the files that it names.
 pub(super) fn basis(campaign: &Campaign, program: &Program, vehicle: Option<&Path>) -> Result<Key, Problem> {
     let mut key = Key::default();
     key.add("simulator", &program.source.text);

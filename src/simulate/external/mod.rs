@@ -1,4 +1,4 @@
-//! A simulator that is a program: one call makes one record.
+//! A program as a simulator: one call simulates one record.
 
 mod cache;
 mod content;
@@ -39,9 +39,9 @@ pub struct External<'a> {
     cache: Cache,
     /// Path of the vehicle file, if the campaign names one.
     vehicle: Option<PathBuf>,
-    /// What all its records depend on.
+    /// Common inputs of all its records.
     basis: Key,
-    /// Units of channels that the campaign does not know, by section.
+    /// Units of channels that are not in the campaign, by section.
     units: Mutex<Vec<(String, Units)>>,
     calls: AtomicUsize,
     found: AtomicUsize,
@@ -51,10 +51,10 @@ impl<'a> External<'a> {
     /// The program for a campaign.
     ///
     /// # Errors
-    /// The campaign lacks a file that the command asks for: `key-missing`, `file-unreadable`.
+    /// The campaign lacks a file that the command needs: `key-missing`, `file-unreadable`.
     pub fn new(campaign: &'a Campaign, program: Program, cache: Cache) -> Result<Self, Problem> {
         let lacks = |key: &str| {
-            let says = format!("the campaign has no `{key}`, which the command of `{}` asks for", program.name);
+            let says = format!("the campaign has no `{key}`, which the command of `{}` needs", program.name);
             Problem::error("key-missing", says).at(&campaign.tree.span.part(0..0)).also(&program.span, "here")
         };
         let asks = |hole: Hole| program.command.iter().any(|word| word.has(hole));
@@ -70,19 +70,19 @@ impl<'a> External<'a> {
         Ok(Self { campaign, program, cache, vehicle, basis, units, calls, found })
     }
 
-    /// How the program is called.
+    /// Description of the program.
     #[must_use]
     pub fn program(&self) -> &Program {
         &self.program
     }
 
-    /// How often the program was called, and how many records were there already.
+    /// Number of calls of the program, and of records from the cache.
     #[must_use]
     pub fn effort(&self) -> (usize, usize) {
         (self.calls.load(Ordering::Relaxed), self.found.load(Ordering::Relaxed))
     }
 
-    /// The unit that a channel of a section's record has: that of the campaign's simulation, else that of the program's last record.
+    /// The unit of a channel of a section's record: that of the campaign's simulation, else that of the program's last record.
     #[must_use]
     pub fn unit(&self, section: &Section, channel: &str) -> Unit {
         let own = || {
@@ -93,31 +93,31 @@ impl<'a> External<'a> {
         unit_in(&self.headings(section), channel).or_else(own).unwrap_or_else(Unit::one)
     }
 
-    /// How far the program without effects is from the campaign's simulation of a section, channel by channel.
+    /// Deviation of the program without effects from the campaign's simulation of a section, by channel.
     ///
     /// # Errors
-    /// Of the program; the campaign's record cannot be read; both have no place in common.
+    /// Of the program; the campaign's record cannot be read; the records do not overlap.
     pub fn baseline(&self, section: &Section) -> Result<Vec<Deviation>, Problem> {
         let (recorded, ..) = recorded(self.campaign, RecordKind::Simulation, section).map_err(first)?;
         deviations(&self.run(&Task { section, settings: &[], shift: 0.0, inside_only: false })?, &recorded, section)
     }
 
-    /// Headings of the campaign's simulation of a section; none if there is none.
+    /// Headings of the campaign's simulation of a section; empty if there is none.
     fn headings(&self, section: &Section) -> Vec<Heading> {
         let place = self.campaign.record_place(RecordKind::Simulation, &section.cell);
         place.ok().and_then(|place| read_headings(&place.path, &place.inside).ok()).unwrap_or_default()
     }
 
-    /// What stands for a placeholder in a call.
+    /// The words of a call with all placeholders replaced.
     fn filled(&self, task: &Task<'_>, out: &Path) -> Result<Vec<String>, Problem> {
         let section = task.section;
         let asks = |hole: Hole| self.program.command.iter().any(|word| word.has(hole));
         let lacks = |what: &str| {
-            let says = format!("section `{}` has no {what}, which the command of `{}` asks for", section.name(), self.program.name);
+            let says = format!("section `{}` has no {what}, which the command of `{}` needs", section.name(), self.program.name);
             Problem::error("section", says).at(&section.cell.span)
         };
         if !task.settings.is_empty() && !asks(Hole::Set) {
-            let says = format!("`{}` takes no parameters: its command has no `{{set}}`", self.program.name);
+            let says = format!("`{}` accepts no parameters: its command has no `{{set}}`", self.program.name);
             return Err(Problem::error("not-simulated", says).at(&self.program.span));
         }
         if asks(Hole::Speed) && section.speed.is_none() {
@@ -146,7 +146,7 @@ impl<'a> External<'a> {
         Ok(absolute(&place.path))
     }
 
-    /// What a record depends on. Paths do not count, contents do.
+    /// The cache key of a record. It depends on the contents of files, not on their paths.
     fn key(&self, task: &Task<'_>) -> Result<String, Problem> {
         let mut key = self.basis.clone();
         let words = self.program.command.iter();
@@ -171,7 +171,7 @@ impl<'a> External<'a> {
         Ok(key.finish())
     }
 
-    /// A record in the units of the campaign's simulation, checked.
+    /// Reads and checks a record, in the units of the campaign's simulation.
     fn read(&self, path: &Path, section: &Section) -> Result<Signals, Problem> {
         let shown = format!("{}.csv of {}", section.name(), self.program.name);
         let known = self.headings(section);
@@ -198,25 +198,25 @@ impl<'a> External<'a> {
         Ok(signals)
     }
 
-    /// A record that was kept.
+    /// Reads a record from the cache.
     fn read_kept(&self, bytes: &[u8], section: &Section) -> Result<Signals, Problem> {
-        let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be made: {error}"));
+        let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be created: {error}"));
         let folder = disk::scratch().map_err(failed)?;
         let file = folder.path().join("record.csv");
         crate::data::write::keep(&file, bytes)?;
         self.read(&file, section)
     }
 
-    /// What is wrong with the cache, and mended.
+    /// A warning of damaged cache entries.
     #[must_use]
     pub fn warning(&self) -> Option<Problem> {
         self.cache.warning()
     }
 
-    /// One call and its record as written.
+    /// Calls the program once; returns the record and its text.
     fn call(&self, task: &Task<'_>) -> Result<(Signals, Vec<u8>), Problem> {
         let section = task.section;
-        let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be made: {error}"));
+        let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be created: {error}"));
         let folder = disk::scratch().map_err(failed)?;
         let out = folder.path().join("record.csv");
         let words = self.filled(task, &out)?;
@@ -231,7 +231,7 @@ impl<'a> External<'a> {
         self.calls.fetch_add(1, Ordering::Relaxed);
         process::run(&call).map_err(|fault| self.failed(&fault, &words, section))?;
         if !disk::may_be_file(&out) {
-            let says = format!("section `{}`: {} ended well and wrote no record", section.name(), self.program.name);
+            let says = format!("section `{}`: {} ended without an error, but wrote no record", section.name(), self.program.name);
             let problem = Problem::error("simulator-output", says).at(&section.cell.span);
             return Err(problem.help(format!("the command was: {}", words.join(" "))));
         }
@@ -249,17 +249,13 @@ impl<'a> External<'a> {
         let told = |code: &'static str, how: &dyn Display, said: &str| {
             let problem = Problem::error(code, format!("section `{}`: {} {how}", section.name(), self.program.name));
             let problem = problem.at(&section.cell.span).help(format!("the command was: {}", words.join(" ")));
-            if said.is_empty() {
-                problem
-            } else {
-                problem.also(&Source::new(self.program.name.as_str(), said).whole(), "what it said at last")
-            }
+            if said.is_empty() { problem } else { problem.also(&Source::new(self.program.name.as_str(), said).whole(), "its last output") }
         };
         match fault {
             Fault::NotStarted(error) => told("simulator-failed", &format!("could not be started: {error}"), ""),
             Fault::TimedOut { said } => {
                 let seconds = self.program.timeout.as_secs_f64();
-                told("simulator-timeout", &format!("was ended after {seconds} s, its time-out"), said)
+                told("simulator-timeout", &format!("was terminated after {seconds} s, its time-out"), said)
             }
             Fault::Failed { status, said } => told("simulator-failed", &format!("failed: {status}"), said),
         }
@@ -277,10 +273,10 @@ impl Simulator for External<'_> {
     }
 
     fn run(&self, task: &Task<'_>) -> Result<Signals, Problem> {
-        // What no second try would mend is found first.
+        // Errors that a retry would not remove are reported first.
         self.filled(task, Path::new(""))?;
         let key = self.key(task)?;
-        // A record in the cache that cannot be read is made anew.
+        // A cached record that cannot be read is simulated again.
         if let Some(bytes) = self.cache.get(&key) {
             if let Ok(signals) = self.read_kept(&bytes, task.section) {
                 self.found.fetch_add(1, Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! Runs a program: no shell, a time limit, and what it said at last.
+//! Runs a program without a shell and with a time limit, and keeps its last output.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -9,35 +9,35 @@ use std::time::{Duration, Instant};
 use super::started::{self, Mark};
 use crate::disk;
 
-/// A call to be made.
+/// A call of a program.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'a> {
     pub program: &'a Path,
     pub arguments: &'a [String],
     pub environment: &'a [(String, String)],
-    /// Where it runs.
+    /// Working folder.
     pub folder: &'a Path,
     pub timeout: Duration,
 }
 
-/// How a call failed.
+/// Failure of a call.
 #[derive(Debug)]
 pub enum Fault {
-    /// It could not be started, with what the system says.
+    /// It could not be started; the system's error.
     NotStarted(std::io::Error),
-    /// It was ended, with all that it started, when its time was up.
+    /// It was terminated with all its child processes at the time limit.
     TimedOut { said: String },
-    /// It ended with another exit code than 0, or by a signal.
+    /// It ended with an exit code other than 0, or by a signal.
     Failed { status: ExitStatus, said: String },
 }
 
-/// Lines and bytes that are kept of what a program said.
+/// Number of lines and bytes of the program's output that are kept.
 const LINES: usize = 8;
 const BYTES: u64 = 4096;
 const FIRST_LOOK: Duration = Duration::from_millis(1);
 const LONGEST_PAUSE: Duration = Duration::from_millis(50);
 
-/// Runs a program to its end. Standard output and standard error go to files, so that a talkative program cannot block.
+/// Runs a program to its end. Its output goes to files, so that it cannot block.
 ///
 /// # Errors
 /// See [`Fault`].
@@ -50,7 +50,7 @@ pub fn run(call: &Call<'_>) -> Result<(), Fault> {
     command.envs(call.environment.iter().map(|(name, value)| (name, value)));
     let mark = Mark::new();
     command.env(started::NAME, mark.value());
-    // A group of its own, so that what it starts ends with it.
+    // A separate process group, so that its child processes are terminated with it.
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
     let mut child = command.spawn().map_err(Fault::NotStarted)?;
@@ -67,7 +67,7 @@ pub fn run(call: &Call<'_>) -> Result<(), Fault> {
     }
 }
 
-/// How the child ended; `None` if it was ended here.
+/// Exit status of the child; `None` if it was terminated at the time limit.
 fn wait(child: &mut Child, timeout: Duration, mark: &Mark) -> std::io::Result<Option<ExitStatus>> {
     let started = Instant::now();
     let mut pause = FIRST_LOOK;
@@ -90,7 +90,7 @@ fn wait(child: &mut Child, timeout: Duration, mark: &Mark) -> std::io::Result<Op
     }
 }
 
-/// Ends a child, its group and what left that group, and waits until the child is gone.
+/// Terminates a child, its group and processes that left the group, and waits for the child.
 fn end(child: &mut Child, mark: &Mark) {
     #[cfg(unix)]
     if let Some(group) = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw) {

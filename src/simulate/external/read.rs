@@ -1,4 +1,4 @@
-//! Reads `sim.yaml`: how a simulator that is a program is called.
+//! Reads `sim.yaml`, which describes how an external simulator is called.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,28 +11,28 @@ use crate::source::{Source, Span};
 use crate::units::{Dimension, Unit};
 use crate::yaml::{self, Node, Value};
 
-/// A simulator that is a program, as its file describes it.
+/// An external simulator as described by its file.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// By which catalogues say which of its parameters an effect moves.
+    /// Name under which catalogues list its parameters.
     pub name: String,
     pub title: String,
     pub source: Arc<Source>,
-    /// Where it runs: the folder of its file.
+    /// Working folder: the folder of its file.
     pub folder: PathBuf,
     pub command: Vec<Word>,
-    /// What `{set}` becomes for each parameter; empty: `name=value`.
+    /// Words that replace `{set}` for each parameter; empty: `name=value`.
     pub set: Vec<Word>,
     pub speed_unit: Unit,
     pub timeout: Duration,
-    /// How often a call that failed is made again.
+    /// Number of retries of a failed call.
     pub retries: u32,
     pub environment: Vec<(String, String)>,
     /// Channels that its records must have; empty: those of the campaign's simulation.
     pub channels: Vec<String>,
-    /// Files beside it whose content the results depend on.
+    /// Further files on whose content the results depend.
     pub inputs: Vec<PathBuf>,
-    /// How far it may be from the campaign's simulation: rms of the difference over rms of the channel.
+    /// Largest deviation from the campaign's simulation: rms of the difference / rms of the channel.
     pub tolerance: f64,
     /// The place of the command.
     pub span: Span,
@@ -44,7 +44,7 @@ const TIMEOUT: Duration = Duration::from_secs(600);
 const MOST_RETRIES: f64 = 10.0;
 const TOLERANCE: f64 = 0.05;
 
-/// Reads a description; `folder` is where it lies.
+/// Reads a description; `folder` is the folder of its file.
 ///
 /// Problems: `unknown-key`, `key-missing`, `wrong-kind`, `range`, `unknown-unit`, `unit-mismatch`, `unknown-placeholder`,
 /// `unclosed-brace`, `placeholder-missing`, `no-such-program`, `file-missing`.
@@ -54,7 +54,7 @@ pub fn read_program(source: &Arc<Source>, folder: &Path, problems: &mut Problems
     let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
     let mut reader = Reader { folder: &folder, problems };
     if !matches!(tree.value, Value::Map(_)) {
-        reader.fault("wrong-kind", format!("a simulator is a map of keys and values; this is {}", tree.kind_in_words()), &tree.span);
+        reader.fault("wrong-kind", format!("a simulator must be a map of keys and values, not {}", tree.kind_in_words()), &tree.span);
         return None;
     }
     reader.keys(&tree);
@@ -98,7 +98,7 @@ pub fn read_program(source: &Arc<Source>, folder: &Path, problems: &mut Problems
 }
 
 impl Program {
-    /// The file of the program if the command names it by a path, else its name, which the system looks for.
+    /// The file of the program if the command gives its path, else its name, which the system searches.
     #[must_use]
     pub fn executable(&self) -> PathBuf {
         let word = self.command.first().and_then(Word::plain).unwrap_or_default();
@@ -128,7 +128,7 @@ impl Reader<'_> {
         match node.scalar_text().map(str::trim).filter(|text| !text.is_empty()) {
             Some(text) => Some(text.to_string()),
             None => {
-                self.fault("wrong-kind", format!("`{key}` is text; this is {}", node.kind_in_words()), &node.span);
+                self.fault("wrong-kind", format!("`{key}` must be text, not {}", node.kind_in_words()), &node.span);
                 None
             }
         }
@@ -137,15 +137,15 @@ impl Reader<'_> {
     fn texts(&mut self, node: &Node, key: &str) -> Vec<String> {
         let texts: Vec<String> = node.items().iter().filter_map(|item| Some(item.scalar_text()?.to_string())).collect();
         if texts.is_empty() || texts.len() != node.items().len() {
-            self.fault("wrong-kind", format!("`{key}` is a list of names"), &node.span);
+            self.fault("wrong-kind", format!("`{key}` must be a list of names"), &node.span);
         }
         texts
     }
 
     fn words(&mut self, node: &Node, allowed: &[Hole]) -> Vec<Word> {
         if node.items().is_empty() {
-            let says = format!("a list of words is needed here; this is {}", node.kind_in_words());
-            let help = "no shell splits a line into words: write `[program, --option, \"{out}\"]`";
+            let says = format!("expected a list of words, not {}", node.kind_in_words());
+            let help = "the command is not split by a shell: write `[program, --option, \"{out}\"]`";
             self.problems.push(Problem::error("wrong-kind", says).at(&node.span).help(help));
         }
         node.items().iter().filter_map(|item| Word::read(item, allowed, self.problems)).collect()
@@ -156,7 +156,7 @@ impl Reader<'_> {
         match Unit::parse(text) {
             Ok(unit) if unit.dimension == dimension => Some(unit),
             Ok(unit) => {
-                self.fault("unit-mismatch", format!("{unit} is not a unit of what is needed here"), &node.span);
+                self.fault("unit-mismatch", format!("{unit} does not have the required dimension"), &node.span);
                 None
             }
             Err(unknown) => {
@@ -170,7 +170,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A number, or a number with a unit; without one it is in SI.
+    /// A number with or without a unit; without one it is in SI units.
     fn quantity(&mut self, node: &Node, dimension: Dimension, example: &str) -> Option<f64> {
         let text = node.scalar_text().unwrap_or_default().trim();
         let end = text.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(text.len());
@@ -181,7 +181,7 @@ impl Reader<'_> {
             (Some(number), None) if written.is_empty() => Some(number),
             (Some(number), Some(unit)) if unit.dimension == dimension => Some(unit.to_si(number)),
             _ => {
-                self.fault("wrong-kind", format!("`{text}` is not what is needed here, such as `{example}`"), &node.span);
+                self.fault("wrong-kind", format!("`{text}` is not valid here; expected a value such as `{example}`"), &node.span);
                 None
             }
         }
@@ -190,7 +190,7 @@ impl Reader<'_> {
     fn seconds(&mut self, node: &Node) -> Option<Duration> {
         let seconds = self.quantity(node, Dimension::TIME, "90 s")?;
         if !(0.001..=1e6).contains(&seconds) {
-            self.fault("range", "a time-out is between 1 ms and 1000000 s", &node.span);
+            self.fault("range", "a time-out must be between 1 ms and 1000000 s", &node.span);
             return None;
         }
         Some(Duration::from_secs_f64(seconds))
@@ -199,7 +199,7 @@ impl Reader<'_> {
     fn share(&mut self, node: &Node) -> Option<f64> {
         let share = self.quantity(node, Dimension::ONE, "5 %")?;
         if !(0.0..=1.0).contains(&share) {
-            self.fault("range", "a tolerance is a share between 0 and 1", &node.span);
+            self.fault("range", "a tolerance must be a share between 0 and 1", &node.span);
             return None;
         }
         Some(share)
@@ -209,11 +209,11 @@ impl Reader<'_> {
         match node.number() {
             Some(number) if (low..=high).contains(&number) && number.fract() == 0.0 => Some(number),
             Some(_) => {
-                self.fault("range", format!("`{key}` is a whole number from {low} to {high}"), &node.span);
+                self.fault("range", format!("`{key}` must be a whole number from {low} to {high}"), &node.span);
                 None
             }
             None => {
-                self.fault("wrong-kind", format!("`{key}` is a number; this is {}", node.kind_in_words()), &node.span);
+                self.fault("wrong-kind", format!("`{key}` must be a number, not {}", node.kind_in_words()), &node.span);
                 None
             }
         }
@@ -222,13 +222,13 @@ impl Reader<'_> {
     fn environment(&mut self, tree: &Node) -> Vec<(String, String)> {
         let Some(node) = tree.get("environment") else { return Vec::new() };
         if !matches!(node.value, Value::Map(_)) {
-            self.fault("wrong-kind", format!("`environment` is a map of names and texts; this is {}", node.kind_in_words()), &node.span);
+            self.fault("wrong-kind", format!("`environment` must be a map of names and texts, not {}", node.kind_in_words()), &node.span);
         }
         let mut found = Vec::new();
         for (key, value) in node.entries() {
             match value.scalar_text().filter(|text| !text.contains('\0')) {
                 Some(text) if !key.text.is_empty() && !key.text.contains(['=', '\0']) => found.push((key.text.clone(), text.to_string())),
-                _ => self.fault("wrong-kind", "a variable has a name without `=`, and a text", &key.span),
+                _ => self.fault("wrong-kind", "a variable must have a name without `=`, and a text", &key.span),
             }
         }
         found
@@ -243,30 +243,30 @@ impl Reader<'_> {
         paths
     }
 
-    /// What a command needs as a whole.
+    /// Checks the command as a whole.
     fn command(&mut self, node: &Node, command: &[Word], set: &[Word]) {
         if command.len() != node.items().len() {
             return;
         }
         let Some((first, place)) = command.first().zip(node.items().first()) else { return };
         if !command.iter().any(|word| word.has(Hole::Out)) {
-            let problem = Problem::error("placeholder-missing", "the command does not say where the record is to be written");
-            self.problems.push(problem.at(&node.span).help("give it a word with `{out}`"));
+            let problem = Problem::error("placeholder-missing", "the command does not contain the path of the record to be written");
+            self.problems.push(problem.at(&node.span).help("add a word with `{out}`"));
         }
         if !set.is_empty() && !command.iter().any(|word| word.is(Hole::Set)) {
-            let problem = Problem::error("placeholder-missing", "the command has no place for the words of `set`");
-            self.problems.push(problem.at(&node.span).help("give it a word `{set}`, and nothing else in that word"));
+            let problem = Problem::error("placeholder-missing", "the command has no placeholder for the words of `set`");
+            self.problems.push(problem.at(&node.span).help("add the word `{set}`, without other text in that word"));
         }
         let Some(name) = first.plain() else {
-            return self.fault("wrong-kind", "the first word is the program, without placeholders", &place.span);
+            return self.fault("wrong-kind", "the first word must be the program, without placeholders", &place.span);
         };
         if name.contains(['/', '\\']) {
             if !disk::may_be_file(&self.folder.join(name)) {
-                self.fault("no-such-program", format!("there is no program `{name}`, seen from the folder of this file"), &place.span);
+                self.fault("no-such-program", format!("there is no program `{name}` relative to the folder of this file"), &place.span);
             }
         } else if !on_path(name) {
             let problem = Problem::error("no-such-program", format!("the system finds no program `{name}`")).at(&place.span);
-            self.problems.push(problem.help(format!("write `./{name}` for a program beside this file")));
+            self.problems.push(problem.help(format!("write `./{name}` for a program in the folder of this file")));
         }
     }
 }

@@ -1,14 +1,14 @@
-//! Processes that a program started and that left its group: found by a variable that they inherit.
+//! Processes that a program started and that left its process group, found by an inherited environment variable.
 //!
-//! A group is ended as one, but whoever calls `setsid` is in another. The variable stays with all that a call starts,
-//! unless they take it out on purpose. Only Linux shows the variables of other processes.
+//! A process group is terminated as a whole, but a process that calls `setsid` leaves it. The variable remains in all child processes
+//! unless they remove it. Only Linux shows the variables of other processes.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The variable.
+/// Name of the variable.
 pub(super) const NAME: &str = "FISHPLATE_CALL";
 
-/// What the variable says: one value for each call of this process.
+/// Value of the variable, different for each call of this process.
 #[derive(Debug)]
 pub(super) struct Mark(String);
 
@@ -23,11 +23,11 @@ impl Mark {
     }
 }
 
-/// Rounds of looking for processes: each ends what the ones before had started meanwhile.
+/// Number of search rounds: each terminates processes started during the previous ones.
 #[cfg(target_os = "linux")]
 const ROUNDS: usize = 16;
 
-/// Ends all processes with a mark.
+/// Terminates all processes with a mark.
 #[cfg(target_os = "linux")]
 pub(super) fn end(mark: &Mark) {
     use crate::disk::{names, process_variables};

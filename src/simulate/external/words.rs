@@ -5,34 +5,34 @@ use std::fmt::Write;
 use crate::problem::{Problem, Problems};
 use crate::yaml::Node;
 
-/// What stands in braces.
+/// A placeholder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hole {
     /// Path of the vehicle file.
     Vehicle,
     /// Path of the section's track file.
     Track,
-    /// In the program's unit.
+    /// Speed in the program's unit.
     Speed,
-    /// Path of the record that the program is to write.
+    /// Path of the record to be written.
     Out,
     /// Name of the section.
     Section,
-    /// Where the evaluated section begins and ends on the axis of the record.
+    /// Start and end of the evaluated section on the axis of the record.
     Start,
     End,
-    /// What is repeated for each parameter.
+    /// Words repeated for each parameter.
     Set,
-    /// Name and value of a parameter, in the words that are repeated.
+    /// Name and value of a parameter, in the repeated words.
     Name,
     Value,
 }
 
 impl Hole {
-    /// What a command may hold.
+    /// Placeholders allowed in a command.
     pub const OF_COMMAND: [Self; 8] =
         [Self::Vehicle, Self::Track, Self::Speed, Self::Out, Self::Section, Self::Start, Self::End, Self::Set];
-    /// What the words that are repeated for each parameter may hold.
+    /// Placeholders allowed in the words repeated for each parameter.
     pub const OF_SET: [Self; 2] = [Self::Name, Self::Value];
 
     #[must_use]
@@ -52,7 +52,7 @@ impl Hole {
     }
 }
 
-/// A piece of a word.
+/// A part of a word.
 #[derive(Clone, Debug, PartialEq)]
 enum Part {
     Text(String),
@@ -66,12 +66,12 @@ pub struct Word {
 }
 
 impl Word {
-    /// Reads a word; `{{` and `}}` stand for braces.
+    /// Reads a word; `{{` and `}}` are literal braces.
     ///
     /// Problems: `unknown-placeholder` with the nearest, `unclosed-brace`, `wrong-kind`.
     pub fn read(node: &Node, allowed: &[Hole], problems: &mut Problems) -> Option<Self> {
         let Some(text) = node.scalar_text() else {
-            problems.push(Problem::error("wrong-kind", format!("a word is text; this is {}", node.kind_in_words())).at(&node.span));
+            problems.push(Problem::error("wrong-kind", format!("a word must be text, not {}", node.kind_in_words())).at(&node.span));
             return None;
         };
         let mut parts = Vec::new();
@@ -85,8 +85,8 @@ impl Word {
                 continue;
             }
             let Some(end) = text[found..].find('}').map(|end| found + end).filter(|_| text[found..].starts_with('{')) else {
-                let says = "this brace has no partner";
-                let help = "write `{{` or `}}` for a brace that is meant as one";
+                let says = "this brace has no matching brace";
+                let help = "write `{{` or `}}` for a literal brace";
                 problems.push(Problem::error("unclosed-brace", says).at(&node.place(found..found + 1)).help(help));
                 return None;
             };
@@ -114,7 +114,7 @@ impl Word {
         self.parts.contains(&Part::Hole(hole))
     }
 
-    /// Whether the word is a placeholder and nothing else.
+    /// Whether the word is only this placeholder.
     #[must_use]
     pub fn is(&self, hole: Hole) -> bool {
         self.parts == [Part::Hole(hole)]
@@ -126,7 +126,7 @@ impl Word {
         if let [Part::Text(text)] = &self.parts[..] { Some(text) } else { None }
     }
 
-    /// The word with its placeholders filled.
+    /// The word with its placeholders replaced.
     #[must_use]
     pub fn filled(&self, with: &dyn Fn(Hole) -> String) -> String {
         self.parts.iter().fold(String::new(), |mut text, part| {
@@ -141,7 +141,7 @@ impl Word {
     }
 }
 
-/// The words of a call: `{set}` repeated for every parameter, by `set` where there are such words, else as `name=value`.
+/// The words of a call. `{set}` is repeated for every parameter, in the form of `set` if given, else `name=value`.
 #[must_use]
 pub fn fill(command: &[Word], set: &[Word], settings: &[(String, f64)], with: &dyn Fn(Hole) -> String) -> Vec<String> {
     let mut words = Vec::new();
