@@ -1,4 +1,4 @@
-//! The main job, from a protocol and a campaign to everything a report says.
+//! Certification: from a protocol and a campaign to the results of a report.
 
 use sha2::{Digest, Sha256};
 
@@ -18,7 +18,7 @@ use crate::run::{self, Progress, Settings};
 use crate::syntax::document::Block;
 use crate::yaml::{Node, Value};
 
-/// A protocol checked and compiled, ready to run.
+/// A checked and compiled protocol.
 #[derive(Debug)]
 pub struct Compiled {
     pub family: Family,
@@ -27,14 +27,14 @@ pub struct Compiled {
 }
 
 impl Compiled {
-    /// The same protocol, with findings that are told and change nothing: a diagnosis asks what is wrong, in every section.
+    /// The same protocol with findings as notes only, so that a diagnosis includes every section.
     #[must_use]
     pub fn only_telling(&self) -> Self {
         Self { family: self.family.clone(), plan: self.plan.only_telling(), graph: self.graph.clone() }
     }
 
-    /// The text of a section column as one of the words that the protocol declares for it, or why it is none; `None` where it declares
-    /// no words.
+    /// The text of a section column as one of the words that the protocol declares for it, or a message; `None` if the protocol declares no
+    /// words.
     #[must_use]
     pub fn word(&self, column: &str, text: &str) -> Option<Result<String, String>> {
         let datum = self.plan.columns.iter().find(|datum| datum.key == column)?;
@@ -49,17 +49,17 @@ impl Compiled {
     }
 }
 
-/// Checks and compiles a protocol with parameters set from outside.
+/// Checks and compiles a protocol with overridden parameters.
 pub fn compile(family: Family, overrides: &Overrides, problems: &mut Problems) -> Option<Compiled> {
     let plan = check::check(&family, overrides, problems)?;
     let graph = graph::from_plan(&plan);
     Some(Compiled { family, plan, graph })
 }
 
-/// Runs a compiled protocol over a campaign.
+/// Evaluates a compiled protocol on a campaign.
 ///
 /// # Errors
-/// What makes the campaign unusable as a whole; see [`run::run`].
+/// The campaign is not usable as a whole; see [`run::run`].
 pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Certification, Problems> {
     let outcome = run::run(&compiled.plan, &compiled.graph, campaign, settings, progress)?;
     let campaign = campaign_info(&compiled.plan, campaign, outcome.files, outcome.vehicle);
@@ -81,7 +81,7 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
     })
 }
 
-/// What a report says of the campaign: all files read, the records last, and the vehicle with what the protocol reads first.
+/// The campaign as printed in a report: all files read, with the records last, and the vehicle data, with those used by the protocol first.
 pub fn campaign_info(plan: &Plan, campaign: &Campaign, records: Vec<FileHash>, vehicle: Vec<DataItem>) -> CampaignInfo {
     let mut files: Vec<FileHash> = campaign
         .files
@@ -99,7 +99,7 @@ pub fn campaign_info(plan: &Plan, campaign: &Campaign, records: Vec<FileHash>, v
     }
 }
 
-/// Where the simulated records come from, with what of it is among the files of this run.
+/// The origin of the simulated records, compared with the files of this run.
 fn origin_info(origin: &Origin, files: &[FileHash]) -> OriginInfo {
     let these = origin.fitted_to.iter().filter(|fitted| files.iter().any(|file| file.sha256 == fitted.sha256)).count();
     let parts = [origin.program.as_str(), origin.command.as_str()];
@@ -124,7 +124,7 @@ fn origin_info(origin: &Origin, files: &[FileHash]) -> OriginInfo {
     }
 }
 
-/// What a report says of the protocol.
+/// The protocol as printed in a report.
 pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
     let Compiled { family, plan, graph } = compiled;
     let files: Vec<ProtocolFile> = family
@@ -174,7 +174,7 @@ fn channel_info(block: &Block) -> ChannelInfo {
     }
 }
 
-/// A remark on the parameters that are not at their default, since the verdict rests on them.
+/// A note on parameters with values other than the default, since the verdict depends on them.
 fn parameters_set(plan: &Plan) -> Option<String> {
     let set = |parameter: &&Parameter| parameter.set_by != SetBy::Default && parameter.value != parameter.default;
     let one = |parameter: &Parameter| {
@@ -215,7 +215,7 @@ fn fact_item(fact: &Fact) -> DataItem {
     DataItem { name, value: fact.text.clone(), unit: fact.unit.clone().filter(|unit| unit != "-"), used: false, unit_assumed: false }
 }
 
-/// Values the protocol reads first, with their units, then all others of the file.
+/// Values used by the protocol with their units, then all others of the file.
 fn vehicle_items(plan: &Plan, campaign: &Campaign, used: Vec<DataItem>) -> Vec<DataItem> {
     let mut rest = Vec::new();
     flatten("", &campaign.vehicle, &mut rest);

@@ -6,11 +6,11 @@
 //! |---|---|---|---|
 //! | syntax | protocol text, YAML or `.fp` | [`syntax::document::Document`] | `syntax` |
 //! | check | document | `check::plan::Plan`: resolved, SI, complete | `check` |
-//! | graph | plan | `graph::Graph`: typed operations, shared parts once | `graph` |
+//! | check | document | `check::plan::Plan`: resolved, SI units, complete | `check` |
 //! | run | graph and campaign | [`result::Certification`] | `run` |
 //! | report | certification | PDF, HTML, JSON, CSV | `report` |
 //!
-//! [`source`], [`problem`], [`units`], [`yaml`] and `metrics` are leaves the stages lean on; `data` reads campaigns.
+//! [`source`], [`problem`], [`units`], [`yaml`] and `metrics` are used by all stages; `data` reads campaigns.
 
 pub mod catalog;
 pub mod certify;

@@ -1,4 +1,4 @@
-//! The shipped protocols, embedded, and how a protocol is found by name or path.
+//! The shipped protocols and catalogues, and the search for them by name or path.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -7,10 +7,10 @@ use crate::disk;
 use crate::problem::Problem;
 use crate::source::Source;
 
-/// Largest protocol or catalogue in bytes: a hundred times the longest that is shipped. What is larger is another kind of file.
+/// Maximum size of a protocol or catalogue in bytes: a hundred times the longest shipped one.
 const LARGEST: u64 = 2 << 20;
 
-/// A protocol that comes with the program.
+/// A protocol shipped with the program.
 #[derive(Debug)]
 pub struct Shipped {
     pub name: &'static str,
@@ -23,7 +23,7 @@ macro_rules! shipped {
     };
 }
 
-/// In the order they are listed; the first is the one `certify` takes unless told otherwise.
+/// In the order of the list; the first is the default of `certify`.
 pub const SHIPPED: &[Shipped] = shipped![
     "en14363-2016-annex-t",
     "en14363-2016-annex-t-strict-acceleration",
@@ -33,7 +33,7 @@ pub const SHIPPED: &[Shipped] = shipped![
     "stationary-sway",
 ];
 
-/// The shipped catalogues of effects; the first is the one that is used unless told otherwise.
+/// The shipped catalogues of effects; the first is the default.
 pub const CATALOGUES: &[Shipped] = &[Shipped { name: "bogie-vehicle", text: include_str!("../effects/bogie-vehicle.yaml") }];
 
 /// A catalogue of effects by path or shipped name.
@@ -52,7 +52,7 @@ pub fn find_catalogue(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, 
     })
 }
 
-/// The catalogue that another extends: a shipped name, or a path beside it.
+/// The catalogue that another extends: a shipped name, or a path relative to its folder.
 ///
 /// # Errors
 /// As [`find_catalogue`].
@@ -70,10 +70,10 @@ pub fn shipped(name: &str) -> Option<Arc<Source>> {
     SHIPPED.iter().find(|shipped| shipped.name == name).map(|shipped| Source::new(format!("protocols/{name}.fp"), shipped.text))
 }
 
-/// A protocol named on the command line or in a campaign: a path if there is such a file, else a shipped name.
+/// A protocol by path, if such a file exists, else by shipped name.
 ///
 /// # Errors
-/// `no-such-protocol`, or `unreadable` with what the system says.
+/// `no-such-protocol`, or `unreadable` with the system's error.
 pub fn find(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Box<Problem>> {
     let path = beside.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
     if there(&path)? {
@@ -85,7 +85,7 @@ pub fn find(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Box<Proble
     })
 }
 
-/// What `extends` names, seen from the text that says it: a shipped name, or a path beside that text.
+/// The protocol named by `extends`: a shipped name, or a path relative to the folder of the text.
 ///
 /// # Errors
 /// As [`find`].
@@ -96,7 +96,7 @@ pub fn parent(name: &str, from: &Source) -> Result<Arc<Source>, Box<Problem>> {
     find(name, Path::new(&from.name).parent())
 }
 
-/// Whether there is a file, or something that would have to be read as one.
+/// Whether a file exists, or an object that cannot be read as one.
 fn there(path: &Path) -> Result<bool, Box<Problem>> {
     match disk::kind(path) {
         Ok(kind) => Ok(matches!(kind, Some(disk::Kind::File(_) | disk::Kind::Other))),

@@ -1,4 +1,4 @@
-//! What is wrong with an input: code, place, fact, help; gathered, and rendered in one look.
+//! Problems of an input: code, place, message, help; collected, and printed in one format.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
@@ -14,17 +14,17 @@ pub enum Severity {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     pub severity: Severity,
-    /// Stable name such as `unit-mismatch`; what tests and scripts match on.
+    /// Stable code such as `unit-mismatch`, for tests and scripts.
     pub code: &'static str,
-    /// The fact, in words that never blame.
+    /// The message.
     pub says: String,
-    /// The words to underline.
+    /// The span to underline.
     pub at: Option<Span>,
-    /// What stands beside the underline.
+    /// Text next to the underline.
     pub label: Option<String>,
-    /// Other places involved, each with what it has to do with it.
+    /// Other spans involved, each with a text.
     pub also: Vec<(Span, String)>,
-    /// The change that mends it.
+    /// The correction.
     pub help: Option<String>,
 }
 
@@ -61,7 +61,7 @@ impl Problem {
         self
     }
 
-    /// Help "did you mean ...?" if a candidate is near, else the list of candidates if it is short.
+    /// Adds the help "did you mean ...?" if a candidate is similar, else the list of candidates if it is short.
     #[must_use]
     pub fn suggest<'a>(mut self, word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Self {
         let all: Vec<&str> = candidates.into_iter().collect();
@@ -112,12 +112,12 @@ impl Problem {
         let renderer = if color { Renderer::styled() } else { Renderer::plain() };
         let mut text = renderer.render(&[group]).to_string();
         text.push('\n');
-        // The renderer replaces control characters of ASCII only; a terminal takes U+009B for the start of a command.
+        // The renderer replaces ASCII control characters only; a terminal interprets U+009B as the start of a command.
         text.replace(|c: char| matches!(c, '\u{80}'..='\u{9f}'), "\u{fffd}")
     }
 }
 
-/// Byte range inside the text, never empty at a place where a character can be underlined, on character boundaries.
+/// Byte range inside the text, on character boundaries, and not empty where a character can be underlined.
 fn range(span: &Span) -> std::ops::Range<usize> {
     let text = &span.source.text;
     let mut start = span.start.min(text.len());
@@ -134,12 +134,12 @@ fn range(span: &Span) -> std::ops::Range<usize> {
     start..end
 }
 
-/// User text may hold control characters; a terminal must not act on them.
+/// Replaces control characters in user text, so that a terminal does not interpret them.
 pub fn plain(text: &str) -> String {
     text.chars().map(|c| if acts(c) && c != '\n' { '\u{fffd}' } else { c }).collect()
 }
 
-/// Whether a character makes a terminal do something, or turns the order of what is shown: the controls of bidirectional text
+/// Whether a terminal interprets a character, or whether it changes the order of the text: the controls of bidirectional text
 /// (Unicode Standard Annex #9, Table 4).
 pub fn acts(c: char) -> bool {
     c.is_control() || matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
@@ -151,7 +151,7 @@ pub struct Problems(pub Vec<Problem>);
 
 impl Problems {
     pub fn push(&mut self, problem: Problem) {
-        // The same fact at the same place is said once, however often a part is used.
+        // A problem found several times is reported once.
         if !self.0.contains(&problem) {
             self.0.push(problem);
         }
@@ -170,16 +170,16 @@ impl Problems {
     }
 }
 
-/// The candidate that a word most likely was meant as: the only one it begins, or one that differs by a slip.
+/// The most similar candidate of a word: the only one that begins with it, or one with a small edit distance.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    /// A shorter beginning fits too much: `max` for `maximum`, but `Y` for nothing.
+    /// A shorter prefix is ambiguous: `max` suggests `maximum`, but `Y` nothing.
     const SHORTEST_BEGINNING: usize = 3;
     let lower = word.to_lowercase();
     let candidates: Vec<&str> = candidates.into_iter().filter(|candidate| *candidate != word).collect();
     let slips = candidates.iter().filter_map(|candidate| {
         let longer = word.chars().count().max(candidate.chars().count());
         let distance = strsim::damerau_levenshtein(&lower, &candidate.to_lowercase());
-        // A word of which nothing is left is another word: zone 7 is no slip for zone 1. One letter in three may differ.
+        // A completely different word is not suggested: zone 7 is no misspelling of zone 1. One letter in three may differ.
         let near = distance <= longer.max(SHORTEST_BEGINNING) / 3 && distance < longer && !other_position(word, candidate);
         near.then_some((distance, *candidate))
     });
@@ -199,7 +199,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     }
 }
 
-/// Whether two names are of one channel at different positions: `Y_1L` is not what was meant by `Y_1R`.
+/// Whether two names are the same channel at different positions: `Y_1L` is not suggested for `Y_1R`.
 fn other_position(a: &str, b: &str) -> bool {
     let position = |end: &str| !end.is_empty() && end.chars().all(|c| c.is_ascii_digit() || c.is_ascii_uppercase());
     match (a.rsplit_once('_'), b.rsplit_once('_')) {

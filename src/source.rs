@@ -1,6 +1,6 @@
-//! The text of an input file and the places in it.
+//! The text of an input file, and spans in it.
 //!
-//! A [`Span`] carries its source, so that a problem found anywhere can be shown without a table of files.
+//! A [`Span`] contains its source, so that a problem can be printed without a table of files.
 
 use std::fmt;
 use std::ops::Range;
@@ -17,11 +17,11 @@ pub struct Source {
     lines: Lines,
 }
 
-/// Where the lines of a text begin, found when they are first asked for: a table of a hundred thousand rows is asked for each of them.
+/// Start positions of the lines of a text, computed on first use: a large table requests them for each row.
 #[derive(Default)]
 struct Lines(OnceLock<Vec<usize>>);
 
-/// They follow from the text.
+/// Derived from the text.
 impl PartialEq for Lines {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -48,12 +48,12 @@ impl Source {
         Self::excerpt(name, text, 1)
     }
 
-    /// A few lines of a large file, so that a problem in row 30 000 of a record need not keep the record.
+    /// A few lines of a large file, so that a problem in row 30 000 of a record does not keep the record.
     pub fn excerpt(name: impl Into<String>, text: impl Into<String>, first_line: usize) -> Arc<Self> {
         Arc::new(Self { name: name.into(), text: text.into(), first_line, lines: Lines::default() })
     }
 
-    /// The name without its folders: the same wherever and however the program was called.
+    /// The name without its folders, independent of the working folder.
     pub fn file_name(&self) -> String {
         std::path::Path::new(&self.name).file_name().map_or_else(|| self.name.clone(), |name| name.to_string_lossy().into_owned())
     }
@@ -73,13 +73,13 @@ impl Source {
         Span { source: Arc::clone(self), start: range.start, end: range.end }
     }
 
-    /// The place of the whole text.
+    /// The span of the whole text.
     pub fn whole(self: &Arc<Self>) -> Span {
         self.span(0..self.text.len())
     }
 }
 
-/// A stretch of bytes in a source.
+/// A range of bytes in a source.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Span {
     pub source: Arc<Source>,
@@ -92,7 +92,7 @@ impl Span {
         self.source.text.get(self.start..self.end).unwrap_or("")
     }
 
-    /// A part of this span, in bytes counted from its start, kept inside it.
+    /// A part of this span, in bytes from its start, limited to it.
     pub fn part(&self, range: Range<usize>) -> Span {
         let start = (self.start + range.start).min(self.end);
         let end = (self.start + range.end).clamp(start, self.end);
@@ -123,7 +123,7 @@ impl fmt::Debug for Span {
     }
 }
 
-/// A value and the place where it was written.
+/// A value and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spanned<T> {
     pub value: T,

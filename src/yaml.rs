@@ -1,6 +1,6 @@
-//! A YAML text as a tree in which every key and value knows its place and the words it was written with.
+//! A YAML text as a tree in which every key and value has its place and its original text.
 //!
-//! One YAML 1.2 document, core schema: `true` and `false` are the only truth values, `no` and `1.2.3` are text.
+//! One YAML 1.2 document, core schema: only `true` and `false` are booleans; `no` and `1.2.3` are text.
 
 mod load;
 mod scalar;
@@ -13,16 +13,16 @@ use std::ops::Range;
 
 use crate::source::Span;
 
-/// A value and where it is written.
+/// A value and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     pub value: Value,
-    /// The value without anchor, tag and, if [`Node::exact`], without quotes. Where an alias stands, the place of the anchored value.
+    /// Span of the value without anchor, tag and, if [`Node::exact`], without quotes. For an alias, the span of the anchored value.
     pub span: Span,
-    /// A scalar as text, whatever it was resolved to: `1.50`, `no`, `5 kN`; escapes undone and folded lines joined.
+    /// A scalar as text, whatever its type: `1.50`, `no`, `5 kN`; with escapes resolved and folded lines joined.
     /// Empty for lists and maps.
     pub raw: String,
-    /// Whether byte `n` of `raw` stands at byte `n` of `span`.
+    /// Whether byte `n` of `raw` is at byte `n` of `span`.
     pub exact: bool,
 }
 
@@ -38,30 +38,30 @@ pub enum Value {
     Map(Vec<(Key, Node)>),
 }
 
-/// A key of a map; whatever it looks like, it is text.
+/// A key of a map, always text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Key {
     pub text: String,
     /// Without quotes if [`Key::exact`].
     pub span: Span,
-    /// Whether byte `n` of `text` stands at byte `n` of `span`.
+    /// Whether byte `n` of `text` is at byte `n` of `span`.
     pub exact: bool,
 }
 
 impl Key {
-    /// The place of a part of the text, as narrow as is known.
+    /// The span of a part of the text, as precise as possible.
     pub fn place(&self, range: Range<usize>) -> Span {
         if self.exact { self.span.part(range) } else { self.span.clone() }
     }
 }
 
 impl Node {
-    /// The entries of a map; none for any other value.
+    /// The entries of a map; empty for any other value.
     pub fn entries(&self) -> &[(Key, Node)] {
         if let Value::Map(entries) = &self.value { entries } else { &[] }
     }
 
-    /// The items of a list; none for any other value.
+    /// The items of a list; empty for any other value.
     pub fn items(&self) -> &[Node] {
         if let Value::List(items) = &self.value { items } else { &[] }
     }
@@ -74,7 +74,7 @@ impl Node {
         self.entries().iter().find(|(known, _)| known.text == key)
     }
 
-    /// `a.b.c`: a value below maps. A key that itself holds a dot is found by its whole text first.
+    /// Looks up `a.b.c` in nested maps. A key that contains a dot is found by its full text first.
     pub fn lookup(&self, path: &str) -> Option<&Node> {
         if let Some(node) = self.get(path) {
             return Some(node);
@@ -95,7 +95,7 @@ impl Node {
         (self.is_scalar() && self.value != Value::Null).then_some(self.raw.as_str())
     }
 
-    /// The place of a part of [`Node::raw`], as narrow as is known.
+    /// The span of a part of [`Node::raw`], as precise as possible.
     pub fn place(&self, range: Range<usize>) -> Span {
         if self.exact { self.span.part(range) } else { self.span.clone() }
     }

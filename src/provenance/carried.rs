@@ -1,4 +1,4 @@
-//! A report opened: its results, and the protocol that it carries.
+//! Reads a report: its results, and the attached protocol.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,35 +19,35 @@ use crate::report::attached;
 use crate::source::{Source, Spanned};
 use crate::syntax::document::Text;
 
-/// Largest report in bytes; one of 13 sections has two million.
+/// Maximum size of a report in bytes; a report with 13 sections has two million.
 const REPORT: u64 = 512 << 20;
-/// Largest results in bytes; those of 13 sections have 180 000.
+/// Maximum size of the results in bytes; those of 13 sections have 180 000.
 const RESULTS: usize = 128 << 20;
-/// Most values in results: a value takes up to a hundred bytes of memory once it is read.
+/// Maximum number of values in results; each takes up to a hundred bytes of memory.
 const VALUES: usize = 8_000_000;
-/// Largest file of a protocol in bytes.
+/// Maximum size of a file of a protocol in bytes.
 const PROTOCOL: usize = 16 << 20;
 
-/// The name of the report in an output folder.
+/// File name of the report in an output folder.
 pub const REPORT_PDF: &str = "report.pdf";
 
 #[derive(Debug)]
 pub struct Carried {
-    /// As the user named it.
+    /// Name as given by the user.
     pub shown: String,
-    /// The file that was opened, which a signature is of.
+    /// The file that was opened, to which a signature refers.
     pub path: PathBuf,
-    /// The output folder, where one was given.
+    /// The output folder, if given.
     pub folder: Option<PathBuf>,
     /// The bytes of the PDF, if there is one.
     pub pdf: Option<Vec<u8>>,
-    /// The results as they are written.
+    /// The text of the results.
     pub text: String,
     pub value: Value,
     pub results: Results,
-    /// Results in the folder that are not those inside its PDF.
+    /// Whether results.json in the folder differs from that attached to the PDF.
     pub other_results: bool,
-    /// The files of the protocol, as far as the PDF carries them, in the order of the results.
+    /// The files of the protocol that are attached to the PDF, in the order of the results.
     pub protocol: Vec<Option<Vec<u8>>>,
 }
 
@@ -62,7 +62,7 @@ pub fn open(path: &Path) -> Result<Carried, Problem> {
         let results = path.join(attached::RESULTS);
         if !disk::may_be_file(&pdf) && !disk::may_be_file(&results) {
             let says = format!("there is neither `{REPORT_PDF}` nor `{}` in `{shown}`", attached::RESULTS);
-            return Err(Problem::error("no-results", says).help("give the folder that `certify` wrote, a report, or results.json"));
+            return Err(Problem::error("no-results", says).help("give the output folder of `certify`, a report, or results.json"));
         }
         if !disk::may_be_file(&pdf) {
             return beside(&results, &shown, Some(path));
@@ -84,7 +84,7 @@ fn file(path: &Path, most: u64) -> Result<Vec<u8>, Problem> {
     Ok(bytes)
 }
 
-/// Results that lie by themselves. A report beside them that carries the same results gives the protocol.
+/// Opens results.json. A report in the same folder with the same results provides the protocol.
 fn beside(path: &Path, shown: &str, folder: Option<&Path>) -> Result<Carried, Problem> {
     let bytes = file(path, RESULTS as u64)?;
     let (text, value, results) = read(&bytes, shown)?;
@@ -109,10 +109,10 @@ fn of_pdf(path: &Path, shown: &str) -> Result<Carried, Problem> {
     let attachments = Attachments::of(&pdf, shown)?;
     let Some(bytes) = attachments.read(attached::RESULTS, RESULTS)? else {
         let names: Vec<&str> = attachments.names().collect();
-        let problem = Problem::error("no-results", format!("`{shown}` carries no `{}`", attached::RESULTS));
+        let problem = Problem::error("no-results", format!("`{shown}` has no attachment `{}`", attached::RESULTS));
         return Err(match names.as_slice() {
-            [] => problem.help("only the report that `certify` writes can be checked; printing or saving it anew may drop its attachments"),
-            names => problem.help(format!("it carries {}; only reports of `certify` can be checked", names.join(", "))),
+            [] => problem.help("only a report written by `certify` can be checked; printing or saving it again may remove its attachments"),
+            names => problem.help(format!("its attachments are {}; only reports of `certify` can be checked", names.join(", "))),
         });
     };
     let (text, value, results) = read(&bytes, &format!("{shown}: {}", attached::RESULTS))?;
@@ -134,7 +134,7 @@ fn of_pdf(path: &Path, shown: &str) -> Result<Carried, Problem> {
 }
 
 fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Results), Problem> {
-    let unreadable = |says: String| Problem::error("results-unreadable", format!("`{shown}` are no results of `certify`: {says}"));
+    let unreadable = |says: String| Problem::error("results-unreadable", format!("`{shown}` is not a results file of `certify`: {says}"));
     let text = decode(bytes, shown)?;
     let many = memchr::memchr2_iter(b',', b'[', bytes).count();
     if many > VALUES {
@@ -146,15 +146,15 @@ fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Results), Problem> 
 }
 
 impl Carried {
-    /// The files of the protocol as text: those that the report carries, else those with the hash that the results name, which the
-    /// program ships or which were given.
+    /// The files of the protocol as text: those attached to the report; else those with the hash in the results that are shipped with the
+    /// program or given.
     ///
     /// # Errors
     /// `protocol-missing`, `encoding`.
     pub fn sources(&self, given: Option<&Family>) -> Result<Vec<Arc<Source>>, Problem> {
         let mut sources = Vec::new();
         for (at, named) in self.results.protocol.files.iter().enumerate() {
-            // Files of one name in different folders stay apart by their number.
+            // The number distinguishes files of the same name.
             let name = format!("{}/{}", at + 1, named.name);
             let text = match self.protocol.get(at).and_then(Option::as_ref) {
                 Some(bytes) => decode(bytes, &named.name)?.to_string(),
@@ -174,19 +174,19 @@ impl Carried {
         let given = given.into_iter().flat_map(|family| &family.sources).map(|source| source.text.as_str());
         let found = given.chain(shipped).find(|text| sha256(text.as_bytes()) == named.sha256);
         found.map(str::to_string).ok_or_else(|| {
-            let says = format!("the protocol's file `{}` with SHA-256 {} is not to be had", named.name, named.sha256);
-            Problem::error("protocol-missing", says).help("give report.pdf, which carries it, or name the protocol with `--protocol`")
+            let says = format!("the protocol file `{}` with SHA-256 {} is not available", named.name, named.sha256);
+            Problem::error("protocol-missing", says).help("give report.pdf, which contains it, or name the protocol with `--protocol`")
         })
     }
 
-    /// The protocol compiled, with the parameters as the results say they were set.
+    /// Compiles the protocol with the parameters in the results.
     pub fn compiled(&self, sources: &[Arc<Source>], problems: &mut Problems) -> Option<Compiled> {
         let next = |_: &str, from: &Source| {
             let at = sources.iter().position(|source| source.name == from.name).map_or(0, |at| at + 1);
             sources
                 .get(at)
                 .cloned()
-                .ok_or_else(|| Box::new(Problem::error("protocol-missing", "the protocol extends one that the report does not carry")))
+                .ok_or_else(|| Box::new(Problem::error("protocol-missing", "the protocol extends one that the report does not contain")))
         };
         let family = family::read(sources.first()?, &next, problems);
         if problems.any_error() {

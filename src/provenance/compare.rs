@@ -1,38 +1,38 @@
-//! Two results compared, number by number: what differs is told by its path.
+//! Comparison of two results, number by number; differences are identified by their paths.
 
 use serde_json::Value;
 
-/// Numbers that differ by less than this share are the same: another processor may sum in another order.
+/// Relative tolerance: another processor may sum in another order.
 pub const SHARE: f64 = 1e-9;
-/// Numbers nearer than this to each other are the same, in whatever unit they are: differences of equal values are not exactly zero.
+/// Absolute tolerance in any unit: differences of equal values are not exactly zero.
 pub const NEAR: f64 = 1e-12;
 
-/// One place at which two results differ.
+/// A difference between two results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// `quantities[4].values[17].measured`, as in the first result.
+    /// Path in the first result: `quantities[4].values[17].measured`.
     pub path: String,
-    /// What the list entries on the way are: `Y_max, S05, Y_1R`.
+    /// Names of the list entries on the path: `Y_max, S05, Y_1R`.
     pub of: String,
-    /// `None`: not there.
+    /// `None`: missing.
     pub before: Option<String>,
     pub after: Option<String>,
 }
 
-/// What a comparison came to.
+/// Result of a comparison.
 #[derive(Clone, Debug, Default)]
 pub struct Compared {
     pub differences: Vec<Difference>,
-    /// Numbers that were compared.
+    /// Count of numbers compared.
     pub numbers: usize,
-    /// Numbers that are the same only up to rounding.
+    /// Count of numbers that agree only within the tolerance.
     pub rounded: usize,
 }
 
-/// Keys by which entries of a list are told apart, so that one entry more does not make all that follow it differ.
+/// Keys that identify entries of a list, so that an additional entry does not change those after it.
 const NAMES: &[&str] = &["id", "name", "path", "zone", "section", "signal", "scope", "rule", "code", "channel"];
 
-/// Compares everything in two results.
+/// Compares two results completely.
 pub fn compare(before: &Value, after: &Value, at: &str) -> Compared {
     let mut compared = Compared::default();
     compared.values(before, after, &Way { path: at.to_string(), of: String::new() });
@@ -135,7 +135,7 @@ impl Compared {
     }
 }
 
-/// What an entry of a list is; `None` where nothing names it.
+/// The name of an entry of a list; `None` if it has none.
 fn name(value: &Value) -> Option<String> {
     let parts = NAMES.iter().filter_map(|key| match value.get(key)? {
         Value::String(text) if *key == "zone" => Some(format!("zone {text}")),
@@ -151,7 +151,7 @@ fn unique(names: &[String]) -> bool {
     names.iter().collect::<std::collections::BTreeSet<_>>().len() == names.len()
 }
 
-/// A value in one line, cut where it is long.
+/// A value on one line, shortened if long.
 fn shown(value: &Value) -> String {
     const LONGEST: usize = 80;
     let text = match value {

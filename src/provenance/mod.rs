@@ -1,8 +1,8 @@
-//! Where a report came from, and whether it still follows from there.
+//! Provenance of a report, and verification.
 //!
-//! A report carries its results and its protocol. [`carried`] takes them out of it, [`verify`] checks them alone and against the
-//! campaign, [`trace`] follows one number back to its rule and its rows. [`statement`] says the same of the files beside the report
-//! in a form that other programs read, [`signature`] signs.
+//! A report contains its results and its protocol. [`carried`] extracts them, [`verify`] checks them alone and against the campaign,
+//! [`trace`] traces one number to its rule and its rows. [`statement`] describes the files of a report in a standard format, and
+//! [`signature`] signs files.
 
 pub mod carried;
 pub mod compare;

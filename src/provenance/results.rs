@@ -1,4 +1,4 @@
-//! `results.json` read back: the parts that checks need.
+//! Reads `results.json`, as far as needed for checks.
 
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
@@ -129,7 +129,7 @@ pub struct Place {
     pub line: usize,
 }
 
-/// A zone's name is written as a number where it is one.
+/// The name of a zone, which is a number in the file if it is an integer.
 fn word<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> {
     Ok(match Value::deserialize(from)? {
         Value::Null => None,
@@ -140,12 +140,12 @@ fn word<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> 
 
 impl Results {
     /// # Errors
-    /// A key is missing or holds something else; which, in words.
+    /// A key is missing or has another type; a message.
     pub fn of(value: &Value) -> Result<Self, String> {
         Self::deserialize(value).map_err(|error| error.to_string())
     }
 
-    /// What rules read of it.
+    /// The recorded values, in the form needed by the rules.
     ///
     /// # Errors
     /// A quantity of the protocol is missing.

@@ -1,4 +1,4 @@
-//! Detached signatures in the format of minisign: Ed25519 over BLAKE2b of the file, in a file of its own beside it.
+//! Detached signatures in the format of minisign: Ed25519 over BLAKE2b of the file, in a separate file next to it.
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -12,15 +12,16 @@ use crate::data::text::read_bytes;
 use crate::disk;
 use crate::problem::Problem;
 
-/// Where a password may be given; without it, it is asked for on the terminal. Never on the command line, which others can see.
+/// Environment variable with the password; if it is not set, the password is requested on the terminal. It is not accepted on the command
+/// line, which other users can see.
 pub const PASSWORD: &str = "FISHPLATE_KEY_PASSWORD";
 
-/// Largest key or signature file in bytes; they have a few hundred.
+/// Maximum size of a key or signature file in bytes; typical ones have a few hundred.
 const SMALL: u64 = 64 << 10;
-/// Largest file that is signed or checked, in bytes: that of a report.
+/// Maximum size of a file to be signed or checked, in bytes: that of a report.
 const LARGE: u64 = 512 << 20;
 
-/// The signature of a file lies beside it.
+/// Default path of the signature of a file.
 pub fn beside(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(".minisig");
@@ -34,7 +35,7 @@ fn text(path: &Path) -> Result<String, Problem> {
     crate::data::text::decode(&bytes, &shown).map(str::to_string)
 }
 
-/// All bytes of a file that is to be signed or checked.
+/// Reads a file to be signed or checked.
 ///
 /// # Errors
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`.
@@ -50,8 +51,8 @@ pub fn content(path: &Path) -> Result<Vec<u8>, Problem> {
 /// `key-failed`: no random numbers, or no terminal to ask for a password.
 pub fn new_keys(password: Option<String>, protected: bool) -> Result<(String, String), Problem> {
     let failed = |error: minisign::PError| {
-        let problem = Problem::error("key-failed", format!("no key could be made: {error}"));
-        problem.help(format!("give a password on the terminal or in {PASSWORD}, or say `--no-password`"))
+        let problem = Problem::error("key-failed", format!("no key could be generated: {error}"));
+        problem.help(format!("give a password on the terminal or in {PASSWORD}, or use `--no-password`"))
     };
     let keys = if protected { KeyPair::generate_encrypted_keypair(password) } else { KeyPair::generate_unencrypted_keypair() };
     let keys = keys.map_err(failed)?;
@@ -60,23 +61,23 @@ pub fn new_keys(password: Option<String>, protected: bool) -> Result<(String, St
     Ok((secret, public))
 }
 
-/// Reads a secret key, which a password may protect.
+/// Reads a secret key, with its password if it is protected.
 ///
 /// # Errors
-/// `key-unreadable`: no secret key, or another password.
+/// `key-unreadable`: not a secret key, or a wrong password.
 pub fn secret_key(path: &Path, password: Option<String>) -> Result<SecretKey, Problem> {
     let shown = path.display();
     let text = text(path)?;
     let unreadable = |error: minisign::PError| {
         let problem = Problem::error("key-unreadable", format!("`{shown}` cannot be used as a secret key: {error}"));
         problem.help(format!(
-            "give the secret key that `fishplate keygen`, or minisign with a password, made; the password is asked for, or read from {PASSWORD}"
+            "give a secret key of `fishplate keygen`, or of minisign with a password; the password is requested, or read from {PASSWORD}"
         ))
     };
     let boxed = SecretKeyBox::from_string(&text).map_err(unreadable)?;
     match boxed.clone().into_unencrypted_secret_key() {
         Ok(key) => Ok(key),
-        // The crate knows no other way to tell that a password is needed.
+        // The crate has no other way to detect that a password is needed.
         Err(error) if error.to_string().contains("encrypted") => boxed.into_secret_key(password).map_err(unreadable),
         Err(error) => Err(unreadable(error)),
     }
@@ -89,8 +90,8 @@ pub fn secret_key(path: &Path, password: Option<String>) -> Result<SecretKey, Pr
 pub fn public_key(given: &str) -> Result<PublicKey, Problem> {
     let path = Path::new(given);
     let unreadable = |error: minisign::PError| {
-        let problem = Problem::error("key-unreadable", format!("`{given}` is no public key: {error}"));
-        problem.help("give the file ending in `.pub` that was made with the secret key, or the key as one word beginning with `RW`")
+        let problem = Problem::error("key-unreadable", format!("`{given}` is not a public key: {error}"));
+        problem.help("give the `.pub` file of the secret key, or the key as one word beginning with `RW`")
     };
     if disk::may_be_file(path) {
         let text = text(path)?;
@@ -100,7 +101,7 @@ pub fn public_key(given: &str) -> Result<PublicKey, Problem> {
     PublicKey::from_base64(given).map_err(unreadable)
 }
 
-/// The signature of some bytes, as the text of its file. Its comment, which is signed too, names the file and has no time.
+/// The signature of data, as the text of its file. Its signed comment contains the file name and no time.
 ///
 /// # Errors
 /// `sign-failed`.
@@ -114,7 +115,7 @@ pub fn sign(key: &SecretKey, name: &str, bytes: &[u8]) -> Result<String, Problem
     Ok(signed.into_string())
 }
 
-/// The number by which a key is known, as minisign prints it.
+/// The key number as printed by minisign.
 fn number(key: &[u8]) -> String {
     key.iter().rev().map(|byte| format!("{byte:02X}")).collect()
 }
@@ -122,21 +123,21 @@ fn number(key: &[u8]) -> String {
 /// Checks the signature of a file.
 ///
 /// # Errors
-/// The signature that was named cannot be read.
+/// The given signature cannot be read.
 pub fn check(path: &Path, signature: Option<&Path>, key: Option<&PublicKey>) -> Result<Check, Problem> {
     const NAME: &str = "signature";
     let own = beside(path);
     let at = signature.unwrap_or(&own);
     if signature.is_none() && !disk::may_be_file(at) {
         return Ok(match key {
-            None => Check::not_checked(NAME, "there is none beside the report"),
+            None => Check::not_checked(NAME, "the report has no signature file"),
             Some(_) => Check::differs(NAME, format!("there is no signature `{}`", at.display()), Vec::new()),
         });
     }
     let text = text(at)?;
     let unreadable =
-        |why: &dyn std::fmt::Display| Ok(Check::differs(NAME, format!("`{}` is no signature", at.display()), vec![why.to_string()]));
-    // Lengths are checked here; the crate that signs takes them as given and would stop the program.
+        |why: &dyn std::fmt::Display| Ok(Check::differs(NAME, format!("`{}` is not a signature", at.display()), vec![why.to_string()]));
+    // Lengths are checked here, since the signing crate would panic.
     let signed = match minisign_verify::Signature::decode(&text) {
         Ok(signed) => signed,
         Err(error) => return unreadable(&error),
@@ -155,7 +156,7 @@ pub fn check(path: &Path, signature: Option<&Path>, key: Option<&PublicKey>) -> 
         Ok(()) => Check::agrees(NAME, format!("signed with key {by}: {}", signed.trusted_comment())),
         Err(error) => {
             let keys = format!("signed with key {by}, checked with key {}: {error}", number(key.keynum()));
-            Check::differs(NAME, "the signature is not one of this file with this key", vec![keys])
+            Check::differs(NAME, "the signature does not match this file and key", vec![keys])
         }
     })
 }

@@ -1,7 +1,7 @@
-//! What was made from what, as an in-toto Statement v1 with a predicate of SLSA Provenance v1: other programs read these forms.
+//! Provenance of the report files as an in-toto Statement v1 with a predicate of SLSA Provenance v1, which other programs can read.
 //!
-//! Forms: in-toto Attestation Framework, "Statement" and "ResourceDescriptor"; SLSA v1.0, "Provenance". No clock and no host: the
-//! same input gives the same bytes.
+//! Formats: in-toto Attestation Framework, "Statement" and "ResourceDescriptor"; SLSA v1.0, "Provenance". It contains neither time nor
+//! host, so that the same input gives the same bytes.
 
 use std::path::Path;
 
@@ -13,16 +13,16 @@ use crate::data::hash::sha256;
 use crate::disk;
 use crate::result::Certification;
 
-/// The file beside the report.
+/// File name.
 pub const FILE: &str = "statement.json";
 
 const STATEMENT: &str = "https://in-toto.io/Statement/v1";
 const PREDICATE: &str = "https://slsa.dev/provenance/v1";
-/// Which kind of run it is, so that the external parameters can be understood: a package URL that leads to the page describing them.
+/// Build type, which defines the external parameters: a package URL of the page that describes them.
 const CERTIFY: &str = "pkg:cargo/fishplate?run=certify-v1#docs/provenance.md";
 const BUILDER: &str = "pkg:cargo/fishplate";
 
-/// The statement about the files of a report, each with its path inside the output folder.
+/// The statement about the files of a report; each with its path inside the output folder.
 pub fn statement(found: &Certification, files: &[(String, Vec<u8>)]) -> String {
     let subject: Vec<Value> = files.iter().map(|(name, bytes)| resource(name, &sha256(bytes))).collect();
     let protocol = &found.protocol;
@@ -54,7 +54,7 @@ pub fn statement(found: &Certification, files: &[(String, Vec<u8>)]) -> String {
             },
         },
     });
-    // A tree of plain values always serialises.
+    // Serialisation of plain values cannot fail.
     serde_json::to_string_pretty(&statement).unwrap_or_default() + "\n"
 }
 
@@ -62,10 +62,10 @@ fn resource(name: &str, sha256: &str) -> Value {
     json!({"name": name, "digest": {"sha256": sha256}})
 }
 
-/// The files of an output folder against the statement in it; nothing if there is none.
+/// Compares the files of an output folder with its statement; nothing if there is none.
 pub fn check(folder: &Path) -> Option<Check> {
     const NAME: &str = "statement";
-    /// Larger than any statement: one of 100 000 files has about 15 million bytes.
+    /// Maximum size; a statement about 100 000 files has about 15 million bytes.
     const LARGEST: u64 = 64 << 20;
     let path = folder.join(FILE);
     if !disk::may_exist(&path) {
@@ -79,7 +79,7 @@ pub fn check(folder: &Path) -> Option<Check> {
     let value: Value = serde_json::from_slice(&bytes).unwrap_or(Value::Null);
     let subjects = value["subject"].as_array().filter(|_| value["_type"] == STATEMENT);
     let Some(subjects) = subjects else {
-        return Some(Check::differs(NAME, format!("`{FILE}` is no in-toto Statement v1"), Vec::new()));
+        return Some(Check::differs(NAME, format!("`{FILE}` is not an in-toto Statement v1"), Vec::new()));
     };
     let mut details = Vec::new();
     for subject in subjects {
@@ -95,7 +95,7 @@ pub fn check(folder: &Path) -> Option<Check> {
         }
     }
     if details.is_empty() {
-        return Some(Check::agrees(NAME, format!("{} files have the SHA-256 that {FILE} names", subjects.len())));
+        return Some(Check::agrees(NAME, format!("{} files have the SHA-256 given in {FILE}", subjects.len())));
     }
-    Some(Check::differs(NAME, "files are not those that the statement names", details))
+    Some(Check::differs(NAME, "files differ from those in the statement", details))
 }

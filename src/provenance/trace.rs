@@ -1,4 +1,4 @@
-//! One number of a report, back to the line of its rule and the rows of its data.
+//! Traces one number of a report to the line of its rule and to the rows of its data.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -14,7 +14,7 @@ use crate::run::single::{Side, Single, single};
 use crate::source::Span;
 use crate::units::Unit;
 
-/// Which number.
+/// Identification of the number.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<'a> {
     pub quantity: &'a str,
@@ -22,19 +22,19 @@ pub struct Asked<'a> {
     pub signal: &'a str,
 }
 
-/// What was found, in words, and whether what the campaign gives now is what the report says.
+/// The result as text, and whether the campaign still gives the values of the report.
 #[derive(Debug)]
 pub struct Traced {
     pub text: String,
     pub agrees: bool,
 }
 
-/// Everything that one value of a report came from.
+/// Traces one value of a report to its sources.
 ///
 /// With a campaign, its rows and values are read and computed again.
 ///
 /// # Errors
-/// `no-such-quantity`, `no-such-section`, `no-such-signal`, `not-evaluated`; what makes the campaign unusable.
+/// `no-such-quantity`, `no-such-section`, `no-such-signal`, `not-evaluated`; problems of the campaign.
 pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, campaign: Option<&Path>) -> Result<Traced, Problems> {
     let (quantity, pair) = find(carried, asked).map_err(|problem| Problems(vec![problem]))?;
     let index = compiled.and_then(|compiled| {
@@ -52,7 +52,7 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
         operations(&mut out, carried, compiled, index, asked.section)
             .map_err(|says| Problems(vec![Problem::error("not-evaluated", format!("the result does not fit its protocol: {says}"))]))?;
     } else {
-        let _ = writeln!(out, "\nThe protocol is not to be had: give report.pdf, which carries it, or name it with `--protocol`.");
+        let _ = writeln!(out, "\nThe protocol is not available: give report.pdf, which contains it, or name it with `--protocol`.");
     }
     let mut agrees = true;
     let files: Vec<&File> = records(carried, asked.section).collect();
@@ -71,7 +71,7 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
     Ok(Traced { text: out, agrees })
 }
 
-/// The same up to rounding; see [`super::compare`].
+/// Equality up to rounding; see [`super::compare`].
 fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= (super::compare::SHARE * a.abs().max(b.abs())).max(super::compare::NEAR)
 }
@@ -123,7 +123,7 @@ fn head(quantity: &Quantity, pair: &Pair) -> String {
     out
 }
 
-/// `annex-t.fp:345`, the file without its folder.
+/// `annex-t.fp:345`: the file without its folder.
 fn place(span: &Span) -> String {
     format!("{}:{}", span.source.file_name(), span.line())
 }
@@ -150,7 +150,7 @@ fn operations(out: &mut String, carried: &Carried, compiled: &Compiled, index: (
     let nodes = crate::run::replay::operations(&compiled.plan, &compiled.graph, &recorded, index, section)?;
     let node = |id: &usize| &compiled.graph.nodes[*id];
     let width = nodes.iter().map(|id| node(id).label.chars().count()).max().unwrap_or(0).min(60);
-    let _ = writeln!(out, "\noperations, in this order, each with the rule that asked for it first");
+    let _ = writeln!(out, "\noperations in order, each with the first rule that requires it");
     for id in &nodes {
         let Node { operation, label, from, .. } = node(id);
         let _ = writeln!(out, "  {:<8} {label:<width$}  ({})", operation.stage().in_words(), place(from));
@@ -176,7 +176,7 @@ fn records<'a>(carried: &'a Carried, section: &'a str) -> impl Iterator<Item = &
     ["simulation", "measurement"].into_iter().flat_map(move |kind| all.iter().filter(move |file| of(file, kind)))
 }
 
-/// One record; whether it is the one of the report and gives the same.
+/// Describes one record; returns whether it is unchanged and gives the same value.
 fn record(out: &mut String, file: &File, pair: &Pair, side: Option<&Side>, compiled: Option<(&Compiled, (usize, usize))>) -> bool {
     let _ = writeln!(out, "\n{}\n  SHA-256    {}", file.path, file.sha256);
     let (Some(side), Some((compiled, index))) = (side, compiled) else { return true };
@@ -203,7 +203,7 @@ fn record(out: &mut String, file: &File, pair: &Pair, side: Option<&Side>, compi
     agrees
 }
 
-/// A number in the first unit that measures the same, else in SI.
+/// A number in the first unit of the right dimension, else in SI units.
 fn in_unit(value: f64, node: &Node, units: [&Unit; 2]) -> String {
     match units.into_iter().find(|unit| unit.dimension == node.dimension) {
         Some(unit) => format!("{}{}", unit.from_si(value), unit.suffix()),

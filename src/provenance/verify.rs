@@ -1,4 +1,4 @@
-//! Whether a report holds together, and whether its campaign still gives it.
+//! Verification of a report, alone and against its campaign.
 
 use std::path::Path;
 
@@ -21,21 +21,21 @@ use crate::run::{Progress, Settings};
 pub enum Outcome {
     Agrees,
     Differs,
-    /// Nothing asked for it, or it cannot differ in a way that matters.
+    /// Not requested, or without relevance.
     NotChecked,
-    /// It was asked for and could not be done, so that nothing can be said.
+    /// Requested, but not possible.
     NotPossible,
 }
 
-/// One thing that was looked at.
+/// A single check.
 #[derive(Clone, Debug)]
 pub struct Check {
     /// `protocol text`, `input files`, ...
     pub name: &'static str,
     pub outcome: Outcome,
-    /// What was found, in one line.
+    /// The result, one line.
     pub says: String,
-    /// Every difference, in one line each.
+    /// All differences, one line each.
     pub details: Vec<String>,
 }
 
@@ -56,16 +56,16 @@ impl Check {
         Self { name, outcome: Outcome::Differs, says: says.into(), details }
     }
 
-    /// Agrees if there is no difference.
+    /// Agrees if there are no differences.
     fn of(name: &'static str, agrees: impl Into<String>, differs: impl Into<String>, details: Vec<String>) -> Self {
         if details.is_empty() { Self::agrees(name, agrees) } else { Self::differs(name, differs, details) }
     }
 }
 
-/// How the program that wrote a report is named in messages.
+/// Version of this program in messages.
 const THIS: &str = env!("CARGO_PKG_VERSION");
 
-/// What can be checked with the report alone, and its protocol compiled if that is possible.
+/// Checks of the report alone; returns also its compiled protocol, if possible.
 pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<Compiled>) {
     let mut checks = vec![form(carried)];
     checks.extend(files_beside(carried));
@@ -89,7 +89,7 @@ pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<C
     checks.push(Check::of(
         "protocol rules",
         format!("{}, with its parameters, are those of the report", count(compiled.plan.quantities.len(), "quantity", "quantities")),
-        "the protocol in the report says something else than its results",
+        "the protocol in the report contradicts its results",
         details(&found),
     ));
     checks.push(statistics(carried, &compiled));
@@ -100,7 +100,7 @@ fn with_help(problem: &Problem) -> String {
     problem.help.as_ref().map_or_else(|| problem.says.clone(), |help| format!("{}: {help}", problem.says))
 }
 
-/// Results have one form only: anything put in by hand, such as a key twice, shows.
+/// Checks the text form of the results, which is unique, so that manual changes such as a repeated key are detected.
 fn form(carried: &Carried) -> Check {
     if carried.results.fishplate != THIS {
         let says = format!("written by fishplate {}, this is {THIS}: the form is not compared", carried.results.fishplate);
@@ -108,20 +108,25 @@ fn form(carried: &Carried) -> Check {
     }
     let again = json::text(&carried.value);
     if again == carried.text {
-        return Check::agrees("form", "results.json is in the form in which the program writes it");
+        return Check::agrees("form", "results.json has the form in which the program writes it");
     }
     let line = again.lines().zip(carried.text.lines()).position(|(a, b)| a != b);
     let line = line.unwrap_or_else(|| again.lines().count().min(carried.text.lines().count())) + 1;
-    Check::differs("form", "results.json is not in the form in which the program writes it", vec![format!("first at line {line}")])
+    Check::differs(
+        "form",
+        "results.json does not have the form in which the program writes it",
+        vec![format!("first difference at line {line}")],
+    )
 }
 
-/// Files of an output folder against the report in it.
+/// Compares the files of an output folder with the report.
 fn files_beside(carried: &Carried) -> Vec<Check> {
     let Some(folder) = &carried.folder else { return Vec::new() };
     let mut checks = Vec::new();
     if carried.pdf.is_some() {
-        let differs = if carried.other_results { vec!["results.json is not the one inside report.pdf".to_string()] } else { Vec::new() };
-        let agrees = "results.json is the one inside report.pdf";
+        let differs =
+            if carried.other_results { vec!["results.json differs from the one inside report.pdf".to_string()] } else { Vec::new() };
+        let agrees = "results.json is the same as inside report.pdf";
         checks.push(Check::of("results.json", agrees, "two results", differs));
     }
     checks.extend(super::statement::check(folder));
@@ -134,27 +139,27 @@ fn protocol_text(carried: &Carried, texts: &[&str]) -> Check {
     for (file, text) in named.files.iter().zip(texts) {
         let found = sha256(text.as_bytes());
         if found != file.sha256 {
-            details.push(format!("{}: SHA-256 {} in the results, the text has {found}", file.name, file.sha256));
+            details.push(format!("{}: SHA-256 {} in the results, {found} of the text", file.name, file.sha256));
         }
     }
     let all = sha256(texts.concat().as_bytes());
     if details.is_empty() && all != named.sha256 {
-        details.push(format!("all files together: SHA-256 {} in the results, the texts have {all}", named.sha256));
+        details.push(format!("all files together: SHA-256 {} in the results, {all} of the texts", named.sha256));
     }
     let agrees = match texts.len() {
-        1 => "its file has the SHA-256 that the results name".to_string(),
-        many => format!("{many} files have the SHA-256 that the results name"),
+        1 => "its file has the SHA-256 given in the results".to_string(),
+        many => format!("{many} files have the SHA-256 given in the results"),
     };
-    Check::of("protocol text", agrees, "the protocol in the report is not the one that was run", details)
+    Check::of("protocol text", agrees, "the protocol in the report is not the one that was evaluated", details)
 }
 
-/// Whether statistics, verdict and reasons follow from the values that are printed.
+/// Checks that statistics, verdict and reasons follow from the printed values.
 fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
     const NAME: &str = "statistics";
     let replayed = carried.results.recorded(&compiled.plan).and_then(|recorded| replay(&compiled.plan, &recorded));
     let replayed = match replayed {
         Ok(replayed) => replayed,
-        Err(says) => return Check::differs(NAME, "the values cannot be judged by the protocol", vec![says]),
+        Err(says) => return Check::differs(NAME, "the values cannot be evaluated with the protocol", vec![says]),
     };
     let value = |key: &str| carried.value.get(key).unwrap_or(&Value::Null);
     let mut details: Vec<String> = replayed.contradictions;
@@ -175,17 +180,17 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
     Check::of(NAME, agrees, "statistics or the verdict do not follow from the values", details)
 }
 
-/// How a campaign is run again.
+/// Settings for the repeated evaluation.
 #[allow(missing_debug_implementations, reason = "a function has none")]
 #[derive(Clone, Copy)]
 pub struct Again<'a> {
     pub campaign: &'a Path,
-    /// How many distance plots the report shows.
+    /// Number of distance plots of the report.
     pub plots: usize,
     pub progress: Progress<'a>,
 }
 
-/// Inputs, numbers and pages against the campaign.
+/// Checks of inputs, numbers and pages against the campaign.
 pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>) -> Vec<Check> {
     let mut lost = Vec::new();
     for file in &carried.results.campaign.files {
@@ -203,22 +208,23 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
     if let Some(Ok(found)) = &certified {
         let known = |path: &str| carried.results.campaign.files.iter().any(|file| file.path == path);
         let extra = found.campaign.files.iter().filter(|file| !known(&file.path));
-        lost.extend(extra.map(|file| format!("extra: {} is read now and was not read for the report", file.path)));
+        lost.extend(extra.map(|file| format!("extra: {} is read now, but was not read for the report", file.path)));
         let unread = carried.results.campaign.files.iter().filter(|file| !found.campaign.files.iter().any(|now| now.path == file.path));
         lost.extend(unread.map(|file| format!("no longer read: {}", file.path)));
     }
     let files = count(carried.results.campaign.files.len(), "file has", "files have");
-    let inputs = Check::of("input files", format!("{files} the SHA-256 of the report"), "the campaign is not the one of the report", lost);
+    let inputs =
+        Check::of("input files", format!("{files} the SHA-256 of the report"), "the campaign differs from that of the report", lost);
     let same = inputs.outcome == Outcome::Agrees;
     let mut checks = vec![inputs];
     match certified {
-        None => checks.push(Check::not_possible("run again", "the protocol cannot be run")),
+        None => checks.push(Check::not_possible("run again", "the protocol cannot be evaluated")),
         Some(Err(problems)) => {
             let told = problems.0.iter().map(|problem| match &problem.at {
                 Some(at) => format!("{}: {} ({at})", problem.code, problem.says),
                 None => format!("{}: {}", problem.code, problem.says),
             });
-            checks.push(Check::differs("run again", "the campaign cannot be run any more", told.collect()));
+            checks.push(Check::differs("run again", "the campaign can no longer be evaluated", told.collect()));
         }
         Some(Ok(found)) => checks.extend(compared(carried, &found, again.plots, same)),
     }
@@ -232,27 +238,27 @@ fn run(compiled: &Compiled, again: Again<'_>) -> Result<Certification, Problems>
     certify(compiled, &campaign, Settings { traces: again.plots }, again.progress)
 }
 
-/// Every number of the report against those of a run now, then the pages.
+/// Compares all numbers of the report with those of a new evaluation, and then the pages.
 fn compared(carried: &Carried, found: &Certification, plots: usize, inputs: bool) -> Vec<Check> {
     let results = json::results(found);
-    // What was written can be read.
+    // The program's own results can be parsed.
     let Ok(mut now) = serde_json::from_str::<Value>(&results) else { return Vec::new() };
     let mut before = carried.value.clone();
     for value in [&mut before, &mut now] {
         if let Some(entries) = value.as_object_mut() {
             entries.remove("fishplate");
         }
-        // Files are told by themselves.
+        // Files are compared separately.
         if let Some(campaign) = value.get_mut("campaign").and_then(Value::as_object_mut) {
             campaign.remove("files");
         }
     }
     let mut all = compare(&before, &now, "");
-    // The verdict first: it is what most readers look for.
+    // The verdict first, as the most relevant difference.
     all.differences.sort_by_key(|one| one.path != "verdict");
     let rounded = if all.rounded == 0 { String::new() } else { format!(", {} of them up to rounding", all.rounded) };
-    let agrees = format!("all {} numbers are those of the report{rounded}", all.numbers);
-    let differs = format!("{} of the report", count(all.differences.len(), "place differs from that", "places differ from those"));
+    let agrees = format!("all {} numbers are the same as in the report{rounded}", all.numbers);
+    let differs = format!("{} from the report", count(all.differences.len(), "value differs", "values differ"));
     let numbers = Check::of("run again", agrees, differs, details(&all));
     let same = inputs && numbers.outcome == Outcome::Agrees;
     let mut checks = vec![numbers];
@@ -262,7 +268,7 @@ fn compared(carried: &Carried, found: &Certification, plots: usize, inputs: bool
     checks
 }
 
-/// The same input gives the same pages, byte by byte. What follows them may be a signature that another program added.
+/// Compares the pages byte by byte, which is exact for the same input. Data added after them may be a signature of another program.
 fn pages(carried: &Carried, pdf: &[u8], found: &Certification, (results, plots): (&str, usize), same: bool) -> Check {
     const NAME: &str = "pages";
     if carried.results.fishplate != THIS {
@@ -275,15 +281,15 @@ fn pages(carried: &Carried, pdf: &[u8], found: &Certification, (results, plots):
     let attachments = attached::attachments(found, results, &names);
     match typst::typeset(&view::view(found), &figure::figures(found), &attachments) {
         Err(problems) => Check::not_possible(NAME, problems.0.first().map_or_else(String::new, |problem| problem.says.clone())),
-        Ok(made) if made.bytes == pdf => Check::agrees(NAME, "the PDF is the one that the program writes, byte for byte"),
+        Ok(made) if made.bytes == pdf => Check::agrees(NAME, "the PDF is, byte for byte, the one the program writes"),
         Ok(made) if pdf.starts_with(&made.bytes) => {
             let added = pdf.len() - made.bytes.len();
-            Check::agrees(NAME, format!("the PDF is the one that the program writes, with {added} bytes added to its end"))
+            Check::agrees(NAME, format!("the PDF is the one the program writes, with {added} bytes added at its end"))
         }
         Ok(made) => {
             let at = made.bytes.iter().zip(pdf).position(|(a, b)| a != b).unwrap_or(made.bytes.len().min(pdf.len()));
-            let help = format!("from byte {} on; a report with another number of plots than {plots}: say so with `--plots`", at + 1);
-            Check::differs(NAME, "the PDF is not the one that the program writes from these inputs", vec![help])
+            let help = format!("from byte {} on; if the report has a number of plots other than {plots}, give it with `--plots`", at + 1);
+            Check::differs(NAME, "the PDF differs from the one the program writes from these inputs", vec![help])
         }
     }
 }
@@ -297,8 +303,8 @@ fn told(one: &Difference, now: &str) -> String {
     let of = if one.of.is_empty() { String::new() } else { format!(" ({})", one.of) };
     match (&one.before, &one.after) {
         (Some(before), Some(after)) => format!("{}{of}: {before} in the report, {after} {now}", one.path),
-        (Some(before), None) => format!("{}{of}: {before} in the report, not there {now}", one.path),
-        (None, after) => format!("{}{of}: not in the report, {} {now}", one.path, after.as_deref().unwrap_or_default()),
+        (Some(before), None) => format!("{}{of}: {before} in the report, missing {now}", one.path),
+        (None, after) => format!("{}{of}: missing in the report, {} {now}", one.path, after.as_deref().unwrap_or_default()),
     }
 }
 

@@ -68,7 +68,7 @@ fn a_report_cut_anywhere_is_refused() {
     let ends = (0..60).map(|part| whole.len() * part / 60).chain(whole.len() - 60..whole.len() - 7).chain(0..40);
     for end in ends {
         let says = refused(folder.path(), &whole[..end.max(1)]);
-        assert!(says.contains("is no PDF") || says.contains("cannot be read") || says.contains("carries no"), "{end}: {says}");
+        assert!(says.contains("is not a PDF") || says.contains("cannot be read") || says.contains("has no attachment"), "{end}: {says}");
     }
 }
 
@@ -109,8 +109,8 @@ fn what_leads_in_circles_or_nowhere_is_refused() {
     let catalogue = |more: &str| format!("<</Type/Catalog {more}>>").into_bytes();
     let embedded = "/Names<</EmbeddedFiles 2 0 R>>";
     for (name, bytes, says) in [
-        ("no attachment", pdf(&[catalogue("")], ""), "carries no `results.json`"),
-        ("another attachment", attached("study.json", "", b"{}"), "it carries study.json"),
+        ("no attachment", pdf(&[catalogue("")], ""), "has no attachment `results.json`"),
+        ("another attachment", attached("study.json", "", b"{}"), "its attachments are study.json"),
         ("no catalogue", pdf(&[b"null".to_vec()], ""), "its catalogue is missing"),
         ("encrypted", pdf(&[catalogue("")], "/Encrypt 1 0 R"), "is encrypted"),
         ("a table before itself", pdf(&[catalogue("")], "/Prev 0"), "cannot be read"),

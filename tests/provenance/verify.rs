@@ -118,14 +118,14 @@ fn a_changed_campaign_is_told_by_file_and_number() {
             lines.push(more);
         });
     });
-    assert!(out.contains("extra: measurement/X01.csv is read now and was not read for the report"), "{out}");
-    assert!(out.contains("(zone 1, X01): not in the report"), "{out}");
+    assert!(out.contains("extra: measurement/X01.csv is read now, but was not read for the report"), "{out}");
+    assert!(out.contains("(zone 1, X01): missing in the report"), "{out}");
     // The vehicle.
     let out = changed(&|campaign| replace(&campaign.join("vehicle.yaml"), "category: passenger", "category: freight"));
     assert!(out.contains("changed: vehicle.yaml") && out.contains("limit_std"), "{out}");
     // No campaign any more.
     let out = changed(&|campaign| fs::write(campaign.join("campaign.yaml"), "name: [").expect("written"));
-    assert!(out.contains("changed: campaign.yaml") && out.contains("the campaign cannot be run any more"), "{out}");
+    assert!(out.contains("changed: campaign.yaml") && out.contains("the campaign can no longer be evaluated"), "{out}");
 }
 
 /// Every kind of number and word in the results, changed by hand: the check that must find it, without the campaign.
@@ -247,7 +247,7 @@ fn what_is_no_report_is_refused_with_help() {
         assert!(ran.stdout.is_empty());
         ran.stderr
     };
-    assert!(refused("a.pdf", b"hello").contains("is no PDF"));
+    assert!(refused("a.pdf", b"hello").contains("is not a PDF"));
     assert!(refused("a.json", b"{}").contains("no results of `certify`: missing field `fishplate`"));
     assert!(refused("a.json", b"{\"a\": ").contains("results-unreadable"));
     assert!(refused("a.json", b"").contains("file-empty"));
@@ -264,5 +264,5 @@ fn what_is_no_report_is_refused_with_help() {
     let study = fishplate(&["study", "sections", &text(&example("coach")), "--out", &out, "-q"]);
     assert!(study.code <= 1, "{}", study.stderr);
     let ran = verify(&folder.path().join("study/report.pdf"), None, &[]);
-    assert!(ran.code == 2 && ran.stderr.contains("it carries study.json"), "{}", ran.stderr);
+    assert!(ran.code == 2 && ran.stderr.contains("its attachments are study.json"), "{}", ran.stderr);
 }

@@ -1,4 +1,4 @@
-//! Where the objects of a PDF are: tables and streams of cross-references (ISO 32000-1, clause 7.5), the newest first.
+//! Positions of the objects of a PDF: cross-reference tables and streams (ISO 32000-1, clause 7.5), the newest first.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -7,13 +7,13 @@ use super::Broken;
 use super::object::{Dict, Object, Parser};
 use super::stream::unpacked;
 
-/// Objects read in all; those on the way to the attachments of a report are about fifty.
+/// Maximum number of objects read; the path to the attachments of a report has about fifty.
 const OBJECTS: usize = 200_000;
-/// Bytes that tables of places and groups of objects may unpack to in all.
+/// Maximum unpacked size of all cross-reference and object streams in bytes.
 const STRUCTURE: usize = 64 << 20;
-/// Versions of a file that were added to each other; a signature adds one.
+/// Maximum number of incremental updates of a file; a signature adds one.
 const VERSIONS: usize = 64;
-/// References that lead to references.
+/// Maximum length of a chain of references.
 const STEPS: usize = 8;
 
 #[derive(Debug)]
@@ -21,18 +21,18 @@ pub struct Document<'a> {
     bytes: &'a [u8],
     budget: Cell<usize>,
     structure: Cell<usize>,
-    /// Objects being read because another needs them.
+    /// Depth of nested reads.
     depth: Cell<usize>,
     tables: Vec<Table>,
     pub trailer: Dict,
-    /// Groups of objects that were unpacked.
+    /// Unpacked object streams.
     groups: RefCell<BTreeMap<u32, Vec<u8>>>,
 }
 
-/// Cross-references of one version.
+/// Cross-references of one update.
 #[derive(Debug)]
 enum Table {
-    /// First number, how many, and where the first line of 20 bytes is.
+    /// First number, count, and position of the first line of 20 bytes.
     Lines(Vec<(usize, usize, usize)>),
     Packed {
         rows: Vec<u8>,
@@ -41,12 +41,12 @@ enum Table {
     },
 }
 
-/// Where one object is.
+/// Position of one object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Place {
     Free,
     At(usize),
-    /// In a group of objects, at this place of it.
+    /// In an object stream, at this index.
     In(u32, usize),
 }
 
@@ -61,7 +61,7 @@ impl<'a> Document<'a> {
             trailer: Dict::default(),
             groups: RefCell::default(),
         };
-        // Readers look for the last one in the last kilobyte of the file.
+        // The last `startxref` is in the last kilobyte of the file.
         let tail = bytes.len().saturating_sub(2048);
         let last = memchr::memmem::rfind(&bytes[tail..], b"startxref").ok_or(Broken("its end is missing"))?;
         let mut next = Some(document.parser(tail + last + b"startxref".len()).integer()?);
@@ -85,7 +85,7 @@ impl<'a> Document<'a> {
         Parser { bytes: self.bytes, at, budget: &self.budget }
     }
 
-    /// Reads the cross-references at a place; the dictionary that goes with them.
+    /// Reads the cross-references at a position; returns their dictionary.
     fn table(&mut self, at: usize) -> Result<Dict, Broken> {
         let mut parser = self.parser(at);
         if !parser.word("xref") {
@@ -124,7 +124,7 @@ impl<'a> Document<'a> {
         Ok(dict)
     }
 
-    /// Unpacks a part of the structure, all of which together has a limit.
+    /// Unpacks a cross-reference or object stream, within the common limit.
     fn structural(&self, data: &[u8], dict: &Dict) -> Result<Vec<u8>, Broken> {
         let found = unpacked(data, dict, self.structure.get())?;
         self.structure.set(self.structure.get() - found.len());
@@ -142,7 +142,7 @@ impl<'a> Document<'a> {
 
     /// An object by its number.
     pub fn object(&self, number: u32) -> Result<Object, Broken> {
-        // A group may say that its length stands in itself.
+        // An object stream could contain its own length.
         if self.depth.get() >= STEPS {
             return Err(Broken("its references lead in a circle"));
         }
@@ -190,7 +190,7 @@ impl<'a> Document<'a> {
         Parser { bytes: data, at, budget: &self.budget }.object(0)
     }
 
-    /// What a reference leads to; any other object itself.
+    /// The target of a reference; any other object unchanged.
     pub fn resolved(&self, object: &Object) -> Result<Object, Broken> {
         let mut object = object.clone();
         for _ in 0..STEPS {
@@ -200,12 +200,12 @@ impl<'a> Document<'a> {
         Err(Broken("its references lead in a circle"))
     }
 
-    /// A value of a dictionary, followed where it is a reference.
+    /// A value of a dictionary, with a reference resolved.
     pub fn get(&self, dict: &Dict, key: &str) -> Result<Object, Broken> {
         dict.get(key).map_or(Ok(Object::Null), |value| self.resolved(value))
     }
 
-    /// The data of a stream, unpacked to at most so many bytes.
+    /// The unpacked data of a stream, of at most `most` bytes.
     pub fn stream(&self, number: u32, most: usize) -> Result<Vec<u8>, Broken> {
         let Place::At(at) = self.place(number)? else { return Err(Broken("the data of an attached file are missing")) };
         let (dict, data) = self.stream_at(at, Some(number))?;

@@ -1,7 +1,7 @@
-//! Files attached to a PDF, from any PDF however it was made or damaged: in bounded time and memory, without a panic.
+//! Files attached to a PDF of any origin, also a damaged one, in bounded time and memory and without a panic.
 //!
-//! A library for PDF would read more, but those there are unpack whatever a file says, however large it becomes. Here only the way
-//! to the attachments is read (ISO 32000-1, clause 7.11.4), and every step has a limit.
+//! Existing PDF libraries read more, but unpack streams without a limit. This module reads only the path to the attachments (ISO 32000-1,
+//! clause 7.11.4), with a limit for every step.
 
 mod document;
 mod object;
@@ -12,39 +12,39 @@ use object::{Dict, Object};
 
 use crate::problem::Problem;
 
-/// Branches of the tree of names that are looked at; a report has one.
+/// Maximum number of nodes of the name tree; a report has one.
 const BRANCHES: usize = 1000;
 
-/// What is wrong with a PDF, in words.
+/// The fault of a PDF, as text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Broken(&'static str);
 
-/// A file attached to a PDF.
+/// The attachments of a PDF.
 #[derive(Debug)]
 pub struct Attachments<'a> {
     document: Document<'a>,
-    /// Name without folders, and the number of its data.
+    /// Name without folders, and the object number of its data.
     found: Vec<(String, u32)>,
     shown: String,
 }
 
 impl<'a> Attachments<'a> {
-    /// Finds the attached files; none is unpacked yet.
+    /// Finds the attachments; none is unpacked yet.
     ///
     /// # Errors
-    /// `pdf-unreadable`: no PDF, damaged, or encrypted.
+    /// `pdf-unreadable`: not a PDF, damaged, or encrypted.
     pub fn of(bytes: &'a [u8], shown: &str) -> Result<Self, Problem> {
         if bytes.get(..1024.min(bytes.len())).is_none_or(|head| memchr::memmem::find(head, b"%PDF-").is_none()) {
-            return Err(Problem::error("pdf-unreadable", format!("`{shown}` is no PDF")));
+            return Err(Problem::error("pdf-unreadable", format!("`{shown}` is not a PDF")));
         }
         let broken = |broken: Broken| {
             Problem::error("pdf-unreadable", format!("`{shown}` cannot be read: {}", broken.0))
-                .help("the file may be cut short or damaged; compare its size with the original, or give results.json instead")
+                .help("the file may be truncated or damaged; compare its size with the original, or give results.json instead")
         };
         let document = Document::open(bytes).map_err(broken)?;
         if document.trailer.get("Encrypt").is_some() {
             let problem = Problem::error("pdf-unreadable", format!("`{shown}` is encrypted"));
-            return Err(problem.help("give the report as it was written: the program never encrypts one"));
+            return Err(problem.help("give the report as it was written; it is never encrypted"));
         }
         let found = listed(&document).map_err(broken)?;
         Ok(Self { document, found, shown: shown.to_string() })
@@ -54,10 +54,10 @@ impl<'a> Attachments<'a> {
         self.found.iter().map(|(name, _)| name.as_str())
     }
 
-    /// The bytes of the first file of a name; `None` if there is none.
+    /// The data of the first attachment with a name; `None` if there is none.
     ///
     /// # Errors
-    /// `pdf-unreadable`, among others where it is larger than `most` bytes.
+    /// `pdf-unreadable`, including data of more than `most` bytes.
     pub fn read(&self, name: &str, most: usize) -> Result<Option<Vec<u8>>, Problem> {
         let Some((_, number)) = self.found.iter().find(|(known, _)| known == name) else { return Ok(None) };
         let unreadable =
@@ -66,7 +66,7 @@ impl<'a> Attachments<'a> {
     }
 }
 
-/// The files of the tree of names, and those that the catalogue lists by itself.
+/// The files of the name tree, and those in the list of associated files.
 fn listed(document: &Document<'_>) -> Result<Vec<(String, u32)>, Broken> {
     let Object::Dict(catalogue) = document.get(&document.trailer, "Root")? else { return Err(Broken("its catalogue is missing")) };
     let mut found = Vec::new();

@@ -1,12 +1,12 @@
-//! Objects of a PDF (ISO 32000-1, clause 7.3), as far as finding attached files needs them.
+//! Objects of a PDF (ISO 32000-1, clause 7.3), as far as needed for attachments.
 
 use std::cell::Cell;
 
 use super::Broken;
 
-/// Arrays and dictionaries inside each other; those of a report are four deep.
+/// Maximum nesting of arrays and dictionaries; a report has four levels.
 const DEEPEST: usize = 32;
-/// Bytes of a text that count as one object.
+/// Number of bytes of a string that count as one object.
 const TEXT: usize = 64;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub enum Object {
     Dict(Dict),
     /// The number of another object.
     Reference(u32),
-    /// A truth value or a number with a fraction, which nothing here asks for.
+    /// A boolean or a number with a fraction, which are not needed.
     Other,
 }
 
@@ -27,12 +27,12 @@ pub enum Object {
 pub struct Dict(Vec<(Vec<u8>, Object)>);
 
 impl Dict {
-    /// The first value of a key: later ones could hide what another reader sees.
+    /// The first value of a key, as other readers use it.
     pub fn get(&self, key: &str) -> Option<&Object> {
         self.0.iter().find(|(known, _)| known == key.as_bytes()).map(|(_, value)| value)
     }
 
-    /// Keys and values that this dictionary lacks, from another.
+    /// Adds the keys and values of another dictionary that this one lacks.
     pub fn fill(&mut self, other: Self) {
         for (key, value) in other.0 {
             if !self.0.iter().any(|(known, _)| *known == key) {
@@ -52,7 +52,7 @@ impl Object {
     }
 }
 
-/// Reads objects from a place in the file on. Every object takes one from the budget, so that no file makes it run for long.
+/// Parses objects from a position. Every object reduces the budget, which bounds the time.
 #[derive(Debug)]
 pub struct Parser<'a> {
     pub bytes: &'a [u8],
@@ -87,7 +87,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Takes a word if it stands here.
+    /// Skips a word, if it is at the current position.
     pub fn word(&mut self, word: &str) -> bool {
         self.space();
         let here = self.bytes.get(self.at..).is_some_and(|rest| rest.starts_with(word.as_bytes()));
@@ -171,7 +171,7 @@ impl Parser<'_> {
         let Ok(value) = token.parse::<i64>() else {
             return token.parse::<f64>().map(|_| Object::Other).map_err(|_| Broken("something in it is no number"));
         };
-        // `12 0 R` is a reference, `12 0 1` three numbers.
+        // `12 0 R` is a reference, `12 0 1` are three numbers.
         let after = self.at;
         self.space();
         if self.token().iter().all(u8::is_ascii_digit) && self.word("R") {

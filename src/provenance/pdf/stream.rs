@@ -1,4 +1,4 @@
-//! Data of streams: nothing is unpacked beyond what was said to be the most.
+//! Unpacking of streams with a maximum size.
 
 use std::io::Read;
 
@@ -7,10 +7,10 @@ use flate2::read::ZlibDecoder;
 use super::Broken;
 use super::object::{Dict, Object};
 
-/// Unpacks a stream. What would be larger than `most` bytes is refused while it is being unpacked.
+/// Unpacks a stream, and stops if it exceeds `most` bytes.
 ///
 /// # Errors
-/// A packing other than Deflate, data that are damaged, or too large.
+/// A filter other than Deflate, damaged data, or data that are too large.
 pub fn unpacked(data: &[u8], dict: &Dict, most: usize) -> Result<Vec<u8>, Broken> {
     let filters: Vec<&Object> = match dict.get("Filter") {
         None | Some(Object::Null) => Vec::new(),
@@ -35,7 +35,7 @@ pub fn unpacked(data: &[u8], dict: &Dict, most: usize) -> Result<Vec<u8>, Broken
 
 const TOO_LARGE: Broken = Broken("a part of it is too large when unpacked");
 
-/// Undoes the prediction of rows as PNG has it (RFC 2083, clause 6), which tables of places are packed with.
+/// Reverses the PNG prediction of rows (RFC 2083, clause 6), which is used for cross-reference streams.
 fn predicted(data: Vec<u8>, dict: &Dict) -> Result<Vec<u8>, Broken> {
     let parameters = match dict.get("DecodeParms") {
         Some(Object::Dict(parameters)) => parameters,
@@ -76,7 +76,7 @@ fn predicted(data: Vec<u8>, dict: &Dict) -> Result<Vec<u8>, Broken> {
     Ok(rows)
 }
 
-/// The neighbour nearest to left + above - corner.
+/// The neighbour closest to left + above - corner.
 fn paeth(left: u8, above: u8, corner: u8) -> u8 {
     let guess = i16::from(left) + i16::from(above) - i16::from(corner);
     let far = |value: u8| (guess - i16::from(value)).abs();
