@@ -88,7 +88,7 @@ pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<C
     let found = compare(&carried.value["protocol"], &json::protocol(&protocol_info(&compiled)), "protocol");
     checks.push(Check::of(
         "protocol rules",
-        format!("{}, with its parameters, are those of the report", count(compiled.plan.quantities.len(), "quantity", "quantities")),
+        format!("{} and the parameters are those of the report", count(compiled.plan.quantities.len(), "quantity", "quantities")),
         "the protocol in the report contradicts its results",
         details(&found),
     ));
