@@ -1,12 +1,12 @@
-//! Inverse dynamics of a rigid double pendulum as a simulator that `fishplate` calls: measured positions in, torques out.
+//! Inverse dynamics of a rigid double pendulum as an external simulator of `fishplate`: from measured positions to torques.
 //!
 //! ```console
 //! double_pendulum_simulator VEHICLE KINEMATICS OUT [--set NAME=VALUE ...]
 //! ```
 //!
-//! VEHICLE has a line `name: value` for each parameter; `--set` goes before it. KINEMATICS is a record of `time`, `position_1` and
-//! `position_2` at an even step: angles of the upper link from hanging, of the lower link from the upper one. Velocities and
-//! accelerations come from a cubic that is fitted around every sample, symmetric in time: no phase is lost.
+//! VEHICLE has a line `name: value` for each parameter; `--set` overrides it. KINEMATICS is a record of `time`, `position_1` and
+//! `position_2` with constant time steps: the angle of the upper link from the vertical, and of the lower link relative to the upper one.
+//! Velocities and accelerations are those of a cubic fitted symmetrically around every sample, without phase error.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -14,7 +14,7 @@ use std::fmt::Write;
 /// Half width of the fit and standard deviation of its weights, in s.
 const HALF: f64 = 0.06;
 const WEIGHT: f64 = 0.025;
-/// Speed in rad/s within which Coulomb friction turns over.
+/// Speed in rad/s below which Coulomb friction is regularised.
 const TURNS: f64 = 0.05;
 
 type Error = Box<dyn std::error::Error>;
@@ -42,7 +42,7 @@ fn main() -> Result<(), Error> {
     Ok(std::fs::write(out, text)?)
 }
 
-/// All lines `name: number`.
+/// Reads all lines `name: number`.
 fn read_parameters(text: &str) -> BTreeMap<String, f64> {
     let line = |line: &str| {
         let (name, rest) = line.split_once(':')?;
@@ -61,7 +61,7 @@ fn read_kinematics(text: &str) -> Result<[Vec<f64>; 3], Error> {
         }
     }
     if columns[0].len() < 32 || columns.iter().any(|column| column.len() != columns[0].len()) {
-        return Err("the kinematics need 32 rows of time, position_1 and position_2 at least".into());
+        return Err("the kinematics need at least 32 rows of time, position_1 and position_2".into());
     }
     Ok(columns)
 }
@@ -76,7 +76,7 @@ fn derivatives(values: &[f64], step: f64) -> Vec<[f64; 3]> {
             let mut right = nalgebra::Vector4::<f64>::zeros();
             for (n, value) in values.iter().enumerate().take(to + 1).skip(from) {
                 let t = (n as f64 - at as f64) * step;
-                // In units of the half width, so that the equations are well conditioned.
+                // In units of the half width, for good conditioning.
                 let x = t / HALF;
                 let row = nalgebra::Vector4::new(1.0, x, x * x, x * x * x);
                 let weight = (-0.5 * (t / WEIGHT).powi(2)).exp();
@@ -96,7 +96,7 @@ fn torques(parameters: &BTreeMap<String, f64>, upper: [f64; 3], lower: [f64; 3])
     let (m1, m2, payload) = (of("upper_mass")?, of("lower_mass")?, of("payload_mass")?);
     let (l1, r1, r2, l2) = (of("upper_length")?, of("upper_centre")?, of("lower_centre")?, of("lower_length")?);
     let (gravity, tilt) = (of("gravity")?, of("mount_tilt")?);
-    // First and second moments of the lower link about the elbow, with what hangs at its end.
+    // First and second moments of the lower link about the elbow, including the payload.
     let moment = m2 * r2 + payload * l2;
     let inertia = of("lower_inertia")? + payload * l2 * l2;
     let (gear, rotor) = (of("gear_ratio")?, of("motor_inertia")?);

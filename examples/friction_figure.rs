@@ -1,5 +1,5 @@
-//! Guiding forces on the four wheels of the leading bogie for two friction coefficients, with what was measured, laid out as the
-//! bogie is seen from above: `cargo run --release --example friction_figure -- CAMPAIGN SECTION [-o FILE.svg]`.
+//! Guiding forces on the four wheels of the leading bogie for two friction coefficients and measured, arranged as in a top view of the
+//! bogie: `cargo run --release --example friction_figure -- CAMPAIGN SECTION [-o FILE.svg]`.
 //!
 //! After Figures 3 and 4 of Götz and Polach, Verification and validation of simulations in a railway vehicle certification context.
 
@@ -20,10 +20,10 @@ use plotters::style::RGBColor;
 
 const FRICTION: [f64; 2] = [0.3, 0.6];
 const PANEL: f64 = 105.0;
-/// Between the rows: the picture of the bogie.
+/// Distance of the rows, for the drawing of the bogie.
 const BETWEEN: f64 = 78.0;
 
-/// Channel, words, column (0 left), row (0 top). The vehicle runs to the right, so its left side is at the top.
+/// Channel, label, column (0 left), row (0 top). The vehicle runs to the right, so its left side is at the top.
 const WHEELS: [(&str, &str, usize, usize); 4] = [
     ("Y_2L", "trailing, left", 0, 0),
     ("Y_1L", "leading, left", 1, 0),
@@ -94,7 +94,7 @@ fn draw(curves: &[Curve], start: f64, end: f64) -> String {
     for (wheel, (channel, words, column, row)) in WHEELS.iter().enumerate() {
         let left = [30.0, WIDTH / 2.0 + 30.0][*column];
         let top = rows[*row];
-        // The same height of the scale everywhere, so that changes compare.
+        // The same scale everywhere, for comparison.
         let y = Scale::over(curves.iter().flat_map(|curve| curve.y.iter().flatten().copied()), top + PANEL, top);
         let frame = Frame { x: Scale { low, high, from: left, to: left + WIDTH / 2.0 - 38.0 }, y };
         canvas.draw(|layer| layer.rect((frame.x.at(start), top), (frame.x.at(end), top + PANEL), SHADE));
@@ -111,7 +111,7 @@ fn draw(curves: &[Curve], start: f64, end: f64) -> String {
     canvas.finish()
 }
 
-/// Two wheelsets between two rails, running to the right.
+/// Two wheelsets on two rails, running to the right.
 fn bogie(canvas: &mut Canvas, top: f64, height: f64) {
     let middle = WIDTH / 2.0;
     let rails = [top, top + height];

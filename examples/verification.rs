@@ -1,5 +1,5 @@
-//! Code to code: our records against the simulated records of campaigns, which an independent program made from the same
-//! description. `cargo run --release --example verification -- CAMPAIGN...` prints the table, writes it into
+//! Code comparison: records of the reference model against the simulated records of campaigns, which an independent program computed from
+//! the same description. `cargo run --release --example verification -- CAMPAIGN...` prints the table, writes it into
 //! `docs/verification.md` and draws `docs/images/verification-*.svg`.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -20,8 +20,7 @@ use fishplate::report::figure::legend::{Entry, Legend};
 use fishplate::report::figure::style::{BLUE, MEASURED, Mark, SOLID, WIDTH, color};
 use rayon::prelude::*;
 
-/// Channels that are told together: what their names begin with, words, unit, and above which value a share in percent says
-/// something.
+/// Groups of channels: prefix of the names, label, unit, and the value above which a relative deviation is meaningful.
 const GROUPS: [(&str, &str, &str, f64); 5] = [
     ("Y", "guiding forces Y", "kN", 1.0),
     ("Q", "wheel forces Q", "kN", 1.0),
@@ -101,14 +100,14 @@ fn main() {
     insert(&table);
 }
 
-/// Below the repository.
+/// Writes a file relative to the repository.
 fn write(path: &Path, text: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     std::fs::write(path, text).unwrap();
 }
 
-/// Puts the table between its marks.
+/// Inserts the table between its marks.
 fn insert(table: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/verification.md");
     let page = std::fs::read_to_string(&path).unwrap();
@@ -117,7 +116,7 @@ fn insert(table: &str) {
     std::fs::write(&path, format!("{before}<!-- table -->\n{table}<!-- end of table -->{after}")).unwrap();
 }
 
-/// Three channels of a section, recorded and ours, and under each what is left.
+/// Three channels of a section, recorded and simulated, and below each the difference.
 fn traces(section: &Section, record: &Record) -> String {
     const HEIGHT: f64 = 62.0;
     const REST: f64 = 26.0;
@@ -157,7 +156,7 @@ fn traces(section: &Section, record: &Record) -> String {
     canvas.finish()
 }
 
-/// Difference of the standard deviations in percent over the recorded one, every channel and section of all campaigns.
+/// Difference of the standard deviations in per cent over the recorded one, for every channel and section of all campaigns.
 fn scatter(all: &[(String, Vec<Pair>)]) -> String {
     let entries = GROUPS.iter().enumerate().map(|(n, group)| Entry::mark(Mark::nth(n), color(n), group.1)).collect();
     let legend = Legend::new(entries, WIDTH - 50.0);

@@ -1,8 +1,8 @@
 protocol en14363-2016-annex-t-strict-acceleration "EN 14363:2016 Annex T with stricter limits of car body acceleration"
   extends  en14363-2016-annex-t
   author   "Fishplate, as an example of a proposal"
-  scope    "For models that are to be used for ride comfort: acceleration limits at 70 % of those of Annex T,"
-           "and no doubling for freight vehicles."
+  scope    "For models used to assess ride comfort: acceleration limits at 70 % of those of Annex T, and no"
+           "doubling for freight vehicles."
 
 quantity ay_rms
   limit   std 0.105 m/s^2

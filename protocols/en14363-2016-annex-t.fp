@@ -26,7 +26,7 @@ parameter bandpass_order "Order of the band-pass filter at each edge, one pass"
 parameter filter_phase "Filtering forward and backward, or causal"
   default  zero-phase
   one of   zero-phase, causal, causal-from-rest
-  note     "The table does not say; zero phase keeps the place of a peak."
+  note     "The table does not specify it; zero phase preserves the position of a peak."
 
 parameter filter_edge "Whether the -3 dB points are those of the filter as applied or of each pass"
   default  as-applied
@@ -36,33 +36,33 @@ parameter window_ends "Sliding mean as the mean of the samples in the window, or
   default  samples
   one of   samples, integral
 
-parameter sliding_input "Signal that the sliding mean is taken of"
+parameter sliding_input "Input signal of the sliding mean"
   default  unfiltered
   one of   unfiltered, lowpassed
-  note     "Table 1 names no other filter; common practice filters at 20 Hz before."
+  note     "Table 1 specifies no other filter; common practice applies a 20 Hz low-pass before."
 
-parameter ratio_from "Y/Q formed from the records as they are, or from filtered Y and Q"
+parameter ratio_from "Y/Q calculated from the recorded or from the filtered Y and Q"
   default  unfiltered
   one of   unfiltered, lowpassed
 
-parameter percentile_rule "How a percentile is read between two samples (Hyndman & Fan)"
+parameter percentile_rule "Interpolation of a percentile between two samples (Hyndman & Fan)"
   default  linear
   one of   linear, hazen, weibull, median_unbiased, normal_unbiased, inverted_cdf, nearest, lower, higher
 
 parameter quasi_static_difference "Sign of the difference of quasi-static values"
   default  oriented
   one of   oriented, signed, magnitudes
-  note     "Oriented: positive where the simulation is larger in the direction of the measurement, in right"
-           "and left curves alike, so that a wrong sign shows; magnitudes would hide it."
+  note     "Oriented: positive if the simulated value is larger in the direction of the measured value, in"
+           "right and left curves. A wrong sign then gives a large difference; magnitudes would hide it."
 
-parameter maximum_side "Side of the distribution that a maximum is read from"
+parameter maximum_side "Side of the distribution from which a maximum is taken"
   default  own
   one of   own, measurement, curve
-  note     "Own: the larger magnitude, for simulation and measurement each by itself. Measurement: the side"
-           "that is larger in the measurement, for both. Curve: 0.15 % in right-hand and 99.85 % in left-hand"
-           "curves for the sum of guiding forces, the other way round for the lateral acceleration, and for a"
-           "single wheel the side of its quasi-static value in the measurement; on straight track and for the"
-           "vertical acceleration as own."
+  note     "Own: the side with the larger magnitude, separately for simulation and measurement. Measurement:"
+           "the side that is larger in the measurement, for both. Curve: 0.15 % in right-hand and 99.85 % in"
+           "left-hand curves for the sum of guiding forces, the opposite for the lateral acceleration; for a"
+           "single wheel the side of its measured quasi-static value; on straight track and for the vertical"
+           "acceleration as own."
 
 parameter variance_divisor "Divisor of the variance"
   default  n-1
@@ -73,7 +73,7 @@ parameter mean_limit_share "Limit of the mean as a share of the limit of the sta
   range    0.01 to 10
   source   "Section 3.2"
 
-parameter sections_per_zone "Sections needed in each test zone"
+parameter sections_per_zone "Sections required in each test zone"
   default  3
   range    1 to 100
   source   "Section 3.2"
@@ -82,9 +82,9 @@ parameter evaluated_wheelsets "Wheelsets whose forces are compared"
   default  1, 3
   at       wheelset
   source   "Section 3.2: at least two signals of each quantity"
-  note     "1 and 3 lead the two bogies, where guiding forces are largest; this is the protocol's own choice."
-           "The paper also speaks for trailing wheelsets (2 and 4), and in practice both wheelsets of one"
-           "bogie are often instrumented: set it to the wheelsets that were measured."
+  note     "1 and 3 are the leading wheelsets of the bogies, with the largest guiding forces; this is the"
+           "protocol's own choice. The paper also mentions trailing wheelsets (2 and 4), and in practice both"
+           "wheelsets of one bogie are often instrumented. Set it to the measured wheelsets."
 
 place wheelset
   members  1, 2, 3, 4
@@ -111,13 +111,13 @@ vehicle Q0 "Static vertical wheel force"
   in     kN
   key    static_wheel_load
   range  10 kN to 200 kN
-  note   "Of one wheel. The range is that of axle loads from 2 t to 41 t; beyond it another unit, or the load"
-         "of an axle or of the vehicle, is likely."
+  note   "Of one wheel. The range corresponds to axle loads from 2 t to 41 t. A value outside it is likely in"
+         "another unit, or the load of an axle or of the vehicle."
 
-vehicle admissible_speed "Admissible speed, which decides the length of sections"
+vehicle admissible_speed "Admissible speed, which determines the length of sections"
   in       km/h
   default  not stated
-  note     "On-track tests run up to 1.1 times this speed."
+  note     "On-track tests are run up to 1.1 times this speed."
 
 section zone "Test zone"
   one of  zones
@@ -180,7 +180,7 @@ signal YQ "Ratio Y/Q"
   at     each wheelset and side
   in     -
   named  "YQ_{wheelset}{side}"
-  note   "Formed sample by sample."
+  note   "Calculated sample by sample."
 
 signal SigmaY "Sum of guiding forces"
   is     Y at side R + Y at side L
@@ -194,7 +194,7 @@ signal SigmaQ "Sum of the vertical wheel forces of a wheelset"
   in     kN
   named  "SigmaQ_{wheelset}"
 
-signal DeltaQ "Left less right vertical wheel force of a wheelset"
+signal DeltaQ "Difference of left and right vertical wheel force of a wheelset"
   is     Q at side L - Q at side R
   at     each wheelset
   in     kN
@@ -228,22 +228,22 @@ filter RATIO_WINDOW "Sliding mean 2 m, step 0.5 m, of a ratio"
   step    sliding mean 2 m every 0.5 m, window_ends
   source  "Table 1"
 
-define larger_side "Of both ends of the distribution, the larger as a magnitude"
+define larger_side "Larger magnitude of both ends of the distribution"
   is  larger of |p0.15|, |p99.85|
 
-define measured_side "The end of the distribution that is larger in the measurement, as a magnitude"
+define measured_side "Magnitude of the end of the distribution that is larger in the measurement"
   is  |p99.85| when |measured(p99.85)| >= |measured(p0.15)|, otherwise |p0.15|
 
-define extreme_value "The 0.15 % or 99.85 % value of a single wheel, as a magnitude"
+define extreme_value "Magnitude of the 0.15 % or 99.85 % value of a single wheel"
   is      larger_side when maximum_side is own or (maximum_side is curve and direction is straight),
           measured_side when maximum_side is measurement,
           |p99.85| when sign(measured(median)) > 0,
           otherwise |p0.15|
   source  "Table 1 and its footnote *"
-  note    "In a curve, the force of an outer and of an inner wheel are of opposite sense: the quasi-static"
-          "value tells the end."
+  note    "In a curve, the forces of the outer and the inner wheel have opposite signs: the quasi-static"
+          "value determines the side."
 
-define extreme_sum "The 0.15 % or 99.85 % value of the sum of guiding forces, as a magnitude"
+define extreme_sum "Magnitude of the 0.15 % or 99.85 % value of the sum of guiding forces"
   is      larger_side when maximum_side is own or (maximum_side is curve and direction is straight),
           measured_side when maximum_side is measurement,
           |p0.15| when direction is right,
@@ -251,7 +251,7 @@ define extreme_sum "The 0.15 % or 99.85 % value of the sum of guiding forces, as
   source  "Table 1 and its footnote *"
   note    "Guiding forces are positive to the right and act to the outside of a curve."
 
-define extreme_lateral "The 0.15 % or 99.85 % value of the lateral acceleration, as a magnitude"
+define extreme_lateral "Magnitude of the 0.15 % or 99.85 % value of the lateral acceleration"
   is      larger_side when maximum_side is own or (maximum_side is curve and direction is straight),
           measured_side when maximum_side is measurement,
           |p99.85| when direction is right,
@@ -259,10 +259,10 @@ define extreme_lateral "The 0.15 % or 99.85 % value of the lateral acceleration,
   source  "Table 1 and its footnote *"
   note    "The lateral acceleration is positive to the right: to the inside of a right-hand curve."
 
-define extreme_vertical "The 0.15 % or 99.85 % value of the vertical acceleration, as a magnitude"
+define extreme_vertical "Magnitude of the 0.15 % or 99.85 % value of the vertical acceleration"
   is      measured_side when maximum_side is measurement, otherwise larger_side
   source  "Table 1 and its footnote *"
-  note    "Curves have no side of the vertical acceleration."
+  note    "For the vertical acceleration the curve defines no side."
 
 define lighter_requirements "Vehicles whose acceleration limits are doubled"
   is      vehicle.category is freight or vehicle.running_gear_type is single_axles
@@ -281,8 +281,8 @@ zone 1 "Straight track and very large radius curves"
   minimum sections  sections_per_zone
   minimum length    250 m when admissible_speed <= 220 km/h, otherwise 500 m
   source            "Zone and lengths of 70 m to 500 m in all: section 3.1. Radius, 40 mm and length of this"
-                    "zone: from memory of EN 14363, in no source at hand; to be checked against the edition"
-                    "used"
+                    "zone: from memory of EN 14363, without a source at hand; to be checked against the"
+                    "edition used"
 
 zone 2 "Large radius curves"
   where             radius > 600 m
@@ -290,43 +290,43 @@ zone 2 "Large radius curves"
   minimum length    100 m when admissible_speed <= 140 km/h,
                     250 m when admissible_speed <= 220 km/h,
                     otherwise 500 m
-  source            "Zone: section 3.1. Radius and length: from memory of EN 14363, in no source at hand; to"
-                    "be checked against the edition used"
-  note              "No range of cant deficiency is asked for."
+  source            "Zone: section 3.1. Radius and length: from memory of EN 14363, without a source at hand;"
+                    "to be checked against the edition used"
+  note              "No range of the cant deficiency is required."
 
 zone 3 "Small radius curves"
   where             400 m <= radius <= 600 m
   minimum sections  sections_per_zone
   minimum length    100 m
-  source            "Zone: section 3.1. Radii and length: from memory of EN 14363, in no source at hand; to"
-                    "be checked against the edition used"
+  source            "Zone: section 3.1. Radii and length: from memory of EN 14363, without a source at hand;"
+                    "to be checked against the edition used"
 
 zone 4 "Very small radius curves"
   where             250 m <= radius < 400 m
   minimum sections  sections_per_zone
   minimum length    70 m
-  source            "Zone and length of 70 m: section 3.1. Radii: from memory of EN 14363, in no source at"
-                    "hand; to be checked against the edition used"
+  source            "Zone and length of 70 m: section 3.1. Radii: from memory of EN 14363, without a source"
+                    "at hand; to be checked against the edition used"
 
 check full_curve "Section lies in full curve or on straight track"
   require  range of curvature <= 2 % * |mean of curvature| + 0.00001 1/m
   source   "Section 3.2"
-  note     "Needs the track file; the tolerance is this protocol's own."
+  note     "Requires the track file; the tolerance is this protocol's own."
 
 plausibility static_load "Vertical wheel force against the static load"
   of         SigmaQ at each wheelset
   require    median near 2 * Q0 within a factor of 1.4
   otherwise  not used
-  cause      "the load of an axle, of a bogie or of the vehicle in place of that of a wheel; the load of"
-             "another state"
-  note       "A payload adds up to a third; the nearest likely slip, the load of an axle, is a factor of 2."
+  cause      "the load of an axle, a bogie or the vehicle instead of that of a wheel; another load condition"
+  note       "A payload adds up to one third; the smallest likely error, the load of an axle, is a factor of"
+             "2."
 
 plausibility load_transfer "Load transfer to the outer wheels"
   of         DeltaQ at each wheelset
   require    turn * median > 0 kN
   unless     direction is straight or cant_deficiency < 60 mm
   otherwise  not used
-  cause      "left and right wheel exchanged, or the direction of the curve"
+  cause      "exchange of the left and the right wheel, or the direction of the curve"
   note       "With 60 mm of cant deficiency the outer wheel carries about 5 % more."
 
 plausibility guiding_sign "Guiding force of the outer leading wheel"
@@ -335,24 +335,24 @@ plausibility guiding_sign "Guiding force of the outer leading wheel"
   unless     direction is straight or radius > 600 m
   otherwise  not used
   cause      "the sign of the guiding forces, their unit, or the direction of the curve"
-  note       "In small curves the outer wheel of the leading wheelset guides: a quarter of the wheel load and"
-             "more is usual."
+  note       "In small curves the outer leading wheel guides: its guiding force is usually a quarter of the"
+             "wheel load or more."
 
 plausibility guiding_balance "Sum of the guiding forces against the unbalanced acceleration"
   of       TotalY
   require  median near -(8 * Q0 / 9.80665 m/s^2) * unbalanced_acceleration within 12 kN + 0.05 * 8 * Q0
   unless   direction is straight
   cause    "the sign or the unit of the guiding forces; a lateral load such as wind"
-  note     "The sum of all lateral forces carries the vehicle round the curve. The tolerance is some 1 m/s^2"
-           "of acceleration less than what a turned sign makes at 100 mm of cant deficiency."
+  note     "The sum of all guiding forces balances the unbalanced acceleration. The tolerance is about 1"
+           "m/s^2 below the difference that an inverted sign causes at 100 mm of cant deficiency."
 
-plausibility wheel_climb "Ratio Y/Q within what a wheel can stand"
+plausibility wheel_climb "Ratio Y/Q below the limit of flange climbing"
   of         YQ at each wheelset and side
   require    |median| <= 1.2
   otherwise  not used
   cause      "the unit of the guiding or of the vertical forces"
-  note       "Flange climbing begins at about 1.2 for a flange angle of 70 degrees (Nadal's limit); no steady"
-             "value comes near it."
+  note       "Flange climbing begins at about 1.2 for a flange angle of 70 degrees (Nadal's limit); no"
+             "quasi-static value is close to it."
 
 plausibility lateral_acceleration "Lateral acceleration against the unbalanced acceleration"
   of         ay at each running_gear
@@ -360,8 +360,8 @@ plausibility lateral_acceleration "Lateral acceleration against the unbalanced a
   unless     direction is straight
   otherwise  not used
   cause      "the sign or the unit of the acceleration; cant, radius or speed of the section"
-  note       "A body-fixed sensor reads the unbalanced acceleration and the share of gravity that the roll of"
-             "the body adds, a fifth to a third of it."
+  note       "A sensor fixed to the body measures the unbalanced acceleration plus the component of gravity"
+             "due to the roll of the body, a fifth to a third of it."
 
 plausibility acceleration_level "Level of the car body accelerations"
   of         ay at each running_gear
@@ -369,15 +369,15 @@ plausibility acceleration_level "Level of the car body accelerations"
   filter     BP
   require    0.02 m/s^2 <= rms and rms <= 2 m/s^2
   otherwise  not used
-  cause      "the unit of the acceleration, g in place of m/s^2; a sensor without a signal"
-  note       "The bounds are this protocol's own: a quarter of what a coach on good track shows, and twice"
-             "what a locomotive on poor track shows."
+  cause      "the unit of the acceleration, g instead of m/s^2; a sensor without a signal"
+  note       "The bounds are this protocol's own: a quarter of the value of a coach on good track, and twice"
+             "the value of a locomotive on poor track."
 
 plausibility running_speed "Speed from distance and time against the table of sections"
   require    range of running_distance / range of clock near speed within 5 %
   otherwise  not used
   cause      "the clock, the scale of the distance, or the speed of the table"
-  note       "A section is run at a steady speed."
+  note       "A section is run at constant speed."
 
 plausibility table_of_curves "Cant deficiency against speed, radius and cant"
   require    |cant_deficiency| near |1500 mm * (speed^2 / radius / 9.80665 m/s^2) - cant| within 15 mm
@@ -403,17 +403,17 @@ plausibility track_cant "Cant of the track file against the table"
   otherwise  not used
   cause      "cant or direction of the section, or the track file of another section"
 
-plausibility live "Channel that stands still"
+plausibility live "Constant channel"
   of         Y
   of         Q
   of         ay
   of         az
   require    held <= 5 %
   otherwise  not used
-  cause      "a channel without a signal, or one that was interrupted"
-  note       "The longest run of equal samples of a live channel takes up to 2 % of a section."
+  cause      "a channel without a signal, or an interrupted one"
+  note       "In a working channel, the longest run of equal samples is at most 2 % of a section."
 
-plausibility saturated "Channel at the end of its range"
+plausibility saturated "Saturated channel"
   of         Y
   of         Q
   of         ay
@@ -421,27 +421,27 @@ plausibility saturated "Channel at the end of its range"
   require    at_extreme <= 2 %
   otherwise  not used
   cause      "a recorder or sensor at the end of its range"
-  note       "A live channel is at its largest or smallest value in less than 1 % of the samples."
+  note       "A working channel is at its largest or smallest value in less than 1 % of the samples."
 
-plausibility coarse "Channel with coarse steps"
+plausibility coarse "Channel with coarse resolution"
   of       Y
   of       Q
   of       ay
   of       az
   require  resolution <= 0.15 * std
-  cause    "too few bits or decimals"
-  note     "Steps of 15 % of the standard deviation raise it by 0.1 % and blur percentiles."
+  cause    "insufficient resolution of the recorder, or too few decimals"
+  note     "Steps of 15 % of the standard deviation increase it by 0.1 % and distort percentiles."
 
-plausibility same_sign "Simulation and measurement of the same sign"
+plausibility same_sign "Simulation and measurement with the same sign"
   of         Y
   of         Q
   of         ay
   of         az
   require    correlation >= -0.3
   otherwise  not used
-  cause      "a sign that is turned on one side"
-  note       "Sections of 100 m have some 10 independent waves or more: unrelated signals seldom correlate"
-             "below -0.3, related ones never."
+  cause      "an inverted sign in one of the two records"
+  note       "Sections of 100 m contain about 10 independent waves or more: the correlation of unrelated"
+             "signals is seldom below -0.3, that of related ones never."
 
 plausibility same_size "Scatter of simulation and measurement"
   of         Y
@@ -450,38 +450,38 @@ plausibility same_size "Scatter of simulation and measurement"
   of         az
   require    measured(std) near simulated(std) within a factor of 6
   otherwise  not used
-  cause      "the unit of one side"
+  cause      "the unit of one of the two records"
 
 plausibility mirrored "Records in the same direction"
   of         az
   filter     BP
   require    mirrored_correlation <= larger of 0.6, correlation
   otherwise  not used
-  cause      "a record that runs the other way"
+  cause      "a record in the opposite running direction"
 
 plausibility aligned "Records at the same place"
   of       az
   filter   BP
   require  |shift| <= 2 m
-  cause    "the distance of one side is shifted or scaled"
-  note     "A shift moves the section; up to 2 m are within what the synchronisation of records leaves."
+  cause    "the distance of one of the two records is shifted or scaled"
+  note     "A shift moves the section; up to 2 m are within the accuracy of the synchronisation."
 
-plausibility drift "Measurement that drifts"
+plausibility drift "Drift of the measurement"
   of       Y
   of       Q
   of       ay
   of       az
   require  |drift| <= 1.5 * measured(std)
-  cause    "a measuring channel that drifts"
+  cause    "drift of a measuring channel"
 
-plausibility copies "Copies"
+plausibility copies "Copies of records"
   of         Y
   of         Q
   of         ay
   of         az
   distinct   channels, sections, sides
   otherwise  not used
-  cause      "a record or channel that was written twice"
+  cause      "a record or channel written twice"
 
 plausibility freight_suspension "Category and suspension"
   require  not (vehicle.category is freight and vehicle.secondary_suspension)

@@ -1,14 +1,14 @@
-# Magnitude and phase of time histories, section by section: nothing is pooled, every value decides by itself.
+# Magnitude and phase of time histories by section: values are not pooled, and each has its own limit.
 
 protocol sprague-geers "Sprague & Geers metric of forces and accelerations, section by section"
   source  "Sprague & Geers, A spectral-element method for modelling cavitation in transient fluid-structure"
           "interaction, 2004; applied to rail vehicles by Fries et al., as described by Goetz & Polach"
   author  "Fishplate"
-  scope   "Comparison of time histories of single sections. The published work names no limits for rail"
-          "vehicles: those here are parameters, to be set by the user."
+  scope   "Comparison of time histories of single sections. The publication gives no limits for rail"
+          "vehicles. The limits are parameters to be set by the user."
   axis    distance in m
   time    time in s
-  note    "The mean is not removed: an offset shows in magnitude and phase. The measurement is the reference."
+  note    "The mean is not removed: an offset affects magnitude and phase. The measurement is the reference."
 
 parameter magnitude_limit "Limit of the magnitude error"
   default  0.25

@@ -1,13 +1,12 @@
-# A test on the spot: no track, no sections, no zones; angles over cant in place of forces over distance.
+# A stationary test without track, sections or zones: angles over cant instead of forces over distance.
 
 protocol stationary-sway "Matching error of the hysteresis loops of a stationary sway test"
-  edition  "In the manner of EN 15273-2:2013, stationary sway test"
+  edition  "Similar to EN 15273-2:2013, stationary sway test"
   source   "Goetz & Polach, section 3.3: largest and mean matching error on the hysteresis loop of the"
            "primary and secondary roll angle"
   author   "Fishplate"
-  scope    "Models used for gauging: roll angles of the two suspension stages while the vehicle is canted"
-           "slowly to both sides. The limits are parameters; the numbers of the standard are to be put in by"
-           "the user."
+  scope    "Models used for gauging: roll angles of the two suspension stages while the vehicle is slowly"
+           "canted to both sides. The limits are parameters; the user enters the values of the standard."
   axis     time in s
   note     "The simulated angle is compared with the measured one at the same cant on the same branch of the"
            "loop, rising or falling."

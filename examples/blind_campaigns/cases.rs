@@ -1,5 +1,5 @@
-//! What is hidden in which campaign. Four sets with seeds of their own: `derive` for setting bars, `score` for the scores, `doubt` for
-//! the scores of what must not be named, `test` for the tests.
+//! Hidden effects by campaign. Four sets with separate seeds: `derive` for the choice of thresholds, `score` for the scores, `doubt` for
+//! the scores of cases without a cause in the catalogue, `test` for the tests.
 
 use fishplate::model::{TrackTable, Vehicle};
 
@@ -24,12 +24,12 @@ pub struct Case {
     pub number: usize,
     pub kind: &'static str,
     pub design: &'static Design,
-    /// As on a command line; `~` stands before numbers that are drawn anew within 15 %.
+    /// As on a command line; `~` marks numbers that are drawn within 15 %.
     pub effects: Vec<&'static str>,
     pub outside: Option<Outside>,
 }
 
-/// What no catalogue has.
+/// Causes outside the catalogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
     /// Guiding forces of the trailing bogie drift from section to section.
@@ -40,9 +40,9 @@ pub enum Outside {
     Joints,
     /// The vehicle ran faster than the table says.
     Speed,
-    /// Air springs or springs between body and bogie are far too stiff, vertically.
+    /// The vertical secondary suspension is much too stiff.
     StiffSecondary,
-    /// Lateral springs between body and bogie are far too soft.
+    /// The lateral secondary suspension is much too soft.
     SoftLateral,
     /// Axle boxes stick.
     StickingBoxes,
@@ -100,7 +100,7 @@ impl Outside {
         if self == Self::Speed { 1.07 } else { 1.0 }
     }
 
-    /// What is added to a channel in a section, and what it is multiplied by.
+    /// Offset and factor of a channel in a section.
     pub fn on_channel(self, channel: &str, section: usize) -> (f64, f64) {
         match self {
             Self::Drift if channel.starts_with("Y_3") || channel.starts_with("Y_4") => (0.6 * section as f64, 1.0),
@@ -218,7 +218,7 @@ fn score() -> Vec<Case> {
         (&COACH, Outside::FadingGain),
     ];
     rows.extend(outside.into_iter().map(|(design, outside)| ("outside", design, &[][..], Some(outside))));
-    // What fits one quantity is not the cause: friction the outer leading wheel, a gain all vertical forces, wind right curves alone.
+    // A cause that fits one quantity only: friction for the outer leading wheel, a gain for all vertical forces, wind for right curves.
     let traps: [(&Design, &[&str]); 4] = [
         (&COACH, &["primary_yaw_stiffness=~2.4"]),
         (&WAGON, &["payload=~6000"]),
@@ -229,7 +229,7 @@ fn score() -> Vec<Case> {
     numbered(rows)
 }
 
-/// Nothing, and everything that no catalogue has, on every vehicle: two shares that must be small want more campaigns than `score` has.
+/// No effect, and all causes outside the catalogue, on every vehicle; small shares need more campaigns than `score` has.
 fn doubt() -> Vec<Case> {
     let designs = [&COACH, &RAILCAR, &WAGON];
     let mut rows: Vec<Row> = (0..24).map(|n| ("none", designs[n % 3], &[][..], None)).collect();

@@ -1,4 +1,4 @@
-//! Effects as the shipped catalogue knows them, and as a truth says them.
+//! Effects of the shipped catalogue, and their form in a truth.
 
 use fishplate::effects::{Applied, Catalogue, choose, read};
 use fishplate::problem::Problem;
@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 /// The shipped catalogue.
 ///
 /// # Errors
-/// It cannot be read.
+/// The catalogue cannot be read.
 pub fn catalogue() -> Result<Catalogue, String> {
     let known = &fishplate::library::CATALOGUES[0];
     let find = |name: &str, _: &Source| Err(Box::new(Problem::error("unknown", name)));
@@ -21,12 +21,12 @@ pub fn catalogue() -> Result<Catalogue, String> {
 /// Effects as on a command line.
 ///
 /// # Errors
-/// What is wrong with any of them.
+/// An effect is not valid; a message.
 pub fn chosen(catalogue: &Catalogue, texts: &[String]) -> Result<Vec<Applied>, String> {
     choose(catalogue, texts).map_err(|problems| problems.iter().map(|problem| problem.says.clone()).collect::<Vec<_>>().join("; "))
 }
 
-/// An effect as `truth.json` says it.
+/// An effect in the form of `truth.json`.
 pub fn told(applied: &Applied) -> Value {
     let mut parameters = Map::new();
     if applied.effect == "channel_swap" {

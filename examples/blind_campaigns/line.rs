@@ -1,17 +1,17 @@
-//! A line: sixteen sections of four zones, with irregularities drawn from spectra of ORE B 176.
+//! A line: sixteen sections of four zones, with irregularities drawn from the spectra of ORE B 176.
 
 use fishplate::effects::Gauss;
 use fishplate::model::TrackTable;
 
 use crate::vehicles::Design;
 
-/// Between two points of a track table in m.
+/// Distance of the points of a track table in m.
 const STEP: f64 = 0.25;
 /// Spectra of ORE B 176, in m rad, and their corners in rad/m: S = A Oc^2 / ((W^2 + Or^2) (W^2 + Oc^2)).
 const VERTICAL: f64 = 4.032e-7;
 const LATERAL: f64 = 2.119e-7;
 const CORNERS: (f64, f64) = (0.8246, 0.0206);
-/// Wave numbers in rad/m that the irregularities are made of, and how many.
+/// Range of the wave numbers of the irregularities in rad/m, and their number.
 const WAVES: (f64, f64) = (0.08, 6.0);
 const COUNT: usize = 260;
 
@@ -115,7 +115,7 @@ impl Irregularities {
     }
 }
 
-/// The track of a section as the recording car saw it.
+/// The track of a section as recorded.
 pub fn measured(stretch: &Stretch, irregularities: &Irregularities) -> TrackTable {
     let (kappa, cant) = stretch.curve();
     let ramp = ramp(stretch.cant);

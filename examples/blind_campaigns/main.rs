@@ -1,8 +1,8 @@
-//! Campaigns whose truth is withheld, to test the diagnosis on:
+//! Campaigns with withheld truths, to test the diagnosis:
 //! `cargo run --release --example blind_campaigns -- score --out target/campaigns`, then `fishplate blind target/campaigns`.
 //!
-//! The truth runs another law of creep, another profile, another step and other numbers in everything that the tolerances allow than
-//! the simulation that is delivered beside it, and hides effects in it: one, two, none, or something outside the catalogue.
+//! The truth differs from the delivered simulation in the creep law, the profile, the integration step and all parameters with a tolerance.
+//! It contains hidden effects: one, two, none, or a cause outside the catalogue.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 

@@ -1,4 +1,4 @@
-//! The truth: everything that the tolerances allow, and then the effects.
+//! The truth: deviations within the tolerances, and the effects.
 
 use fishplate::effects::{Channel, Gauss, Signals};
 use fishplate::model::{CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window, simulate_with};
@@ -6,7 +6,7 @@ use fishplate::model::{CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, Tr
 use crate::cases::Outside;
 use crate::line::Stretch;
 
-/// What the test engineer declares: one standard deviation each.
+/// Declared tolerances: one standard deviation each.
 pub struct Declared {
     pub stiffness: f64,
     pub damping: f64,
@@ -83,7 +83,7 @@ const MASSES: [&str; 7] = [
     "car_body.cog_height",
 ];
 
-/// What is the same in all sections of a campaign.
+/// Properties common to all sections of a campaign.
 pub struct World {
     factors: Vec<(&'static str, f64)>,
     conicity: f64,
@@ -158,7 +158,7 @@ impl World {
         Ok(vehicle)
     }
 
-    /// The profile is not quite that of the file.
+    /// The profile, slightly different from that of the file.
     fn profile(
         &self,
         table: &ProfileTable,
@@ -184,7 +184,7 @@ impl World {
         Profile::new(&bent(table), worn.map(bent).as_ref(), vehicle).ok_or_else(|| "no profile".to_string())
     }
 
-    /// The track as it is, not as it was recorded.
+    /// The true track, which differs from the recorded one.
     fn track(&self, measured: &TrackTable, random: &mut Gauss, outside: Option<Outside>) -> TrackTable {
         let declared = &DECLARED;
         let mut track = measured.clone();
@@ -209,7 +209,7 @@ impl World {
         track
     }
 
-    /// What was recorded in a section. `settings` are those of the effects on the simulator.
+    /// The measured record of a section. `settings` are those of the effects on the simulator.
     ///
     /// # Errors
     /// The run fails.
@@ -226,7 +226,7 @@ impl World {
         Ok(Signals { axis: record.distance, over_time: false, rate: SAMPLING_RATE, channels: channels.collect() })
     }
 
-    /// Gain and offset of every channel, within their tolerances.
+    /// Applies gain and offset of every channel, within their tolerances.
     pub fn calibrate(&self, signals: &mut Signals) {
         for (at, channel) in signals.channels.iter_mut().enumerate() {
             channel.values.iter_mut().for_each(|value| *value = self.gains[at] * *value + self.offsets[at]);
@@ -234,7 +234,7 @@ impl World {
     }
 }
 
-/// White noise on every sample.
+/// Adds white noise to every sample.
 pub fn noise(signals: &mut Signals, random: &mut Gauss) {
     for channel in &mut signals.channels {
         let noise = DECLARED.noise[kind(&channel.name)];
@@ -242,7 +242,7 @@ pub fn noise(signals: &mut Signals, random: &mut Gauss) {
     }
 }
 
-/// What a record is made of.
+/// Inputs of a record.
 pub struct Making<'a> {
     pub nominal: &'a Vehicle,
     pub profile: &'a ProfileTable,
@@ -250,7 +250,7 @@ pub struct Making<'a> {
     pub track: &'a TrackTable,
     pub stretch: &'a Stretch,
     pub settings: &'a [(String, f64)],
-    /// Recorded minus true place in m.
+    /// Recorded minus true position in m.
     pub shift: f64,
     pub outside: Option<Outside>,
 }
@@ -259,7 +259,7 @@ fn kind(channel: &str) -> usize {
     ["Y", "Q"].iter().position(|letter| channel.starts_with(letter)).unwrap_or(2)
 }
 
-/// Short waves that the recording car does not see, of rms 1: noise smoothed over about a metre.
+/// Short waves that the recording car does not measure, of rms 1: noise smoothed over about 1 m.
 fn residual(points: usize, random: &mut Gauss) -> Vec<f64> {
     let mut state = [0.0; 2];
     let values: Vec<f64> = (0..points)

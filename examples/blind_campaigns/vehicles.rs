@@ -4,12 +4,12 @@ use std::path::Path;
 
 use fishplate::model::Vehicle;
 
-/// A vehicle by the coach of the examples and what differs from it.
+/// A vehicle, defined by its differences from the coach of the examples.
 pub struct Design {
     pub name: &'static str,
     pub category: &'static str,
     pub secondary_suspension: bool,
-    /// Speeds in km/h that it may run at, and the largest cant deficiency in mm.
+    /// Range of its speeds in km/h, and its largest cant deficiency in mm.
     pub speeds: (f64, f64),
     pub deficiency: f64,
     differs: &'static [(&'static str, f64)],
@@ -93,7 +93,7 @@ pub const WAGON: Design = Design {
 };
 
 impl Design {
-    /// The vehicle as the simulation has it.
+    /// The vehicle of the simulation.
     ///
     /// # Errors
     /// The example cannot be read.
@@ -104,7 +104,7 @@ impl Design {
     }
 }
 
-/// Folder of the campaign whose vehicle and profile the designs start from.
+/// Folder of the campaign with the vehicle and profile of the designs.
 pub fn example() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/coach-good"))
 }
@@ -113,7 +113,7 @@ fn nominal() -> Result<Vehicle, String> {
     let path = example().join("vehicle.yaml");
     let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     let source = fishplate::source::Source::new("vehicle.yaml", text);
-    let tree = fishplate::yaml::load(&source, &mut fishplate::problem::Problems::default()).ok_or("vehicle.yaml is no YAML")?;
+    let tree = fishplate::yaml::load(&source, &mut fishplate::problem::Problems::default()).ok_or("vehicle.yaml is not valid YAML")?;
     let number = |key: &str| tree.lookup(key).and_then(fishplate::yaml::Node::number);
-    Vehicle::from_values(number).map_err(|_| "vehicle.yaml lacks something".to_string())
+    Vehicle::from_values(number).map_err(|_| "vehicle.yaml lacks a parameter".to_string())
 }

@@ -1,4 +1,4 @@
-//! One campaign as a folder.
+//! Writes one campaign as a folder.
 
 use std::path::Path;
 
@@ -20,15 +20,15 @@ use crate::vehicles::example;
 /// Writes a campaign of a set.
 ///
 /// # Errors
-/// Which campaign, and why.
+/// The campaign and the reason.
 pub fn campaign(out: &Path, set: &Set, case: &Case) -> Result<(), String> {
-    // A line on which the vehicle derails is drawn again.
+    // If the vehicle derails on a line, another line is drawn.
     let mut tried = (0..DRAWS).map(|draw| make(out, set, case, draw));
     let made = tried.by_ref().find(Result::is_ok).or_else(|| Some(make(out, set, case, 0)));
     made.unwrap_or(Ok(())).map_err(|why| format!("campaign {}: {why}", case.number))
 }
 
-/// Lines that are drawn for a campaign at the most.
+/// Maximum number of lines drawn for a campaign.
 const DRAWS: u64 = 6;
 
 fn make(out: &Path, set: &Set, case: &Case, draw: u64) -> Result<(), String> {
@@ -93,13 +93,13 @@ fn drawn(catalogue: &Catalogue, case: &Case, random: &mut Gauss) -> Result<Vec<A
             continue;
         };
         let (number, rest) = after.split_once(' ').map_or((after, String::new()), |(number, rest)| (number, format!(" {rest}")));
-        let number: f64 = number.parse().map_err(|_| format!("`{number}` is no number"))?;
+        let number: f64 = number.parse().map_err(|_| format!("`{number}` is not a number"))?;
         texts.push(format!("{before}{:.5}{rest}", number * (0.85 + 0.3 * random.uniform())));
     }
     chosen(catalogue, &texts)
 }
 
-/// The section as the catalogue's confinements see it.
+/// The section, for the confinements of the catalogue.
 fn section(stretch: &Stretch) -> Section {
     let fact = |name: &str, text: String| Fact { name: name.to_string(), text, unit: None };
     let facts = vec![fact("zone", stretch.zone.to_string()), fact("direction", stretch.direction().to_string())];

@@ -1,12 +1,12 @@
-//! One fault each of the kinds that real campaigns have, and what has to be told of it.
+//! Faults of kinds that occur in real campaigns, one at a time, and the expected finding.
 
 use crate::folder::{Folder, Side};
 
-/// What is to be told: a finding of one of these sections about one of these channels.
+/// The expected finding: one of these sections and one of these channels.
 pub struct Told {
     /// Empty: of the campaign or of any section.
     pub sections: Vec<String>,
-    /// A finding names one of them, as a channel or in its sentence; empty: any.
+    /// The finding names one of them, as a channel or in its sentence; empty: any.
     pub channels: &'static [&'static str],
 }
 
@@ -29,7 +29,7 @@ fn of_vehicle(name: &'static str, key: &'static str, value: impl Fn(f64) -> Stri
     })
 }
 
-/// Channels times a factor in all sections.
+/// Channels multiplied by a factor in all sections.
 fn scaled(name: &'static str, side: Side, begins: &'static [&'static str], factor: f64, told: &'static [&'static str]) -> Fault {
     fault(name, move |folder| {
         let sections = folder.sections("");
@@ -53,7 +53,7 @@ fn in_section(
     })
 }
 
-/// Names under which a channel, or a sum it is part of, is told.
+/// Names under which a channel, or a sum that contains it, is reported.
 fn own(channel: &'static str) -> &'static [&'static str] {
     match channel {
         "Y_1R" => &["Y_1R", "YQ_1R"],
@@ -103,7 +103,7 @@ fn coarse(step: f64) -> impl Fn(&[f64]) -> Vec<f64> + Sync {
     move |values| values.iter().map(|value| (value / step).round() * step).collect()
 }
 
-/// Columns of the records of some sections put in place of others, by name.
+/// Replaces columns of the records of some sections by others, by name.
 fn copied(folder: &mut Folder, side: Side, sections: &[String], from: &str, to: &str) {
     for kind in side.folders() {
         for section in sections {
@@ -134,7 +134,7 @@ fn along(name: &'static str, side: Side, column: &'static str, change: impl Fn(&
     })
 }
 
-/// The record read from its end.
+/// A record with reversed order.
 fn mirrored(name: &'static str, side: Side) -> Fault {
     fault(name, move |folder| {
         let sections = folder.sections("");
@@ -144,7 +144,7 @@ fn mirrored(name: &'static str, side: Side) -> Fault {
     })
 }
 
-/// A record in place of another.
+/// Replaces a record by another.
 fn record(folder: &mut Folder, from: &str, to: &str) {
     let copy = folder.tables[from].clone();
     folder.tables.insert(to.to_string(), copy);

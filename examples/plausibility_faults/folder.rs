@@ -1,4 +1,4 @@
-//! A campaign folder in memory, as texts: what is done to it is what a slip in preparing it would do.
+//! A campaign folder in memory, as texts, to be changed as by an error in its preparation.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,7 +11,7 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
 }
 
-/// The kinds of record that a fault can be put into.
+/// The kinds of record that a fault changes.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Side {
     Simulation,
@@ -55,7 +55,7 @@ impl Table {
         self.rows.iter().map(|row| row[column].parse().unwrap_or(f64::NAN)).collect()
     }
 
-    /// Writes numbers with the decimals that the column has.
+    /// Writes numbers with the decimals of the column.
     pub fn set(&mut self, column: usize, values: &[f64]) {
         let decimals = self.rows.first().and_then(|row| row[column].split('.').nth(1)).map_or(0, str::len);
         for (row, value) in self.rows.iter_mut().zip(values) {

@@ -1,8 +1,8 @@
-//! How many faults of the kinds that real campaigns have are told, and what is told of sound campaigns:
+//! Rate of detection of faults of kinds that occur in real campaigns, and findings in correct campaigns:
 //! `cargo run --release --example plausibility_faults -- SOUND... --faults-in SOUND...`
 //!
-//! The campaigns before `--faults-in` are only looked at; into those behind it each fault is put by itself. Campaigns to look at are
-//! made by the example `blind_campaigns`; those with nothing hidden are sound.
+//! The campaigns before `--faults-in` are only checked; each fault is applied to those after it, one at a time. The example
+//! `blind_campaigns` writes such campaigns; those without a hidden effect are correct.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 

@@ -1,4 +1,4 @@
-//! Whether a fault is told, by name of its section and channel.
+//! Whether a fault is reported, with its section and channel.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use fishplate::run::Settings;
 use crate::faults::{Fault, Told};
 use crate::folder::Folder;
 
-/// What became of a campaign.
+/// Result of checking a campaign.
 pub enum Outcome {
     Done(Box<Certification>),
     /// It was refused with these problems.
@@ -24,11 +24,11 @@ pub struct Score {
     pub fault: &'static str,
     pub told: bool,
     pub validated: bool,
-    /// The first thing that was told.
+    /// The first finding.
     pub says: String,
 }
 
-/// Certifies a folder by the default protocol.
+/// Certifies a folder with the default protocol.
 pub fn certified(path: &Path) -> Outcome {
     let mut problems = Problems::default();
     let source = library::find(library::SHIPPED[0].name, None).expect("the default protocol");
@@ -42,7 +42,7 @@ pub fn certified(path: &Path) -> Outcome {
     }
 }
 
-/// Puts a fault into a copy of a campaign and looks at what is told of it.
+/// Applies a fault to a copy of a campaign and checks the findings.
 pub fn score(sound: &Folder, fault: &Fault) -> Score {
     let mut folder = sound.clone();
     let told = (fault.put)(&mut folder);

@@ -1,4 +1,4 @@
-//! A campaign of which is known what its model lacks.
+//! A campaign with known deficiencies of its model.
 
 use std::path::Path;
 
@@ -9,16 +9,16 @@ use fishplate::problem::{Problem, Problems};
 use fishplate::simulate::{Builtin, Plan, Section, Simulator, Task, in_units, recorded, sections};
 use serde_json::Value;
 
-/// A campaign, and what makes its model lack nothing.
+/// A campaign, and the corrections of its known deficiencies.
 #[derive(Debug)]
 pub struct Base {
     pub campaign: Campaign,
     pub sections: Vec<Section>,
-    /// The vehicle as it was measured.
+    /// The vehicle as measured.
     pub vehicle: Vehicle,
-    /// What of it the vehicle file does not say.
+    /// Parameters that are missing in the vehicle file.
     pub settings: Vec<(String, f64)>,
-    /// What is to be taken off the records.
+    /// Operations to be removed from the records.
     chain: Vec<(Operator, f64, Vec<String>)>,
 }
 
@@ -26,7 +26,7 @@ impl Base {
     /// Opens a campaign with its `truth.json`, if it has one.
     ///
     /// # Errors
-    /// It cannot be read, or hides what cannot be taken off.
+    /// It cannot be read, or contains an effect that cannot be removed.
     pub fn open(folder: &Path, catalogue: &Catalogue) -> Result<Self, String> {
         let shown = folder.display();
         let mut problems = Problems::default();
@@ -54,7 +54,7 @@ impl Base {
         Ok(Self { campaign, sections, vehicle, settings, chain })
     }
 
-    /// The record of a section without what its truth says, in the units of the model.
+    /// The record of a section without the effects of its truth, in the units of the model.
     pub fn measured(&self, simulator: &Builtin<'_>, section: &Section) -> Result<Signals, String> {
         let (mut signals, units, _) = recorded(&self.campaign, RecordKind::Measurement, section).map_err(|found| all(&Problems(found)))?;
         in_units(&mut signals, &units, &|channel| simulator.unit(channel)).map_err(|problem| problem.says)?;
@@ -70,30 +70,30 @@ impl Base {
         Ok(signals)
     }
 
-    /// What the model makes of a section with further parameters set.
+    /// The simulation of a section with further parameters set.
     pub fn simulated(&self, simulator: &Builtin<'_>, section: &Section, further: &[(String, f64)]) -> Result<Signals, String> {
         let settings: Vec<(String, f64)> = self.settings.iter().chain(further).cloned().collect();
         simulator.run(&Task { section, settings: &settings, shift: 0.0, inside_only: false }).map_err(|problem: Problem| problem.says)
     }
 
-    /// A parameter of the vehicle as it was measured.
+    /// A parameter of the vehicle as measured.
     pub fn value(&self, key: &str) -> f64 {
         self.vehicle.get(key).unwrap_or(0.0)
     }
 
-    /// Whether bodies hang in springs and dampers that can be lost.
+    /// Whether the vehicle has a secondary suspension.
     pub fn sprung(&self) -> bool {
         self.campaign.vehicle.lookup("secondary_suspension").and_then(|node| node.scalar_text()) == Some("true")
     }
 
-    /// One standard deviation that the campaign declares; 0 where it does not.
+    /// One declared standard deviation; 0 if the campaign declares none.
     pub fn declared(&self, name: &str) -> f64 {
         let declared = self.campaign.tree.get("declared_tolerances").and_then(|tolerances| tolerances.get(name));
         declared.and_then(fishplate::yaml::Node::number).unwrap_or(0.0)
     }
 }
 
-/// An effect as a truth says it; none where the catalogue does not know it, or it is confined.
+/// An effect in the form of a truth; none if it is not in the catalogue, or is confined.
 fn applied(catalogue: &Catalogue, effect: &Value) -> Option<Applied> {
     let known = catalogue.effect(effect["name"].as_str()?)?;
     if effect.as_object()?.keys().any(|key| !["name", "parameters"].contains(&key.as_str())) {

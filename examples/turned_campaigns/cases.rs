@@ -1,4 +1,4 @@
-//! What is hidden in which campaign: 36 single effects, ten times nothing, 20 changes that no catalogue has, ten pairs.
+//! Hidden effects by campaign: 36 single effects, ten without an effect, 20 causes outside the catalogue, ten pairs.
 
 use fishplate::effects::Catalogue;
 
@@ -6,30 +6,30 @@ use super::base::Base;
 use super::draw::Draw;
 use super::faults::{self, Fault};
 
-/// A campaign to be made.
+/// A campaign to be written.
 #[derive(Debug)]
 pub struct Case {
-    /// Which campaign is turned round.
+    /// Index of the base campaign.
     pub base: usize,
     pub kind: &'static str,
     pub hidden: Hidden,
     pub fault: Option<Fault>,
 }
 
-/// Effects, and how they come to be there.
+/// Effects, and how they are introduced.
 #[derive(Clone, Debug, Default)]
 pub struct Hidden {
     /// As on a command line.
     pub effects: Vec<String>,
-    /// What the vehicle file says instead of what was measured.
+    /// Values in the vehicle file that differ from the measured vehicle.
     pub vehicle: Vec<(String, f64)>,
-    /// Which of the effects our own model adds to the records.
+    /// Effects that are added to the records with the reference model.
     pub added: Vec<String>,
 }
 
 type Single = fn(&mut Draw, &Base, &Catalogue) -> Hidden;
 
-/// By name, and whether only a vehicle with a soft secondary suspension can have it.
+/// Name, and whether the effect requires a soft secondary suspension.
 const SINGLES: [(&str, bool, Single); 23] = [
     ("friction", false, friction),
     ("worn profile", false, worn_profile),
@@ -74,7 +74,7 @@ const PAIRS: [[&str; 2]; 15] = [
     ["crosstalk", "friction"],
 ];
 
-/// Every single effect once and thirteen of them again, and so on.
+/// Every single effect once and thirteen of them twice, and the other cases.
 pub fn drawn(bases: &[Base], catalogue: &Catalogue, seed: u64) -> Vec<Case> {
     let draw = &mut Draw::new(seed);
     let sprung: Vec<usize> = (0..bases.len()).filter(|at| bases[*at].sprung()).collect();
@@ -93,7 +93,7 @@ pub fn drawn(bases: &[Base], catalogue: &Catalogue, seed: u64) -> Vec<Case> {
         let base = draw.below(bases.len());
         cases.push(Case { base, kind: "none", hidden: nothing(draw, &bases[base]), fault: None });
     }
-    // What follows is made for passenger vehicles.
+    // The following cases are for passenger vehicles.
     if sprung.is_empty() {
         return cases;
     }
@@ -116,24 +116,24 @@ pub fn drawn(bases: &[Base], catalogue: &Catalogue, seed: u64) -> Vec<Case> {
     cases
 }
 
-/// The vehicle file says something else than what was measured.
+/// The vehicle file differs from the measured vehicle.
 fn moved(effect: String, vehicle: &[(&str, f64)]) -> Hidden {
     let vehicle = vehicle.iter().map(|(key, value)| ((*key).to_string(), *value)).collect();
     Hidden { effects: vec![effect], vehicle, added: Vec::new() }
 }
 
-/// The vehicle file has more of something, so that a share of it is measured.
+/// The vehicle file has a larger value, of which the measured vehicle has a share.
 fn left(base: &Base, effect: &str, share: f64, keys: &[&str]) -> Hidden {
     let vehicle: Vec<(&str, f64)> = keys.iter().map(|key| (*key, base.value(key) / share)).collect();
     moved(format!("{effect}={share}"), &vehicle)
 }
 
-/// Our own model adds to the records what the effect changes.
+/// The effect is added to the records with the reference model.
 fn added(effects: Vec<String>) -> Hidden {
     Hidden { added: effects.clone(), effects, vehicle: Vec::new() }
 }
 
-/// The records go through an operation.
+/// An operation is applied to the records.
 fn operated(effect: String) -> Hidden {
     Hidden { effects: vec![effect], ..Hidden::default() }
 }
@@ -175,7 +175,7 @@ fn centre_friction(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
 }
 
 fn payload(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
-    // As heavy as a tenth to a fifth of a coach's body, and half as much again on a freight wagon.
+    // A tenth to a fifth of the mass of a coach body; 50 % more on a freight wagon.
     let mass = draw.between(2500.0, 6000.0, 0) * if base.sprung() { 1.0 } else { 1.5 };
     let body = base.value("car_body.mass");
     let share = (body - mass) / body;
@@ -221,7 +221,7 @@ fn irregularities(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
 fn cant(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
     const KEY: &str = "track.cant_error";
     let (truth, error) = (base.value(KEY), draw.either_sign(14.0, 30.0, 1));
-    // The size of what is zero has no error in per cent.
+    // A relative error is not defined for a size of zero.
     match truth == 0.0 {
         true => added(vec![format!("cant_error={error}")]),
         false => moved(format!("cant_error={truth}"), &[(KEY, truth - error)]),
@@ -233,7 +233,7 @@ fn wind(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
     added(vec![format!("crosswind={force}")])
 }
 
-/// A channel of some groups.
+/// A random channel of some groups.
 pub fn channel(draw: &mut Draw, catalogue: &Catalogue, groups: &[&str]) -> String {
     let channels: Vec<String> = groups.iter().filter_map(|group| catalogue.channels(group)).flatten().collect();
     channels[draw.below(channels.len())].clone()
@@ -273,7 +273,7 @@ fn crosstalk(draw: &mut Draw, _: &Base, _: &Catalogue) -> Hidden {
     operated(format!("crosstalk={}", draw.either_sign(0.04, 0.10, 3)))
 }
 
-/// What the campaign declares, by the numbers of the vehicle file that it is a share of.
+/// Declared tolerances, and the numbers of the vehicle file to which they apply.
 const DECLARED: [(&str, &[&str]); 4] = [
     ("suspension stiffness [-]", &["primary.kx", "primary.ky", "primary.kz", "secondary.ky", "secondary.kz"]),
     ("suspension damping [-]", &["primary.cz", "primary.cy", "secondary.cz", "secondary.cy"]),
@@ -281,7 +281,7 @@ const DECLARED: [(&str, &[&str]); 4] = [
     ("equivalent conicity [-]", &["profile.conicity_scale"]),
 ];
 
-/// Nothing but what is declared: the vehicle file is off by as much as the test engineer admits.
+/// No effect: the vehicle file differs from the measured vehicle within the declared tolerances.
 fn nothing(draw: &mut Draw, base: &Base) -> Hidden {
     let mut vehicle = Vec::new();
     for (name, keys) in DECLARED {
@@ -292,7 +292,7 @@ fn nothing(draw: &mut Draw, base: &Base) -> Hidden {
     vehicle.push(("friction", base.vehicle.friction + draw.normal(base.declared("friction per section [-]"))));
     let livelier = draw.normal(base.declared("irregularity amplitude [-]")).exp();
     vehicle.push(("track.irregularity_scale", base.value("track.irregularity_scale") * livelier));
-    // All sections alike, of what is declared section by section.
+    // Tolerances declared by section, with a common deviation of all sections.
     vehicle.push(("track.cant_error", base.value("track.cant_error") + 0.5 * draw.normal(base.declared("cant [mm]"))));
     Hidden { effects: Vec::new(), ..moved(String::new(), &vehicle) }
 }

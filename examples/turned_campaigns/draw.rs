@@ -2,7 +2,7 @@
 
 use fishplate::effects::Gauss;
 
-/// Numbers that are the same for the same seed.
+/// Random numbers, reproducible from a seed.
 #[derive(Debug)]
 pub struct Draw(Gauss);
 
@@ -43,7 +43,7 @@ impl Draw {
         of[self.below(of.len())]
     }
 
-    /// Takes `count` of them, in a drawn order, without repeating one.
+    /// Draws `count` elements in random order, without repetition.
     pub fn some<T>(&mut self, mut of: Vec<T>, count: usize) -> Vec<T> {
         let mut taken = Vec::new();
         while taken.len() < count && !of.is_empty() {

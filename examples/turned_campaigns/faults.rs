@@ -1,4 +1,4 @@
-//! What no catalogue has: numbers of the vehicle that are not what the file says, and records that went through what no chain should do.
+//! Causes outside the catalogue: parameters that differ from the vehicle file, and faults of the measuring chain.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -12,12 +12,12 @@ use super::draw::Draw;
 
 type Does = dyn Fn(&mut Signals, &Section, usize) + Send + Sync;
 
-/// Something that no catalogue has.
+/// A cause outside the catalogue.
 pub struct Fault {
     pub says: String,
-    /// What the vehicle file says instead of what was measured.
+    /// Values in the vehicle file that differ from the measured vehicle.
     pub vehicle: Vec<(String, f64)>,
-    /// What is done to the record of a section, in the order of the sections.
+    /// Change of the record of a section, in the order of the sections.
     pub does: Box<Does>,
 }
 
@@ -90,17 +90,17 @@ pub const ALL: [Make; 26] = [
     |draw, _, catalogue| with_speed(named(catalogue, "Y_1R Y_2R Y_3R Y_4R"), draw.between(1.0, 2.0, 2)),
 ];
 
-/// Channels of a group, or as they are written.
+/// The channels of a group, or of a list of channels.
 fn named(catalogue: &Catalogue, group: &str) -> Vec<String> {
     catalogue.channels(group).unwrap_or_else(|| group.split(' ').map(str::to_string).collect())
 }
 
-/// The vehicle has `factor` of what its file says.
+/// The vehicle has `factor` times the value of its file.
 fn scaled(base: &Base, key: &str, factor: f64) -> Fault {
     Fault { vehicle: vec![(key.to_string(), base.value(key) / factor)], ..record(format!("{key} times {factor}"), |_, _, _| {}) }
 }
 
-/// The vehicle has more of it than its file says.
+/// The vehicle has a larger value than its file.
 fn higher(base: &Base, key: &str, by: f64) -> Fault {
     Fault { vehicle: vec![(key.to_string(), base.value(key) - by)], ..record(format!("{key} plus {by} m"), |_, _, _| {}) }
 }
@@ -109,7 +109,7 @@ fn record(says: String, does: impl Fn(&mut Signals, &Section, usize) + Send + Sy
     Fault { says, vehicle: Vec::new(), does: Box::new(does) }
 }
 
-/// Sample by sample, from the value, the speed in m/s and the number of the section.
+/// Changes each sample as a function of its value, the speed in m/s and the index of the section.
 fn values(says: String, channels: Vec<String>, of: impl Fn(f64, f64, usize) -> f64 + Send + Sync + 'static) -> Fault {
     record(says, move |signals, section, at| {
         let speed = section.speed.unwrap_or(0.0);
@@ -119,7 +119,7 @@ fn values(says: String, channels: Vec<String>, of: impl Fn(f64, f64, usize) -> f
     })
 }
 
-/// A number for each section.
+/// One random number per section.
 fn scattered(draw: &mut Draw, base: &Base, deviation: f64) -> Vec<f64> {
     base.sections.iter().map(|_| draw.normal(deviation)).collect()
 }
@@ -128,7 +128,7 @@ fn drift(channels: Vec<String>, rate: f64) -> Fault {
     values(format!("drift of {rate} a section of {}", channels.join(", ")), channels, move |value, _, at| value + rate * at as f64)
 }
 
-/// To `end` in the last section.
+/// Decreases to `end` in the last section.
 fn fading(channels: Vec<String>, end: f64, sections: usize) -> Fault {
     let says = format!("gain that fades to {end} of {}", channels.join(", "));
     values(says, channels, move |value, _, at| value * (1.0 + (end - 1.0) * at as f64 / (sections.max(2) - 1) as f64))
@@ -156,7 +156,7 @@ fn guiding_in_vertical(share: f64) -> Fault {
     })
 }
 
-/// A blow of 15 ms at every turn of both wheels.
+/// An impact of 15 ms at every revolution, on both wheels.
 fn wheel_flat(wheelset: usize, force: f64, radius: f64) -> Fault {
     record(format!("flats of wheelset {wheelset}, blows of {force} kN"), move |signals, section, _| {
         let turn = TAU * radius / section.speed.unwrap_or(1.0);

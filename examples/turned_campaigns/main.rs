@@ -1,10 +1,10 @@
-//! Campaigns turned round: measurements of which is known what the model lacks, with something else taken from the model or done to the
-//! records, to test the diagnosis on records that another code or a test made:
+//! Campaigns from real measurements with known deficiencies of the model, to which a further deviation is added, to test the diagnosis on
+//! records of another program or of a test:
 //! `cargo run --release --example turned_campaigns -- CAMPAIGN... --seed 7 --out target/turned`, then `fishplate blind target/turned`.
 //!
-//! What `truth.json` of a campaign says is put into the vehicle file or taken off the records, so that nothing is missing; without that
-//! file nothing is taken to be missing. Then something is hidden: a parameter of the vehicle file is moved away from what was measured,
-//! the records go through an operation, or our own model adds to them what an effect changes. The simulation is made anew.
+//! The effects of a campaign's `truth.json` are included in the vehicle file or removed from the records; without that file, the model is
+//! taken as correct. Then an effect is hidden: a parameter of the vehicle file is changed, an operation is applied to the records, or the
+//! change by an effect is added to them with the reference model. The simulation is repeated.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, clippy::cast_precision_loss)]
 

@@ -1,4 +1,4 @@
-//! One campaign as a folder.
+//! Writes one campaign as a folder.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use super::base::{Base, all};
 use super::cases::Case;
 use super::hidden::{chosen, told};
 
-/// Writes a campaign turned round.
+/// Writes a campaign with hidden effects.
 ///
 /// # Errors
 /// A file cannot be read or written, or the model diverges.
@@ -60,7 +60,7 @@ pub fn campaign(out: &Path, base: &Base, case: &Case, catalogue: &Catalogue) -> 
     outputs.commit().map_err(|problem| problem.says)
 }
 
-/// The record of a section with what is hidden in it.
+/// The record of a section with the hidden effects.
 fn measured(
     base: &Base,
     simulator: &Builtin<'_>,
@@ -78,7 +78,7 @@ fn measured(
     Ok(signals)
 }
 
-/// The static wheel load in kN, where the car body of the vehicle file is another one.
+/// The static wheel load in kN, if the mass of the car body in the vehicle file changes.
 fn static_load(base: &Base, moved: &[(String, f64)]) -> Option<f64> {
     let mut vehicle = base.vehicle.clone();
     let (_, mass) = moved.iter().find(|(key, _)| key == "car_body.mass")?;
@@ -88,7 +88,7 @@ fn static_load(base: &Base, moved: &[(String, f64)]) -> Option<f64> {
     Some(before + (vehicle.static_wheel_load() - load) * 1e-3)
 }
 
-/// YAML with numbers set; maps that are not there are made.
+/// Sets numbers in YAML; missing maps are added.
 fn edited<'a>(bytes: &[u8], numbers: impl Iterator<Item = (Vec<&'a str>, f64)>) -> Result<Vec<u8>, String> {
     let mut tree: serde_yaml::Value = serde_yaml::from_slice(bytes).map_err(|error| error.to_string())?;
     for (path, number) in numbers {

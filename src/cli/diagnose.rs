@@ -267,7 +267,7 @@ fn summary(diagnosis: &Diagnosis) -> String {
         let _ = writeln!(out, "\nRejected: {}", vetoed.says);
     }
     if let Some(measure) = &diagnosis.discriminating_measurement {
-        let _ = writeln!(out, "\nTo distinguish the causes, measure: {measure}");
+        let _ = writeln!(out, "\nThe causes can be distinguished by: {measure}");
     }
     out
 }

@@ -90,7 +90,7 @@ fn chapter(id: &str, title: &str, items: Vec<Item>) -> Chapter {
 fn answer(found: &Diagnosis) -> Chapter {
     let mut items = vec![Item::List { entries: found.says.clone() }];
     if let Some(measure) = &found.discriminating_measurement {
-        items.push(Item::text(format!("Measurement that would distinguish the causes: {measure}.")));
+        items.push(Item::text(format!("The causes can be distinguished by: {measure}.")));
     }
     if !found.notes.is_empty() {
         items.push(Item::Heading { text: "Remarks".into() });

@@ -1,15 +1,15 @@
 "use strict";
-// The report is complete without this script. It adds sorting, a filter by zone, values under the pointer, and the place in
-// the contents. It writes text only (textContent), never markup.
+// The report is complete without this script. It adds sorting, a filter by zone, tooltips, and the current position in the
+// contents. It writes text only (textContent), never markup.
 (() => {
   const all = (selector, root = document) => Array.from(root.querySelectorAll(selector));
 
-  // Long tables of values are closed to begin with; paper has them all.
+  // Long tables of values are collapsed on screen, and expanded in print.
   const folds = all("details");
   folds.forEach(fold => { fold.open = false; });
   addEventListener("beforeprint", () => folds.forEach(fold => { fold.open = true; }));
 
-  // Numbers as the report prints them: true minus, narrow spaces, powers of ten. What is no number sorts as text.
+  // Numbers in the report's format: true minus, narrow spaces, powers of ten. Other cells are sorted as text.
   const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹";
   const numberOf = text => {
     let plain = text.replace(/[\u202f\u200b\s]/g, "").replace(/\u2212/g, "-");
@@ -24,7 +24,7 @@
     return a < b ? -1 : a > b ? 1 : 0;
   };
 
-  // Column of every header cell, with cells that span rows and columns.
+  // Column of every header cell, including cells that span rows and columns.
   const columns = table => {
     const taken = [];
     const found = new Map();
@@ -49,7 +49,7 @@
     const empty = row => text(row) === "" || text(row) === "–";
     const rows = Array.from(body.rows);
     rows.sort((a, b) => {
-      // What has no value stays at the end either way.
+      // Cells without a value stay at the end in either order.
       if (empty(a) || empty(b)) return Number(empty(a)) - Number(empty(b));
       return (down ? -1 : 1) * compare(text(a), text(b));
     });
@@ -69,7 +69,7 @@
     }
   }
 
-  // The filter by zone.
+  // Filter by zone.
   const zoned = all("[data-zone]");
   const zones = [...new Set(zoned.map(it => it.dataset.zone))];
   const tools = document.getElementById("tools");
@@ -83,7 +83,7 @@
     zones.forEach(zone => select.append(new Option(zone, "=" + zone)));
     const remark = document.createElement("p");
     remark.hidden = true;
-    remark.textContent = "Rows and marks of other zones are hidden. Statistics and verdict stay those of the whole campaign.";
+    remark.textContent = "Rows and marks of other zones are hidden. Statistics and verdict are always those of the whole campaign.";
     select.addEventListener("change", () => {
       remark.hidden = select.value === "";
       for (const it of zoned) {
@@ -96,7 +96,7 @@
     tools.append(label, select, remark);
   }
 
-  // Values under the pointer, or by arrow keys in a figure that has the focus.
+  // Tooltips under the pointer, or by arrow keys in a focused figure.
   const tip = document.createElement("div");
   tip.id = "tip";
   tip.hidden = true;
@@ -148,7 +148,7 @@
     drawing.addEventListener("blur", hide);
   }
 
-  // Where in the contents one is.
+  // Current position in the contents.
   const links = new Map(all("nav a").map(link => [link.getAttribute("href").slice(1), link]));
   const places = Array.from(links.keys(), id => document.getElementById(id)).filter(Boolean);
   const follow = () => {
