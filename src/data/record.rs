@@ -192,7 +192,7 @@ fn units_in_row(text: &str, body: usize, headings: &[Heading], shown: &str) -> O
     Some(
         Problem::error("units-in-row", "the units are in a separate row")
             .at(&Source::excerpt(shown, line, 2).whole())
-            .help(format!("write each unit behind its name, in one header line: `{name} [{unit}]`")),
+            .help(format!("write each unit after its name, in one header line: `{name} [{unit}]`")),
     )
 }
 
@@ -210,7 +210,7 @@ fn missing(headings: &[Heading], names: &[&str], shown: &str) -> Problem {
         [name] => {
             let problem = Problem::error("unknown-channel", format!("`{shown}` has no column `{name}`"));
             match known().find_map(|heading| Some((heading, unit_otherwise(heading, name)?))) {
-                Some((heading, unit)) => problem.help(format!("the unit of `{heading}` goes into square brackets: `{name} [{unit}]`")),
+                Some((heading, unit)) => problem.help(format!("write the unit of `{heading}` in square brackets: `{name} [{unit}]`")),
                 None => problem.suggest(name, known()),
             }
         }

@@ -256,7 +256,7 @@ pub fn blind(cases: Vec<Case>) -> Blind {
         share("outside the catalogue: said to be unexplained", &of("outside"), &|case| case.verdict == "unexplained"),
         share("traps avoided", &of("trap"), &|case| case.first_is_right || case.named.is_empty()),
         share("pairs: both found", &of("pair"), &|case| case.truth.iter().all(|name| case.named.contains(name))),
-        share("pairs, each d >= 5 beside the other: both found", &pairs, &|case| case.truth.iter().all(|name| case.named.contains(name))),
+        share("pairs, each d >= 5 given the other: both found", &pairs, &|case| case.truth.iter().all(|name| case.named.contains(name))),
         share("pairs: at least one found", &of("pair"), &|case| case.truth.iter().any(|name| case.named.contains(name))),
         portion("cells of the map called significant: moved by the truth", cells.both, cells.told),
         portion("cells of the map moved by the truth: called significant", cells.both, cells.truly),
@@ -339,6 +339,6 @@ mod tests {
         let scored = blind(vec![case(&["a", "b"], 6.0), case(&["b", "a"], 9.0), case(&["a"], 4.9)]);
         let of = |name: &str| scored.scores.iter().find(|score| score.name == name).map(|score| (score.cases, score.value));
         assert_eq!(of("pairs: both found"), Some((3, Some(2.0 / 3.0))));
-        assert_eq!(of("pairs, each d >= 5 beside the other: both found"), Some((2, Some(1.0))));
+        assert_eq!(of("pairs, each d >= 5 given the other: both found"), Some((2, Some(1.0))));
     }
 }

@@ -163,7 +163,7 @@ impl Carried {
             sources.push(Source::new(name, text));
         }
         if sources.is_empty() {
-            return Err(Problem::error("protocol-missing", format!("`{}` names no file of its protocol", self.shown)));
+            return Err(Problem::error("protocol-missing", format!("`{}` lists no file of its protocol", self.shown)));
         }
         Ok(sources)
     }

@@ -50,7 +50,7 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
     if let Some((compiled, index)) = compiled.zip(index) {
         rule(&mut out, compiled, quantity, index.0);
         operations(&mut out, carried, compiled, index, asked.section)
-            .map_err(|says| Problems(vec![Problem::error("not-evaluated", format!("the result does not fit its protocol: {says}"))]))?;
+            .map_err(|says| Problems(vec![Problem::error("not-evaluated", format!("the result does not match its protocol: {says}"))]))?;
     } else {
         let _ = writeln!(out, "\nThe protocol is not available: give report.pdf, which contains it, or name it with `--protocol`.");
     }

@@ -81,7 +81,7 @@ pub fn chapters(blind: &Blind) -> Vec<Chapter> {
                 numeric("Removed, true"),
             ],
             cases.collect(),
-            "All campaigns; d is the whitened size of the true effects; least d is the contribution of one of several effects beside the others",
+            "All campaigns; d is the whitened size of the true effects; least d is the smallest part of one of several effects that the others do not reproduce",
         ),
         chapter(
             "confusion",

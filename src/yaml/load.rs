@@ -91,7 +91,7 @@ impl<'a> Loader<'a> {
                 Event::StreamStart | Event::DocumentEnd => {}
                 Event::StreamEnd => break,
                 Event::DocumentStart(..) if root.is_some() => {
-                    return Err(Box::new(syntax("a second YAML document begins here", &span).help("one file holds one document")));
+                    return Err(Box::new(syntax("a second YAML document begins here", &span).help("a file must contain one document")));
                 }
                 Event::DocumentStart(..) => {}
                 event => root = Some(self.node(event, span)?),
@@ -125,7 +125,7 @@ impl<'a> Loader<'a> {
             Event::Scalar(text, style, anchor, tag) => (anchor, self.scalar(text, style, tag.as_deref(), span)),
             Event::Alias(anchor) => {
                 let Some((node, size)) = self.anchors.get(&anchor).cloned() else {
-                    return Err(Box::new(syntax("this alias stands inside the value it refers to", &span)));
+                    return Err(Box::new(syntax("this alias is inside the value it refers to", &span)));
                 };
                 self.count(size, &span)?;
                 return Ok(node);
@@ -304,7 +304,7 @@ fn in_words(kind: &ErrorKind) -> (String, Option<&'static str>) {
         kind if is_tab(kind) => ("the indentation contains a tab", Some("indent YAML with spaces")),
         ErrorKind::UnclosedQuotedScalar => ("this quote is not closed", None),
         ErrorKind::MappingValueNotAllowed => {
-            ("a second `:` stands where a value is expected", Some("quote a value that contains `: `, and write each key on its own line"))
+            ("a second `:` where a value is expected", Some("quote a value that contains `: `, and write each key on its own line"))
         }
         ErrorKind::ExpectedBlockMappingKey | ErrorKind::InvalidIndentation | ErrorKind::SimpleKeyExpected => {
             ("a line `key: value` is expected here", Some("the keys of one map begin in the same column, each followed by `: `"))
@@ -322,7 +322,7 @@ fn in_words(kind: &ErrorKind) -> (String, Option<&'static str>) {
             ("a value cannot begin with this character", Some("quote the value"))
         }
         ErrorKind::RecursionLimitExceeded => ("brackets or indentation are nested too deep", None),
-        other => return (format!("this is no valid YAML: {other}"), None),
+        other => return (format!("this is not valid YAML: {other}"), None),
     };
     (says.to_string(), help)
 }

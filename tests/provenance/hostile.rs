@@ -123,7 +123,7 @@ fn what_leads_in_circles_or_nowhere_is_refused() {
             pdf(&[catalogue("/AF 2 0 R"), [b"(".to_vec(), vec![b'x'; 20_000_000], b")".to_vec()].concat()], ""),
             "too large",
         ),
-        ("two filters", attached("results.json", "/Filter[/FlateDecode/FlateDecode]", b"x"), "packed in a way that is not read"),
+        ("two filters", attached("results.json", "/Filter[/FlateDecode/FlateDecode]", b"x"), "uses a compression that is not supported"),
         ("not packed", attached("results.json", "/Filter/FlateDecode", b"not packed"), "cannot be unpacked"),
         ("no results", attached("results.json", "", b"{\"fishplate\": 1}"), "no results of `certify`"),
         ("not UTF-8", attached("results.json", "", b"\xff\xfe{}"), "not UTF-8"),
@@ -183,13 +183,13 @@ fn bombs_stay_packed() {
         };
         assert!(found.code == 2 && found.stderr.contains(says), "{name}: {} {}{}", found.code, found.stdout, found.stderr);
     };
-    check("results.pdf", &attached("results.json", "/Filter/FlateDecode", &bomb), "too large when unpacked");
+    check("results.pdf", &attached("results.json", "/Filter/FlateDecode", &bomb), "too large after unpacking");
     let mut table = b"%PDF-1.7\n".to_vec();
     let place = table.len();
     table.extend(b"1 0 obj\n");
     table.extend(stream("/Type/XRef /Size 4 /W[1 2 1] /Root 1 0 R /Filter/FlateDecode", &bomb));
     table.extend(format!("\nendobj\nstartxref\n{place}\n%%EOF\n").into_bytes());
-    check("table.pdf", &table, "too large when unpacked");
+    check("table.pdf", &table, "too large after unpacking");
     // Results that are small and a protocol that is not.
     let results = fs::read(written().results()).expect("readable");
     let file = |name: &str, data: usize| format!("<</Type/Filespec /F({name}) /UF({name}) /EF<</F {data} 0 R>>>>").into_bytes();
@@ -200,7 +200,7 @@ fn bombs_stay_packed() {
         stream("/Filter/FlateDecode", &deflated(&results, 1)),
         stream("/Filter/FlateDecode", &bomb),
     ];
-    check("protocol.pdf", &pdf(&objects, ""), "too large when unpacked");
+    check("protocol.pdf", &pdf(&objects, ""), "too large after unpacking");
 }
 
 /// What users write stays text: signs that move the cursor are spelled out on the terminal.

@@ -58,7 +58,7 @@ pub fn as_recorded(
         runs.made += 2 * made.len();
     }
     runs.failed
-        .extend(made.iter().find_map(|(_, failed)| failed.as_ref().map(|says| format!("what is expected of the tolerances: {says}"))));
+        .extend(made.iter().find_map(|(_, failed)| failed.as_ref().map(|says| format!("expected deviation of the tolerances: {says}"))));
     let signals: Vec<Signals> = made.into_iter().map(|(signals, _)| signals).collect();
     // The signals contain their noise already.
     let features = signals.par_iter().enumerate().flat_map_iter(|(at, signals)| seen.of(at, signals, false)).collect();

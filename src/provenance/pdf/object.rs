@@ -134,7 +134,7 @@ impl Parser<'_> {
                 self.at += 2;
                 let mut dict = Dict::default();
                 while !self.word(">>") {
-                    let Object::Name(key) = self.object(depth + 1)? else { return Err(Broken("a key of a dictionary is no name")) };
+                    let Object::Name(key) = self.object(depth + 1)? else { return Err(Broken("a key of a dictionary is not a name")) };
                     dict.0.push((key, self.object(depth + 1)?));
                 }
                 Ok(Object::Dict(dict))
@@ -148,7 +148,7 @@ impl Parser<'_> {
             _ => {
                 let known = [("true", Object::Other), ("false", Object::Other), ("null", Object::Null)];
                 let found = known.into_iter().find(|(word, _)| self.word(word));
-                found.map(|(_, object)| object).ok_or(Broken("something in it is no object"))
+                found.map(|(_, object)| object).ok_or(Broken("it contains an invalid object"))
             }
         }
     }
@@ -169,7 +169,7 @@ impl Parser<'_> {
     fn number(&mut self) -> Result<Object, Broken> {
         let token = String::from_utf8_lossy(self.token()).into_owned();
         let Ok(value) = token.parse::<i64>() else {
-            return token.parse::<f64>().map(|_| Object::Other).map_err(|_| Broken("something in it is no number"));
+            return token.parse::<f64>().map(|_| Object::Other).map_err(|_| Broken("it contains an invalid number"));
         };
         // `12 0 R` is a reference, `12 0 1` are three numbers.
         let after = self.at;
@@ -212,7 +212,7 @@ impl Parser<'_> {
                 Some(digit) => digits.push(digit),
                 None if byte == b'>' => break,
                 None if is_space(byte) => {}
-                None => return Err(Broken("a text has a sign that is no hexadecimal digit")),
+                None => return Err(Broken("a text contains an invalid hexadecimal digit")),
             }
         }
         Ok(digits.chunks(2).map(|pair| pair[0] << 4 | pair.get(1).unwrap_or(&0)).collect())

@@ -29,11 +29,11 @@ pub fn unpacked(data: &[u8], dict: &Dict, most: usize) -> Result<Vec<u8>, Broken
             read.map_err(|_| Broken("a part of it cannot be unpacked"))?;
             predicted(found, dict)
         }
-        _ => Err(Broken("a part of it is packed in a way that is not read here")),
+        _ => Err(Broken("a part of it uses a compression that is not supported")),
     }
 }
 
-const TOO_LARGE: Broken = Broken("a part of it is too large when unpacked");
+const TOO_LARGE: Broken = Broken("a part of it is too large after unpacking");
 
 /// Reverses the PNG prediction of rows (RFC 2083, clause 6), which is used for cross-reference streams.
 fn predicted(data: Vec<u8>, dict: &Dict) -> Result<Vec<u8>, Broken> {
@@ -51,7 +51,7 @@ fn predicted(data: Vec<u8>, dict: &Dict) -> Result<Vec<u8>, Broken> {
     }
     let width = number("Columns", 1);
     if number("Predictor", 1) < 10 || number("Colors", 1) != 1 || number("BitsPerComponent", 8) != 8 || width == 0 {
-        return Err(Broken("a part of it is packed in a way that is not read here"));
+        return Err(Broken("a part of it uses a compression that is not supported"));
     }
     let mut rows: Vec<u8> = Vec::with_capacity(data.len());
     let mut above = vec![0_u8; width.min(data.len())];

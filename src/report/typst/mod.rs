@@ -77,7 +77,7 @@ fn framed(frame: String, data: &impl Serialize, figures: &[(String, String)], at
     let mut attached = Vec::new();
     for attachment in attachments {
         if attachment.name.is_empty() || attachment.name.contains(['/', '\\']) {
-            return Err(one(Problem::error("report-attachment", format!("`{}` is no file name", attachment.name))));
+            return Err(one(Problem::error("report-attachment", format!("`{}` is not a file name", attachment.name))));
         }
         let path = format!("/attached/{}", attachment.name);
         files.add(&path, attachment.bytes.to_vec())?;

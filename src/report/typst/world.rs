@@ -76,7 +76,7 @@ impl Files {
 
     /// Adds a file that templates can read under `path`.
     pub(super) fn add(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), Problems> {
-        let id = id(path).ok_or_else(|| Problems(vec![Problem::error("report-attachment", format!("`{path}` is no path"))]))?;
+        let id = id(path).ok_or_else(|| Problems(vec![Problem::error("report-attachment", format!("`{path}` is not a path"))]))?;
         self.files.insert(id, Bytes::new(bytes));
         Ok(())
     }

@@ -238,7 +238,7 @@ impl Reader<'_> {
         let texts = self.texts(node, "inputs");
         let paths: Vec<PathBuf> = texts.iter().map(|text| self.folder.join(text)).collect();
         for (text, _) in texts.iter().zip(&paths).filter(|(_, path)| !disk::may_be_file(path)) {
-            self.fault("file-missing", format!("there is no file `{text}` beside this one"), &node.span);
+            self.fault("file-missing", format!("there is no file `{text}` in the folder of this file"), &node.span);
         }
         paths
     }
