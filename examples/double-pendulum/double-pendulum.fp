@@ -2,8 +2,8 @@
 
 protocol double-pendulum "Torques of a double pendulum from inverse dynamics"
   author  "Fishplate"
-  scope   "Rigid-body models of driven pendulums and arms. The limits are chosen for this example and are"
-          "not from a standard."
+  scope   "Rigid-body models of driven pendulums and arms. The limits are chosen for this example and are not"
+          "from a standard."
   axis    time in s
 
 place joint
