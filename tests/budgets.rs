@@ -84,7 +84,7 @@ fn a_hole_below_a_good_header() {
 #[test]
 fn a_record_that_is_larger_than_any() {
     let reason = of_record(SMALL, |file, _| file.set_len((1 << 30) + 1).expect("set"));
-    assert!(reason.contains("the most that is read is 1024 MB"), "{reason}");
+    assert!(reason.contains("the maximum is 1024 MB"), "{reason}");
 }
 
 /// There is less memory than the record needs.

@@ -446,7 +446,7 @@ fn unusable_campaigns() {
         (
             "section column in a wrong unit",
             |campaign| replace(&campaign.join("sections.csv"), "speed [km/h]", "speed [kN]"),
-            &["error[unit-mismatch]: the column `speed` is in kN, which is a force; no speed is given", "sections.csv:1:95"],
+            &["error[unit-mismatch]: the column `speed` is in kN, which is a force; a speed is needed", "sections.csv:1:95"],
         ),
         (
             "duplicate section",
@@ -490,7 +490,7 @@ fn unusable_campaigns() {
         (
             "section above",
             |campaign| cell(&campaign.join("sections.csv"), 1, "section", "../S01"),
-            &["error[path-outside]: `../S01` names a file", "sections.csv:2:1"],
+            &["error[path-outside]: `../S01` is used as a file name", "sections.csv:2:1"],
         ),
         (
             "protocol above",

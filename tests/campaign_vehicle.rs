@@ -238,7 +238,7 @@ fn an_origin_that_cannot_be_read_is_an_error() {
         fs::write(campaign.join("origin.yaml"), "effects: friction\n").expect("written");
     });
     assert_eq!(found.ran.code, 2);
-    assert!(found.ran.stderr.contains("error[wrong-kind]: `effects` is a list") && found.ran.stderr.contains("origin.yaml:1:"));
+    assert!(found.ran.stderr.contains("error[wrong-kind]: `effects` must be a list") && found.ran.stderr.contains("origin.yaml:1:"));
     let outside = with(|campaign| {
         origin(campaign, "");
         replace(&campaign.join("campaign.yaml"), "origin: origin.yaml", "origin: ../origin.yaml");

@@ -228,8 +228,8 @@ fn columns_that_are_not_there_and_zones_that_are_none_are_told() {
 
     // What is no name, no single column, and no channel.
     let cases = [
-        ("strata: zone", "strata: {zone: 1}", "a name or a list of names is needed here"),
-        ("mirrored: {direction: left}", "mirrored: left", "`mirrored` is one column and its value"),
+        ("strata: zone", "strata: {zone: 1}", "expected a name or a list of names, found"),
+        ("mirrored: {direction: left}", "mirrored: left", "`mirrored` must be one column and its value"),
         ("channels: [Y_1L, Y_3L, Q_1L, Q_3L]", "channels: [Y_1X]", "`Y_1X` is neither a group nor a channel of a group"),
         ("{channels: [Y_1L,", "{chanels: [Y_1L,", "needs `channels`"),
     ];

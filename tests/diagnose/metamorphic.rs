@@ -260,5 +260,5 @@ fn one_effect_under_two_names_is_ambiguous() {
         assert!(measure.contains(settles), "{measure}");
     }
     // Neither is ruled out as the whole cause.
-    assert!(!found["says"].to_string().contains("something else acts beside it"));
+    assert!(!found["says"].to_string().contains("a further effect is present"));
 }

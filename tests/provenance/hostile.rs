@@ -125,7 +125,7 @@ fn what_leads_in_circles_or_nowhere_is_refused() {
         ),
         ("two filters", attached("results.json", "/Filter[/FlateDecode/FlateDecode]", b"x"), "uses a compression that is not supported"),
         ("not packed", attached("results.json", "/Filter/FlateDecode", b"not packed"), "cannot be unpacked"),
-        ("no results", attached("results.json", "", b"{\"fishplate\": 1}"), "no results of `certify`"),
+        ("no results", attached("results.json", "", b"{\"fishplate\": 1}"), "not a results file of `certify`"),
         ("not UTF-8", attached("results.json", "", b"\xff\xfe{}"), "not UTF-8"),
     ] {
         let found = if name == "not UTF-8" {

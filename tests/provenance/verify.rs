@@ -248,7 +248,7 @@ fn what_is_no_report_is_refused_with_help() {
         ran.stderr
     };
     assert!(refused("a.pdf", b"hello").contains("is not a PDF"));
-    assert!(refused("a.json", b"{}").contains("no results of `certify`: missing field `fishplate`"));
+    assert!(refused("a.json", b"{}").contains("not a results file of `certify`: missing field `fishplate`"));
     assert!(refused("a.json", b"{\"a\": ").contains("results-unreadable"));
     assert!(refused("a.json", b"").contains("file-empty"));
     assert!(refused("a.json", &[b'['; 100_000]).contains("results-unreadable"));

@@ -119,7 +119,7 @@ fn a_job_resumes() {
     assert_eq!(ran.code, 3);
     // What the program said is shown, with section, exit code and command.
     for word in
-        ["section `S01`: twin failed: exit status: 2", "outside what the model is for", "simulate --vehicle", "small/sections.csv:2:1"]
+        ["section `S01`: twin failed: exit status: 2", "outside the range of the model", "simulate --vehicle", "small/sections.csv:2:1"]
     {
         assert!(ran.stderr.contains(word), "`{word}` is not in {}", ran.stderr);
     }

@@ -94,7 +94,7 @@ fn the_baseline() {
     assert!(ran.stderr.contains("baseline: reference vehicle model is off") && !ran.stderr.contains("warning"), "{}", ran.stderr);
     place.replace("small/vehicle.yaml", "mass: 32000.0", "mass: 40000.0");
     let ran = place.simulated("heavy", &["--baseline"]);
-    for word in ["warning[baseline]", "is not the campaign's simulation", "channels are off by more than 5 %"] {
+    for word in ["warning[baseline]", "does not reproduce the campaign's simulation", "channels deviate by more than 5 %"] {
         assert!(ran.stderr.contains(word), "`{word}` is not in {}", ran.stderr);
     }
 }

@@ -71,7 +71,7 @@ fn effects_that_are_none() {
     wrong("sensor_gain.measurement.gain.Y_1S=0.8", &["unknown-channel", "Y_1S"]);
     wrong("channel_swap", &["channel-missing", "exchanges two channels"]);
     wrong("channel_swap=1 on Y_1R", &["channel-missing", "exchanges two channels"]);
-    wrong("friction=0.2 in zones 3", &["no-such-section", "there is but one record"]);
+    wrong("friction=0.2 in zones 3", &["no-such-section", "only one record is simulated"]);
     wrong("friction=0.2 in places 3", &["unknown-word", "in zones 3, 4"]);
 }
 
