@@ -1,10 +1,10 @@
 //! Confidence intervals of the mean and the standard deviation of normally distributed values, and of a share.
 
-use statrs::distribution::{ChiSquared, Continuous, ContinuousCDF, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::{
-    incomplete_beta::incomplete_beta,
     statistics::{Divisor, mean, standard_deviation},
+    student::student_quantile,
     sum::{sum, sum_of},
 };
 
@@ -74,24 +74,6 @@ pub fn wilson(good: u64, all: u64) -> (f64, f64) {
     let half = NORMAL / (1.0 + square / n) * (p * (1.0 - p) / n + square / (4.0 * n * n)).sqrt();
     // At the ends the two terms cancel, but for rounding.
     (if good == 0 { 0.0 } else { (center - half).max(0.0) }, if good == all { 1.0 } else { (center + half).min(1.0) })
-}
-
-/// The value that Student's t exceeds with probability 1 - `probability`, which is above one half.
-///
-/// The library's is off in the sixth digit from some 10,000 degrees of freedom on: Newton's steps on a tail that is not.
-fn student_quantile(probability: f64, degrees: f64) -> Option<f64> {
-    let student = StudentsT::new(0.0, 1.0, degrees).ok()?;
-    let mut t = student.inverse_cdf(probability);
-    for _ in 0..3 {
-        let square = t * t;
-        let tail = 0.5 * incomplete_beta(degrees / 2.0, 0.5, degrees / (degrees + square), square / (degrees + square));
-        let step = (tail - (1.0 - probability)) / student.pdf(t);
-        if !step.is_finite() {
-            break;
-        }
-        t += step;
-    }
-    Some(t)
 }
 
 impl Interval {

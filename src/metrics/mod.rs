@@ -11,6 +11,8 @@
 //! | [`resample`] | signal over an axis | the signal at other points |
 //! | [`percentile`] | values | order statistics, interpolated |
 //! | [`statistics`], [`interval`] | values | mean, scatter, extremes, regression; confidence intervals |
+//! | [`regression`] | values and regressors | least squares, bounds at a point |
+//! | [`student`] | probability | quantiles of Student's t |
 //! | [`sampling`] | values | how they were recorded: held, saturated, quantised |
 //! | [`pair`] | simulated and measured signal | how well they agree |
 //! | [`random_effects`] | estimates with variances | by how much they scatter beyond these |
@@ -24,9 +26,11 @@ pub mod interval;
 pub mod pair;
 pub mod percentile;
 pub mod random_effects;
+pub mod regression;
 pub mod resample;
 pub mod sampling;
 pub mod statistics;
+pub mod student;
 mod sum;
 pub mod synchronise;
 pub mod window;

@@ -5,6 +5,7 @@ mod hysteresis;
 mod pair;
 mod percentile;
 mod properties;
+mod regression;
 mod resample;
 mod statistics;
 mod vectors;
