@@ -11,6 +11,7 @@
 //! | [`resample`] | signal over an axis | the signal at other points |
 //! | [`percentile`] | values | order statistics, interpolated |
 //! | [`statistics`], [`interval`] | values | mean, scatter, extremes, regression; confidence intervals |
+//! | [`cluster`] | values by site | bounds of any statistic: drawing sites, leaving one out, closed forms |
 //! | [`regression`] | values and regressors | least squares, bounds at a point |
 //! | [`student`] | probability | quantiles of Student's t |
 //! | [`sampling`] | values | how they were recorded: held, saturated, quantised |
@@ -19,6 +20,7 @@
 //! | [`synchronise`] | signals of two records | by how much one lies ahead of the other |
 //! | [`hysteresis`] | two loops of output over input | how well they agree, branch by branch |
 
+pub mod cluster;
 pub mod filter;
 pub mod hysteresis;
 mod incomplete_beta;

@@ -1,5 +1,6 @@
 //! The metrics against independent sources: SciPy and NumPy (`tests/cases/scipy`, `tests/cases/vectors`), closed forms.
 
+mod cluster;
 mod filter;
 mod hysteresis;
 mod pair;

@@ -1,0 +1,318 @@
+//! Confidence of statistics of values that are independent between sites, not within one.
+//!
+//! A site is what was tested in one place: a section with its repeats and all its signals. Values come grouped by site. Four ways
+//! to a bound: drawing sites ([`bootstrap`]), leaving one out ([`jackknife`]), and closed forms of the mean ([`Mean`]) and the
+//! standard deviation ([`StandardDeviation`]). What share of true values they hold is in `docs/definitions.md`.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::{
+    interval::Interval,
+    percentile::{Method, percentile},
+    statistics::{self, Divisor},
+    student::student_quantile,
+    sum::{sum, sum_of},
+};
+
+/// Draws of a bootstrap: percentiles of 2.5 and 97.5 % have 50 of them beyond.
+pub const REPLICATES: usize = 2000;
+
+/// Where the draws start: any number, the same for all that are to be compared.
+pub const SEED: u64 = 14363;
+
+/// Values below which a statistic lies with some probability.
+pub trait Bounds {
+    /// What the true value stays below with this probability (0 to 1), in the unit of the statistic.
+    ///
+    /// # Errors
+    /// A probability not between 0 and 1; a bound beyond the range of numbers.
+    fn bound(&self, probability: f64) -> Result<f64, ClusterError>;
+
+    /// From the bound that leaves half of what the confidence leaves to the one that leaves it above.
+    ///
+    /// # Errors
+    /// As [`Self::bound`].
+    fn interval(&self, confidence: f64) -> Result<Interval, ClusterError> {
+        let upper = 0.5 + confidence / 2.0;
+        Ok(Interval { low: self.bound(1.0 - upper)?, high: self.bound(upper)? })
+    }
+}
+
+/// Values by site, in the order in which the sites first appear.
+///
+/// # Errors
+/// Lists of different length, fewer than two sites.
+pub fn by_site<T: Copy>(values: &[T], site: &[usize]) -> Result<Vec<Vec<T>>, ClusterError> {
+    if values.len() != site.len() {
+        return Err(ClusterError::Length { values: values.len(), sites: site.len() });
+    }
+    let mut numbers: HashMap<usize, usize> = HashMap::new();
+    let mut groups: Vec<Vec<T>> = Vec::new();
+    for (value, site) in values.iter().zip(site) {
+        let at = *numbers.entry(*site).or_insert(groups.len());
+        if at == groups.len() {
+            groups.push(Vec::new());
+        }
+        groups[at].push(*value);
+    }
+    enough(groups.len())?;
+    Ok(groups)
+}
+
+/// Draws of as many sites as there are, with replacement; all statistics of a campaign use the same.
+#[derive(Clone, Debug)]
+pub struct Draws {
+    sites: usize,
+    /// Draw by draw, from 0.
+    drawn: Vec<usize>,
+}
+
+impl Draws {
+    /// `replicates` draws of `sites` sites, by SplitMix64 from `seed`: the same on every machine.
+    ///
+    /// # Errors
+    /// Fewer than two sites, no draw.
+    pub fn new(sites: usize, replicates: usize, seed: u64) -> Result<Self, ClusterError> {
+        enough(sites)?;
+        if replicates == 0 {
+            return Err(ClusterError::NoDraw);
+        }
+        let mut generator = SplitMix64(seed);
+        let drawn = (0..sites * replicates).map(|_| (generator.next() * sites as f64) as usize).collect();
+        Ok(Self { sites, drawn })
+    }
+
+    /// The sites of each draw.
+    pub fn iter(&self) -> impl Iterator<Item = &[usize]> {
+        self.drawn.chunks(self.sites)
+    }
+}
+
+/// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+struct SplitMix64(u64);
+
+impl SplitMix64 {
+    /// Uniform from 0 to below 1.
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^= z >> 31;
+        (z >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A statistic of each draw, sorted. Its bounds are percentiles (type 7).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Replicates(Vec<f64>);
+
+impl Replicates {
+    pub fn sorted(&self) -> &[f64] {
+        &self.0
+    }
+}
+
+impl Bounds for Replicates {
+    fn bound(&self, probability: f64) -> Result<f64, ClusterError> {
+        inside(probability)?;
+        percentile(&self.0, 100.0 * probability, Method::Linear).map_err(|_| ClusterError::OutOfRange)
+    }
+}
+
+/// A statistic of the values of the drawn sites, draw by draw (Efron and Tibshirani, "An Introduction to the Bootstrap", 1993,
+/// chapters 8 and 13).
+///
+/// # Errors
+/// Not as many sites as the draws are of; a draw of which the statistic is not defined.
+pub fn bootstrap<T: Copy>(sites: &[Vec<T>], draws: &Draws, statistic: impl Fn(&[T]) -> Option<f64>) -> Result<Replicates, ClusterError> {
+    if sites.len() != draws.sites {
+        return Err(ClusterError::OtherSites { sites: sites.len(), draws: draws.sites });
+    }
+    let mut replicates = Vec::with_capacity(draws.drawn.len() / draws.sites);
+    let mut values = Vec::new();
+    for (number, draw) in draws.iter().enumerate() {
+        values.clear();
+        draw.iter().for_each(|site| values.extend_from_slice(&sites[*site]));
+        let of = || ClusterError::Undefined { of: Part::Draw(number + 1) };
+        replicates.push(statistic(&values).filter(|value| value.is_finite()).ok_or_else(of)?);
+    }
+    replicates.sort_unstable_by(f64::total_cmp);
+    Ok(Replicates(replicates))
+}
+
+/// A statistic with its standard error. Its bounds are those of Student's t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    pub value: f64,
+    pub standard_error: f64,
+    /// Sites less one.
+    pub degrees: f64,
+}
+
+impl Bounds for Estimate {
+    fn bound(&self, probability: f64) -> Result<f64, ClusterError> {
+        inside(probability)?;
+        let t = student_quantile(probability, self.degrees).ok_or(ClusterError::OutOfRange)?;
+        in_range(self.value + t * self.standard_error)
+    }
+}
+
+/// The statistic of all values, and its standard error from leaving out one site after the other: root of (G - 1)/G times the sum
+/// of squares about their mean (Efron and Tibshirani 1993, chapter 11). The lower bound of a standard deviation may be negative.
+///
+/// # Errors
+/// Fewer than two sites; a statistic that is not defined, of all values or without a site.
+pub fn jackknife<T: Copy>(sites: &[Vec<T>], statistic: impl Fn(&[T]) -> Option<f64>) -> Result<Estimate, ClusterError> {
+    enough(sites.len())?;
+    let of = |left_out: Option<usize>| {
+        let kept = sites.iter().enumerate().filter(|(site, _)| Some(*site) != left_out);
+        let values: Vec<T> = kept.flat_map(|(_, values)| values.iter().copied()).collect();
+        let of = left_out.map_or(Part::All, |site| Part::Without(site + 1));
+        statistic(&values).filter(|value| value.is_finite()).ok_or(ClusterError::Undefined { of })
+    };
+    let value = of(None)?;
+    let without = (0..sites.len()).map(|site| of(Some(site))).collect::<Result<Vec<f64>, _>>()?;
+    let variance = statistics::variance(&without, Divisor::Population).ok_or(ClusterError::OutOfRange)?;
+    let degrees = sites.len() as f64 - 1.0;
+    Ok(Estimate { value, standard_error: in_range((degrees * variance).sqrt())?, degrees })
+}
+
+/// The mean of all values by its closed form: variance G/(G - 1) sum(S_j^2)/n^2, S_j being the sum of a site's deviations from it
+/// (Liang and Zeger, Biometrika 73, 1986). With one value per site this is the usual interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mean {
+    pub estimate: Estimate,
+    /// How many independent values would say as much of the mean: variance of the values over that of the mean, but not more
+    /// than there are values.
+    pub effective_values: f64,
+    /// Variance of the mean over what it were if all values were independent (Kish, "Survey Sampling", 1965).
+    pub design_effect: f64,
+}
+
+impl Mean {
+    /// # Errors
+    /// Fewer than two sites; sums beyond the range of numbers, or a value that is not finite.
+    pub fn of(sites: &[Vec<f64>]) -> Result<Self, ClusterError> {
+        enough(sites.len())?;
+        let values = sites.concat();
+        let out_of_range = || ClusterError::OutOfRange;
+        let mean = statistics::mean(&values).ok_or_else(out_of_range)?;
+        let of_values = statistics::variance(&values, Divisor::Sample).ok_or_else(out_of_range)?;
+        let sums: Vec<f64> = sites.iter().map(|values| sum_of(values, |value| value - mean)).collect();
+        let (groups, count) = (sites.len() as f64, values.len() as f64);
+        // Of equal values nothing but rounding is left.
+        let squares = if of_values > 0.0 { sum_of(&sums, |sum| sum * sum) } else { 0.0 };
+        let standard_error = in_range((groups / (groups - 1.0) * squares).sqrt() / count)?;
+        let variance = standard_error * standard_error;
+        Ok(Self {
+            estimate: Estimate { value: mean, standard_error, degrees: groups - 1.0 },
+            effective_values: if variance > 0.0 { count.min(of_values / variance) } else { count },
+            design_effect: if of_values > 0.0 { count * variance / of_values } else { 1.0 },
+        })
+    }
+}
+
+impl Bounds for Mean {
+    fn bound(&self, probability: f64) -> Result<f64, ClusterError> {
+        self.estimate.bound(probability)
+    }
+}
+
+/// The standard deviation (n - 1) of all values by a closed form: its square behaves as chi-square with
+/// nu = 2 sigma^4/var(sigma^2) degrees of freedom, sigma^2 = sum(V_j)/n and var(sigma^2) = G/(G - 1) sum((V_j - n_j sigma^2)^2)/n^2,
+/// V_j being the sum of squares of a site's deviations from the mean (moments after Satterthwaite, Biometrics Bulletin 2, 1946).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StandardDeviation {
+    pub value: f64,
+    /// `None`: sites of equal sums of squares, of which the scatter says nothing; the bounds are the value itself.
+    pub degrees: Option<f64>,
+}
+
+impl StandardDeviation {
+    /// # Errors
+    /// As [`Mean::of`].
+    pub fn of(sites: &[Vec<f64>]) -> Result<Self, ClusterError> {
+        enough(sites.len())?;
+        let values = sites.concat();
+        let out_of_range = || ClusterError::OutOfRange;
+        let mean = statistics::mean(&values).ok_or_else(out_of_range)?;
+        let value = statistics::standard_deviation(&values, Divisor::Sample).ok_or_else(out_of_range)?;
+        if value == 0.0 {
+            return Ok(Self { value, degrees: None });
+        }
+        let squares: Vec<f64> = sites.iter().map(|values| sum_of(values, |value| (value - mean) * (value - mean))).collect();
+        let (groups, count) = (sites.len() as f64, values.len() as f64);
+        let of_one = in_range(sum(&squares) / count)?;
+        let beyond: Vec<f64> = squares.iter().zip(sites).map(|(sum, values)| sum - values.len() as f64 * of_one).collect();
+        let variance = in_range(groups / (groups - 1.0) * sum_of(&beyond, |part| part * part) / (count * count))?;
+        let degrees = 2.0 * of_one * of_one / variance;
+        Ok(Self { value, degrees: (degrees < MOST_DEGREES).then_some(degrees) })
+    }
+}
+
+/// From here on the scatter of the sites' sums of squares is rounding, and an interval narrower than 1e-6 of the value a point.
+const MOST_DEGREES: f64 = 1e13;
+
+impl Bounds for StandardDeviation {
+    fn bound(&self, probability: f64) -> Result<f64, ClusterError> {
+        inside(probability)?;
+        let Some(degrees) = self.degrees else { return Ok(self.value) };
+        let chi_squared = ChiSquared::new(degrees).map_err(|_| ClusterError::OutOfRange)?;
+        in_range(self.value * (degrees / chi_squared.inverse_cdf(1.0 - probability)).sqrt())
+    }
+}
+
+fn enough(sites: usize) -> Result<(), ClusterError> {
+    if sites < 2 { Err(ClusterError::TooFew { sites }) } else { Ok(()) }
+}
+
+fn inside(probability: f64) -> Result<(), ClusterError> {
+    if probability > 0.0 && probability < 1.0 { Ok(()) } else { Err(ClusterError::Probability { probability }) }
+}
+
+fn in_range(value: f64) -> Result<f64, ClusterError> {
+    if value.is_finite() { Ok(value) } else { Err(ClusterError::OutOfRange) }
+}
+
+/// Of what a statistic is taken. Counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    All,
+    Draw(usize),
+    Without(usize),
+}
+
+/// Why there is no bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ClusterError {
+    Length { values: usize, sites: usize },
+    TooFew { sites: usize },
+    NoDraw,
+    OtherSites { sites: usize, draws: usize },
+    Undefined { of: Part },
+    Probability { probability: f64 },
+    OutOfRange,
+}
+
+impl fmt::Display for ClusterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Length { values, sites } => write!(f, "{values} values have {sites} numbers of sites"),
+            Self::TooFew { sites: 0 } => f.write_str("there is no site: at least 2 needed"),
+            Self::TooFew { .. } => f.write_str("there is 1 site: at least 2 needed"),
+            Self::NoDraw => f.write_str("no sites are drawn: at least one draw is needed"),
+            Self::OtherSites { sites, draws } => write!(f, "the values are of {sites} sites, the draws of {draws}"),
+            Self::Undefined { of: Part::All } => f.write_str("the statistic is not defined for these values"),
+            Self::Undefined { of: Part::Draw(number) } => write!(f, "the statistic is not defined for draw {number} of the sites"),
+            Self::Undefined { of: Part::Without(site) } => write!(f, "the statistic is not defined without site {site}"),
+            Self::Probability { probability } => write!(f, "a probability lies between 0 and 1, not at {probability}"),
+            Self::OutOfRange => f.write_str("a value is not finite, or sums exceed the range of numbers"),
+        }
+    }
+}
+
+impl std::error::Error for ClusterError {}
