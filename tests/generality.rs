@@ -274,6 +274,36 @@ fn spatial_filters_and_sliding_windows_run() {
     near(statistic(&found, "SigmaY_rms", "std", "all").limit, 0.1 * (10.0 + 2.0 / 3.0 * 60.0));
 }
 
+/// Lines of equal slope have equal variances: the probability is 1, and what is left are the means. A window `a <= x < a + 2 m` of 20
+/// samples has its mean 0.95 m behind `a`.
+#[test]
+fn distributions_of_samples_windows_and_steps() {
+    let (compiled, campaign, folder) = prepared("distributions.fp", &[]);
+    // The simulation of S2 has twice as many samples.
+    let mut record = "time [s],distance [m],Y_1R [kN],Y_1L [kN],Y_2R [kN],Y_2L [kN]\n".to_string();
+    for sample in 0..=3600 {
+        let (time, x) = (f64::from(sample) * 0.0025, f64::from(sample) * 0.05);
+        let (r, l) = (5.0 + SLOPE * (x - START), -18.0 + SLOPE * (x - START));
+        writeln!(record, "{time},{x},{r},{l},{r},{l}").expect("a string");
+    }
+    fs::write(folder.path().join("simulation/S2.csv"), record).expect("a file");
+    let found =
+        certify(&compiled, &campaign, Settings { traces: 0 }, &|_| {}).unwrap_or_else(|problems| panic!("{}", problems.render(false)));
+    let of = |id: &str, signal: &str| values(&found, id).iter().find(|value| value.0 == "S2" && value.1 == signal).expect("a value").2;
+    let agreement = |behind: f64| {
+        let measured = 4.0 + SLOPE * behind;
+        1.0 - 1.0 / (measured + 1.0)
+    };
+    // What the ends of a filtered record leave in the section is below 1e-6 of it.
+    assert!((of("matching", "Y_1R") - agreement(60.0)).abs() < 1e-6);
+    // With steps of 0.05 m the simulated windows have 40 samples, and their means lie 0.975 m behind their starts.
+    let (measured, simulated) = (4.0 + SLOPE * 59.95, 5.0 + SLOPE * 59.975);
+    assert!((of("matching_of_windows", "Y_1R") - (1.0 - (simulated - measured) / simulated)).abs() < 1e-6);
+    assert!((of("area", "Y_2R") - 1.0).abs() < 1e-9);
+    assert!((of("area_as_recorded", "Y_2R") - 1.0).abs() < 1e-3);
+    assert_eq!(values(&found, "area_as_recorded").len(), 8);
+}
+
 /// An offset d is added to the axis of the measurement: at a place x it has what it had at x - d. On lines
 /// that rise by `SLOPE`, every measured value falls by `SLOPE` d, and the simulation stays.
 #[test]

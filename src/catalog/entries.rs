@@ -69,7 +69,13 @@ pub fn entries() -> Vec<Entry> {
             _ => "(signal<D>, signal<D>) -> plain number",
         };
         let best = Some(entry.best.in_words());
-        all.push(Entry { source: Some(entry.source), best, ..Entry::new("metric", entry.form.in_words(), signature, entry.about) });
+        let options = options(&entry.form);
+        all.push(Entry {
+            source: Some(entry.source),
+            best,
+            options,
+            ..Entry::new("metric", entry.form.in_words(), signature, entry.about)
+        });
     }
     for (name, expression) in DIFFERENCES {
         let best = Some(Best::Near(0.0).in_words());
@@ -89,7 +95,10 @@ pub fn entries() -> Vec<Entry> {
 }
 
 fn options(form: &Form) -> Vec<String> {
-    let numbers = form.numbers.iter().map(|(name, default)| format!("`{name}` (default {default})"));
+    let numbers = form.numbers.iter().map(|(name, default)| match default {
+        Some(default) => format!("`{name}` (default {default})"),
+        None => format!("`<number> {name}`"),
+    });
     let choices = form.choices.iter().map(|choice| {
         let words: Vec<String> = choice.words.iter().map(|word| format!("`{word}`")).collect();
         words.join(" | ")

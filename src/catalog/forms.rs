@@ -29,8 +29,8 @@ pub struct Choice {
 #[derive(Clone, Copy, Debug)]
 pub struct Form {
     pub head: &'static [Part],
-    /// Options of a word and a number, with the number's default: `order 4`.
-    pub numbers: &'static [(&'static str, f64)],
+    /// Options of a word and a number, in either order, with the number's default where there is one: `order 4`, `50 points`.
+    pub numbers: &'static [(&'static str, Option<f64>)],
     pub choices: &'static [Choice],
 }
 

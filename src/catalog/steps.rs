@@ -22,7 +22,7 @@ pub struct StepEntry {
     pub about: &'static str,
 }
 
-const BUTTERWORTH_NUMBERS: &[(&str, f64)] = &[("order", 4.0)];
+const BUTTERWORTH_NUMBERS: &[(&str, Option<f64>)] = &[("order", Some(4.0))];
 const BUTTERWORTH_CHOICES: &[Choice] = &[
     Choice {
         name: "phase",

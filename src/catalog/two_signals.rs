@@ -44,23 +44,39 @@ impl Best {
     }
 }
 
+/// An entry, and the number of points that both distributions are taken at, where the wording has one.
 #[derive(Clone, Copy, Debug)]
-pub struct Metric(pub &'static MetricEntry);
+pub struct Metric(pub &'static MetricEntry, pub Option<usize>);
 
 impl Metric {
     /// A metric whose wording is one word, so that expressions can use it as a name.
     pub fn named(word: &str) -> Option<Self> {
-        METRICS.iter().find(|entry| matches!(entry.form.head, [Part::Word(only)] if *only == word)).map(Self)
+        METRICS.iter().find(|entry| matches!(entry.form.head, [Part::Word(only)] if *only == word)).map(|entry| Self(entry, None))
     }
 
     pub fn of_one_word() -> impl Iterator<Item = &'static str> {
         METRICS.iter().filter_map(|entry| if let [Part::Word(only)] = entry.form.head { Some(*only) } else { None })
     }
+
+    /// Whether the simulated signal is brought onto the points of the measured one before. Distributions need that nowhere, and are
+    /// taken of windows and resampled signals as these are.
+    pub fn on_common_points(self, chain_keeps_samples: bool) -> bool {
+        self.0.common_points && (chain_keeps_samples || !self.0.of_distributions)
+    }
+
+    /// # Errors
+    /// The reason where it is not defined.
+    pub fn run(self, pair: &Pair<'_>) -> Result<f64, String> {
+        let Some(points) = self.1 else { return (self.0.run)(pair) };
+        let of = |signal: &[f64]| pair::quantiles(signal, points).map_err(|undefined| undefined.to_string());
+        let (simulated, measured) = (of(pair.simulated)?, of(pair.measured)?);
+        (self.0.run)(&Pair { simulated: &simulated, measured: &measured, ..*pair })
+    }
 }
 
 impl PartialEq for Metric {
     fn eq(&self, other: &Self) -> bool {
-        self.0.form.head == other.0.form.head
+        self.0.form.head == other.0.form.head && self.1 == other.1
     }
 }
 
@@ -71,6 +87,8 @@ pub struct MetricEntry {
     pub gives: fn(Dimension, Dimension) -> Dimension,
     /// Whether the simulated signal is brought onto the points of the measured one before.
     pub common_points: bool,
+    /// Whether it looks at the values regardless of their order, so that the sides may have different numbers of them.
+    pub of_distributions: bool,
     pub best: Best,
     pub about: &'static str,
     pub source: &'static str,
@@ -88,6 +106,7 @@ macro_rules! ratio {
             form: form($head),
             gives: |_, _| Dimension::ONE,
             common_points: true,
+            of_distributions: false,
             best: $best,
             about: $about,
             source: $source,
@@ -101,6 +120,9 @@ macro_rules! of_signal {
         MetricEntry { gives: |signal, _| signal, common_points: $common, ..ratio!($head, Best::Least(0.0), $about, $source, $run) }
     };
 }
+
+/// Option of metrics of distributions.
+const POINTS: &[(&str, Option<f64>)] = &[("points", None)];
 
 const SG: &str = "Sprague & Geers 2004";
 const RUSSELL: &str = "Russell 1997";
@@ -168,6 +190,7 @@ pub const METRICS: &[MetricEntry] = &[
         form: form(&[Part::Word("shift")]),
         gives: |_, axis| axis,
         common_points: true,
+        of_distributions: false,
         best: Best::Near(0.0),
         about: "What is to be added to the measured axis for the best correlation, up to a quarter of the section.",
         source: "definition",
@@ -177,6 +200,7 @@ pub const METRICS: &[MetricEntry] = &[
         form: form(&[Part::Word("drift")]),
         gives: |signal, _| signal,
         common_points: true,
+        of_distributions: false,
         best: Best::Near(0.0),
         about: "Rise of the regression line of measured less simulated samples over the section.",
         source: "definition",
@@ -189,13 +213,17 @@ pub const METRICS: &[MetricEntry] = &[
         "Kraft et al. 2013, as described by Goetz & Polach",
         pair::kraft_misfit
     ),
-    ratio!(
-        &[Part::Word("matching"), Part::Word("probability")],
-        Best::Greatest(1.0),
-        "Probability of equal variances (F test) times the agreement of the means.",
-        "Bogojevic & Lucanin 2014, as described by Goetz & Polach",
-        pair::bogojevic
-    ),
+    MetricEntry {
+        form: Form { numbers: POINTS, ..form(&[Part::Word("matching"), Part::Word("probability")]) },
+        of_distributions: true,
+        ..ratio!(
+            &[],
+            Best::Greatest(1.0),
+            "Probability of equal variances (F test) times the agreement of the means.",
+            "Bogojevic & Lucanin 2014, as described by Goetz & Polach",
+            pair::bogojevic
+        )
+    },
     of_signal!(
         &[Part::Word("root-mean-square"), Part::Word("difference")],
         true,
@@ -203,17 +231,16 @@ pub const METRICS: &[MetricEntry] = &[
         "definition",
         pair::root_mean_square_error
     ),
-    of_signal!(
-        &[Part::Word("area"), Part::Word("between"), Part::Word("distributions")],
-        false,
-        "Area between the two cumulative distributions of the samples.",
-        "Ferson, Oberkampf & Ginzburg 2008",
-        pair::area_metric
-    ),
+    MetricEntry {
+        form: Form { numbers: POINTS, ..form(&[Part::Word("area"), Part::Word("between"), Part::Word("distributions")]) },
+        of_distributions: true,
+        ..of_signal!(&[], false, "Area between the two cumulative distributions of the samples.", "Ferson, Oberkampf & Ginzburg 2008", area)
+    },
     MetricEntry {
         form: form(&[Part::Word("hysteresis"), Part::Word("maximum"), Part::Word("over"), Part::Signal("axis")]),
         gives: |signal, _| signal,
         common_points: false,
+        of_distributions: false,
         best: Best::Least(0.0),
         about: "Largest matching error of the loop the signal draws over another: simulated against measured on the same branch.",
         source: "EN 15273-2, stationary sway test",
@@ -223,12 +250,18 @@ pub const METRICS: &[MetricEntry] = &[
         form: form(&[Part::Word("hysteresis"), Part::Word("mean"), Part::Word("over"), Part::Signal("axis")]),
         gives: |signal, _| signal,
         common_points: false,
+        of_distributions: false,
         best: Best::Least(0.0),
         about: "Mean matching error of the loop the signal draws over another: simulated against measured on the same branch.",
         source: "EN 15273-2, stationary sway test",
         run: |p| loop_error(p).map(|error| error.mean),
     },
 ];
+
+/// Of equal counts without a walk through both distributions.
+fn area(simulated: &[f64], measured: &[f64]) -> Result<f64, pair::Undefined> {
+    if simulated.len() == measured.len() { pair::area_metric(simulated, measured) } else { pair::area_between(simulated, measured) }
+}
 
 /// Share of the input's range by which it must turn back to count as a turning point.
 const TURNING: f64 = 0.05;

@@ -60,7 +60,7 @@ impl Checker<'_> {
             };
             let otherwise = otherwise?;
             if let (Test::Require(requirement), Some(step)) = (&test, chain.iter().find(|step| !step.kind.keeps_samples()))
-                && requirement.inputs.iter().any(|input| matches!(input.taken, Taken::Compared(metric) if metric.0.common_points))
+                && requirement.inputs.iter().any(|input| matches!(input.taken, Taken::Compared(metric) if metric.on_common_points(false)))
             {
                 self.problems.push(
                     Problem::error("metric-of-window", "a metric that compares samples cannot follow a window or resampling")

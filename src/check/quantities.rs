@@ -128,7 +128,7 @@ impl Checker<'_> {
                 .map(|(_, _, at)| self.signal_where(&over.phrase, &over.text, at, &over.text.span))
                 .collect::<Option<Vec<_>>>()?,
         };
-        if let (true, Some(step)) = (metric.0.common_points, chain?.iter().find(|step| !step.kind.keeps_samples())) {
+        if let (true, Some(step)) = (metric.on_common_points(false), chain?.iter().find(|step| !step.kind.keeps_samples())) {
             self.problems.push(
                 Problem::error("metric-of-window", "this metric compares samples and cannot follow a window or resampling")
                     .at(&field.value.span)

@@ -21,11 +21,16 @@ const FINEST_LENGTH: f64 = 1e-4;
 /// Finest step of a grid along the time, in s: records of test runs have at most some 10 kHz.
 const FINEST_TIME: f64 = 1e-5;
 
+/// Points of a distribution: one has no scatter, and with more than that a record has samples they only cost time.
+const LEAST_POINTS: f64 = 2.0;
+const MOST_POINTS: f64 = 10_000.0;
+
 /// What the slots and options of a wording were filled with.
 #[derive(Debug, Default)]
 pub(super) struct Filled {
     numbers: Vec<(f64, Dimension, Span)>,
-    options: Vec<f64>,
+    /// In the order of the wording; `None` where neither said nor with a default.
+    options: Vec<Option<f64>>,
     choices: Vec<&'static str>,
     /// What an option was said for, so that it is said once.
     said: Vec<(&'static str, Span)>,
@@ -193,8 +198,8 @@ impl Checker<'_> {
         let span = text.place(step.range.clone());
         let index = self.find_form(&step.node, &span, "metric", METRICS.iter().map(|entry| &entry.form))?;
         let entry = &METRICS[index];
-        if let Some(extra) = step.node.parts.get(1).and_then(|part| part.first()) {
-            self.problems.push(Problem::error("unknown-option", "a metric has no options").at(&text.place(extra.range.clone())));
+        if let Some(extra) = step.node.parts.get(1).and_then(|part| part.first()).filter(|_| entry.form.numbers.is_empty()) {
+            self.problems.push(Problem::error("unknown-option", "this metric has no options").at(&text.place(extra.range.clone())));
             return None;
         }
         if let Some(condition) = &step.node.when {
@@ -211,7 +216,13 @@ impl Checker<'_> {
                 Some(Written { phrase, text: text.clone() })
             }
         };
-        Some((Metric(entry), over))
+        let points = self.fill_form(&entry.form, &step.node, text, &span)?.options.first().copied().flatten();
+        if let Some(points) = points.filter(|points| points.fract() != 0.0 || !(LEAST_POINTS..=MOST_POINTS).contains(points)) {
+            let says = format!("the points are a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}");
+            self.problems.push(Problem::error("out-of-range", says).at(&span));
+            return None;
+        }
+        Some((Metric(entry, points.map(|points| points as usize)), over))
     }
 
     /// Which wording the words fit: as many fixed words in place as possible.
@@ -320,16 +331,16 @@ impl Checker<'_> {
         None
     }
 
-    /// `order 4`, `zero-phase`, or the name of a choice parameter.
+    /// `order 4`, `50 points`, `zero-phase`, or the name of a choice parameter.
     fn option(&mut self, form: &Form, part: &[At<Item>], text: &Text, span: &Span, filled: &mut Filled) -> Option<()> {
         let place = part.first().map_or_else(|| span.clone(), |first| text.place(first.range.start..part[part.len() - 1].range.end));
         match part {
-            [At { node: Item::Word(word), .. }, value] => {
+            [At { node: Item::Word(word), .. }, value] | [value @ At { node: Item::Value(_), .. }, At { node: Item::Word(word), .. }] => {
                 if let Some(index) = form.numbers.iter().position(|(name, _)| name == word) {
                     self.note(filled.option_said(form.numbers[index].0, &place))?;
                     let (number, dimension) = self.constant_phrase(&item_phrase(value), text)?;
                     self.suits(word, dimension == Dimension::ONE, "a plain number", dimension, &place)?;
-                    filled.options[index] = number;
+                    filled.options[index] = Some(number);
                     return Some(());
                 }
             }
@@ -348,7 +359,8 @@ impl Checker<'_> {
         let mut known: Vec<String> = form.numbers.iter().map(|(name, _)| format!("{name} <number>")).collect();
         known.extend(form.choices.iter().flat_map(|choice| choice.words.iter().map(|word| (*word).to_string())));
         let said = part.first().map_or(String::new(), |item| if let Item::Word(word) = &item.node { word.clone() } else { String::new() });
-        let problem = Problem::error("unknown-option", "this is no option of the step").at(&place);
+        let what = if METRICS.iter().any(|entry| entry.form.head == form.head) { "metric" } else { "step" };
+        let problem = Problem::error("unknown-option", format!("this is no option of the {what}")).at(&place);
         self.problems.push(match nearest(&said, known.iter().map(String::as_str)) {
             Some(near) => problem.help(format!("did you mean `{near}`?")),
             None if known.is_empty() => problem.help("it has no options"),
@@ -402,7 +414,7 @@ impl Checker<'_> {
                         return None;
                     }
                 }
-                let order = filled.options[0];
+                let order = filled.options.first().copied().flatten()?;
                 if order.fract() != 0.0 || !(1.0..=20.0).contains(&order) {
                     self.problems.push(
                         Problem::error("out-of-range", format!("the order is a whole number from 1 to 20, this is {order}")).at(span),

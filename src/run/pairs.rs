@@ -181,10 +181,16 @@ fn wanted_of(work: &Work<'_>, index: usize, signal: &SignalNodes, wanted: &mut B
     match &work.plan.quantities[index].evaluation {
         Evaluation::Sides { .. } => wanted.extend(signal.inputs.iter().map(|input| input.node)),
         Evaluation::Metric { metric, .. } => {
-            wanted.insert(if metric.0.common_points { signal.filtered } else { signal.processed });
+            let common = metric.on_common_points(keeps_samples(&work.plan.quantities[index]));
+            wanted.insert(if common { signal.filtered } else { signal.processed });
             wanted.extend(signal.over);
         }
     }
+}
+
+/// Whether the samples of the record are still there after the quantity's filter.
+fn keeps_samples(quantity: &Quantity) -> bool {
+    quantity.chain.iter().all(|step| step.kind.keeps_samples())
 }
 
 /// One pair and what each record gave, the simulated one first.
@@ -308,18 +314,18 @@ impl Sides<'_> {
                 Ok(PairSi { simulated: Some(s), measured: Some(m), difference, samples: self.samples(work, nodes) })
             }
             Evaluation::Metric { metric, .. } => {
-                let node = if metric.0.common_points { nodes.filtered } else { nodes.processed };
-                let (difference, samples) = self.compared(*metric, node, nodes.over)?;
+                let common = metric.on_common_points(keeps_samples(quantity));
+                let node = if common { nodes.filtered } else { nodes.processed };
+                let (difference, samples) = self.compared(*metric, common, node, nodes.over)?;
                 Ok(PairSi { simulated: None, measured: None, difference, samples })
             }
         }
     }
 
     /// A metric of both signals of a node, and of how many measured samples.
-    fn compared(&self, metric: Metric, node: NodeId, over: Option<NodeId>) -> Result<(f64, usize), String> {
-        let entry = metric.0;
+    fn compared(&self, metric: Metric, on_common_points: bool, node: NodeId, over: Option<NodeId>) -> Result<(f64, usize), String> {
         let (simulated, measured) = (samples_of(self.simulated, node)?, samples_of(self.measured, node)?);
-        let common = if entry.common_points {
+        let common = if on_common_points {
             Common::of(simulated, measured, self.extent)?
         } else {
             Common { axis: Vec::new(), simulated: simulated.values.to_vec(), measured: measured.values.to_vec() }
@@ -330,7 +336,7 @@ impl Sides<'_> {
         };
         let over = over.map(|(s, m)| (s.values.as_slice(), m.values.as_slice()));
         let pair = Pair { axis: &common.axis, simulated: &common.simulated, measured: &common.measured, over };
-        Ok(((entry.run)(&pair)?, common.measured.len()))
+        Ok((metric.run(&pair)?, common.measured.len()))
     }
 
     /// The samples of a node on both sides: simulated, measured.
@@ -340,7 +346,7 @@ impl Sides<'_> {
 
     pub fn input(&self, input: &InputNode, side: InputSide) -> Result<f64, String> {
         if let Some(metric) = input.metric {
-            return self.compared(metric, input.node, None).map(|(value, _)| value);
+            return self.compared(metric, metric.0.common_points, input.node, None).map(|(value, _)| value);
         }
         let of = if input.side.resolve(side) == InputSide::Measured { self.measured } else { self.simulated };
         number_of(of, input.node)

@@ -80,7 +80,10 @@ fn block(kind: &Kind) -> String {
 
 fn steps() -> String {
     let rows = STEPS.iter().map(|entry| {
-        let numbers = entry.form.numbers.iter().map(|(name, default)| format!("{} (unless said: {default})", code(&format!("{name} …"))));
+        let numbers = entry.form.numbers.iter().map(|(name, default)| {
+            let unless = default.map_or_else(String::new, |default| format!(" (unless said: {default})"));
+            format!("{}{unless}", code(&format!("{name} …")))
+        });
         let choices = entry.form.choices.iter().map(|choice| choice.words.iter().map(|word| code(word)).collect::<Vec<_>>().join(" or "));
         vec![code(&entry.form.in_words()), entry.about.to_string(), numbers.chain(choices).collect::<Vec<_>>().join("; ")]
     });
@@ -104,7 +107,8 @@ fn registry(kind: &str) -> String {
     let sourced = entries.iter().any(|entry| entry.source.is_some());
     let directed = entries.iter().any(|entry| entry.best.is_some());
     let rows = entries.iter().map(|entry| {
-        let mut row = vec![code(&entry.wording), code(entry.signature), entry.about.clone()];
+        let options: String = entry.options.iter().map(|option| format!(" Option: {option}.")).collect();
+        let mut row = vec![code(&entry.wording), code(entry.signature), format!("{}{options}", entry.about)];
         if directed {
             row.push(entry.best.clone().unwrap_or_else(|| "that of its values".into()));
         }

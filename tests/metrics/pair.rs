@@ -118,9 +118,12 @@ fn undefined_says_why() {
         let reason = result.expect_err("undefined").reason;
         assert!(reason.contains(text), "{reason}");
     };
-    for (metric, _) in METRICS {
+    for (metric, place) in METRICS {
         says(metric(&[], &[]), "no samples");
-        says(metric(&one, &one[..2]), "the simulated signal has 3 samples, the measured 2");
+        // Of distributions, which need not have equally many values.
+        if place != "/bogojevic/mean_term" {
+            says(metric(&one, &one[..2]), "the simulated signal has 3 samples, the measured 2");
+        }
         says(metric(&ramp, &[1.0, f64::NAN, 2.0]), "sample 2 of the measured signal is not finite");
         says(metric(&[f64::INFINITY, 0.0, 0.0], &ramp), "sample 1 of the simulated signal");
     }
@@ -145,4 +148,37 @@ fn a_small_angle_keeps_its_digits() {
     let measured = [1.0, 0.0];
     let simulated = [1.0, 1e-9];
     close(sprague_geers_phase(&simulated, &measured).expect("defined") * std::f64::consts::PI * 1e9, 1.0, 1e-12);
+}
+
+/// NumPy and SciPy, `tests/cases/vectors/make_distributions.py`: three sections, both sides at 20, 50 and 100 points.
+#[test]
+fn distributions_at_points() {
+    for case in json("vectors/distributions.json").as_array().expect("a list") {
+        let (simulated, measured) = (numbers(&case["simulated"]), numbers(&case["measured"]));
+        close(area_metric(&simulated, &measured).expect("defined"), number(&case["area"]), 1e-10);
+        for points in [20, 50, 100] {
+            let of = |signal: &[f64]| quantiles(signal, points).expect("points");
+            let (s, m) = (of(&simulated), of(&measured));
+            let expected = |what: &str| number(&case[format!("bogojevic_{points}_{what}")]);
+            close(bogojevic_variance_ratio(&s, &m).expect("defined"), expected("F"), 1e-9);
+            close(bogojevic_variance_probability(&s, &m).expect("defined"), expected("p"), 1e-9);
+            // The peer's mean term goes below zero, its product does not.
+            close(bogojevic_mean_term(&s, &m).expect("defined"), expected("mean_term").max(0.0), 1e-9);
+            close(bogojevic(&s, &m).expect("defined"), expected("product"), 1e-9);
+        }
+    }
+}
+
+/// Sides of different length: each variance has its own n. Of a distribution at points the number of samples hardly matters.
+#[test]
+fn distributions_of_unequal_counts() {
+    let (s, m) = (record(400, 1.0), record(300, 1.1));
+    // scipy.stats.f of the ratio with 399 and 299 degrees of freedom.
+    let ratio = bogojevic_variance_ratio(&s, &m).expect("defined");
+    close(bogojevic_variance_probability(&s, &m).expect("defined"), f_two_sided(ratio, 399.0, 299.0), 1e-15);
+    assert!(f_two_sided(ratio, 399.0, 299.0) != f_two_sided(ratio, 299.0, 299.0));
+    assert_eq!(quantiles(&[1.0, 3.0], 4).expect("points"), vec![1.25, 1.75, 2.25, 2.75]);
+    assert_eq!(quantiles(&[], 4).expect_err("nothing").reason, "there are no values");
+    assert!(quantiles(&[1.0], 0).is_err() && quantiles(&[f64::NAN], 2).is_err());
+    assert_eq!(bogojevic(&[], &m).expect_err("nothing").reason, "the simulated signal has no samples");
 }

@@ -3,6 +3,7 @@
 use super::{Undefined, check, check_finite};
 use crate::metrics::{
     incomplete_beta::incomplete_beta,
+    percentile::{Method, percentiles},
     statistics::{Divisor, mean, peak_magnitude, variance},
     sum::{sum, sum_of_pairs},
 };
@@ -22,16 +23,25 @@ pub fn area_metric(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined
     in_range(area)
 }
 
+/// A signal as so many values of its distribution: the quantiles at (i - 0.5)/n, i = 1 to n, linear between order statistics (type 7).
+/// There may be more of them than samples.
+///
+/// # Errors
+/// No points, no samples, a sample that is not finite.
+pub fn quantiles(signal: &[f64], points: usize) -> Result<Vec<f64>, Undefined> {
+    if points == 0 {
+        return Err(Undefined::because("a distribution has at least one point"));
+    }
+    let percents: Vec<f64> = (0..points).map(|point| 100.0 * (point as f64 + 0.5) / points as f64).collect();
+    percentiles(signal, &percents, Method::Linear).map_err(|error| Undefined::because(error.to_string()))
+}
+
 /// [`area_metric`] of two sets of values whose counts may differ: the integral of the distance of the distribution functions.
 ///
 /// # Errors
 /// No values on either side, or a value that is not finite.
 pub fn area_between(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
-    if simulated.is_empty() || measured.is_empty() {
-        return Err(Undefined::because("there are no values to compare"));
-    }
-    check_finite(simulated, "simulated")?;
-    check_finite(measured, "measured")?;
+    check_values(simulated, measured)?;
     let (simulated, measured) = (sorted(simulated), sorted(measured));
     let (mut below_s, mut below_m) = (0, 0);
     let mut strips = Vec::with_capacity(simulated.len() + measured.len());
@@ -53,7 +63,7 @@ pub fn area_between(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefine
 /// # Errors
 /// The measurement is constant, or there is one sample only.
 pub fn bogojevic_variance_ratio(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
-    check(simulated, measured)?;
+    check_values(simulated, measured)?;
     let of = |signal: &[f64]| variance(signal, Divisor::Sample).ok_or_else(|| Undefined::because("one sample has no scatter"));
     let (of_simulated, of_measured) = (of(simulated)?, of(measured)?);
     if of_measured == 0.0 {
@@ -62,7 +72,8 @@ pub fn bogojevic_variance_ratio(simulated: &[f64], measured: &[f64]) -> Result<f
     Ok(of_simulated / of_measured)
 }
 
-/// Two-sided probability of that ratio, or one farther from 1, if the variances were equal and all samples independent.
+/// Two-sided probability of that ratio, or one farther from 1, if the variances were equal and all samples independent: with one
+/// degree of freedom less than each side has samples.
 ///
 /// Samples of a record are not independent: with their full number the probability is far too small. It is meant for values
 /// taken so far apart that they are.
@@ -70,16 +81,16 @@ pub fn bogojevic_variance_ratio(simulated: &[f64], measured: &[f64]) -> Result<f
 /// # Errors
 /// As [`bogojevic_variance_ratio`].
 pub fn bogojevic_variance_probability(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
-    let degrees = simulated.len() as f64 - 1.0;
-    Ok(f_two_sided(bogojevic_variance_ratio(simulated, measured)?, degrees, degrees))
+    let degrees = |signal: &[f64]| signal.len() as f64 - 1.0;
+    Ok(f_two_sided(bogojevic_variance_ratio(simulated, measured)?, degrees(simulated), degrees(measured)))
 }
 
 /// Agreement of the means: `1 - |mean s - mean m| / max(|mean s|, |mean m|)`, not below 0; 1 where both are zero.
 ///
 /// # Errors
-/// Signals of different length, without samples, or with a sample that is not finite.
+/// A signal without samples, or with a sample that is not finite.
 pub fn bogojevic_mean_term(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
-    check(simulated, measured)?;
+    check_values(simulated, measured)?;
     let too_large = || Undefined::because("the sums of the samples exceed the range of numbers");
     let (Some(of_simulated), Some(of_measured)) = (mean(simulated), mean(measured)) else { return Err(too_large()) };
     let larger = of_simulated.abs().max(of_measured.abs());
@@ -107,6 +118,17 @@ pub fn f_two_sided(ratio: f64, numerator_degrees: f64, denominator_degrees: f64)
     let lower = incomplete_beta(numerator_degrees / 2.0, denominator_degrees / 2.0, of_numerator, of_denominator);
     let upper = incomplete_beta(denominator_degrees / 2.0, numerator_degrees / 2.0, of_denominator, of_numerator);
     (2.0 * lower.min(upper)).min(1.0)
+}
+
+/// Values on both sides, not equally many.
+fn check_values(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
+    for (signal, which) in [(simulated, "simulated"), (measured, "measured")] {
+        if signal.is_empty() {
+            return Err(Undefined::because(format!("the {which} signal has no samples")));
+        }
+        check_finite(signal, which)?;
+    }
+    Ok(())
 }
 
 fn in_range(area: f64) -> Result<f64, Undefined> {
