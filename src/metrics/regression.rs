@@ -142,8 +142,8 @@ impl Regression {
     /// # Errors
     /// Not as many numbers as regressors, one that is not finite, a result beyond the range of numbers.
     pub fn at(&self, point: &[f64]) -> Result<f64, RegressionError> {
-        let from_mean = self.from_mean(point)?;
-        let fitted = self.regressors.iter().zip(&from_mean).fold(self.mean, |sum, (of, scaled)| sum + of.coefficient * of.length * scaled);
+        let centred = self.centred(point)?;
+        let fitted = self.regressors.iter().zip(&centred).fold(self.mean, |sum, (of, scaled)| sum + of.coefficient * of.length * scaled);
         in_range(fitted)
     }
 
@@ -153,8 +153,8 @@ impl Regression {
     /// # Errors
     /// As [`Self::at`].
     pub fn leverage(&self, point: &[f64]) -> Result<f64, RegressionError> {
-        let from_mean = self.from_mean(point)?;
-        let squares: f64 = self.whitening.iter().map(|row| row.iter().zip(&from_mean).map(|(a, b)| a * b).sum::<f64>().powi(2)).sum();
+        let centred = self.centred(point)?;
+        let squares: f64 = self.whitening.iter().map(|row| row.iter().zip(&centred).map(|(a, b)| a * b).sum::<f64>().powi(2)).sum();
         in_range(1.0 / self.count as f64 + squares)
     }
 
@@ -173,7 +173,7 @@ impl Regression {
         in_range(self.at(point)? + if side == Side::Upper { reach } else { -reach })
     }
 
-    fn from_mean(&self, point: &[f64]) -> Result<Vec<f64>, RegressionError> {
+    fn centred(&self, point: &[f64]) -> Result<Vec<f64>, RegressionError> {
         if point.len() != self.regressors.len() {
             return Err(RegressionError::Point { found: point.len(), regressors: self.regressors.len() });
         }
