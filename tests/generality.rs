@@ -304,6 +304,38 @@ fn distributions_of_samples_windows_and_steps() {
     assert_eq!(values(&found, "area_as_recorded").len(), 8);
 }
 
+/// Forward and backward a line stays where it is; the gain and its unit are in the value. A tone is weighted by Wk.
+#[test]
+fn transfer_functions_run() {
+    let (compiled, campaign, folder) = prepared("frequency_weighting.fp", &[]);
+    for (kind, more) in [("measurement", 0.0), ("simulation", 1.0)] {
+        for section in &SECTIONS {
+            let mut record = "time [s],distance [m],az_I [m/s^2],az_II [m/s^2]\n".to_string();
+            for sample in 0..=1800 {
+                let (time, x) = (f64::from(sample) * 0.005, f64::from(sample) * 0.1);
+                // Rising by 2 m/s^3; and a tone at 8 Hz, where Wk is 1.0363.
+                let (line, tone) = (1.0 + 0.5 * more + 2.0 * time, (1.0 + more) * (std::f64::consts::TAU * 8.0 * time).sin());
+                writeln!(record, "{time},{x},{line},{tone}").expect("a string");
+            }
+            fs::write(folder.path().join(kind).join(format!("{}.csv", section.name)), record).expect("a file");
+        }
+    }
+    let found =
+        certify(&compiled, &campaign, Settings { traces: 0 }, &|_| {}).unwrap_or_else(|problems| panic!("{}", problems.render(false)));
+    let of = |id: &str, signal: &str| {
+        quantity(&found, id).values.iter().find(|value| value.section == "S2" && value.signal == signal).expect("a value").clone()
+    };
+    let lagged = of("az_lagged", "az_I");
+    assert_eq!(quantity(&found, "az_lagged").unit, "m/s");
+    // Forward and backward there is no delay: in the middle of the section, at 90 m and 4.5 s.
+    assert!((lagged.measured.expect("a value") - 2.0 * 10.0).abs() < 1e-6, "{lagged:?}");
+    assert!((lagged.difference - 2.0 * 0.5).abs() < 1e-6);
+    let weighted = of("az_weighted", "az_II");
+    assert!((weighted.measured.expect("a value") - 1.0363 / 2.0_f64.sqrt()).abs() < 2e-3, "{weighted:?}");
+    assert!((weighted.simulated.expect("a value") - 2.0 * weighted.measured.expect("a value")).abs() < 1e-9);
+    assert!(of("az_shape", "az_I").measured.is_some());
+}
+
 /// An offset d is added to the axis of the measurement: at a place x it has what it had at x - d. On lines
 /// that rise by `SLOPE`, every measured value falls by `SLOPE` d, and the simulation stays.
 #[test]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Best, DIFFERENCES, FUNCTIONS, Form, METRICS, REDUCERS, STATISTICS, STEPS, Signature};
+use super::{Best, DIFFERENCES, FUNCTIONS, Form, METRICS, NumberOption, REDUCERS, STATISTICS, STEPS, Signature};
 use crate::units::Dimension;
 
 /// One thing the language can do with signals or numbers.
@@ -50,7 +50,7 @@ pub fn entries() -> Vec<Entry> {
     for entry in STEPS {
         all.push(Entry {
             options: options(&entry.form),
-            ..Entry::new("step", entry.form.in_words(), "signal<D> -> signal<D>", entry.about)
+            ..Entry::new("step", entry.form.in_words(), step_signature(&entry.form), entry.about)
         });
     }
     all.push(Entry::new("reducer", "p<number>", "signal<D> -> D", "The value below which so many per cent of the samples lie."));
@@ -95,7 +95,7 @@ pub fn entries() -> Vec<Entry> {
 }
 
 fn options(form: &Form) -> Vec<String> {
-    let numbers = form.numbers.iter().map(|(name, default)| match default {
+    let numbers = form.numbers.iter().map(|NumberOption { name, default, .. }| match default {
         Some(default) => format!("`{name}` (default {default})"),
         None => format!("`<number> {name}`"),
     });
@@ -104,6 +104,14 @@ fn options(form: &Form) -> Vec<String> {
         words.join(" | ")
     });
     numbers.chain(choices).collect()
+}
+
+fn step_signature(form: &Form) -> &'static str {
+    if form.numbers.iter().any(|option| option.with_unit) {
+        "signal<D> -> signal<D times the gain's unit>"
+    } else {
+        "signal<D> -> signal<D>"
+    }
 }
 
 fn signature(signature: Signature) -> &'static str {

@@ -13,6 +13,8 @@ pub enum Part {
     Extent(&'static str),
     /// A frequency: in time, or in cycles per length after resampling over a length.
     Frequency(&'static str),
+    /// The same, or 0 Hz.
+    FrequencyOrZero(&'static str),
     /// Another signal.
     Signal(&'static str),
 }
@@ -25,12 +27,22 @@ pub struct Choice {
     pub about: &'static str,
 }
 
+/// An option of a word and a number.
+#[derive(Clone, Copy, Debug)]
+pub struct NumberOption {
+    pub name: &'static str,
+    /// `None`: without the option nothing is done.
+    pub default: Option<f64>,
+    /// Whether it may have a unit. The unit is then that of what comes out over what goes in.
+    pub with_unit: bool,
+}
+
 /// A wording.
 #[derive(Clone, Copy, Debug)]
 pub struct Form {
     pub head: &'static [Part],
-    /// Options of a word and a number, in either order, with the number's default where there is one: `order 4`, `50 points`.
-    pub numbers: &'static [(&'static str, Option<f64>)],
+    /// Options of a word and a number, in either order: `order 4`, `50 points`.
+    pub numbers: &'static [NumberOption],
     pub choices: &'static [Choice],
 }
 
@@ -45,6 +57,7 @@ impl Form {
                 Part::Number(name, dimension) => format!("<{name}: {}>", dimension.in_words()),
                 Part::Extent(name) => format!("<{name}: a length or a time>"),
                 Part::Frequency(name) => format!("<{name}: a frequency>"),
+                Part::FrequencyOrZero(name) => format!("<{name}: a frequency or 0 Hz>"),
                 Part::Signal(name) => format!("<{name}: a signal>"),
             })
             .collect();

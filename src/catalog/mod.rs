@@ -10,7 +10,7 @@ mod steps;
 mod two_signals;
 
 pub use entries::{Entry, entries};
-pub use forms::{Choice, Form, Part};
+pub use forms::{Choice, Form, NumberOption, Part};
 pub use functions::{FUNCTIONS, Function, Signature};
 pub use reducers::{REDUCERS, Reducer, ReducerEntry, STATISTICS, Statistic, StatisticEntry};
 pub use steps::{STEPS, StepEntry, StepKind};

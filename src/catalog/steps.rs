@@ -1,6 +1,7 @@
 //! Steps of a filter chain.
 
-use super::forms::{Choice, Form, Part};
+use super::forms::{Choice, Form, NumberOption, Part};
+use crate::units::Dimension;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepKind {
@@ -8,6 +9,7 @@ pub enum StepKind {
     HighPass,
     BandPass,
     BandStop,
+    TransferFunction,
     SlidingMean,
     SlidingRms,
     Resample,
@@ -22,7 +24,7 @@ pub struct StepEntry {
     pub about: &'static str,
 }
 
-const BUTTERWORTH_NUMBERS: &[(&str, Option<f64>)] = &[("order", Some(4.0))];
+const BUTTERWORTH_NUMBERS: &[NumberOption] = &[NumberOption { name: "order", default: Some(4.0), with_unit: false }];
 const BUTTERWORTH_CHOICES: &[Choice] = &[
     Choice {
         name: "phase",
@@ -45,6 +47,28 @@ const fn butterworth(kind: StepKind, head: &'static [Part], about: &'static str)
     StepEntry { kind, form: Form { head, numbers: BUTTERWORTH_NUMBERS, choices: BUTTERWORTH_CHOICES }, about }
 }
 
+const GAIN: &[NumberOption] = &[NumberOption { name: "gain", default: Some(1.0), with_unit: true }];
+const TRANSFER_CHOICES: &[Choice] = &[
+    Choice {
+        name: "phase",
+        words: &["causal", "causal-from-rest", "zero-phase"],
+        about: "Of a transfer function: one pass from the steady state of the first sample; or one pass from rest; or forward and backward, which squares the magnitude without the gain.",
+    },
+    Choice {
+        name: "warping",
+        words: &["pre-warped", "plain"],
+        about: "Whether the bilinear transformation keeps each pole and zero at its frequency, or moves them down as it does all others.",
+    },
+];
+
+const fn transfer(head: &'static [Part], about: &'static str) -> StepEntry {
+    StepEntry { kind: StepKind::TransferFunction, form: Form { head, numbers: GAIN, choices: TRANSFER_CHOICES }, about }
+}
+
+const ABOVE_ZERO: Part = Part::Frequency("frequency");
+const FROM_ZERO: Part = Part::FrequencyOrZero("frequency");
+const QUALITY: Part = Part::Number("quality", Dimension::ONE);
+
 const fn window(kind: StepKind, head: &'static [Part], about: &'static str) -> StepEntry {
     StepEntry { kind, form: Form { head, numbers: &[], choices: WINDOW_CHOICES }, about }
 }
@@ -65,6 +89,59 @@ pub const STEPS: &[StepEntry] = &[
         StepKind::BandStop,
         &[Part::Word("band-stop"), Part::Frequency("low"), Part::Word("to"), Part::Frequency("high")],
         "Butterworth band-stop over the whole record; the order is that of each edge.",
+    ),
+    transfer(
+        &[Part::Word("transfer"), Part::Word("function"), Part::Word("pole"), ABOVE_ZERO],
+        "One real pole: 1/(1 + s/p), p = 2π times its frequency, over the whole record.",
+    ),
+    transfer(
+        &[Part::Word("transfer"), Part::Word("function"), Part::Word("pole"), ABOVE_ZERO, Part::Word("zero"), FROM_ZERO],
+        "One real pole and one real zero: (1 + s/z)/(1 + s/p); with the zero at 0 Hz (s/p)/(1 + s/p).",
+    ),
+    transfer(
+        &[Part::Word("transfer"), Part::Word("function"), Part::Word("poles"), ABOVE_ZERO, Part::Word("quality"), QUALITY],
+        "Two poles: 1/P, P = 1 + s/(quality p) + (s/p)².",
+    ),
+    transfer(
+        &[
+            Part::Word("transfer"),
+            Part::Word("function"),
+            Part::Word("poles"),
+            ABOVE_ZERO,
+            Part::Word("quality"),
+            QUALITY,
+            Part::Word("zero"),
+            FROM_ZERO,
+        ],
+        "Two poles and one real zero: (1 + s/z)/P; with the zero at 0 Hz (s/p)/P.",
+    ),
+    transfer(
+        &[
+            Part::Word("transfer"),
+            Part::Word("function"),
+            Part::Word("poles"),
+            ABOVE_ZERO,
+            Part::Word("quality"),
+            QUALITY,
+            Part::Word("zeros"),
+            FROM_ZERO,
+        ],
+        "Two poles and two zeros without damping: (1 + (s/z)²)/P; with the zeros at 0 Hz (s/p)²/P.",
+    ),
+    transfer(
+        &[
+            Part::Word("transfer"),
+            Part::Word("function"),
+            Part::Word("poles"),
+            ABOVE_ZERO,
+            Part::Word("quality"),
+            QUALITY,
+            Part::Word("zeros"),
+            ABOVE_ZERO,
+            Part::Word("quality"),
+            QUALITY,
+        ],
+        "Two poles and two zeros: (1 + s/(quality z) + (s/z)²)/P.",
     ),
     window(
         StepKind::SlidingMean,

@@ -1,6 +1,6 @@
 //! Metrics: one number from the simulated and the measured signal of a section, the measured one being the reference.
 
-use super::forms::{Form, Part};
+use super::forms::{Form, NumberOption, Part};
 use crate::metrics::{hysteresis, pair};
 use crate::units::Dimension;
 
@@ -122,7 +122,7 @@ macro_rules! of_signal {
 }
 
 /// Option of metrics of distributions.
-const POINTS: &[(&str, Option<f64>)] = &[("points", None)];
+const POINTS: &[NumberOption] = &[NumberOption { name: "points", default: None, with_unit: false }];
 
 const SG: &str = "Sprague & Geers 2004";
 const RUSSELL: &str = "Russell 1997";

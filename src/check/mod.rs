@@ -23,6 +23,7 @@ mod scalar_names;
 mod scalars;
 mod signals;
 mod steps;
+mod transfer;
 
 pub use names::normalised;
 

@@ -4,7 +4,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use crate::catalog::{Function, Metric, Reducer, Statistic};
-use crate::metrics::filter::{Band, Cutoff, Phase};
+use crate::metrics::filter::{Band, Cutoff, Phase, TransferFunction, Warping};
 use crate::metrics::percentile::Method;
 use crate::metrics::window::Ends;
 use crate::source::Span;
@@ -236,6 +236,8 @@ pub struct Step {
     pub words: String,
     /// Whether its frequencies are cycles per length, so that it can only follow a resampling over a length.
     pub per_length: bool,
+    /// Of what comes out over what goes in.
+    pub factor: Dimension,
     pub span: Span,
 }
 
@@ -243,6 +245,7 @@ pub struct Step {
 #[derive(Clone, Debug, PartialEq)]
 pub enum StepSpec {
     Butterworth { band: Band, order: usize, phase: Phase, cutoff: Cutoff },
+    Transfer { function: TransferFunction, phase: Phase, warping: Warping },
     Window { rms: bool, width: f64, step: f64, over_time: bool, ends: Ends },
     Resample { step: f64, over_time: bool },
     RemoveMean,

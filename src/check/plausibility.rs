@@ -2,8 +2,9 @@
 
 use super::Checker;
 use super::names::normalised;
-use super::plan::{Distinct, Expr, Input, InputSide, Looks, OnFault, Plausibility, Requirement, Signal, Taken, Test};
+use super::plan::{Distinct, Expr, Input, InputSide, Looks, OnFault, Plausibility, Requirement, Signal, Step, Taken, Test};
 use super::scalars::Scope;
+use super::steps::after;
 use crate::problem::Problem;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
@@ -37,7 +38,7 @@ impl Checker<'_> {
         let mut all: Vec<Of> = Vec::new();
         let mut whole = true;
         for field in block.fields_named("of") {
-            match self.signals_with_unit(field) {
+            match self.signals_with_unit(field, chain.as_deref().unwrap_or_default()) {
                 Some(of) => all.push(of),
                 None => whole = false,
             }
@@ -54,7 +55,7 @@ impl Checker<'_> {
         let mut rules = Vec::new();
         for (signals, unit) in all {
             let test = match (require, distinct) {
-                (Some(field), _) => Test::Require(Box::new(self.requirement(field, &signals, unit.as_ref())?)),
+                (Some(field), _) => Test::Require(Box::new(self.requirement(field, &signals, &chain, unit.as_ref())?)),
                 (None, Some(field)) => Test::Distinct(self.distinct(field)?),
                 (None, None) => return None,
             };
@@ -84,17 +85,17 @@ impl Checker<'_> {
         Some(rules)
     }
 
-    fn signals_with_unit(&mut self, field: &Field) -> Option<Of> {
+    fn signals_with_unit(&mut self, field: &Field, chain: &[Step]) -> Option<Of> {
         let signals = self.signals_of(&field.value)?;
         let name = from_pest::of_places(&field.value, self.problems)?.signal.node;
-        let unit = signals.first().map(|(_, signal, _)| self.own_unit(&name, signal.dimension));
+        let unit = signals.first().map(|(_, signal, _)| self.own_unit(&name, after(chain, signal.dimension)));
         Some((signals.into_iter().map(|(name, signal, _)| (name, signal)).collect(), unit))
     }
 
-    fn requirement(&mut self, field: &Field, signals: &[(String, Signal)], own: Option<&Unit>) -> Option<Requirement> {
+    fn requirement(&mut self, field: &Field, signals: &[(String, Signal)], chain: &[Step], own: Option<&Unit>) -> Option<Requirement> {
         let phrase = from_pest::expression(&field.value, self.problems)?;
         let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
-        let mut scope = Scope::comparing(signals.first().map(|(_, signal)| signal.dimension), axis);
+        let mut scope = Scope::comparing(signals.first().map(|(_, signal)| after(chain, signal.dimension)), axis);
         let (holds, compared) = self.compared(&phrase, &field.value, &mut scope)?;
         self.flag_type(&holds)?;
         self.inputs_of_one_record(&scope.inputs)?;

@@ -5,6 +5,7 @@ use super::evaluate::{Nothing, Values, number, words};
 use super::names::{Assignment, bare_word, normalised};
 use super::plan::{Axis, DatumKind, Evaluation, Expr, Input, InputSide, Kind, Quantity, QuantityWords, Scalar, Signal, Step};
 use super::scalars::Scope;
+use super::steps::after;
 use crate::catalog::{Best, DIFFERENCES};
 use crate::problem::Problem;
 use crate::source::Span;
@@ -51,6 +52,7 @@ impl Checker<'_> {
         let chain = block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
         let signals = of.as_ref().and_then(|of| self.signals_of(of));
         let dimension = signals.as_ref().and_then(|signals| signals.first()).map(|(_, signal, _)| signal.dimension);
+        let dimension = dimension.map(|dimension| after(chain.as_deref().unwrap_or_default(), dimension));
         let compared = match metric {
             Some(field) => self.compared_by_metric(field, signals.as_deref(), chain.as_deref()),
             None => self.compared_by_values(block, dimension),
@@ -78,8 +80,8 @@ impl Checker<'_> {
         let minimum_signals = self.count(block, "minimum signals", self.minimum_signals);
         let minimum_pairs = self.count(block, "minimum pairs", self.minimum_pairs);
         let (of, chain, signals, compared, unit) = (of?, chain?, signals?, compared?, unit?);
-        let signal_unit =
-            from_pest::of_places(&of, self.problems).map(|written| self.own_unit(&written.signal.node, signals[0].1.dimension))?;
+        let signal_unit = from_pest::of_places(&of, self.problems)
+            .map(|written| self.own_unit(&written.signal.node, after(&chain, signals[0].1.dimension)))?;
         let text = |key: &str| block.field(key).map(|field| field.value.text.clone());
         let filter =
             if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") };
@@ -128,7 +130,8 @@ impl Checker<'_> {
                 .map(|(_, _, at)| self.signal_where(&over.phrase, &over.text, at, &over.text.span))
                 .collect::<Option<Vec<_>>>()?,
         };
-        if let (true, Some(step)) = (metric.on_common_points(false), chain?.iter().find(|step| !step.kind.keeps_samples())) {
+        let chain = chain?;
+        if let (true, Some(step)) = (metric.on_common_points(false), chain.iter().find(|step| !step.kind.keeps_samples())) {
             self.problems.push(
                 Problem::error("metric-of-window", "this metric compares samples and cannot follow a window or resampling")
                     .at(&field.value.span)
@@ -136,13 +139,17 @@ impl Checker<'_> {
             );
             return None;
         }
-        let over_axis =
-            over_name.zip(over.first()).map(|(name, signal)| Axis { unit: self.own_unit(&name, signal.dimension), column: name });
+        let over_axis = over_name
+            .zip(over.first())
+            .map(|(name, signal)| Axis { unit: self.own_unit(&name, after(chain, signal.dimension)), column: name });
         let words = normalised(&field.value.text);
         let (_, first, _) = signals.first()?;
         Some(Compared {
             evaluation: Evaluation::Metric { metric, over, over_axis },
-            dimension: (metric.0.gives)(first.dimension, self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension)),
+            dimension: (metric.0.gives)(
+                after(chain, first.dimension),
+                self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension),
+            ),
             processing: words.clone(),
             comparison: words,
             best: Some((metric.0.best, field.value.span.clone())),

@@ -4,6 +4,7 @@ use super::Checker;
 use super::names::{Assignment, Channel, SignalDef};
 use super::plan::{Expr, Kind, Operator, Scalar, Signal, SignalKind};
 use super::scalars::{Scope, function};
+use super::steps::after;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::Text;
@@ -88,7 +89,8 @@ impl Checker<'_> {
                     );
                     return None;
                 }
-                Some(Signal { dimension: inner.dimension, track: inner.track, kind: SignalKind::Filtered(Box::new(inner), steps), span })
+                let dimension = after(&steps, inner.dimension);
+                Some(Signal { dimension, track: inner.track, kind: SignalKind::Filtered(Box::new(inner), steps), span })
             }
             // `2 of Y` and `share of Y` are products.
             Node::Reduced(factor, of) if self.is_number_name(factor) => {

@@ -28,10 +28,10 @@ const MOST_POINTS: f64 = 10_000.0;
 /// What the slots and options of a wording were filled with.
 #[derive(Debug, Default)]
 pub(super) struct Filled {
-    numbers: Vec<(f64, Dimension, Span)>,
+    pub numbers: Vec<(f64, Dimension, Span)>,
     /// In the order of the wording; `None` where neither said nor with a default.
-    options: Vec<Option<f64>>,
-    choices: Vec<&'static str>,
+    pub options: Vec<Option<(f64, Dimension)>>,
+    pub choices: Vec<&'static str>,
     /// What an option was said for, so that it is said once.
     said: Vec<(&'static str, Span)>,
 }
@@ -52,7 +52,12 @@ const SMALLEST_EXTENT: f64 = 1e-6;
 impl StepSpec {
     /// Whether every sample of the record has a value after the step.
     pub fn keeps_samples(&self) -> bool {
-        matches!(self, Self::Butterworth { .. } | Self::Magnitude)
+        self.is_filter() || *self == Self::Magnitude
+    }
+
+    /// Whether it passes frequencies, of the time or after resampling of the length.
+    pub fn is_filter(&self) -> bool {
+        matches!(self, Self::Butterworth { .. } | Self::Transfer { .. })
     }
 }
 
@@ -127,7 +132,7 @@ impl Checker<'_> {
         let mut window: Option<&Step> = None;
         let mut resampled: Option<&Step> = None;
         for step in steps {
-            let whole_record = matches!(step.kind, StepSpec::Butterworth { .. } | StepSpec::Resample { .. });
+            let whole_record = step.kind.is_filter() || matches!(step.kind, StepSpec::Resample { .. });
             if let Some(before) = window.filter(|_| whole_record) {
                 self.problems.push(
                     Problem::error("step-order", "a filter over the whole record cannot follow a window inside the section")
@@ -140,7 +145,7 @@ impl Checker<'_> {
             match &step.kind {
                 StepSpec::Window { .. } | StepSpec::RemoveMean => window = Some(step),
                 StepSpec::Resample { .. } => resampled = Some(step),
-                StepSpec::Butterworth { .. } => {
+                StepSpec::Butterworth { .. } | StepSpec::Transfer { .. } => {
                     let over_length = resampled.filter(|step| matches!(step.kind, StepSpec::Resample { over_time: false, .. }));
                     match over_length {
                         Some(before) if !step.per_length => {
@@ -216,7 +221,7 @@ impl Checker<'_> {
                 Some(Written { phrase, text: text.clone() })
             }
         };
-        let points = self.fill_form(&entry.form, &step.node, text, &span)?.options.first().copied().flatten();
+        let points = self.fill_form(&entry.form, &step.node, text, &span)?.options.first().copied().flatten().map(|(points, _)| points);
         if let Some(points) = points.filter(|points| points.fract() != 0.0 || !(LEAST_POINTS..=MOST_POINTS).contains(points)) {
             let says = format!("the points are a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}");
             self.problems.push(Problem::error("out-of-range", says).at(&span));
@@ -273,7 +278,7 @@ impl Checker<'_> {
 
     fn fill_form(&mut self, form: &Form, step: &Written_, text: &Text, span: &Span) -> Option<Filled> {
         let mut filled = Filled {
-            options: form.numbers.iter().map(|(_, default)| *default).collect(),
+            options: form.numbers.iter().map(|option| Some((option.default?, Dimension::ONE))).collect(),
             choices: form.choices.iter().map(|choice| choice.words[0]).collect(),
             ..Filled::default()
         };
@@ -300,11 +305,13 @@ impl Checker<'_> {
                     }
                     filled.numbers.push((value, found, place));
                 }
-                Part::Frequency(name) => {
+                Part::Frequency(name) | Part::FrequencyOrZero(name) => {
                     let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
                     let per_length = Dimension::ONE / Dimension::LENGTH;
                     self.suits(name, found == Dimension::FREQUENCY || found == per_length, "a frequency", found, &place)?;
-                    self.positive(name, value, &place)?;
+                    if !matches!(part, Part::FrequencyOrZero(_)) || value != 0.0 {
+                        self.positive(name, value, &place)?;
+                    }
                     filled.numbers.push((value, found, place));
                 }
             }
@@ -315,7 +322,7 @@ impl Checker<'_> {
         Some(filled)
     }
 
-    fn suits(&mut self, name: &str, ok: bool, needed: &str, found: Dimension, place: &Span) -> Option<()> {
+    pub(super) fn suits(&mut self, name: &str, ok: bool, needed: &str, found: Dimension, place: &Span) -> Option<()> {
         if ok {
             return Some(());
         }
@@ -323,7 +330,7 @@ impl Checker<'_> {
         None
     }
 
-    fn positive(&mut self, name: &str, value: f64, place: &Span) -> Option<()> {
+    pub(super) fn positive(&mut self, name: &str, value: f64, place: &Span) -> Option<()> {
         if value > 0.0 && value.is_finite() {
             return Some(());
         }
@@ -336,11 +343,12 @@ impl Checker<'_> {
         let place = part.first().map_or_else(|| span.clone(), |first| text.place(first.range.start..part[part.len() - 1].range.end));
         match part {
             [At { node: Item::Word(word), .. }, value] | [value @ At { node: Item::Value(_), .. }, At { node: Item::Word(word), .. }] => {
-                if let Some(index) = form.numbers.iter().position(|(name, _)| name == word) {
-                    self.note(filled.option_said(form.numbers[index].0, &place))?;
+                if let Some(index) = form.numbers.iter().position(|option| option.name == word) {
+                    self.note(filled.option_said(form.numbers[index].name, &place))?;
                     let (number, dimension) = self.constant_phrase(&item_phrase(value), text)?;
-                    self.suits(word, dimension == Dimension::ONE, "a plain number", dimension, &place)?;
-                    filled.options[index] = Some(number);
+                    let suits = form.numbers[index].with_unit || dimension == Dimension::ONE;
+                    self.suits(word, suits, "a plain number", dimension, &place)?;
+                    filled.options[index] = Some((number, dimension));
                     return Some(());
                 }
             }
@@ -356,7 +364,7 @@ impl Checker<'_> {
             }
             _ => {}
         }
-        let mut known: Vec<String> = form.numbers.iter().map(|(name, _)| format!("{name} <number>")).collect();
+        let mut known: Vec<String> = form.numbers.iter().map(|option| format!("{} <number>", option.name)).collect();
         known.extend(form.choices.iter().flat_map(|choice| choice.words.iter().map(|word| (*word).to_string())));
         let said = part.first().map_or(String::new(), |item| if let Item::Word(word) = &item.node { word.clone() } else { String::new() });
         let what = if METRICS.iter().any(|entry| entry.form.head == form.head) { "metric" } else { "step" };
@@ -399,6 +407,7 @@ impl Checker<'_> {
                 }
             }
         }
+        let mut factor = Dimension::ONE;
         let kind = match entry.kind {
             StepKind::LowPass | StepKind::HighPass | StepKind::BandPass | StepKind::BandStop => {
                 let band = match entry.kind {
@@ -414,7 +423,7 @@ impl Checker<'_> {
                         return None;
                     }
                 }
-                let order = filled.options.first().copied().flatten()?;
+                let (order, _) = filled.options.first().copied().flatten()?;
                 if order.fract() != 0.0 || !(1.0..=20.0).contains(&order) {
                     self.problems.push(
                         Problem::error("out-of-range", format!("the order is a whole number from 1 to 20, this is {order}")).at(span),
@@ -422,13 +431,15 @@ impl Checker<'_> {
                     return None;
                 }
                 words.push(format!(", order {order}, {}, {}", filled.choices[0], filled.choices[1]));
-                let phase = match filled.choices[0] {
-                    "causal" => Phase::Causal,
-                    "causal-from-rest" => Phase::CausalFromRest,
-                    _ => Phase::Zero,
-                };
+                let phase = phase(filled.choices[0]);
                 let cutoff = if filled.choices[1] == "per-pass" { Cutoff::PerPass } else { Cutoff::AsApplied };
                 StepSpec::Butterworth { band, order: order as usize, phase, cutoff }
+            }
+            StepKind::TransferFunction => {
+                let (gain, unit) = filled.options.first().copied().flatten()?;
+                factor = unit;
+                words.push(format!(", gain {}, {}, {}", show_number(gain, unit), filled.choices[0], filled.choices[1]));
+                self.transfer(entry, filled, span)?
             }
             StepKind::SlidingMean | StepKind::SlidingRms => {
                 let (_, a, _) = filled.numbers.first()?;
@@ -453,8 +464,21 @@ impl Checker<'_> {
             StepKind::Magnitude => StepSpec::Magnitude,
         };
         let per_length = filled.numbers.iter().any(|(_, dimension, _)| *dimension == Dimension::ONE / Dimension::LENGTH);
-        Some(Step { kind, words: words.join(" ").replace(" ,", ","), per_length, span: span.clone() })
+        Some(Step { kind, words: words.join(" ").replace(" ,", ","), per_length, factor, span: span.clone() })
     }
+}
+
+pub(super) fn phase(word: &str) -> Phase {
+    match word {
+        "causal" => Phase::Causal,
+        "causal-from-rest" => Phase::CausalFromRest,
+        _ => Phase::Zero,
+    }
+}
+
+/// Dimension of a signal after steps.
+pub(super) fn after(steps: &[Step], dimension: Dimension) -> Dimension {
+    steps.iter().fold(dimension, |dimension, step| dimension * step.factor)
 }
 
 fn item_phrase(item: &At<Item>) -> Phrase {
@@ -472,7 +496,7 @@ fn show_number(value: f64, dimension: Dimension) -> String {
         Dimension::TIME => " s",
         Dimension::ONE => "",
         _ if dimension == Dimension::ONE / Dimension::LENGTH => " 1/m",
-        _ => "",
+        other => &format!(" {other}"),
     };
     // Six digits: the third of a metre need not fill the line.
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);

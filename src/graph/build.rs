@@ -164,8 +164,8 @@ impl Builder {
     }
 
     fn step(&mut self, node: NodeId, step: &Step) -> NodeId {
-        let dimension = self.nodes[node].dimension;
-        let kind = format!("step {:?}", step.kind);
+        let dimension = self.nodes[node].dimension * step.factor;
+        let kind = format!("step {:?} {}", step.kind, step.factor);
         self.add(Operation::Step(step.kind.clone()), vec![node], dimension, &step.span, step.words.clone(), kind)
     }
 

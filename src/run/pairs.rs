@@ -14,7 +14,7 @@ use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Check, Evaluation, Input, InputSide, Quantity, StepSpec};
 use crate::data::RecordKind;
 use crate::graph::{InputNode, NodeId, Operation, SignalNodes};
-use crate::metrics::filter::Band;
+use crate::metrics::filter::{Band, Roots};
 use crate::metrics::resample;
 use crate::problem::Problem;
 use crate::result::{CheckResult, FileHash, Finding};
@@ -256,9 +256,18 @@ const MARGIN_TRIALS: [(f64, u8, u8); 7] =
 const SLOW_FILTER: f64 = 1.0;
 const SLOW_FILTER_MARGIN: f64 = 5.0;
 
-fn lowest_edge(band: Band) -> f64 {
-    match band {
-        Band::LowPass(edge) | Band::HighPass(edge) | Band::BandPass(edge, _) | Band::BandStop(edge, _) => edge,
+/// Of a filter: its lowest edge, or where its slowest pole lies.
+fn lowest_frequency(step: &StepSpec) -> Option<f64> {
+    match step {
+        StepSpec::Butterworth { band, .. } => match band {
+            Band::LowPass(edge) | Band::HighPass(edge) | Band::BandPass(edge, _) | Band::BandStop(edge, _) => Some(*edge),
+        },
+        StepSpec::Transfer { function, .. } => match function.poles {
+            Roots::One(frequency) => Some(frequency),
+            // Of low quality, two real poles part; the lower one lies near this.
+            Roots::Two { frequency, quality } => Some(frequency * quality.min(1.0)),
+        },
+        _ => None,
     }
 }
 
@@ -268,7 +277,7 @@ fn note_margins(work: &Work<'_>, unit: &Unit, needed: &BTreeSet<NodeId>, opened:
         return;
     }
     let slow = needed.iter().any(|&id| match &work.graph.nodes[id].operation {
-        Operation::Step(StepSpec::Butterworth { band, .. }) => lowest_edge(*band) < SLOW_FILTER,
+        Operation::Step(step) => lowest_frequency(step).is_some_and(|frequency| frequency < SLOW_FILTER),
         _ => false,
     });
     if slow {

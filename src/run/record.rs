@@ -364,7 +364,10 @@ impl State<'_> {
         let mut groups: Vec<(StepSpec, Vec<(NodeId, Samples)>)> = Vec::new();
         for &id in here {
             let node = &self.graph.nodes[id];
-            let Operation::Step(spec @ StepSpec::Butterworth { .. }) = &node.operation else { continue };
+            let Operation::Step(spec) = &node.operation else { continue };
+            if !spec.is_filter() {
+                continue;
+            }
             if self.without_input(id) {
                 continue;
             }

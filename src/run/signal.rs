@@ -118,12 +118,13 @@ impl Samples {
     }
 
     pub fn designed(&self, spec: &StepSpec) -> Result<Filter, String> {
-        let StepSpec::Butterworth { band, order, phase, cutoff } = spec else { return Err("not a filter".into()) };
-        match self.along.rate {
-            Rate::PerTime(rate) | Rate::PerLength(rate) => {
-                Filter::design(*band, *order, rate, *phase, *cutoff).map_err(|error| error.to_string())
-            }
-        }
+        let (Rate::PerTime(rate) | Rate::PerLength(rate)) = self.along.rate;
+        let designed = match spec {
+            StepSpec::Butterworth { band, order, phase, cutoff } => Filter::design(*band, *order, rate, *phase, *cutoff),
+            StepSpec::Transfer { function, phase, warping } => Filter::transfer(function, rate, *phase, *warping),
+            _ => return Err("not a filter".into()),
+        };
+        designed.map_err(|error| error.to_string())
     }
 
     /// A step over the whole record other than a filter.

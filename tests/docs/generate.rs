@@ -80,9 +80,9 @@ fn block(kind: &Kind) -> String {
 
 fn steps() -> String {
     let rows = STEPS.iter().map(|entry| {
-        let numbers = entry.form.numbers.iter().map(|(name, default)| {
-            let unless = default.map_or_else(String::new, |default| format!(" (unless said: {default})"));
-            format!("{}{unless}", code(&format!("{name} …")))
+        let numbers = entry.form.numbers.iter().map(|option| {
+            let unless = option.default.map_or_else(String::new, |default| format!(" (unless said: {default})"));
+            format!("{}{unless}", code(&format!("{} …", option.name)))
         });
         let choices = entry.form.choices.iter().map(|choice| choice.words.iter().map(|word| code(word)).collect::<Vec<_>>().join(" or "));
         vec![code(&entry.form.in_words()), entry.about.to_string(), numbers.chain(choices).collect::<Vec<_>>().join("; ")]

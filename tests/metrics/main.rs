@@ -9,6 +9,7 @@ mod properties;
 mod regression;
 mod resample;
 mod statistics;
+mod transfer;
 mod vectors;
 mod window;
 

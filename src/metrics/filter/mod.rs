@@ -1,15 +1,18 @@
-//! Butterworth filters, forward and backward or in one pass, as second-order sections.
+//! Butterworth filters and transfer functions, forward and backward or in one pass, as second-order sections.
 //!
 //! Agrees with SciPy's `butter(..., output="sos")`, `sosfiltfilt` and `sosfilt`.
 
 mod butterworth;
+mod poles;
 mod section;
 mod sweep;
+mod transfer;
 
 use std::fmt;
 
 use super::rounded;
 use section::Section;
+pub use transfer::{Roots, TransferFunction, Warping};
 
 /// What passes, with the edges in Hz.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,11 +69,27 @@ impl Filter {
     pub fn design(band: Band, order: usize, sampling_rate: f64, phase: Phase, cutoff: Cutoff) -> Result<Self, DesignError> {
         let both_passes = phase == Phase::Zero && cutoff == Cutoff::AsApplied;
         let design = butterworth::design(band, order, sampling_rate, both_passes)?;
+        Ok(Self::of(design, sampling_rate, phase))
+    }
+
+    /// Filter by poles and zeros for signals at `sampling_rate` in Hz. With [`Phase::Zero`] both passes are of the function: its
+    /// magnitude is squared, but for the gain, which is that of both passes together.
+    ///
+    /// # Errors
+    /// Poles that are not above 0 Hz, more zeros than poles, a gain that is not above zero; a pre-warped frequency that is not below
+    /// half the sampling rate; poles that cannot be told from the unit circle.
+    pub fn transfer(function: &TransferFunction, sampling_rate: f64, phase: Phase, warping: Warping) -> Result<Self, DesignError> {
+        let gain = if phase == Phase::Zero { function.gain.sqrt() } else { function.gain };
+        let of_one_pass = TransferFunction { gain, ..*function };
+        Ok(Self::of(transfer::design(&of_one_pass, sampling_rate, warping)?, sampling_rate, phase))
+    }
+
+    fn of(design: butterworth::Design, sampling_rate: f64, phase: Phase) -> Self {
         // SciPy's rule: three times the number of taps, a first-order section having one fewer.
         let first_order = design.sections.iter().filter(|section| section.b2 == 0.0 && section.a2 == 0.0).count();
         let padding = if phase == Phase::Zero { 3 * (2 * design.sections.len() + 1 - first_order) } else { 0 };
         let time_constant = design.time_constant / sampling_rate;
-        Ok(Self { phase, gain: design.gain, sections: design.sections, padding, sampling_rate, time_constant })
+        Self { phase, gain: design.gain, sections: design.sections, padding, sampling_rate, time_constant }
     }
 
     /// The filtered signal, as long as the signal.
@@ -194,7 +213,7 @@ impl fmt::Display for DesignError {
             ),
             Self::Edges { low, high } => write!(f, "the band's lower edge {low} Hz is not below its upper edge {high} Hz"),
             Self::Degenerate { order, sampling_rate } => {
-                write!(f, "a filter of order {order} with these edges cannot be computed at a sampling rate of {sampling_rate} Hz")
+                write!(f, "a filter of order {order} with these frequencies cannot be computed at a sampling rate of {sampling_rate} Hz")
             }
         }
     }

@@ -1,0 +1,49 @@
+//! Checks the step of a transfer function: poles and zeros from the wording.
+
+use super::Checker;
+use super::plan::StepSpec;
+use super::steps::{Filled, phase};
+use crate::catalog::{Part, StepEntry};
+use crate::metrics::filter::{Roots, TransferFunction, Warping};
+use crate::problem::Problem;
+use crate::source::Span;
+
+impl Checker<'_> {
+    /// `transfer function poles 12.5 Hz quality 0.63 zero 12.5 Hz, gain 2`: each frequency, then its quality if it has one.
+    pub(super) fn transfer(&mut self, entry: &StepEntry, filled: &Filled, span: &Span) -> Option<StepSpec> {
+        let mut numbers = filled.numbers.iter();
+        let (_, dimension, _) = filled.numbers.first()?;
+        // Poles, zeros.
+        let mut found: [Option<Roots>; 2] = [None, None];
+        let (mut which, mut two) = (0, false);
+        for part in entry.form.head {
+            match part {
+                Part::Word(word @ ("pole" | "poles" | "zero" | "zeros")) => {
+                    which = usize::from(word.starts_with("zero"));
+                    two = word.ends_with('s');
+                }
+                Part::Word(_) => {}
+                Part::Number(name, _) => {
+                    let (quality, _, place) = numbers.next()?;
+                    self.positive(name, *quality, place)?;
+                    found[which] = Some(Roots::Two { frequency: found[which]?.frequency(), quality: *quality });
+                }
+                _ => {
+                    let (frequency, own, place) = numbers.next()?;
+                    self.suits("frequency", own == dimension, &dimension.in_words(), *own, place)?;
+                    let undamped = Roots::Two { frequency: *frequency, quality: f64::INFINITY };
+                    found[which] = Some(if two { undamped } else { Roots::One(*frequency) });
+                }
+            }
+        }
+        let [Some(poles), zeros] = found else { return None };
+        let (gain, _) = filled.options.first().copied().flatten()?;
+        if !(gain > 0.0 && gain.is_finite()) {
+            self.problems.push(Problem::error("out-of-range", "the gain must be above zero").at(span));
+            return None;
+        }
+        let warping = if filled.choices[1] == "plain" { Warping::Plain } else { Warping::PreWarped };
+        let function = TransferFunction { poles, zeros, gain };
+        Some(StepSpec::Transfer { function, phase: phase(filled.choices[0]), warping })
+    }
+}
