@@ -54,77 +54,16 @@ channel az "Car body vertical acceleration"
 filter LP20 "Low-pass filter 20 Hz"
   step  low-pass 20 Hz, order 4, zero-phase, as-applied
 
-quantity Y_magnitude "Guiding force, magnitude error"
-  of      Y at wheelset 1 and side L
-  filter  LP20
-  metric  sprague-geers magnitude
-  limit   each magnitude_limit
-
-quantity Y_phase "Guiding force, phase error"
-  of      Y at wheelset 1 and side L
-  filter  LP20
-  metric  sprague-geers phase
-  limit   each phase_limit
-
-quantity Y_comprehensive "Guiding force, comprehensive error"
-  of      Y at wheelset 1 and side L
-  filter  LP20
-  metric  sprague-geers comprehensive
-  limit   each comprehensive_limit
-
-quantity Q_magnitude "Vertical wheel force, magnitude error"
-  of      Q at wheelset 1 and side L
-  filter  LP20
-  metric  sprague-geers magnitude
-  limit   each magnitude_limit
-
-quantity Q_phase "Vertical wheel force, phase error"
-  of      Q at wheelset 1 and side L
-  filter  LP20
-  metric  sprague-geers phase
-  limit   each phase_limit
-
-quantity Q_comprehensive "Vertical wheel force, comprehensive error"
-  of      Q at wheelset 1 and side L
-  filter  LP20
-  metric  sprague-geers comprehensive
-  limit   each comprehensive_limit
-
-quantity ay_magnitude "Car body lateral acceleration, magnitude error"
-  of      ay at running gear I
-  filter  LP20
-  metric  sprague-geers magnitude
-  limit   each magnitude_limit
-
-quantity ay_phase "Car body lateral acceleration, phase error"
-  of      ay at running gear I
-  filter  LP20
-  metric  sprague-geers phase
-  limit   each phase_limit
-
-quantity ay_comprehensive "Car body lateral acceleration, comprehensive error"
-  of      ay at running gear I
-  filter  LP20
-  metric  sprague-geers comprehensive
-  limit   each comprehensive_limit
-
-quantity az_magnitude "Car body vertical acceleration, magnitude error"
-  of      az at running gear I
-  filter  LP20
-  metric  sprague-geers magnitude
-  limit   each magnitude_limit
-
-quantity az_phase "Car body vertical acceleration, phase error"
-  of      az at running gear I
-  filter  LP20
-  metric  sprague-geers phase
-  limit   each phase_limit
-
-quantity az_comprehensive "Car body vertical acceleration, comprehensive error"
-  of      az at running gear I
-  filter  LP20
-  metric  sprague-geers comprehensive
-  limit   each comprehensive_limit
+quantity {channel}_{part} "{title}, {part} error"
+  for each  channel, title, position in (Y, Guiding force, wheelset 1 and side L),
+            (Q, Vertical wheel force, wheelset 1 and side L),
+            (ay, Car body lateral acceleration, running gear I),
+            (az, Car body vertical acceleration, running gear I)
+  for each  part in magnitude, phase, comprehensive
+  of        {channel} at {position}
+  filter    LP20
+  metric    sprague-geers {part}
+  limit     each {part}_limit
 
 verdict
   validated  when every limit holds

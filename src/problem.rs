@@ -1,8 +1,10 @@
 //! Problems of an input: code, place, message, help; collected, and printed in one format.
 
+use std::sync::Arc;
+
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
-use crate::source::Span;
+use crate::source::{Member, Span};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
@@ -26,11 +28,25 @@ pub struct Problem {
     pub also: Vec<(Span, String)>,
     /// The correction.
     pub help: Option<String>,
+    /// In a family of blocks: the other members in which the same place is at fault, with what is said of each.
+    pub members: Vec<(String, String)>,
 }
+
+/// A list of members longer than this is cut off.
+const MOST_LISTED: usize = 8;
 
 impl Problem {
     pub fn error(code: &'static str, says: impl Into<String>) -> Self {
-        Self { severity: Severity::Error, code, says: says.into(), at: None, label: None, also: Vec::new(), help: None }
+        Self {
+            severity: Severity::Error,
+            code,
+            says: says.into(),
+            at: None,
+            label: None,
+            also: Vec::new(),
+            help: None,
+            members: Vec::new(),
+        }
     }
 
     pub fn warning(code: &'static str, says: impl Into<String>) -> Self {
@@ -81,6 +97,8 @@ impl Problem {
         };
         let mut group =
             level.primary_title(plain(&self.says)).id(self.code).elements(Vec::<Snippet<'_, annotate_snippets::Annotation<'_>>>::new());
+        let put_in = self.at.as_ref().and_then(|at| at.filled.as_ref()?.put_in());
+        let put_in = put_in.map(|word| (word.span.clone(), format!("the member `{}`", word.value)));
         let name = |span: &Span| plain(&span.source.name).replace('\n', "\u{fffd}");
         if let Some(at) = &self.at {
             let mut same = Snippet::source(at.source.text.as_str())
@@ -88,7 +106,7 @@ impl Problem {
                 .line_start(at.source.first_line)
                 .annotation(AnnotationKind::Primary.span(range(at)).label(self.label.clone().map(|text| plain(&text))));
             let mut others: Vec<Snippet<'_, _>> = Vec::new();
-            for (span, text) in &self.also {
+            for (span, text) in self.also.iter().chain(&put_in) {
                 let annotation = AnnotationKind::Context.span(range(span)).label(plain(text));
                 if span.source == at.source {
                     same = same.annotation(annotation);
@@ -106,6 +124,9 @@ impl Problem {
                 group = group.element(other);
             }
         }
+        if let Some(members) = self.in_members() {
+            group = group.element(Level::NOTE.message(plain(&members)));
+        }
         if let Some(help) = &self.help {
             group = group.element(Level::HELP.message(plain(help)));
         }
@@ -117,7 +138,57 @@ impl Problem {
     }
 }
 
-/// Byte range inside the text, on character boundaries, and not empty where a character can be underlined.
+impl Problem {
+    fn member(&self) -> Option<&Arc<Member>> {
+        Some(&self.at.as_ref()?.filled.as_ref()?.member)
+    }
+
+    /// `in `Y_phase` and `Q_phase` of the family `{channel}_{part}``
+    fn in_members(&self) -> Option<String> {
+        let member = self.member()?;
+        let names: Vec<String> =
+            std::iter::once(&member.name).chain(self.members.iter().map(|(name, _)| name)).map(|name| format!("`{name}`")).collect();
+        let listed = match names.split_last() {
+            Some((last, first)) if !first.is_empty() && names.len() <= MOST_LISTED => format!("{} and {last}", first.join(", ")),
+            _ if names.len() > MOST_LISTED => format!("{} and {} more", names[..MOST_LISTED].join(", "), names.len() - MOST_LISTED),
+            _ => names.concat(),
+        };
+        Some(format!("in {listed} of the family `{}`", member.family))
+    }
+
+    /// Takes in the same fault of another member of the family; gives it back if it is another fault.
+    fn takes_in(&mut self, other: Problem) -> Option<Problem> {
+        let (Some(own), Some(its), Some(at), Some(there)) = (self.member(), other.member(), &self.at, &other.at) else {
+            return Some(other);
+        };
+        if self.code != other.code
+            || own.family != its.family
+            || (at.start, at.end) != (there.start, there.end)
+            || at.source != there.source
+        {
+            return Some(other);
+        }
+        let known = |problem: &Problem, name: &str| problem.members.iter().find(|(known, _)| known == name).map(|(_, says)| says.clone());
+        let said = if own.name == its.name { Some(self.says.clone()) } else { known(self, &its.name) };
+        if let Some(said) = said {
+            return if said == other.says { None } else { Some(other) };
+        }
+        let put_in = |span: &Span| span.filled.as_ref().and_then(|filled| filled.put_in().cloned());
+        let same_word = put_in(at) == put_in(there);
+        let without_name = |says: &str, member: &Member| says.replace(&member.name, &member.family);
+        if !same_word && without_name(&self.says, own) != without_name(&other.says, its) {
+            return Some(other);
+        }
+        self.members.push((its.name.clone(), other.says));
+        // What differs from member to member is not the fault.
+        if let Some(filled) = self.at.as_mut().filter(|_| !same_word).and_then(|at| at.filled.as_mut()) {
+            Arc::make_mut(filled).pieces.clear();
+        }
+        None
+    }
+}
+
+/// Byte range inside the text, never empty at a place where a character can be underlined, on character boundaries.
 fn range(span: &Span) -> std::ops::Range<usize> {
     let text = &span.source.text;
     let mut start = span.start.min(text.len());
@@ -151,10 +222,15 @@ pub struct Problems(pub Vec<Problem>);
 
 impl Problems {
     pub fn push(&mut self, problem: Problem) {
-        // A problem found several times is reported once.
-        if !self.0.contains(&problem) {
-            self.0.push(problem);
+        // The same fact at the same place is said once, however often a part is used, and in how many members of a family.
+        if self.0.contains(&problem) {
+            return;
         }
+        let mut left = Some(problem);
+        for known in &mut self.0 {
+            left = left.and_then(|problem| known.takes_in(problem));
+        }
+        self.0.extend(left);
     }
 
     pub fn any_error(&self) -> bool {

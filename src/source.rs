@@ -70,7 +70,7 @@ impl Source {
     }
 
     pub fn span(self: &Arc<Self>, range: Range<usize>) -> Span {
-        Span { source: Arc::clone(self), start: range.start, end: range.end }
+        Span { source: Arc::clone(self), start: range.start, end: range.end, filled: None }
     }
 
     /// The span of the whole text.
@@ -85,23 +85,40 @@ pub struct Span {
     pub source: Arc<Source>,
     pub start: usize,
     pub end: usize,
+    /// In a block of a family: what stands there with its member put in.
+    pub filled: Option<Arc<Filled>>,
 }
 
 impl Span {
+    /// What stands there, with the member put in where it is a block of a family.
     pub fn text(&self) -> &str {
-        self.source.text.get(self.start..self.end).unwrap_or("")
+        match &self.filled {
+            Some(filled) => &filled.text,
+            None => self.source.text.get(self.start..self.end).unwrap_or(""),
+        }
     }
 
-    /// A part of this span, in bytes from its start, limited to it.
+    /// A part of this span, in bytes of its text, kept inside it.
     pub fn part(&self, range: Range<usize>) -> Span {
+        if let Some(filled) = &self.filled {
+            return filled.part(self, range, true);
+        }
         let start = (self.start + range.start).min(self.end);
         let end = (self.start + range.end).clamp(start, self.end);
-        Span { source: Arc::clone(&self.source), start, end }
+        Span { source: Arc::clone(&self.source), start, end, filled: None }
+    }
+
+    /// The same place, of which only these bytes of its text are meant: which they are in the source is not known.
+    pub fn of_which(&self, range: Range<usize>) -> Span {
+        match &self.filled {
+            Some(filled) => filled.part(self, range, false),
+            None => self.clone(),
+        }
     }
 
     /// From the start of this span to the end of another in the same source.
     pub fn to(&self, other: &Span) -> Span {
-        Span { source: Arc::clone(&self.source), start: self.start, end: other.end.max(self.start) }
+        Span { source: Arc::clone(&self.source), start: self.start, end: other.end.max(self.start), filled: None }
     }
 
     pub fn line(&self) -> usize {
@@ -123,8 +140,67 @@ impl fmt::Debug for Span {
     }
 }
 
-/// A value and its place.
-#[derive(Clone, Debug, PartialEq)]
+/// A text of a family of blocks as it stands in one of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Filled {
+    pub text: String,
+    pub member: Arc<Member>,
+    /// Of what the text is made, in order and without gaps.
+    pub pieces: Vec<Piece>,
+}
+
+/// One block of a family, by the names of the two: `Y_phase` of `Y_{part}`.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Member {
+    pub name: String,
+    pub family: String,
+}
+
+/// A stretch of a text of a family.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Piece {
+    /// Bytes of the text.
+    pub text: Range<usize>,
+    /// Where they come from, in bytes from the start of the span: as many, or `{part}`.
+    pub from: Range<usize>,
+    /// What was put in for braces, where it was written.
+    pub put_in: Option<Arc<Spanned<String>>>,
+}
+
+impl Filled {
+    fn part(&self, span: &Span, range: Range<usize>, exact: bool) -> Span {
+        let end = range.end.max(range.start + 1);
+        let touched = || self.pieces.iter().filter(|piece| piece.text.start < end && range.start < piece.text.end);
+        let (Some(first), Some(last)) = (touched().next(), touched().next_back()) else { return span.clone() };
+        let ahead = |piece: &Piece| if piece.put_in.is_some() { 0 } else { range.start.saturating_sub(piece.text.start) };
+        let behind = |piece: &Piece| if piece.put_in.is_some() { 0 } else { piece.text.end.saturating_sub(range.end.max(range.start)) };
+        let from = first.from.start + ahead(first);
+        let to = last.from.end.saturating_sub(behind(last)).max(from);
+        let shift = if exact { from } else { 0 };
+        let pieces = touched().map(|piece| Piece {
+            text: piece.text.start.max(range.start) - range.start..piece.text.end.min(range.end.max(range.start)) - range.start,
+            from: piece.from.start + ahead(piece) - shift..(piece.from.end - behind(piece)).max(piece.from.start + ahead(piece)) - shift,
+            put_in: piece.put_in.clone(),
+        });
+        let filled = Self {
+            text: self.text.get(range.start..range.end.min(self.text.len())).unwrap_or("").to_owned(),
+            member: Arc::clone(&self.member),
+            pieces: pieces.collect(),
+        };
+        let (start, end) = if exact { (span.start + from, span.start + to) } else { (span.start, span.end) };
+        Span { source: Arc::clone(&span.source), start, end, filled: Some(Arc::new(filled)) }
+    }
+
+    /// What was put in, if the text has only one such piece.
+    pub fn put_in(&self) -> Option<&Spanned<String>> {
+        let mut found = self.pieces.iter().filter_map(|piece| piece.put_in.as_deref());
+        let first = found.next()?;
+        found.all(|other| other == first).then_some(first)
+    }
+}
+
+/// A value and the place where it was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Spanned<T> {
     pub value: T,
     pub span: Span,
@@ -146,5 +222,35 @@ mod tests {
         assert_eq!(source.line_column(3), (10, 3));
         assert_eq!(source.line_column(5), (11, 1));
         assert_eq!(source.span(5..6).to_string(), "a.csv:11:1");
+    }
+
+    /// `each {part}_limit` with `phase` put in: places in the text lead to what was written.
+    #[test]
+    fn places_lead_through_what_is_put_in() {
+        let source = Source::new("p.fp", "limit each {part}_limit, phase");
+        let member = Arc::new(Member { name: "Y_phase".into(), family: "Y_{part}".into() });
+        let word = Arc::new(Spanned::new("phase".to_string(), source.span(25..30)));
+        let pieces = vec![
+            Piece { text: 0..5, from: 0..5, put_in: None },
+            Piece { text: 5..10, from: 5..11, put_in: Some(word) },
+            Piece { text: 10..16, from: 11..17, put_in: None },
+        ];
+        let filled = Filled { text: "each phase_limit".into(), member, pieces };
+        let span = Span { filled: Some(Arc::new(filled)), ..source.span(6..23) };
+        let written = |span: &Span| source.text[span.start..span.end].to_string();
+        for (part, text, from, whole) in [
+            (0..4, "each", "each", None),
+            (5..16, "phase_limit", "{part}_limit", Some("phase")),
+            (6..8, "ha", "{part}", Some("phase")),
+            (11..16, "limit", "limit", None),
+        ] {
+            let found = span.part(part);
+            assert_eq!((found.text(), written(&found).as_str()), (text, from));
+            assert_eq!(found.filled.as_ref().and_then(|filled| filled.put_in()).map(|word| word.value.as_str()), whole);
+        }
+        assert_eq!(written(&span.part(5..16).part(6..11)), "limit");
+        assert_eq!(written(&span.part(16..16)), written(&span));
+        let loose = span.of_which(11..16);
+        assert_eq!((loose.text(), written(&loose).as_str()), ("limit", "each {part}_limit"));
     }
 }

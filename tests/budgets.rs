@@ -137,12 +137,12 @@ fn refused(from: &str, to: &str, code: &str, says: &str) {
 fn filters_that_double_each_other() {
     let doubled = |at: usize| format!("filter F{at} \"x\"\n  step  F{}\n  step  F{}\n\n", at - 1, at - 1);
     let all: String = (1..=40).map(doubled).collect();
-    let all = format!("filter F0 \"x\"\n  step  low-pass 20 Hz, order 2, zero-phase\n\n{all}quantity Y_magnitude");
-    refused("quantity Y_magnitude", &all, "too-large", "there can be at most 32");
+    let all = format!("filter F0 \"x\"\n  step  low-pass 20 Hz, order 2, zero-phase\n\n{all}verdict");
+    refused("verdict", &all, "too-large", "there can be at most 32");
     // Thirty-two steps are not too many.
     let all: String = (1..=5).map(doubled).collect();
-    let all = format!("filter F0 \"x\"\n  step  low-pass 20 Hz, order 2, zero-phase\n\n{all}quantity Y_magnitude");
-    let (_temp, path) = protocol("quantity Y_magnitude", &all);
+    let all = format!("filter F0 \"x\"\n  step  low-pass 20 Hz, order 2, zero-phase\n\n{all}verdict");
+    let (_temp, path) = protocol("verdict", &all);
     assert_eq!(within(SMALL, &["check", &path]).code, 0);
 }
 
@@ -160,19 +160,32 @@ fn places_with_many_positions() {
 fn steps_that_are_too_fine() {
     for (step, says) in [("1e-5 m", "is finer than 0.0001 m"), ("1e-12 m", "the step is below 1 µm"), ("0.01 mm", "is finer than 0.0001 m")]
     {
-        let resampled = format!("filter FINE \"x\"\n  step  resample every {step}\n\nquantity Y_magnitude");
-        refused("quantity Y_magnitude", &resampled, "out-of-range", says);
+        let resampled = format!("filter FINE \"x\"\n  step  resample every {step}\n\nverdict");
+        refused("verdict", &resampled, "out-of-range", says);
     }
-    let resampled = "filter FINE \"x\"\n  step  resample every 0.1 mm\n\nquantity Y_magnitude";
-    let (_temp, path) = protocol("quantity Y_magnitude", resampled);
+    let resampled = "filter FINE \"x\"\n  step  resample every 0.1 mm\n\nverdict";
+    let (_temp, path) = protocol("verdict", resampled);
     let ran = within(SMALL, &["check", &path]);
     assert_eq!(ran.code, 0, "{}", ran.stderr);
 }
 
 #[test]
 fn numbers_that_are_none() {
-    refused("each magnitude_limit", "each 1e400", "not-finite", "more than a number can be");
-    refused("each magnitude_limit", "each 0.1 / 0", "not-finite", "zero");
+    refused("each {part}_limit", "each 1e400", "not-finite", "more than a number can be");
+    refused("each {part}_limit", "each 0.1 / 0", "not-finite", "zero");
+}
+
+/// Families whose texts grow with their members, and more members than are written out.
+#[test]
+fn families_that_are_too_large() {
+    let members = |count: usize| (0..count).map(|at| format!("m{at}")).collect::<Vec<_>>().join(", ");
+    let family = |count: usize, note: &str| {
+        format!("define x_{{x}}\n  for each  x in {}\n  is        1\n  note      \"{note}\"\n\nverdict", members(count))
+    };
+    refused("verdict", &family(1001, "{x}"), "too-large", "has 1001 members; there can be at most 1000");
+    refused("verdict", &family(900, &"{x}".repeat(20_000)), "too-large", "longer than 20 megabytes");
+    let (_temp, path) = protocol("verdict", &family(1000, "{x}"));
+    assert_eq!(within(SMALL, &["check", &path]).code, 0);
 }
 
 #[test]

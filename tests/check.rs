@@ -322,6 +322,110 @@ fn a_variant_overrides_field_by_field() {
     assert_eq!((removed.len(), removed[0].0.as_str(), &removed[0].2), (1, "quantity az_max", &None));
 }
 
+// ---- families of blocks
+
+/// A protocol with every family written out is the same protocol.
+#[test]
+fn a_family_is_its_blocks_written_out() {
+    let mut families = 0;
+    for path in files("protocols").into_iter().chain(files("tests/cases/check/good")) {
+        let (family, plan, _) = checked(&source(&path));
+        let text = print_text(&family.merged);
+        families += usize::from(source(&path).text.contains("  for each "));
+        assert!(!text.contains("  for each "), "{text}");
+        let (_, again, problems) = checked(&Source::new(name(&path), text.replace("  extends  ", "  # extends ")));
+        let again = again.unwrap_or_else(|| panic!("{}", problems.render(false)));
+        let plan = plan.expect("a plan");
+        assert_eq!(described(&again), described(&plan), "{}", path.display());
+        assert_eq!(graph_of(&again), graph_of(&plan), "{}", path.display());
+    }
+    assert!(families >= 2, "{families} protocols have families");
+}
+
+const PAIRS: &str = "protocol p \"P\"\n  axis  distance in m\n\nchannel {s}\n  for each  s in a, b\n  in        m\n\n\
+    quantity {s}_{v}\n  for each    s in a, b and v in mean, rms\n  of          {s}\n  value       {v}\n  difference  signed\n  limit       std 1 m\n  limit       each 2 m\n";
+
+/// The variant of a protocol with a family, and what differs.
+#[track_caller]
+fn of_pairs(text: &str) -> (Vec<String>, Vec<(String, Option<String>, Option<String>)>) {
+    let variant = Source::new("variant.fp", format!("protocol variant \"A variant\"\n  extends  \"pairs.fp\"\n\n{text}"));
+    let mut problems = Problems::default();
+    let family = family::read(&variant, &|_, _| Ok(Source::new("pairs.fp", PAIRS)), &mut problems);
+    let plan = check::check(&family, &Overrides::new(), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+    let parent = family.parent.as_ref().expect("a parent");
+    let found = diff(parent, &family.merged).into_iter().map(|found| (found.rule, found.before, found.after)).collect();
+    (plan.quantities.iter().map(|quantity| quantity.id.clone()).collect(), found)
+}
+
+/// One member by its name, all of them by the name of the family, or the family given again: deviations are told member by member.
+#[test]
+fn a_variant_overrides_members_of_a_family() {
+    let some = |text: &str| Some(text.to_string());
+    let all = ["a_mean", "a_rms", "b_mean", "b_rms"];
+    let (names, found) = of_pairs("quantity b_rms\n  limit  std 3 m\n");
+    assert_eq!(names, all);
+    assert_eq!(found, [("quantity b_rms, limit std".into(), some("std 1 m"), some("std 3 m"))]);
+
+    let (names, found) = of_pairs("remove\n  quantity  a_rms\n\nquantity {s}_{v} \"{v} of {s}\"\n  limit  std 3 m\n");
+    assert_eq!(names, ["a_mean", "b_mean", "b_rms"]);
+    let rules: Vec<&str> = found.iter().map(|(rule, ..)| rule.as_str()).collect();
+    assert_eq!(
+        rules,
+        [
+            "quantity a_mean, title",
+            "quantity a_mean, limit std",
+            "quantity b_mean, title",
+            "quantity b_mean, limit std",
+            "quantity b_rms, title",
+            "quantity b_rms, limit std",
+            "quantity a_rms",
+        ]
+    );
+    assert_eq!(found[2].2, some("mean of b"));
+
+    let (names, found) = of_pairs(
+        "quantity {s}_{v}\n  for each    s in b and v in rms, peak\n  of          {s}\n  value       {v}\n  difference  signed\n  limit       std 1 m\n",
+    );
+    assert_eq!(names, ["a_mean", "a_rms", "b_mean", "b_rms", "b_peak"]);
+    assert_eq!(found.iter().map(|(rule, ..)| rule.as_str()).collect::<Vec<_>>(), ["quantity b_peak"]);
+}
+
+#[test]
+fn a_variant_removes_every_one_of_a_kind() {
+    let one = "quantity one\n  of          a\n  value       mean\n  difference  signed\n  limit       std 1 m\n";
+    for removed in ["quantity  every", "quantity  {s}_{v}", "quantity  a_rms\n  quantity  every"] {
+        let (names, found) = of_pairs(&format!("remove\n  {removed}\n\n{one}"));
+        assert_eq!(names, ["one"], "{removed}");
+        assert_eq!(found.len(), 5, "{removed}");
+    }
+    let limits = |removed: &str| -> Vec<String> {
+        of_pairs(&format!("remove\n  limit  {removed}\n")).1.into_iter().map(|(rule, ..)| rule).collect()
+    };
+    assert_eq!(limits("a_rms"), ["quantity a_rms, limit std", "quantity a_rms, limit each"]);
+    assert_eq!(limits("a_rms each"), ["quantity a_rms, limit each"]);
+    assert_eq!(limits("every std").len(), 4);
+    assert_eq!(limits("{s}_{v}").len(), 8);
+    // Removed and written anew.
+    let (names, found) = of_pairs("remove\n  limit  every\n\nquantity {s}_{v}\n  limit  std 1 m\n");
+    assert_eq!((names.len(), found.len()), (4, 4));
+}
+
+/// The families of a variant stand over places of its parent, too; a text cannot grow without bound.
+#[test]
+fn members_of_places_and_bounds() {
+    let (family, plan, problems) = variant("signal v{w}\n  for each  w in wheelsets\n  is        Y at wheelset {w} side R\n");
+    assert!(plan.is_some(), "{}", problems.render(false));
+    let made = family.merged.blocks.iter().filter(|block| block.kind.text == "signal" && block.name_text().starts_with('v')).count();
+    assert_eq!(made, 4);
+    let long = "{x}".repeat(20_000);
+    let members = (0..900).map(|number| format!("m{number}")).collect::<Vec<_>>().join(", ");
+    let (_, plan, problems) = variant(&format!("quantity {{x}}\n  for each  x in {members}\n  note      \"{long}\"\n"));
+    assert!(plan.is_none());
+    assert_eq!(codes(&problems), ["too-large"]);
+    let many: String = (0..12).map(|number| format!("define d{number}_{{x}}\n  for each  x in {members}\n  is        1\n\n")).collect();
+    assert_eq!(codes(&variant(&many).2), ["too-large"]);
+}
+
 /// What a committee asks for most: one more zone is one block.
 #[test]
 fn a_fifth_zone_is_one_block() {

@@ -124,10 +124,12 @@ fn keeps_everything(document: &Document) {
 #[test]
 fn both_forms_say_the_same() {
     let folder = root().join("tests/cases/syntax/good");
-    let text = fs::read_to_string(folder.join("wheel_forces.fp")).expect("a readable case");
-    let yaml = fs::read_to_string(folder.join("wheel_forces.yaml")).expect("a readable case");
-    assert_eq!(print_yaml(&clean("a.fp", &text)), yaml);
-    assert_eq!(print_text(&clean("a.yaml", &yaml)), text);
+    for case in ["wheel_forces", "families"] {
+        let text = fs::read_to_string(folder.join(format!("{case}.fp"))).expect("a readable case");
+        let yaml = fs::read_to_string(folder.join(format!("{case}.yaml"))).expect("a readable case");
+        assert_eq!(print_yaml(&clean("a.fp", &text)), yaml);
+        assert_eq!(print_text(&clean("a.yaml", &yaml)), text);
+    }
 }
 
 /// The page on the two forms shows one protocol in both.
@@ -271,6 +273,8 @@ mod round_trip {
             "no",
             "[x]",
             "{y}",
+            "p{x}_limit",
+            "(a, b), (c and d, e)",
             "&",
             "!",
             "'s'",
@@ -295,7 +299,11 @@ mod round_trip {
     }
 
     fn block(kind: &'static Kind) -> impl Strategy<Value = Block> {
-        let name = select(vec!["Y_max", "1", "1.5", "null", "n-1", "_x", "007", "1e5", "true", "y"]);
+        let mut names = vec!["Y_max", "1", "1.5", "null", "n-1", "_x", "007", "1e5", "true", "y"];
+        if kind.has_families() {
+            names.extend(["{q}_{m}", "{x}", "Y_{part}"]);
+        }
+        let name = select(names);
         let fields = vec(any::<Index>(), 0..5).prop_flat_map(|picks| {
             let mut keys: Vec<&'static Key> = Vec::new();
             for pick in picks {

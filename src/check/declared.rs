@@ -5,8 +5,8 @@ use super::names::{Channel, Place, SignalDef, normalised};
 use super::plan::{Datum, DatumKind, DatumRange, Scalar};
 use crate::problem::Problem;
 use crate::syntax::document::{Block, Field};
-use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Pick};
+use crate::syntax::{families, from_pest};
 
 /// Most positions of a place: the wheels of a train of sixty vehicles. Signals at several places have as many positions as their product.
 const MOST_MEMBERS: usize = 500;
@@ -259,11 +259,6 @@ impl Checker<'_> {
 
     /// The place of a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`, `bodies`.
     pub(super) fn place_called(&self, word: &str) -> Option<String> {
-        let plural = |name: &str| {
-            [format!("{name}s"), format!("{name}es")].contains(&word.to_string())
-                || name.strip_suffix('y').is_some_and(|stem| format!("{stem}ies") == word)
-        };
-        let names = || self.names.places.keys();
-        names().find(|name| *name == word).or_else(|| names().find(|name| plural(name))).cloned()
+        families::place_called(word, self.names.places.keys().map(String::as_str)).map(str::to_owned)
     }
 }

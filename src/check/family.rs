@@ -8,8 +8,11 @@ use crate::problem::{Problem, Problems};
 use crate::source::Source;
 use crate::syntax;
 use crate::syntax::document::{Block, Document, Field};
+use crate::syntax::families::{self, Known};
 use crate::syntax::{from_pest, keys};
 
+/// In `remove`, in place of a name: all there are.
+const EVERY: &str = "every";
 /// How deep protocols may extend each other.
 const DEEPEST: usize = 8;
 
@@ -21,7 +24,8 @@ pub struct Family {
     pub parent: Option<Document>,
     /// The protocol's own text first, then its parent's, and so on.
     pub sources: Vec<Arc<Source>>,
-    /// Whether every ancestor was found: if not, nothing can be told of names that may stand in it.
+    /// Whether every ancestor was found and every family of blocks could be written out: if not, nothing can be told of names that
+    /// may stand there.
     pub whole: bool,
 }
 
@@ -66,17 +70,15 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
     }
     let mut merged: Option<Document> = None;
     let mut parent = None;
-    while let Some(document) = chain.pop() {
-        merged = Some(match merged {
-            None => document,
-            Some(before) => {
-                let together = merge(&before, &document, problems);
-                if chain.is_empty() {
-                    parent = Some(before);
-                }
-                together
-            }
-        });
+    let mut known = Vec::new();
+    while let Some(written) = chain.pop() {
+        let left = merged.as_ref().map(|before| without_removed(before, &written, &known, problems));
+        let (document, sound) = families::expand(&written, left.as_ref(), &mut known, problems);
+        whole &= sound;
+        let together = left.map_or_else(|| document.clone(), |left| merge(left, &document));
+        if let Some(before) = merged.replace(together).filter(|_| chain.is_empty()) {
+            parent = Some(before);
+        }
     }
     let merged =
         merged.unwrap_or_else(|| Document { source: Arc::clone(source), leading: Vec::new(), blocks: Vec::new(), trailing: Vec::new() });
@@ -87,13 +89,24 @@ fn extends(document: &Document) -> Option<&Field> {
     document.blocks.iter().find(|block| block.kind.text == "protocol").and_then(|block| block.field("extends"))
 }
 
-/// The parent's blocks with the variant's put over them: same kind and name means override field by field.
-fn merge(parent: &Document, variant: &Document, problems: &mut Problems) -> Document {
-    let mut blocks: Vec<Block> = parent.blocks.clone();
-    // Before anything is added, so that what is removed is the parent's wherever `remove` stands.
-    for field in variant.blocks.iter().filter(|block| block.kind.text == "remove").flat_map(|block| &block.fields) {
-        remove(&mut blocks, field, problems);
+/// The parent without what the variant removes. Nothing of the variant is in it yet, so that what is removed is the parent's
+/// wherever `remove` stands.
+fn without_removed(parent: &Document, variant: &Document, families: &[Known], problems: &mut Problems) -> Document {
+    let mut left = parent.clone();
+    let removals = || variant.blocks.iter().filter(|block| block.kind.text == "remove").flat_map(|block| &block.fields);
+    let every = |field: &Field| words(field).first() == Some(&EVERY);
+    // What is named goes before every one of a kind, and limits before their quantities: else they were told to be gone already.
+    let mut fields: Vec<&Field> = removals().collect();
+    fields.sort_by_key(|field| (every(field), field.key.text != "limit"));
+    for field in fields {
+        remove(&mut left.blocks, field, families, problems);
     }
+    left
+}
+
+/// The parent's blocks with the variant's put over them: same kind and name means override field by field.
+fn merge(parent: Document, variant: &Document) -> Document {
+    let mut blocks = parent.blocks;
     for block in variant.blocks.iter().filter(|block| block.kind.text != "remove") {
         let single = keys::kind(&block.kind.text).is_some_and(|kind| kind.single);
         let same = |other: &&mut Block| other.kind.text == block.kind.text && (single || other.name_text() == block.name_text());
@@ -161,42 +174,65 @@ pub(super) fn slot(field: &Field) -> String {
     }
 }
 
-fn remove(blocks: &mut Vec<Block>, field: &Field, problems: &mut Problems) {
-    let words: Vec<&str> = field.value.text.split_whitespace().collect();
+fn words(field: &Field) -> Vec<&str> {
+    field.value.text.split_whitespace().collect()
+}
+
+/// Takes away what a field of `remove` names: a block, those of a family, or every one of its kind; or limits of these.
+fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: &mut Problems) {
+    let words = words(field);
     let is_limit = field.key.text == "limit";
     let (kind, name) = (if is_limit { "quantity" } else { field.key.text.as_str() }, words.first().copied().unwrap_or(""));
-    let Some(index) = blocks.iter().position(|block| block.kind.text == kind && block.name_text() == name) else {
-        let known: Vec<&str> = blocks.iter().filter(|block| block.kind.text == kind).map(Block::name_text).collect();
-        let problem = Problem::error("nothing-to-remove", format!("the parent has no {kind} `{name}`")).at(&field.value.span);
-        problems.push(problem.suggest(name, known));
-        return;
+    let family = families.iter().find(|family| family.kind == kind && family.name == name);
+    let meant = |block: &Block| {
+        let named = || block.name_text() == name || family.is_some_and(|family| family.members.iter().any(|one| one == block.name_text()));
+        block.kind.text == kind && (name == EVERY || named())
     };
+    if !blocks.iter().any(meant) {
+        let says = if name == EVERY { format!("the parent has no {kind}") } else { format!("the parent has no {kind} `{name}`") };
+        let mut known: Vec<&str> = blocks.iter().filter(|block| block.kind.text == kind).map(Block::name_text).collect();
+        let here = families.iter().filter(|family| family.kind == kind && family.members.iter().any(|one| known.contains(&one.as_str())));
+        let here: Vec<&str> = here.map(|family| family.name.as_str()).collect();
+        known.extend(here);
+        problems.push(Problem::error("nothing-to-remove", says).at(&field.value.span).suggest(name, known));
+        return;
+    }
     match (is_limit, words.as_slice()) {
-        (false, [_]) => drop(blocks.remove(index)),
-        (true, [_, statistic, scope @ ..]) => {
-            let wanted = |other: &Field| {
-                let limit = from_pest::limit(&other.value, &mut Problems::default());
-                let same = limit.is_some_and(|limit| {
-                    limit.statistic.node == *statistic && (scope.is_empty() || limit.scope.node.meaning() == scope.join(" "))
-                });
-                other.key.text == "limit" && same
-            };
-            let before = blocks[index].fields.len();
-            blocks[index].fields.retain(|field| !wanted(field));
-            if blocks[index].fields.len() == before {
-                let known: Vec<&str> =
-                    blocks[index].fields_named("limit").filter_map(|limit| limit.value.text.split_whitespace().next()).collect();
-                let says = format!("`{name}` of the parent has no limit of the `{}`", words[1..].join(" "));
-                problems.push(Problem::error("nothing-to-remove", says).at(&field.value.span).suggest(statistic, known));
-            }
-        }
+        (false, [_]) => blocks.retain(|block| !meant(block)),
+        (true, [_, limit @ ..]) => remove_limits(blocks.iter_mut().filter(|block| meant(block)), name, limit, field, problems),
         _ => {
             let problem = Problem::error("remove", format!("what is to be removed is one {}", field.key.text)).at(&field.value.span);
-            problems.push(problem.help(if is_limit {
-                "write the quantity, then the statistic: `limit <quantity> mean`"
-            } else {
-                "write one name in each line"
-            }));
+            problems.push(problem.help("write one name in each line, or `every` for all"));
         }
     }
+}
+
+/// Takes away the limits of a statistic and scope, or all of them, from some quantities.
+fn remove_limits<'a>(quantities: impl Iterator<Item = &'a mut Block>, name: &str, words: &[&str], field: &Field, problems: &mut Problems) {
+    let wanted = |other: &Field| {
+        let [statistic, scope @ ..] = words else { return true };
+        let limit = from_pest::limit(&other.value, &mut Problems::default());
+        limit.is_some_and(|limit| limit.statistic.node == *statistic && (scope.is_empty() || limit.scope.node.meaning() == scope.join(" ")))
+    };
+    let mut removed = false;
+    let mut known: Vec<String> = Vec::new();
+    for quantity in quantities {
+        known.extend(quantity.fields_named("limit").filter_map(|limit| Some(limit.value.text.split_whitespace().next()?.to_owned())));
+        let before = quantity.fields.len();
+        quantity.fields.retain(|other| other.key.text != "limit" || !wanted(other));
+        removed |= quantity.fields.len() < before;
+    }
+    if removed {
+        return;
+    }
+    let of = if name == EVERY { "no quantity of the parent has".to_owned() } else { format!("`{name}` of the parent has no limit") };
+    let says = match (name == EVERY, words) {
+        (true, []) => format!("{of} a limit"),
+        (true, _) => format!("{of} a limit of the `{}`", words.join(" ")),
+        (false, []) => of,
+        (false, _) => format!("{of} of the `{}`", words.join(" ")),
+    };
+    known.dedup();
+    let problem = Problem::error("nothing-to-remove", says).at(&field.value.span);
+    problems.push(problem.suggest(words.first().unwrap_or(&""), known.iter().map(String::as_str)));
 }

@@ -58,7 +58,7 @@ pub struct Text {
 impl Text {
     /// The place of a part of the text, as narrow as is known.
     pub fn place(&self, range: Range<usize>) -> Span {
-        if self.exact { self.span.part(range) } else { self.span.clone() }
+        if self.exact { self.span.part(range) } else { self.span.of_which(range) }
     }
 }
 

@@ -16,6 +16,8 @@ pub struct Key {
     pub sort: Sort,
     /// May stand more than once (a list in YAML).
     pub many: bool,
+    /// A text in which places of the vehicle stand in braces.
+    pub pattern: bool,
     pub about: &'static str,
     pub example: &'static str,
 }
@@ -35,17 +37,29 @@ pub struct Kind {
 }
 
 const fn text(word: &'static str, about: &'static str, example: &'static str) -> Key {
-    Key { word, sort: Sort::Text, many: false, about, example }
+    Key { word, sort: Sort::Text, many: false, pattern: false, about, example }
 }
 
 const fn phrase(word: &'static str, about: &'static str, example: &'static str) -> Key {
-    Key { word, sort: Sort::Phrase, many: false, about, example }
+    Key { word, sort: Sort::Phrase, many: false, pattern: false, about, example }
 }
 
 const fn many(key: Key) -> Key {
     Key { many: true, ..key }
 }
 
+const fn pattern(key: Key) -> Key {
+    Key { pattern: true, ..key }
+}
+
+/// The word of the field that makes a block a family of blocks.
+pub const EACH: &str = "for each";
+
+const FOR_EACH: Key = many(phrase(
+    EACH,
+    "Makes the block a family: it stands once for each member, which is put in where `{variable}` stands.",
+    "channel in Y, Q and part in magnitude, phase",
+));
 const CLAUSE: Key = text("clause", "Clause of the standard the rule follows.", "Annex T, T.3");
 const SOURCE: Key = text("source", "Where the rule or number is published.", "Goetz & Polach, Table 1");
 const NOTE: Key = many(text("note", "A remark printed with the rule.", "Absolute values of simulation and measurement."));
@@ -80,11 +94,15 @@ pub const KINDS: &[Kind] = &[
         single: true,
         about: "In a variant: what of the parent does not hold here.",
         keys: &[
-            many(phrase("quantity", "A quantity of the parent.", "az_max")),
-            many(phrase("zone", "A zone of the parent.", "4")),
-            many(phrase("check", "A section check of the parent.", "full_curve")),
-            many(phrase("plausibility", "A plausibility rule of the parent.", "wheel_load")),
-            many(phrase("limit", "One limit of a quantity of the parent: the quantity, then the statistic.", "az_max mean")),
+            many(phrase("quantity", "A quantity of the parent, a family of them as it is written there, or `every` one.", "az_max")),
+            many(phrase("zone", "A zone of the parent, a family, or `every` one.", "4")),
+            many(phrase("check", "A section check of the parent, a family, or `every` one.", "full_curve")),
+            many(phrase("plausibility", "A plausibility rule of the parent, a family, or `every` one.", "wheel_load")),
+            many(phrase(
+                "limit",
+                "Limits of a quantity of the parent, of a family or of `every` one: the quantity, then the statistic unless all are meant.",
+                "az_max mean",
+            )),
         ],
     },
     Kind {
@@ -94,6 +112,7 @@ pub const KINDS: &[Kind] = &[
         single: false,
         about: "A number or choice that a campaign, a variant or the command line can set.",
         keys: &[
+            FOR_EACH,
             phrase("default", "Its value unless set: a number with its unit, or one of the choices.", "20 Hz"),
             phrase("one of", "The choices, if it is one.", "oriented, signed, magnitudes"),
             phrase("range", "The smallest and largest value allowed.", "10 Hz to 40 Hz"),
@@ -130,6 +149,7 @@ pub const KINDS: &[Kind] = &[
         single: false,
         about: "A value of the vehicle file that rules refer to as `vehicle.<name>`.",
         keys: &[
+            FOR_EACH,
             phrase("in", "Its unit, if it is a number.", "kN"),
             phrase("one of", "Its possible words, if it is one.", "passenger, locomotive, freight"),
             phrase("key", "Where it stands in the vehicle file, if not under its own name.", "static_wheel_load"),
@@ -149,6 +169,7 @@ pub const KINDS: &[Kind] = &[
         single: false,
         about: "A column of the table of sections that rules refer to by its name.",
         keys: &[
+            FOR_EACH,
             phrase("in", "Its unit, if it is a number.", "m"),
             phrase("one of", "Its possible words, if it is one; `zones` stands for the names of all zones.", "right, left, straight"),
             text("column", "Its column header without the unit, if not its own name with blanks for underscores.", "cant deficiency"),
@@ -163,9 +184,10 @@ pub const KINDS: &[Kind] = &[
         single: false,
         about: "A measured and simulated signal, one column of the records for each position.",
         keys: &[
+            FOR_EACH,
             phrase("in", "The unit in which its values are printed; columns in other units of the same dimension are converted.", "kN"),
             phrase("at", "The places it is measured at.", "each wheelset and side"),
-            text("column", "Its column header without the unit; places in braces.", "Y_{wheelset}{side}"),
+            pattern(text("column", "Its column header without the unit; places in braces.", "Y_{wheelset}{side}")),
             phrase("record", "The kind of record it stands in, if not in simulation and measurement: `track`.", "track"),
             NOTE,
         ],
@@ -177,10 +199,11 @@ pub const KINDS: &[Kind] = &[
         single: false,
         about: "A signal computed sample by sample from channels and other signals.",
         keys: &[
+            FOR_EACH,
             phrase("is", "The expression.", "Y at side R + Y at side L"),
             phrase("at", "The places it exists at; those the expression fixes are left out.", "each wheelset"),
             phrase("in", "The unit in which its values are printed.", "kN"),
-            text("named", "How one of its positions is called in tables; places in braces.", "SigmaY_{wheelset}"),
+            pattern(text("named", "How one of its positions is called in tables; places in braces.", "SigmaY_{wheelset}")),
             CLAUSE,
             SOURCE,
             NOTE,
@@ -192,7 +215,13 @@ pub const KINDS: &[Kind] = &[
         named: true,
         single: false,
         about: "A chain of filter steps with a name.",
-        keys: &[many(phrase("step", "One step of the chain, in order.", "low-pass 20 Hz, order 4, zero-phase")), CLAUSE, SOURCE, NOTE],
+        keys: &[
+            FOR_EACH,
+            many(phrase("step", "One step of the chain, in order.", "low-pass 20 Hz, order 4, zero-phase")),
+            CLAUSE,
+            SOURCE,
+            NOTE,
+        ],
     },
     Kind {
         word: "define",
@@ -200,7 +229,13 @@ pub const KINDS: &[Kind] = &[
         named: true,
         single: false,
         about: "A name for an expression: a condition, a factor, a table by zone or speed.",
-        keys: &[phrase("is", "The expression.", "vehicle.category is freight or not vehicle.secondary_suspension"), CLAUSE, SOURCE, NOTE],
+        keys: &[
+            FOR_EACH,
+            phrase("is", "The expression.", "vehicle.category is freight or not vehicle.secondary_suspension"),
+            CLAUSE,
+            SOURCE,
+            NOTE,
+        ],
     },
     Kind {
         word: "zone",
@@ -209,6 +244,7 @@ pub const KINDS: &[Kind] = &[
         single: false,
         about: "A test zone: a class of sections.",
         keys: &[
+            FOR_EACH,
             phrase("where", "What a section of the zone must satisfy.", "400 m <= radius <= 600 m"),
             phrase("minimum sections", "How many used sections the zone needs.", "3"),
             phrase("minimum length", "How long a section must be.", "250 m when admissible_speed <= 220 km/h, otherwise 500 m"),
@@ -224,6 +260,7 @@ pub const KINDS: &[Kind] = &[
         single: false,
         about: "A requirement on every section; a section that fails it is not used.",
         keys: &[
+            FOR_EACH,
             phrase(
                 "require",
                 "The condition on the section's data and on reduced signals of its records.",
@@ -243,6 +280,7 @@ pub const KINDS: &[Kind] = &[
         single: false,
         about: "What sound data satisfy. What does not is told as a finding, with the number found and what it should be near.",
         keys: &[
+            FOR_EACH,
             many(phrase(
                 "of",
                 "Signals and the positions at which it is looked at; positions that are not recorded are passed over.",
@@ -294,6 +332,7 @@ pub const KINDS: &[Kind] = &[
         single: false,
         about: "A validation quantity: which signals, how processed, how compared, within which limits.",
         keys: &[
+            FOR_EACH,
             text("symbol", "As printed in tables.", "(Y/Q)max"),
             phrase("of", "The signal and the positions at which it is evaluated.", "Y at wheelsets 1, 3"),
             phrase("filter", "Filters in order: names, or steps.", "LP20, then sliding mean 2 m every 0.5 m"),
@@ -341,6 +380,11 @@ pub fn group(word: &str) -> Option<&'static Kind> {
 }
 
 impl Kind {
+    /// Whether one block of this kind can stand for a family of them.
+    pub fn has_families(&self) -> bool {
+        self.key(EACH).is_some()
+    }
+
     pub fn key(&self, word: &str) -> Option<&'static Key> {
         self.keys.iter().find(|key| key.word == word)
     }

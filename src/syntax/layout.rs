@@ -112,10 +112,12 @@ fn arms(phrase: &str) -> Vec<String> {
     arms
 }
 
+/// What stands in parentheses stays together where it fits on a line.
 fn wrap_arm(phrase: &str, width: usize) -> Vec<String> {
     let mut segments: Vec<String> = Vec::new();
-    let mut quotes = Quotes::default();
+    let (mut quotes, mut depth) = (Quotes::default(), 0_usize);
     let mut open = false;
+    let mut start = 0;
     for word in phrase.split(' ') {
         let joins = matches!(word, "and" | "or" | "when" | "otherwise" | "then");
         match segments.last_mut() {
@@ -125,10 +127,39 @@ fn wrap_arm(phrase: &str, width: usize) -> Vec<String> {
             }
             _ => segments.push(word.to_owned()),
         }
-        word.chars().for_each(|c| quotes.pass(c));
-        open = quotes.inside;
+        for (at, c) in word.char_indices() {
+            quotes.pass(c);
+            match c {
+                '(' if !quotes.inside => {
+                    // Of parentheses that are too long for a line, those inside are looked at.
+                    let fits = depth > 0 || parens_fit(&phrase[start + at..], width);
+                    depth += usize::from(fits);
+                }
+                ')' if !quotes.inside => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+        }
+        open = quotes.inside || depth > 0;
+        start += word.len() + 1;
     }
     fill(segments, width)
+}
+
+/// Whether the parentheses that a text begins with have no more columns than these.
+fn parens_fit(text: &str, width: usize) -> bool {
+    let (mut quotes, mut depth) = (Quotes::default(), 0_usize);
+    for c in text.chars().take(width) {
+        quotes.pass(c);
+        match c {
+            '(' if !quotes.inside => depth += 1,
+            ')' if !quotes.inside => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if depth == 0 {
+            return true;
+        }
+    }
+    false
 }
 
 /// Breaks prose at single blanks. Joined by blanks the lines are the prose again.
@@ -203,6 +234,12 @@ mod tests {
     fn cases_have_a_line_each() {
         let lines = wrap_phrase("larger of a, b when c, d when (e, f) or g, otherwise larger of h, i", 30);
         assert_eq!(lines, ["larger of a, b when c,", "d when (e, f) or g,", "otherwise larger of h, i"]);
+    }
+
+    #[test]
+    fn parentheses_stay_together_where_they_fit() {
+        let lines = wrap_phrase("a, b in (Y, side and wheel), (Q, (x, y)), (much, too, long, for, one, line)", 22);
+        assert_eq!(lines, ["a,", "b in (Y, side and wheel),", "(Q, (x, y)), (much,", "too, long, for, one,", "line)"]);
     }
 
     #[test]

@@ -91,6 +91,11 @@ pub fn is_name(text: &str) -> bool {
     Lines::parse(Rule::alone, text).is_ok()
 }
 
+/// Whether a text can be the name of a family of blocks: a name, or one with `{variable}` in it.
+pub fn is_family_name(text: &str) -> bool {
+    Lines::parse(Rule::family, text).is_ok()
+}
+
 /// The words a field begins with, more than its key if its value begins with words too.
 pub fn words(text: &str) -> Result<Vec<Range<usize>>, Fault> {
     let pairs = Lines::parse(Rule::field, text).map_err(|error| in_words(text, &error))?;
@@ -153,7 +158,7 @@ fn name_of(rule: Rule) -> &'static str {
     match rule {
         Rule::EOI | Rule::comment => END,
         Rule::kind => "the word of a block such as `quantity`",
-        Rule::name | Rule::alone => "a name of letters, digits, `_`, `-` and `.`",
+        Rule::name | Rule::alone | Rule::family | Rule::letter | Rule::braces => "a name of letters, digits, `_`, `-` and `.`",
         Rule::title => "a title in quotes",
         Rule::quoted | Rule::prose => "text in quotes",
         Rule::inner | Rule::unclosed => "the closing quote",
@@ -194,6 +199,8 @@ mod tests {
     #[test]
     fn names_are_plain() {
         assert!(["1", "Y_max", "en14363-2016-annex-t", "v1.2", "_x"].into_iter().all(is_name));
-        assert!(!["", "-x", "a b", "Y/Q", "\u{3c3}"].into_iter().any(is_name));
+        assert!(!["", "-x", "a b", "Y/Q", "\u{3c3}", "Y_{m}"].into_iter().any(is_name));
+        assert!(["Y_max", "{q}_{m}", "{q}", "a{q}.b"].into_iter().all(is_family_name));
+        assert!(!["", "{q", "q}", "{}", "{a b}", "{{q}}", "Y/{q}"].into_iter().any(is_family_name));
     }
 }

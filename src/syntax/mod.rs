@@ -1,6 +1,7 @@
 //! From text to [`document::Document`], and back: the text form and YAML are two surfaces of one language.
 
 pub mod document;
+pub mod families;
 pub mod from_pest;
 pub mod keys;
 mod layout;

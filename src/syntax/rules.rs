@@ -141,7 +141,11 @@ impl<'a> Reader<'a> {
                     .at(&name.span)
                     .help(format!("there is one `{}` block in a protocol", kind.word)),
             ),
-            Some(name) if !lines::is_name(&name.text) => self.problems.push(bad_name(&name.text, &name.span)),
+            Some(name) if kind.has_families() && lines::is_family_name(&name.text) => {}
+            Some(name) if !lines::is_name(&name.text) => self.problems.push(match lines::is_family_name(&name.text) {
+                true => bad_name(&name.text, &name.span).help(format!("there are no families of `{}`: its name has no braces", kind.word)),
+                false => bad_name(&name.text, &name.span),
+            }),
             _ => {}
         }
         if let Some(title) = block.title.as_ref().filter(|title| title.text.trim().is_empty()) {
@@ -173,7 +177,12 @@ pub fn unterminated(at: &Span) -> Problem {
 }
 
 pub fn bad_name(name: &str, at: &Span) -> Problem {
-    let help = lines::slip(name).unwrap_or_else(|| "names are made of letters a to z, digits, `_`, `-` and `.`".to_owned());
+    let made_of = if name.contains('{') {
+        "in the name of a family, a variable stands in braces without blanks: `Y_{part}`"
+    } else {
+        "names are made of letters a to z, digits, `_`, `-` and `.`"
+    };
+    let help = lines::slip(name).unwrap_or_else(|| made_of.to_owned());
     Problem::error("bad-name", format!("`{name}` cannot be a name")).at(at).help(help)
 }
 

@@ -18,7 +18,8 @@ pub fn json_schema() -> Value {
         "$defs": {
             "text": { "type": "string", "minLength": 1 },
             "phrase": { "type": ["string", "number", "boolean"], "minLength": 1 },
-            "name": { "type": "string", "pattern": "^[A-Za-z0-9_][A-Za-z0-9_.-]*$" }
+            "name": { "type": "string", "pattern": "^[A-Za-z0-9_][A-Za-z0-9_.-]*$" },
+            "family_name": { "type": "string", "pattern": "^([A-Za-z0-9_]|\\{[A-Za-z0-9_]+\\})([A-Za-z0-9_.-]|\\{[A-Za-z0-9_]+\\})*$" }
         }
     })
 }
@@ -42,7 +43,7 @@ fn group(kind: &Kind) -> Value {
     json!({
         "description": kind.about,
         "type": "object",
-        "propertyNames": { "$ref": "#/$defs/name" },
+        "propertyNames": { "$ref": if kind.has_families() { "#/$defs/family_name" } else { "#/$defs/name" } },
         "additionalProperties": block(kind)
     })
 }

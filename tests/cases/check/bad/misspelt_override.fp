@@ -4,7 +4,7 @@ protocol variant "A variant with slips"
 remove
   quantity  az_mx
   limit     az_max median
-  limit     ay_max
+  quantity  ay_rms az_rms
   zone      7
 
 parameter section_per_zone

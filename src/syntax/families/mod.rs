@@ -1,0 +1,342 @@
+//! Families of blocks: a block with `for each` stands for one block for each member.
+//!
+//! They are written out on the document, member by member, before anything is checked: all later stages see plain blocks.
+//! Printing keeps the document as written.
+
+mod each;
+mod fill;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use indexmap::IndexMap;
+
+use super::document::{Block, Comments, Document, Field, Text};
+use super::from_pest;
+use super::keys::{self, EACH, Kind, Sort};
+use super::layout::Quotes;
+use super::lines;
+use crate::problem::{Problem, Problems};
+use crate::source::{Filled, Member, Span, Spanned};
+use each::{Group, Word};
+use fill::{Template, Use};
+
+/// Most members of a family: more are a slip in a list, or want another way of saying.
+const MOST_MEMBERS: usize = 1000;
+/// Most blocks of all families of a protocol: merging compares each with each by name.
+const MOST_BLOCKS: usize = 10_000;
+/// Most bytes of all families written out: ten times the longest protocol that is read.
+const MOST_BYTES: usize = 20 << 20;
+
+/// Places by name, each with its positions.
+pub type Places = IndexMap<String, Vec<String>>;
+
+/// A family of an ancestor, which a variant may override or remove by its name as written.
+#[derive(Clone, Debug)]
+pub struct Known {
+    pub kind: String,
+    pub name: String,
+    each: Vec<Field>,
+    /// Names of its blocks.
+    pub members: Vec<String>,
+}
+
+/// Writes out the families of a document. `before` is what its ancestors come to, `known` their families, to which those of the
+/// document are added. Gives back whether every family could be written out.
+pub fn expand(document: &Document, before: Option<&Document>, known: &mut Vec<Known>, problems: &mut Problems) -> (Document, bool) {
+    let mut places = Places::new();
+    let blocks = before.into_iter().chain([document]).flat_map(|document| &document.blocks);
+    for block in blocks.filter(|block| block.kind.text == "place") {
+        // What is wrong with a place is told where it is checked.
+        let members = block.field("members").and_then(|field| from_pest::list(&field.value, &mut Problems::default()));
+        if let Some(members) = members {
+            places.insert(block.name_text().to_owned(), members.into_iter().map(|member| member.node).collect());
+        }
+    }
+    let mut writer = Writer { places, before, known, problems, blocks: Vec::new(), seen: BTreeMap::new(), count: 0, bytes: 0, sound: true };
+    for block in &document.blocks {
+        writer.block(block);
+    }
+    let (blocks, sound) = (writer.blocks, writer.sound);
+    (Document { blocks, ..document.clone() }, sound)
+}
+
+/// The place of a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`, `bodies`.
+pub fn place_called<'a>(word: &str, names: impl Iterator<Item = &'a str> + Clone) -> Option<&'a str> {
+    let plural = |name: &str| {
+        [format!("{name}s"), format!("{name}es")].contains(&word.to_string())
+            || name.strip_suffix('y').is_some_and(|stem| format!("{stem}ies") == word)
+    };
+    names.clone().find(|name| *name == word).or_else(|| names.clone().find(|name| plural(name)))
+}
+
+struct Writer<'a> {
+    places: Places,
+    before: Option<&'a Document>,
+    known: &'a mut Vec<Known>,
+    problems: &'a mut Problems,
+    blocks: Vec<Block>,
+    /// Kind and name of each block, and whether a family brought it.
+    seen: BTreeMap<(String, String), (Span, bool)>,
+    count: usize,
+    bytes: usize,
+    sound: bool,
+}
+
+impl Writer<'_> {
+    fn block(&mut self, block: &Block) {
+        let Some(kind) = keys::kind(&block.kind.text).filter(|kind| kind.has_families()) else {
+            self.blocks.push(block.clone());
+            return;
+        };
+        let each: Vec<Field> = block.fields_named(EACH).cloned().collect();
+        let (of, name) = (block.kind.text.as_str(), block.name_text());
+        if !each.is_empty() {
+            return self.family(kind, block, &each, None);
+        }
+        if !name.contains('{') {
+            self.no_braces(kind, block);
+            self.add(block.clone(), false);
+            return;
+        }
+        if let Some(family) = self.known.iter().find(|family| family.kind == of && family.name == name).cloned() {
+            // The fields are the variant's, the members the parent's: those that it still has.
+            let left: Vec<String> = family.members.into_iter().filter(|member| self.parent_has(of, member)).collect();
+            return self.family(kind, block, &family.each, Some(&left));
+        }
+        self.sound = false;
+        let says = format!("`{name}` has braces as the name of a family, and no `{EACH}`");
+        let problem = Problem::error("unknown-variable", says).at(block.span());
+        let families: Vec<&str> = self.known.iter().filter(|family| family.kind == of).map(|family| family.name.as_str()).collect();
+        self.problems.push(match crate::problem::nearest(name, families) {
+            Some(near) => problem.help(format!("the parent has `{near}`: to override it, use that name")),
+            None => problem.help(format!("add a line `{EACH}  variable in one, another`")),
+        });
+    }
+
+    fn parent_has(&self, kind: &str, name: &str) -> bool {
+        self.before.is_some_and(|before| before.blocks.iter().any(|block| block.kind.text == kind && block.name_text() == name))
+    }
+
+    /// Words of a block that is no family.
+    fn no_braces(&mut self, kind: &Kind, block: &Block) {
+        for field in block.fields.iter().filter(|field| kind.key(&field.key.text).is_some_and(|key| key.sort == Sort::Phrase)) {
+            let mut quotes = Quotes::default();
+            let text = &field.value.text;
+            let brace = text.char_indices().find(|(_, c)| {
+                quotes.pass(*c);
+                !quotes.inside && *c == '{'
+            });
+            let Some((at, _)) = brace else { continue };
+            let end = text[at..].find('}').map_or(at + 1, |end| at + end + 1);
+            let says = format!("`{}` stands for nothing: the block has no `{EACH}`", &text[at..end]);
+            let problem = Problem::error("unknown-variable", says).at(&field.value.place(at..end));
+            self.problems.push(problem.help(format!("add a line `{EACH}  variable in one, another`, and `{{variable}}` to the name")));
+            self.sound = false;
+        }
+    }
+
+    /// Adds a block unless there is one of its name.
+    fn add(&mut self, block: Block, of_family: bool) {
+        let key = (block.kind.text.clone(), block.name_text().to_owned());
+        if let Some((first, other)) = self.seen.get(&key)
+            && (of_family || *other)
+        {
+            let says = format!("there are two blocks `{} {}`", key.0, key.1);
+            let problem = Problem::error("duplicate-name", says).at(block.span()).also(first, "the first");
+            self.problems.push(problem.help("what differs from member to member is put in with a variable, or overridden in a variant"));
+            return;
+        }
+        self.seen.insert(key, (block.span().clone(), of_family));
+        self.blocks.push(block);
+    }
+
+    /// Writes out a family: with `only`, the members of these names.
+    fn family(&mut self, kind: &Kind, block: &Block, each: &[Field], only: Option<&[String]>) {
+        let Some(groups) = self.groups(block, each) else {
+            self.sound = false;
+            return;
+        };
+        let variables: Vec<Spanned<String>> = groups.iter().flat_map(|group| group.variables.iter().cloned()).collect();
+        let Some(parts) = Parts::new(kind, block, &variables, self.problems) else {
+            self.sound = false;
+            return;
+        };
+        if only.is_none() {
+            for (_, variable) in variables.iter().enumerate().filter(|(index, _)| !parts.uses(*index)) {
+                let says = format!("`{}` is put in nowhere", variable.value);
+                let problem = Problem::error("unused-variable", says).at(&variable.span);
+                self.problems.push(problem.help(format!("write `{{{}}}` where its members belong, or leave it out", variable.value)));
+            }
+        }
+        let mut names: IndexMap<String, Vec<Word>> = IndexMap::new();
+        for words in product(&groups) {
+            let name = parts.name.text(&words);
+            if only.is_some_and(|only| !only.contains(&name)) {
+                continue;
+            }
+            if let Some(first) = names.get(&name) {
+                let problem = same_name(block, &name, first, &words, &variables, &parts.name);
+                self.problems.push(problem);
+                break;
+            }
+            self.count += 1;
+            self.bytes += parts.cost(&words);
+            if self.count > MOST_BLOCKS || self.bytes > MOST_BYTES {
+                let says = if self.count > MOST_BLOCKS {
+                    format!("the families of the protocol have more than {MOST_BLOCKS} members in all")
+                } else {
+                    format!("the families of the protocol are longer than {} megabytes when written out", MOST_BYTES >> 20)
+                };
+                self.problems.push(Problem::error("too-large", says).at(block.span()).help("give fewer members, or shorter texts"));
+                self.sound = false;
+                return;
+            }
+            let member = Arc::new(Member { name: name.clone(), family: block.name_text().to_owned() });
+            let filled = parts.fill(block, &words, &member);
+            if !lines::is_name(&name)
+                && let Some(text) = &filled.name
+            {
+                let problem = Problem::error("bad-name", format!("`{name}` cannot be a name")).at(&text.span);
+                self.problems.push(problem.help("names are made of letters a to z, digits, `_`, `-` and `.`"));
+            }
+            self.add(filled, true);
+            names.insert(name, words);
+        }
+        if names.is_empty() {
+            let says = format!("no member of the family `{}` of the parent is left", block.name_text());
+            self.problems.push(Problem::error("no-members", says).at(block.span()).help(format!("give it members with `{EACH}`")));
+        }
+        let members: Vec<String> = names.into_keys().collect();
+        let same = |family: &&mut Known| family.kind == block.kind.text && family.name == block.name_text();
+        match self.known.iter_mut().find(same) {
+            Some(family) => {
+                family.each = each.to_vec();
+                family.members.extend(members.into_iter().filter(|member| !family.members.contains(member)).collect::<Vec<_>>());
+            }
+            None => {
+                self.known.push(Known { kind: block.kind.text.clone(), name: block.name_text().to_owned(), each: each.to_vec(), members })
+            }
+        }
+    }
+
+    /// The variables and members of a family.
+    fn groups(&mut self, block: &Block, each: &[Field]) -> Option<Vec<Group>> {
+        let read: Vec<Option<Vec<Group>>> = each.iter().map(|field| each::read(&field.value, &self.places, self.problems)).collect();
+        let groups: Vec<Group> = read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
+        let mut sound = true;
+        let mut seen: Vec<&Spanned<String>> = Vec::new();
+        for variable in groups.iter().flat_map(|group| &group.variables) {
+            let name = &variable.value;
+            if let Some(first) = seen.iter().find(|known| known.value == *name) {
+                let says = format!("`{name}` is a variable of this family twice");
+                self.problems.push(Problem::error("duplicate-name", says).at(&variable.span).also(&first.span, "the first"));
+                sound = false;
+            } else if self.places.contains_key(name) {
+                let problem = Problem::error("name-clash", format!("`{name}` is a place, and a variable here")).at(&variable.span);
+                self.problems.push(problem.help(format!("give the variable a name of its own: `{EACH}  x in {name}`")));
+                sound = false;
+            }
+            seen.push(variable);
+        }
+        let count = groups.iter().fold(1_usize, |count, group| count.saturating_mul(group.rows.len()));
+        if count > MOST_MEMBERS {
+            let says = format!("the family `{}` has {count} members; there can be at most {MOST_MEMBERS}", block.name_text());
+            let at = each.first().map_or(block.span(), |field| &field.value.span);
+            self.problems.push(Problem::error("too-large", says).at(at).help("split it, or give fewer members"));
+            sound = false;
+        }
+        sound.then_some(groups)
+    }
+}
+
+/// The words of each member, in the order of the lists: the last variables change first.
+fn product(groups: &[Group]) -> impl Iterator<Item = Vec<Word>> {
+    let count: usize = groups.iter().map(|group| group.rows.len()).product();
+    (0..count).map(|number| {
+        let mut rows: Vec<&[Word]> = Vec::with_capacity(groups.len());
+        let mut rest = number;
+        for group in groups.iter().rev() {
+            rows.push(&group.rows[rest % group.rows.len()]);
+            rest /= group.rows.len();
+        }
+        rows.into_iter().rev().flatten().cloned().collect()
+    })
+}
+
+/// The texts of a family, taken apart.
+struct Parts<'a> {
+    name: Template<'a>,
+    title: Option<Template<'a>>,
+    fields: Vec<(&'a Text, Template<'a>)>,
+}
+
+impl<'a> Parts<'a> {
+    /// All braces that stand for nothing are told.
+    fn new(kind: &Kind, block: &'a Block, variables: &[Spanned<String>], problems: &mut Problems) -> Option<Self> {
+        let name = Template::new(block.name.as_ref()?, Use::Name, variables, problems);
+        let title = block.title.as_ref().map(|title| Template::new(title, Use::Prose, variables, problems));
+        let mut fields = Vec::new();
+        for field in block.fields.iter().filter(|field| field.key.text != EACH) {
+            let of = match kind.key(&field.key.text) {
+                Some(key) if key.pattern => Use::Pattern,
+                Some(key) if key.sort == Sort::Text => Use::Prose,
+                _ => Use::Phrase,
+            };
+            fields.push(Template::new(&field.value, of, variables, problems).map(|template| (&field.key, template)));
+        }
+        let title = match title {
+            Some(title) => Some(title?),
+            None => None,
+        };
+        Some(Self { name: name?, title, fields: fields.into_iter().collect::<Option<_>>()? })
+    }
+
+    fn all(&self) -> impl Iterator<Item = &Template<'a>> {
+        [&self.name].into_iter().chain(&self.title).chain(self.fields.iter().map(|(_, template)| template))
+    }
+
+    fn uses(&self, variable: usize) -> bool {
+        self.all().any(|template| template.uses(variable))
+    }
+
+    fn cost(&self, words: &[Word]) -> usize {
+        self.all().map(|template| template.cost(words)).sum()
+    }
+
+    fn fill(&self, block: &Block, words: &[Word], member: &Arc<Member>) -> Block {
+        let of_member = |key: &Text| {
+            let filled = Filled { text: key.text.clone(), member: Arc::clone(member), pieces: Vec::new() };
+            Text { span: Span { filled: Some(Arc::new(filled)), ..key.span.clone() }, ..key.clone() }
+        };
+        let field = |(key, template): &(&Text, Template<'_>)| Field {
+            key: of_member(key),
+            value: template.fill(words, member),
+            comments: Comments::default(),
+        };
+        Block {
+            kind: block.kind.clone(),
+            name: Some(self.name.fill(words, member)),
+            title: self.title.as_ref().map(|title| title.fill(words, member)),
+            fields: self.fields.iter().map(field).collect(),
+            comments: Comments::default(),
+        }
+    }
+}
+
+/// Two members of a family with one name.
+fn same_name(block: &Block, name: &str, first: &[Word], second: &[Word], variables: &[Spanned<String>], written: &Template<'_>) -> Problem {
+    let differs: Vec<usize> = (0..variables.len()).filter(|index| first[*index].value != second[*index].value).collect();
+    let repeated = variables.iter().enumerate().find(|(index, _)| first[*index].span != second[*index].span && !differs.contains(index));
+    if let Some((index, _)) = repeated.filter(|_| differs.is_empty()) {
+        let problem = Problem::error("duplicate-name", format!("the member `{}` is given twice", second[index].value));
+        return problem.at(&second[index].span).also(&first[index].span, "the first");
+    }
+    let problem = Problem::error("duplicate-name", format!("two members of the family are called `{name}`")).at(block.span());
+    match differs.iter().find(|index| !written.uses(**index)) {
+        Some(index) => problem.help(format!("put `{{{}}}` into the name", variables[*index].value)),
+        None => problem.help(
+            "their names differ in signs that a name does not hold; give them words for it: `band, name in (1 Hz, low), (2 Hz, high)`",
+        ),
+    }
+}
