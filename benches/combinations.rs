@@ -33,6 +33,7 @@ fn pool(counts: &[usize]) -> Pool {
         at_least: false,
         title: name.into(),
         scope: "all".into(),
+        positions: Vec::new(),
         inside: vec![true; all],
         bounds: vec![bound],
     };

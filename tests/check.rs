@@ -210,18 +210,17 @@ fn good_protocols_are_accepted_as_meant() {
 fn described(plan: &Plan) -> String {
     let mut out = format!("{}: {} zones, {}\n", plan.name, plan.zones.len(), plan.verdict.words);
     for quantity in &plan.quantities {
-        let signals: Vec<&str> = quantity.signals.iter().map(|(name, _)| name.as_str()).collect();
+        let signals: Vec<&str> = quantity.positions.iter().map(|position| position.name.as_str()).collect();
         out += &format!("quantity {} [{}] of {}\n", quantity.id, quantity.unit, signals.join(", "));
         out += &format!("  {} | {} | {}\n", quantity.words.filter, quantity.words.processing, quantity.words.comparison);
         for limit in &quantity.limits {
-            let bound = check::evaluate::shape(&limit.bound);
+            let bound = check::evaluate::shape(&limit.bound.expr);
             let least = if limit.at_least { " at least" } else { "" };
-            let scope = match &limit.scope {
-                check::plan::Scope::All => String::new(),
-                check::plan::Scope::Zones(zones) => format!(" for {}", zones.join(", ")),
-                check::plan::Scope::Where(_, words) => format!(" where {words}"),
-            };
-            out += &format!("  {}{least} {bound}{scope}\n", limit.statistic.name());
+            let zones = limit.scope.zones.join(", ");
+            let zones = if zones.is_empty() { zones } else { format!(" for {zones}") };
+            let each: String = limit.scope.each.iter().map(|key| format!(" each {key:?}")).collect();
+            let condition = limit.scope.condition.as_ref().map_or(String::new(), |(_, words)| format!(" where {words}"));
+            out += &format!("  {}{least} {bound}{zones}{each}{condition}\n", limit.estimate.name);
         }
     }
     out

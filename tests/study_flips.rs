@@ -22,6 +22,7 @@ fn case(seed: u64, rule: Rule, unused: &[usize]) -> Case {
         at_least: false,
         title: name.into(),
         scope: "all".into(),
+        positions: Vec::new(),
         inside: vec![true; all],
         bounds: vec![bound],
     };

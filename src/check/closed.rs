@@ -55,10 +55,11 @@ impl Checker<'_> {
         match &phrase.node {
             Node::Number { .. } => Meaning::Closed,
             // Values of a signal, of a side or of other limits mean nothing before they are used.
-            Node::Percentile(_) | Node::Reduced(..) => Meaning::Open,
+            Node::Percentile(_) | Node::Reduced(..) | Node::Bound { .. } | Node::Share { .. } | Node::Fit(_) => Meaning::Open,
             Node::Path(path)
                 if Reducer::named(path).is_some()
                     || Statistic::named(path).is_some()
+                    || self.names.estimates.contains_key(path)
                     || matches!(path.as_str(), "simulated" | "measured") =>
             {
                 Meaning::Open

@@ -2,10 +2,10 @@
 
 use super::evaluate::{Nothing, Values, number, words};
 use super::names::normalised;
-use super::plan::{Expr, Kind, Limit, Scalar, Scope as LimitScope, Type};
+use super::plan::{DatumKind, Estimate, EstimateKind, Expr, Key, Kind, Limit, OfGroup, Scalar, Scope as LimitScope, Type};
 use super::scalars::{Scope, in_words};
 use super::{Checker, overlap};
-use crate::catalog::{Best, STATISTICS, Statistic};
+use crate::catalog::Best;
 use crate::metrics::rounded;
 use crate::problem::{Problem, Problems};
 use crate::source::Span;
@@ -23,15 +23,23 @@ struct Common<'a> {
     best: Option<&'a (Best, Span)>,
     /// Statistics that have a limit.
     names: Vec<String>,
+    /// Places of its signals.
+    places: &'a [String],
 }
 
 impl Checker<'_> {
     /// The limits of a quantity; of values that were not understood (no `unit`), all but the dimension is checked.
-    pub(super) fn limits(&mut self, block: &Block, unit: Option<(&Unit, &Span)>, best: Option<&(Best, Span)>) -> Option<Vec<Limit>> {
+    pub(super) fn limits(
+        &mut self,
+        block: &Block,
+        unit: Option<(&Unit, &Span)>,
+        best: Option<&(Best, Span)>,
+        places: &[String],
+    ) -> Option<Vec<Limit>> {
         let fields: Vec<&Field> = block.fields_named("limit").collect();
         // A quiet first look for the names that other limits may refer to.
         let quiet = |field: &&Field| from_pest::limit(&field.value, &mut Problems::default()).map(|limit| limit.statistic.node);
-        let common = Common { block, unit, best, names: fields.iter().filter_map(quiet).collect() };
+        let common = Common { block, unit, best, names: fields.iter().filter_map(quiet).collect(), places };
         let mut limits = Vec::new();
         let mut ok = true;
         for field in fields {
@@ -52,61 +60,50 @@ impl Checker<'_> {
     /// One limit, or one for every zone.
     fn limit(&mut self, text: &Text, common: &Common<'_>) -> Option<Vec<Limit>> {
         let written = from_pest::limit(text, self.problems)?;
-        let statistic = self.statistic(&written.statistic, text);
-        let scope = self.limit_scope(&written.scope, text);
-        let (statistic, scope) = (statistic?, scope?);
-        if !matches!(written.scope.node, WrittenScope::EachZone) {
-            return Some(vec![self.limit_of(&written, statistic, scope, None, text, common)?]);
+        let estimate = self.estimate(&written, text, common.unit.map(|(unit, _)| unit.dimension));
+        let scope = self.limit_scope(&written.scope, text, common);
+        let (estimate, (scope, each_zone)) = (estimate?, scope?);
+        if !each_zone {
+            return Some(vec![self.limit_of(&written, &estimate, scope, None, text, common)?]);
         }
         let mut limits = Vec::new();
-        for zone in self.zone_names.clone() {
-            let scope = LimitScope::Zones(vec![zone.clone()]);
-            limits.push(self.limit_of(&written, statistic, scope, Some(zone), text, common)?);
+        let zones = if scope.zones.is_empty() { self.zone_names.clone() } else { scope.zones.clone() };
+        for zone in zones {
+            let scope = LimitScope { zones: vec![zone.clone()], ..scope.clone() };
+            limits.push(self.limit_of(&written, &estimate, scope, Some(zone), text, common)?);
         }
         Some(limits)
-    }
-
-    fn statistic(&mut self, written: &At<String>, text: &Text) -> Option<Statistic> {
-        let found = Statistic::named(&written.node);
-        if found.is_none() {
-            let span = text.place(written.range.clone());
-            let percent: Option<f64> = written.node.strip_prefix('p').and_then(|percent| percent.parse().ok());
-            self.problems.push(match percent {
-                Some(percent) => {
-                    Problem::error("out-of-range", format!("a percentile lies between 0 and 100, this is {percent}")).at(&span)
-                }
-                None => {
-                    let known = STATISTICS.iter().map(|entry| entry.name).chain(["each"]);
-                    Problem::error("unknown-statistic", format!("`{}` is no statistic", written.node))
-                        .at(&span)
-                        .suggest(&written.node, known)
-                }
-            });
-        }
-        found
     }
 
     fn limit_of(
         &mut self,
         written: &Written,
-        statistic: Statistic,
+        estimate: &Estimate,
         applies: LimitScope,
         zone: Option<String>,
         text: &Text,
         common: &Common<'_>,
     ) -> Option<Limit> {
-        let dimension = common.unit.map(|(unit, _)| unit.dimension);
+        let dimension = estimate.unit.as_ref().or(common.unit.map(|(unit, _)| unit)).map(|unit| unit.dimension);
         let names = common.names.iter().filter(|name| **name != written.statistic.node).cloned().collect();
         let scope = || Scope {
             // Every value by itself may have a limit that depends on its section; a statistic over many has one limit.
-            section: statistic == Statistic::Each,
+            section: matches!(estimate.kind, EstimateKind::Each),
             zone: zone.clone(),
             ..Scope::vehicle()
         };
         let mut of_bound = scope();
         of_bound.limits = Some((dimension.unwrap_or(Dimension::ONE), names));
-        let bound = self.expr(&written.bound, text, &mut of_bound).and_then(|bound| self.suitable_bound(bound, written.at_least, common));
-        let bound = bound.and_then(|bound| self.on_its_side(bound, written, statistic, text, common));
+        let bound = if of_bound.section {
+            self.expr(&written.bound, text, &mut of_bound).map(|expr| OfGroup { expr, taken: Vec::new() })
+        } else {
+            self.of_group(&written.bound, text, None, &of_bound)
+        };
+        let bound = bound.and_then(|bound| {
+            let of = estimate.unit.as_ref().zip(Some(&text.span)).or(common.unit);
+            let expr = self.suitable_bound(bound.expr, written.at_least, of, common)?;
+            Some(OfGroup { expr: self.on_its_side(expr, written, estimate, text, common)?, ..bound })
+        });
         let mut factors = Vec::new();
         let mut ok = true;
         for (factor, condition) in &written.factors {
@@ -129,8 +126,7 @@ impl Checker<'_> {
         let bound = bound.filter(|_| ok)?;
         let words = self.with_values(&normalised(&text.text[written.statistic.range.end..]));
         Some(Limit {
-            statistic,
-            ddof: self.ddof,
+            estimate: estimate.clone(),
             at_least: written.at_least,
             bound,
             factors,
@@ -169,11 +165,13 @@ impl Checker<'_> {
         out
     }
 
-    fn suitable_bound(&mut self, bound: Expr, at_least: bool, common: &Common<'_>) -> Option<Expr> {
+    fn suitable_bound(&mut self, bound: Expr, at_least: bool, of: Option<(&Unit, &Span)>, common: &Common<'_>) -> Option<Expr> {
         let found = self.number_type(&bound)?;
-        if let Some((unit, from)) = common.unit.filter(|(unit, _)| unit.dimension != found) {
+        if let Some((unit, from)) = of.filter(|(unit, _)| unit.dimension != found) {
             let wanted = unit.dimension.in_words();
-            let says = format!("the values of `{}` are {wanted}, this limit is {}", common.block.name_text(), found.in_words());
+            let of_values = common.unit.is_some_and(|(of, _)| of == unit);
+            let what = if of_values { format!("the values of `{}` are", common.block.name_text()) } else { "this estimate is".into() };
+            let says = format!("{what} {wanted}, this limit is {}", found.in_words());
             let help = if unit.text == "-" { "write the limit without a unit".into() } else { format!("write the limit in {unit}") };
             self.problems.push(Problem::error("unit-mismatch", says).at(&bound.span).label(found.in_words()).also(from, wanted).help(help));
             return None;
@@ -189,12 +187,13 @@ impl Checker<'_> {
     }
 
     /// A limit leaves the best value in, and what it keeps out is worse.
-    fn on_its_side(&mut self, bound: Expr, written: &Written, statistic: Statistic, text: &Text, common: &Common<'_>) -> Option<Expr> {
-        let scatter = statistic.of_scatter();
+    fn on_its_side(&mut self, bound: Expr, written: &Written, estimate: &Estimate, text: &Text, common: &Common<'_>) -> Option<Expr> {
+        let scatter = estimate.of_scatter;
+        let of_values = matches!(estimate.kind, EstimateKind::Each) || estimate.statistic().is_some();
         let (best, from) = match common.best {
             _ if scatter => (Best::Least(0.0), None),
-            Some((best, from)) => (*best, Some(from)),
-            None => return Some(bound),
+            Some((best, from)) if of_values => (*best, Some(from)),
+            _ => return Some(bound),
         };
         let constant = if let Kind::Constant(Scalar::Number(value)) = bound.kind { Some(value) } else { None };
         let keeps_best = |value: f64| if written.at_least { best.value() >= value } else { best.value().abs() <= value };
@@ -207,7 +206,7 @@ impl Checker<'_> {
         }
         let (name, words) = (&written.statistic.node, words(&bound));
         let (of, is) = if scatter {
-            (format!("the {}", statistic.title(self.ddof)), best.in_words())
+            (format!("the {}", estimate.title), best.in_words())
         } else {
             (format!("the values of `{}`", common.block.name_text()), best.in_words())
         };
@@ -243,57 +242,108 @@ impl Checker<'_> {
         None
     }
 
-    fn limit_scope(&mut self, scope: &At<WrittenScope>, text: &Text) -> Option<LimitScope> {
-        match &scope.node {
-            WrittenScope::All => Some(LimitScope::All),
-            WrittenScope::EachZone if self.zone_names.is_empty() => {
-                self.problems.push(Problem::error("unknown-zone", "the protocol has no zones").at(&text.place(scope.range.clone())));
-                None
-            }
-            WrittenScope::EachZone => Some(LimitScope::All),
-            WrittenScope::Zones(zones) => {
-                let mut found: Vec<String> = Vec::new();
-                let mut ok = true;
-                for zone in zones {
-                    let place = text.place(zone.range.clone());
-                    if !self.zone_names.contains(&zone.node) {
-                        let known = self.zone_names.clone();
-                        let problem = Problem::error("unknown-zone", format!("there is no zone {}", zone.node)).at(&place);
-                        self.problems.push(if known.is_empty() {
-                            problem.help("the protocol has no zones")
-                        } else {
-                            problem.help(format!("zones: {}", known.join(", ")))
-                        });
-                        ok = false;
-                    } else if !found.contains(&zone.node) {
-                        found.push(zone.node.clone());
-                    }
+    /// Which rows the limit is about, and whether it is one for every zone.
+    fn limit_scope(&mut self, scope: &At<WrittenScope>, text: &Text, common: &Common<'_>) -> Option<(LimitScope, bool)> {
+        let written = &scope.node;
+        let zones = self.limit_zones(&written.zones, text);
+        let (mut each_zone, mut each, mut ok) = (false, Vec::new(), true);
+        for key in &written.each {
+            let place = text.place(key.range.clone());
+            if matches!(key.node.as_str(), "zone" | "zones") {
+                if self.zone_names.is_empty() {
+                    self.problems.push(Problem::error("unknown-zone", "the protocol has no zones").at(&place));
+                    ok = false;
                 }
-                ok.then_some(LimitScope::Zones(found))
+                each_zone = true;
+                continue;
             }
-            WrittenScope::Where(condition) => {
-                let words = normalised(&text.text[condition.range.clone()]);
-                let condition = self.expr(condition, text, &mut Scope::section())?;
-                self.flag_type(&condition)?;
-                Some(LimitScope::Where(Box::new(condition), words))
+            match self.key(&key.node, &place, common) {
+                Some(found) if !each.contains(&found) => each.push(found),
+                Some(_) => {}
+                None => ok = false,
             }
         }
+        let condition = match &written.condition {
+            None => None,
+            Some(condition) => {
+                let words = normalised(&text.text[condition.range.clone()]);
+                let condition = self.expr(condition, text, &mut Scope::section());
+                let condition = condition.filter(|condition| self.flag_type(condition).is_some());
+                ok &= condition.is_some();
+                condition.map(|condition| (condition, words))
+            }
+        };
+        let zones = zones.filter(|_| ok)?;
+        Some((LimitScope { zones, each, condition }, each_zone))
+    }
+
+    fn limit_zones(&mut self, zones: &[At<String>], text: &Text) -> Option<Vec<String>> {
+        let mut found: Vec<String> = Vec::new();
+        let mut ok = true;
+        for zone in zones {
+            let place = text.place(zone.range.clone());
+            if !self.zone_names.contains(&zone.node) {
+                let known = self.zone_names.clone();
+                let problem = Problem::error("unknown-zone", format!("there is no zone {}", zone.node)).at(&place);
+                self.problems.push(if known.is_empty() {
+                    problem.help("the protocol has no zones")
+                } else {
+                    problem.help(format!("zones: {}", known.join(", ")))
+                });
+                ok = false;
+            } else if !found.contains(&zone.node) {
+                found.push(zone.node.clone());
+            }
+        }
+        ok.then_some(found)
+    }
+
+    /// By what values are grouped: the section, its site, the record, a place of the signal, a section column of words.
+    fn key(&mut self, name: &str, span: &Span, common: &Common<'_>) -> Option<Key> {
+        match name {
+            "section" => return Some(Key::Section),
+            "site" => return Some(Key::Site),
+            "record" => return Some(Key::Record),
+            _ => {}
+        }
+        if let Some(place) = common.places.iter().find(|place| *place == name || Some(place.as_str()) == name.strip_suffix('s')) {
+            return Some(Key::Place(place.clone()));
+        }
+        let column = self.names.columns.iter().position(|datum| datum.name == name);
+        if let Some(index) = column {
+            if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
+                let says = format!("`{name}` is a number, and groups are told apart by words");
+                let help = "let the column be `one of ...`, or use it in an estimate: `mean of ...`";
+                self.problems.push(Problem::error("not-a-word", says).at(span).help(help));
+                return None;
+            }
+            return Some(Key::Column(index));
+        }
+        let columns: Vec<String> = self.names.columns.iter().map(|datum| datum.name.clone()).collect();
+        let known = ["zone", "section", "site", "record"].into_iter().chain(common.places.iter().map(String::as_str));
+        let known = known.chain(columns.iter().map(String::as_str));
+        self.problems.push(
+            Problem::error("unknown-key", format!("the values of `{}` are not told apart by `{name}`", common.block.name_text()))
+                .at(span)
+                .suggest(name, known),
+        );
+        None
     }
 
     /// A limit that refers to others and follows from constants must come to something above zero.
     fn amounts(&mut self, limits: &[Limit], unit: Option<&Unit>) {
         for limit in limits.iter().filter(|limit| !limit.at_least) {
             let mut names = Vec::new();
-            referred(&limit.bound, &mut names);
+            referred(&limit.bound.expr, &mut names);
             let Some((name, place)) = names.first() else { continue };
-            let Ok(value) = number(&limit.bound, &Others { limits, of: limit, depth: 0 }) else { continue };
+            let Ok(value) = number(&limit.bound.expr, &Others { limits, of: limit, depth: 0 }) else { continue };
             if value > 0.0 {
                 continue;
             }
             let shown = unit.map_or_else(|| value.to_string(), |unit| format!("{}{}", rounded(unit.from_si(value)), unit.suffix()));
-            let says = format!("a limit is above zero, `{}` comes to {shown}", words(&limit.bound));
+            let says = format!("a limit is above zero, `{}` comes to {shown}", words(&limit.bound.expr));
             let help = format!("in a limit, `{name}` stands for the limit of the {name}, not for the value that is found");
-            self.problems.push(Problem::error("out-of-range", says).at(&limit.bound.span).also(place, "a limit").help(help));
+            self.problems.push(Problem::error("out-of-range", says).at(&limit.bound.expr.span).also(place, "a limit").help(help));
         }
     }
 
@@ -301,17 +351,17 @@ impl Checker<'_> {
     fn references(&mut self, limits: &[Limit]) {
         let refers = |limit: &Limit| {
             let mut names = Vec::new();
-            referred(&limit.bound, &mut names);
+            referred(&limit.bound.expr, &mut names);
             names
         };
         let target = |limit: &Limit, name: &str| {
-            limits.iter().position(|other| other.statistic.name() == name && same_sections(&other.scope, &limit.scope))
+            limits.iter().position(|other| other.estimate.name == name && same_sections(&other.scope, &limit.scope))
         };
         for limit in limits {
             for (name, span) in refers(limit) {
                 if target(limit, &name).is_none() {
                     let problem = Problem::error("no-such-limit", format!("no limit of `{name}` applies to the same sections")).at(&span);
-                    let other = limits.iter().find(|other| other.statistic.name() == name);
+                    let other = limits.iter().find(|other| other.estimate.name == name);
                     self.problems.push(match other {
                         Some(other) => problem.also(&other.span, "this one applies to others"),
                         None => problem,
@@ -364,25 +414,19 @@ impl Values for Others<'_> {
     }
     fn limit_of(&self, statistic: &str) -> Result<f64, String> {
         let unknown = || format!("the limit of {statistic} is not known here");
-        let mut found =
-            self.limits.iter().filter(|limit| limit.statistic.name() == statistic && same_sections(&limit.scope, &self.of.scope));
+        let mut found = self.limits.iter().filter(|limit| limit.estimate.name == statistic && same_sections(&limit.scope, &self.of.scope));
         // Of several, or of one with a factor or a condition, the vehicle decides.
         let (Some(limit), None) = (found.next(), found.next()) else { return Err(unknown()) };
         if self.depth > self.limits.len() || !limit.factors.is_empty() || limit.only_when.is_some() {
             return Err(unknown());
         }
-        number(&limit.bound, &Others { limits: self.limits, of: limit, depth: self.depth + 1 })
+        number(&limit.bound.expr, &Others { limits: self.limits, of: limit, depth: self.depth + 1 })
     }
 }
 
-/// Whether a limit of the first scope is one for the sections of the second, too.
+/// Whether a limit of the first scope is one for the rows of the second, too.
 fn same_sections(a: &LimitScope, b: &LimitScope) -> bool {
-    match (a, b) {
-        (LimitScope::All, _) => true,
-        (LimitScope::Zones(a), LimitScope::Zones(b)) => a == b,
-        (LimitScope::Where(_, a), LimitScope::Where(_, b)) => a == b,
-        _ => false,
-    }
+    a.is_all() || a.same(b)
 }
 
 /// The limits between one and itself, if it can be reached from itself.

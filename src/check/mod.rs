@@ -6,6 +6,7 @@ mod closed;
 mod conditions;
 mod declared;
 pub mod diff;
+mod estimates;
 pub mod evaluate;
 pub mod family;
 mod limits;
@@ -72,6 +73,8 @@ struct Checker<'a> {
     /// Conditions that hold wherever the expression in hand is evaluated.
     assumed: Vec<Expr>,
     in_quantity: bool,
+    /// What is looked at is one of several values, of which those apply whose cases do.
+    partial: bool,
     depth: usize,
     work: usize,
     ddof: usize,
@@ -105,6 +108,7 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
         used_defines: BTreeSet::new(),
         assumed: Vec::new(),
         in_quantity: false,
+        partial: false,
         depth: 0,
         work: 0,
         ddof: 1,
@@ -257,6 +261,7 @@ impl Checker<'_> {
         }
         self.unused_parts();
         let verdict = self.verdict_rule(verdict_block, head, &quantities);
+        let independent = self.independent(verdict_block);
         let names = &self.names;
         let parameters = names
             .parameter_blocks
@@ -290,6 +295,7 @@ impl Checker<'_> {
             plausibility,
             sections,
             quantities,
+            independent,
             verdict,
         })
     }

@@ -68,6 +68,7 @@ pub struct Names {
     pub channels: IndexMap<String, Channel>,
     pub signals: IndexMap<String, SignalDef>,
     pub defines: IndexMap<String, Written>,
+    pub estimates: IndexMap<String, Written>,
     /// Filters: the block they stand in.
     pub filters: IndexMap<String, Block>,
     /// Names whose block has a fault of its own: that they are not known needs no further words.
@@ -96,6 +97,10 @@ impl Checker<'_> {
                 },
                 "define" => match self.required(block, "is").and_then(|field| self.written(field)) {
                     Some(is) => drop(self.names.defines.insert(name, is)),
+                    None => drop(self.names.failed.insert(name)),
+                },
+                "estimate" => match self.required(block, "is").and_then(|field| self.written(field)) {
+                    Some(is) => drop(self.names.estimates.insert(name, is)),
                     None => drop(self.names.failed.insert(name)),
                 },
                 "vehicle" => match self.datum(&name, block, "key", name.clone()) {
@@ -127,7 +132,7 @@ impl Checker<'_> {
 
     /// A name that expressions could not use, or would read as something else.
     fn usable_name(&mut self, block: &Block) {
-        const IN_EXPRESSIONS: [&str; 8] = ["parameter", "place", "vehicle", "section", "channel", "signal", "filter", "define"];
+        const IN_EXPRESSIONS: [&str; 9] = ["parameter", "place", "vehicle", "section", "channel", "signal", "filter", "define", "estimate"];
         const WORDS: [&str; 25] = [
             "and",
             "or",
@@ -197,7 +202,7 @@ impl Checker<'_> {
 
     /// A name in two roles would make `radius` mean whichever the checker looks at first.
     fn clashes(&mut self, blocks: &[Block]) {
-        const ROLES: [&str; 7] = ["parameter", "channel", "signal", "filter", "define", "section", "vehicle"];
+        const ROLES: [&str; 8] = ["parameter", "channel", "signal", "filter", "define", "estimate", "section", "vehicle"];
         let mut seen: IndexMap<&str, &Block> = IndexMap::new();
         for block in blocks.iter().filter(|block| ROLES.contains(&block.kind.text.as_str())) {
             let name = block.name_text();

@@ -12,7 +12,9 @@ pub(super) fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problem
         for other in &limits[..index] {
             // The parts of one `for each zone` are one limit; a pair of limits that meet in several zones is named once.
             let pair = (other.span.start, limit.span.start);
-            if other.span == limit.span || other.statistic != limit.statistic || other.at_least != limit.at_least || said.contains(&pair) {
+            let alike =
+                other.estimate.name == limit.estimate.name && other.at_least == limit.at_least && other.scope.each == limit.scope.each;
+            if other.span == limit.span || !alike || said.contains(&pair) {
                 continue;
             }
             let (a, b) = (scope_condition(&other.scope, zone), scope_condition(&limit.scope, zone));
@@ -29,7 +31,7 @@ pub(super) fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problem
             problems.push(
                 Problem::error(
                     "limits-overlap",
-                    format!("two limits of `{}` apply to `{}`{place}", limit.statistic.name(), block.name_text()),
+                    format!("two limits of `{}` apply to `{}`{place}", limit.estimate.name, block.name_text()),
                 )
                 .at(&limit.span)
                 .also(&other.span, "also applies")
@@ -37,7 +39,7 @@ pub(super) fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problem
                     "give them different zones (`for zones ...`) or conditions that exclude each other (`only when ...`); one that a \
                      variant inherits goes away by `limit {} {}` in its `remove` block",
                     block.name_text(),
-                    limit.statistic.name()
+                    limit.estimate.name
                 )),
             );
         }
@@ -46,36 +48,31 @@ pub(super) fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problem
 
 /// What the section must satisfy for the limit to apply; `None` for all sections.
 fn scope_condition(scope: &Scope, zone: Option<&Expr>) -> Option<Expr> {
-    match scope {
-        Scope::All => None,
-        Scope::Where(condition, _) => Some((**condition).clone()),
-        Scope::Zones(names) => {
-            let zone = zone?;
-            let is = |name: &String| Expr {
-                kind: Kind::Binary(
-                    Operator::Is,
-                    Box::new(zone.clone()),
-                    Box::new(Expr { kind: Kind::Constant(Scalar::Word(name.clone())), ty: zone.ty.clone(), span: zone.span.clone() }),
-                ),
-                ty: Type::Flag,
-                span: zone.span.clone(),
-            };
-            names.iter().map(is).reduce(|a, b| Expr {
-                kind: Kind::Binary(Operator::Or, Box::new(a), Box::new(b)),
-                ty: Type::Flag,
-                span: zone.span.clone(),
-            })
-        }
+    let joined = |operator: Operator, a: Expr, b: Expr| Expr {
+        span: a.span.clone(),
+        kind: Kind::Binary(operator, Box::new(a), Box::new(b)),
+        ty: Type::Flag,
+    };
+    let is = |zone: &Expr, name: &String| {
+        let word = Expr { kind: Kind::Constant(Scalar::Word(name.clone())), ty: zone.ty.clone(), span: zone.span.clone() };
+        joined(Operator::Is, zone.clone(), word)
+    };
+    let zones = zone.and_then(|zone| scope.zones.iter().map(|name| is(zone, name)).reduce(|a, b| joined(Operator::Or, a, b)));
+    let condition = scope.condition.as_ref().map(|(condition, _)| condition.clone());
+    match (zones, condition) {
+        (Some(zones), Some(condition)) => Some(joined(Operator::And, zones, condition)),
+        (zones, condition) => zones.or(condition),
     }
 }
 
 /// Where both apply, in words.
 fn shared(a: &Scope, b: &Scope) -> String {
-    let zones: Vec<&str> = match (a, b) {
-        (Scope::Zones(x), Scope::Zones(y)) => x.iter().filter(|zone| y.contains(zone)).map(String::as_str).collect(),
-        (Scope::Zones(x), _) | (_, Scope::Zones(x)) => x.iter().map(String::as_str).collect(),
-        (Scope::Where(..), _) | (_, Scope::Where(..)) => return " in the same sections".into(),
-        _ => return String::new(),
+    if a.is_all() && b.is_all() {
+        return String::new();
+    }
+    let zones: Vec<&str> = match (a.zones.as_slice(), b.zones.as_slice()) {
+        (x, []) | ([], x) => x.iter().map(String::as_str).collect(),
+        (x, y) => x.iter().filter(|zone| y.contains(zone)).map(String::as_str).collect(),
     };
     match zones.as_slice() {
         [] => " in the same sections".into(),

@@ -29,10 +29,16 @@ pub struct Plan {
     pub plausibility: Vec<Plausibility>,
     pub sections: SectionRules,
     pub quantities: Vec<Quantity>,
+    pub independent: Independent,
     pub verdict: VerdictRule,
 }
 
 impl Plan {
+    /// Whether some quantity needs records of this side.
+    pub fn reads(&self, side: Side) -> bool {
+        self.quantities.iter().any(|quantity| quantity.evaluation.reads(side))
+    }
+
     /// The same rules, with findings that are told and change nothing: for who asks what is wrong, and not whether it may be used.
     #[must_use]
     pub fn only_telling(&self) -> Self {
@@ -159,7 +165,7 @@ pub enum Kind {
     /// Start, end or length of the section on the axis.
     Start,
     End,
-    /// A reduced signal: index into the list of inputs that stands beside the expression.
+    /// A reduced signal, or a number taken from a group: index into the list that stands beside the expression.
     Input(usize),
     Simulated,
     Measured,
@@ -401,15 +407,21 @@ pub struct Quantity {
     pub unit: Unit,
     /// Unit in which its signals are plotted.
     pub signal_unit: Unit,
-    /// Each position with the name of its signal.
-    pub signals: Vec<(String, Signal)>,
+    pub positions: Vec<Position>,
     pub chain: Vec<Step>,
-    pub evaluation: Evaluation,
+    pub evaluation: Arc<Evaluation>,
     pub only: Option<Expr>,
-    pub limits: Vec<Limit>,
+    pub limits: Vec<Arc<Limit>>,
     pub minimum_signals: usize,
     pub minimum_pairs: usize,
     pub span: Span,
+}
+
+impl Quantity {
+    /// Whether the samples of the record are still there after its filter.
+    pub fn keeps_samples(&self) -> bool {
+        self.chain.iter().all(|step| step.kind.keeps_samples())
+    }
 }
 
 /// The quantity's rules as printed.
@@ -421,20 +433,89 @@ pub struct QuantityWords {
     pub comparison: String,
 }
 
+/// A signal at one position of a quantity.
+#[derive(Clone, Debug)]
+pub struct Position {
+    /// As printed: `Y_1R`.
+    pub name: String,
+    pub signal: Signal,
+    /// Each place with its member: `wheelset` `1`.
+    pub places: Vec<(String, String)>,
+    /// In which sections it is evaluated.
+    pub only: Option<Expr>,
+}
+
+/// What the rows of the table of values are.
 #[derive(Clone, Debug)]
 pub enum Evaluation {
-    /// A number of each side, then their difference.
-    Sides { value: Expr, inputs: Vec<Input>, difference: Expr },
+    /// Numbers of each record, by themselves or compared.
+    Values { values: Vec<Valued>, records: Records },
     /// One number of the two signals; `over` is the other signal its wording names, one for each position, with its name and unit.
     Metric { metric: Metric, over: Vec<Signal>, over_axis: Option<Axis> },
 }
 
+/// A number of one record.
+#[derive(Clone, Debug)]
+pub struct Valued {
+    pub expr: Expr,
+    /// For each position of the quantity: a named signal is that of the same wheelset or side.
+    pub inputs: Vec<Vec<Input>>,
+}
+
+/// Which records give the rows.
+#[derive(Clone, Debug)]
+pub enum Records {
+    /// One row for each record of this side: an assessment.
+    Of(Side),
+    /// One row for each simulated and measured record of a section.
+    Compared { difference: Expr },
+    /// One row for each record of this side, compared with what is central of all of them.
+    Spread { side: Side, center: Center, difference: Expr },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    Simulated,
+    Measured,
+}
+
+impl Side {
+    pub const ALL: [Self; 2] = [Self::Simulated, Self::Measured];
+
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Simulated => "simulated",
+            Self::Measured => "measured",
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Center {
+    Mean,
+    Median,
+}
+
+impl Evaluation {
+    /// Whether records of this side are needed.
+    pub fn reads(&self, side: Side) -> bool {
+        match self {
+            Self::Values { records: Records::Of(of) | Records::Spread { side: of, .. }, .. } => *of == side,
+            Self::Values { records: Records::Compared { .. }, .. } | Self::Metric { .. } => true,
+        }
+    }
+
+    /// Whether rows have two sides and a difference.
+    pub fn has_sides(&self) -> bool {
+        matches!(self, Self::Values { records: Records::Compared { .. } | Records::Spread { .. }, .. })
+    }
+}
+
 #[derive(Clone, Debug)]
 pub struct Limit {
-    pub statistic: Statistic,
-    pub ddof: usize,
+    pub estimate: Estimate,
     pub at_least: bool,
-    pub bound: Expr,
+    pub bound: OfGroup,
     /// Factor and when it applies.
     pub factors: Vec<(Expr, Expr)>,
     pub only_when: Option<Expr>,
@@ -444,12 +525,134 @@ pub struct Limit {
     pub span: Span,
 }
 
-/// Which pairs a limit is about. A limit `for each zone` is one limit for every zone.
+/// What is estimated from the rows of a group.
 #[derive(Clone, Debug)]
-pub enum Scope {
-    All,
-    Zones(Vec<String>),
-    Where(Box<Expr>, String),
+pub struct Estimate {
+    /// As in result files: `mean`, `p95`, the name of an estimate, or an expression as written.
+    pub name: String,
+    /// As printed: `standard deviation (n-1)`.
+    pub title: String,
+    pub kind: EstimateKind,
+    /// Tells how far values differ from each other, so that 0 is best whatever they are.
+    pub of_scatter: bool,
+    /// In which it is printed, where that is not the unit of the values: of a share, of a length.
+    pub unit: Option<Unit>,
+}
+
+#[derive(Clone, Debug)]
+pub enum EstimateKind {
+    /// Every value by itself: the worst decides.
+    Each,
+    Of(Box<OfGroup>),
+}
+
+impl Estimate {
+    /// The statistic that it is and nothing more, with the divisor's n - `ddof`.
+    pub fn statistic(&self) -> Option<(Statistic, usize)> {
+        match &self.kind {
+            EstimateKind::Each => Some((Statistic::Each, 0)),
+            EstimateKind::Of(of) => match (&of.expr.kind, of.taken.as_slice()) {
+                (Kind::Input(0), [Taking::Statistic(statistic, ddof)]) => Some((*statistic, *ddof)),
+                _ => None,
+            },
+        }
+    }
+}
+
+/// An expression over what is taken from the rows of a group; [`Kind::Input`] is an index into `taken`.
+#[derive(Clone, Debug)]
+pub struct OfGroup {
+    pub expr: Expr,
+    pub taken: Vec<Taking>,
+}
+
+/// A number taken from the rows of a group.
+#[derive(Clone, Debug)]
+pub enum Taking {
+    /// Of the values, with the divisor's n - `ddof`.
+    Statistic(Statistic, usize),
+    /// Number of units that are independent of each other.
+    Count,
+    /// An end of the confidence interval of an estimate.
+    Bound {
+        of: Estimate,
+        upper: bool,
+        confidence: f64,
+        bootstrap: bool,
+    },
+    /// Part of the rows, or of the sections, that satisfy a condition; [`Kind::Input`] 0 is the value of a row.
+    Share {
+        condition: Expr,
+        of_sections: bool,
+    },
+    /// Of data of the group's sections, each section once.
+    Data {
+        reducer: DataReducer,
+        of: Expr,
+    },
+    Fit(Box<Fit>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DataReducer {
+    Total,
+    Statistic(Statistic, usize),
+}
+
+/// A regression of the values over data of their sections.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// A bound is one of a further value; else of the mean of values.
+    pub prediction: bool,
+    pub over: Vec<Expr>,
+    pub at: Vec<OfGroup>,
+    /// Without one, the fitted value itself.
+    pub confidence: Option<f64>,
+    pub one_sided: bool,
+    pub lower: bool,
+}
+
+/// Which rows a limit is about, and how they are grouped. A limit `for each zone` is one limit for every zone.
+#[derive(Clone, Debug, Default)]
+pub struct Scope {
+    /// Only rows of these zones; of all where there are none.
+    pub zones: Vec<String>,
+    pub each: Vec<Key>,
+    pub condition: Option<(Expr, String)>,
+}
+
+impl Scope {
+    pub fn is_all(&self) -> bool {
+        self.zones.is_empty() && self.each.is_empty() && self.condition.is_none()
+    }
+
+    /// Whether both are about the same rows, grouped alike.
+    pub fn same(&self, other: &Self) -> bool {
+        let words = |scope: &Self| scope.condition.as_ref().map(|(_, words)| words.clone());
+        self.zones == other.zones && self.each == other.each && words(self) == words(other)
+    }
+}
+
+/// By what rows are grouped.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Key {
+    Section,
+    Site,
+    /// The record, where a side has several.
+    Record,
+    Place(String),
+    /// Index into [`Plan::columns`].
+    Column(usize),
+}
+
+/// What is independent of each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Independent {
+    #[default]
+    Site,
+    Section,
+    /// Index into [`Plan::columns`].
+    Column(usize),
 }
 
 #[derive(Clone, Debug)]

@@ -1,9 +1,14 @@
 //! Checks quantities: positions, chain, value, difference or metric, limits.
 
+use std::sync::Arc;
+
 use super::Checker;
 use super::evaluate::{Nothing, Values, number, words};
 use super::names::{Assignment, bare_word, normalised};
-use super::plan::{Axis, DatumKind, Evaluation, Expr, Input, InputSide, Kind, Quantity, QuantityWords, Scalar, Signal, Step};
+use super::plan::{
+    Axis, Center, DatumKind, Evaluation, Expr, InputSide, Kind, Position, Quantity, QuantityWords, Records, Scalar, Side, Signal, Step,
+    Valued,
+};
 use super::scalars::Scope;
 use super::steps::after;
 use crate::catalog::{Best, DIFFERENCES};
@@ -11,7 +16,7 @@ use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
-use crate::syntax::phrase::{At, Node};
+use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::{Dimension, Unit};
 
 /// What a quantity's value and difference, or its metric, come to.
@@ -40,7 +45,13 @@ impl Checker<'_> {
     /// Everything is looked at, whatever fails: an author wants all faults in one go.
     fn quantity_where(&mut self, block: &Block, only: Option<Option<Expr>>) -> Option<Quantity> {
         let metric = block.field("metric");
-        self.all_required(block, if metric.is_some() { &["of"] } else { &["of", "value", "difference"] });
+        let assessed = block.field("from");
+        let needed: &[&str] = match (metric, assessed) {
+            (Some(_), _) => &["of"],
+            (None, Some(_)) => &["of", "value"],
+            (None, None) => &["of", "value", "difference"],
+        };
+        self.all_required(block, needed);
         if let (Some(metric), Some(other)) = (metric, block.field("value").or(block.field("difference"))) {
             self.problems.push(
                 Problem::error("metric-and-value", "a quantity has either a metric, or a value and a difference")
@@ -48,20 +59,29 @@ impl Checker<'_> {
                     .also(&metric.key.span, "the metric"),
             );
         }
-        let of = block.field("of").map(|field| field.value.clone());
+        if let (Some(from), Some(other)) = (assessed, block.field("difference").or(metric).or(block.field("compare"))) {
+            self.problems.push(
+                Problem::error("from-and-compared", "values of one record are not compared")
+                    .at(&other.key.span)
+                    .also(&from.key.span, "the record")
+                    .help(format!("leave `from` or `{}` out", other.key.text)),
+            );
+        }
         let chain = block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
-        let signals = of.as_ref().and_then(|of| self.signals_of(of));
-        let dimension = signals.as_ref().and_then(|signals| signals.first()).map(|(_, signal, _)| signal.dimension);
+        let positions = self.positions_of_quantity(block);
+        let of = block.field("of").map(|field| field.value.clone());
+        let dimension = positions.as_ref().and_then(|positions| positions.first()).map(|(position, _)| position.signal.dimension);
         let dimension = dimension.map(|dimension| after(chain.as_deref().unwrap_or_default(), dimension));
         let compared = match metric {
-            Some(field) => self.compared_by_metric(field, signals.as_deref(), chain.as_deref()),
-            None => self.compared_by_values(block, dimension),
+            Some(field) => self.compared_by_metric(field, positions.as_deref(), chain.as_deref()),
+            None => self.by_values(block, positions.as_deref(), chain.as_deref().unwrap_or_default()),
         };
         let result = compared.as_ref().map(|compared| compared.dimension);
         let unit = result.zip(of.as_ref()).and_then(|(result, of)| self.quantity_unit(block, of, result));
         let from = compared.as_ref().and_then(|compared| compared.from.as_ref()).or_else(|| of.as_ref().map(|of| &of.span));
         let best = compared.as_ref().and_then(|compared| compared.best.as_ref());
-        let limits = self.limits(block, unit.as_ref().zip(from), best);
+        let places: Vec<String> = positions.iter().flatten().next().map_or_else(Vec::new, |(_, at)| at.keys().cloned().collect());
+        let limits = self.limits(block, unit.as_ref().zip(from), best, &places);
         if block.field("limit").is_none() {
             self.problems.push(
                 Problem::warning("no-limit", format!("quantity `{}` has no limit: it is reported, and decides nothing", block.name_text()))
@@ -79,9 +99,10 @@ impl Checker<'_> {
         }
         let minimum_signals = self.count(block, "minimum signals", self.minimum_signals);
         let minimum_pairs = self.count(block, "minimum pairs", self.minimum_pairs);
-        let (of, chain, signals, compared, unit) = (of?, chain?, signals?, compared?, unit?);
-        let signal_unit = from_pest::of_places(&of, self.problems)
-            .map(|written| self.own_unit(&written.signal.node, after(&chain, signals[0].1.dimension)))?;
+        let (of, chain, positions, compared, unit) = (of?, chain?, positions?, compared?, unit?);
+        let dimension = dimension?;
+        let signal_unit = from_pest::of_places(&of, self.problems).map(|written| self.own_unit(&written.signal.node, dimension))?;
+        let all: Vec<String> = block.fields_named("of").map(|field| self.with_values(&normalised(&field.value.text))).collect();
         let text = |key: &str| block.field(key).map(|field| field.value.text.clone());
         let filter =
             if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") };
@@ -89,25 +110,20 @@ impl Checker<'_> {
             id: block.name_text().to_string(),
             title: block.title.as_ref().map_or_else(|| block.name_text().to_string(), |title| title.text.clone()),
             symbol: text("symbol").unwrap_or_else(|| block.name_text().to_string()),
-            words: QuantityWords {
-                of: self.with_values(&normalised(&of.text)),
-                filter,
-                processing: compared.processing,
-                comparison: compared.comparison,
-            },
+            words: QuantityWords { of: all.join("; "), filter, processing: compared.processing, comparison: compared.comparison },
             clause: text("clause"),
             source: text("source"),
             notes: block.fields_named("note").map(|note| note.value.text.clone()).collect(),
             unit,
             signal_unit,
-            signals: signals.into_iter().map(|(name, signal, _)| (name, signal)).collect(),
+            positions: positions.into_iter().map(|(position, _)| position).collect(),
             chain,
-            evaluation: compared.evaluation,
+            evaluation: Arc::new(compared.evaluation),
             only: match only {
                 Some(only) => Some(only?),
                 None => None,
             },
-            limits: limits?,
+            limits: limits?.into_iter().map(Arc::new).collect(),
             minimum_signals: minimum_signals?,
             minimum_pairs: minimum_pairs?,
             span: block.span().clone(),
@@ -117,17 +133,17 @@ impl Checker<'_> {
     fn compared_by_metric(
         &mut self,
         field: &Field,
-        signals: Option<&[(String, Signal, Assignment)]>,
+        positions: Option<&[(Position, Assignment)]>,
         chain: Option<&[Step]>,
     ) -> Option<Compared> {
         let (metric, over) = self.metric(&field.value)?;
         let over_name = over.as_ref().and_then(|over| bare_word(&over.phrase)).map(str::to_string);
-        let signals = signals?;
+        let positions = positions?;
         let over = match over {
             None => Vec::new(),
-            Some(over) => signals
+            Some(over) => positions
                 .iter()
-                .map(|(_, _, at)| self.signal_where(&over.phrase, &over.text, at, &over.text.span))
+                .map(|(_, at)| self.signal_where(&over.phrase, &over.text, at, &over.text.span))
                 .collect::<Option<Vec<_>>>()?,
         };
         let chain = chain?;
@@ -143,11 +159,11 @@ impl Checker<'_> {
             .zip(over.first())
             .map(|(name, signal)| Axis { unit: self.own_unit(&name, after(chain, signal.dimension)), column: name });
         let words = normalised(&field.value.text);
-        let (_, first, _) = signals.first()?;
+        let (first, _) = positions.first()?;
         Some(Compared {
             evaluation: Evaluation::Metric { metric, over, over_axis },
             dimension: (metric.0.gives)(
-                after(chain, first.dimension),
+                after(chain, first.signal.dimension),
                 self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension),
             ),
             processing: words.clone(),
@@ -155,6 +171,43 @@ impl Checker<'_> {
             best: Some((metric.0.best, field.value.span.clone())),
             from: Some(field.value.span.clone()),
         })
+    }
+
+    /// The positions of all fields `of`: signals of one dimension at the same places.
+    fn positions_of_quantity(&mut self, block: &Block) -> Option<Vec<(Position, Assignment)>> {
+        let mut found: Vec<(Position, Assignment)> = Vec::new();
+        let mut ok = true;
+        for field in block.fields_named("of") {
+            let written = from_pest::of_places(&field.value, self.problems);
+            let when = written.and_then(|written| written.when);
+            let only = match &when {
+                None => Some(None),
+                Some(when) => {
+                    let condition = self.expr(when, &field.value, &mut Scope::section());
+                    condition.filter(|condition| self.flag_type(condition).is_some()).map(Some)
+                }
+            };
+            let known = self.assumed.len();
+            self.assumed.extend(only.clone().flatten());
+            let signals = self.signals_of(&field.value);
+            self.assumed.truncate(known);
+            let (Some(signals), Some(only)) = (signals, only) else {
+                ok = false;
+                continue;
+            };
+            for (name, signal, at) in signals {
+                if let Some((first, _)) = found.first()
+                    && first.signal.dimension != signal.dimension
+                {
+                    let says = format!("the signals of one quantity are alike: one is {}", first.signal.dimension.in_words());
+                    self.problems.push(Problem::error("unit-mismatch", says).at(&field.value.span).label(signal.dimension.in_words()));
+                    return None;
+                }
+                let places = at.iter().map(|(place, member)| (place.clone(), member.clone())).collect();
+                found.push((Position { name, signal, places, only: only.clone() }, at));
+            }
+        }
+        (ok && !found.is_empty()).then_some(found)
     }
 
     /// Every position with its name, its signal and its assignment.
@@ -186,25 +239,101 @@ impl Checker<'_> {
         Some(found)
     }
 
-    fn compared_by_values(&mut self, block: &Block, dimension: Option<Dimension>) -> Option<Compared> {
-        let value = block.field("value").and_then(|field| self.value(field, dimension));
-        let result = value.as_ref().map(|(_, _, dimension)| *dimension);
-        let difference = block.field("difference").and_then(|field| self.difference(field, result));
-        let ((value, inputs, result), (difference, compared)) = (value?, difference?);
-        let (processing, comparison) = (words(&value), words(&difference));
+    /// Numbers of each record: assessed by themselves, or compared.
+    fn by_values(&mut self, block: &Block, positions: Option<&[(Position, Assignment)]>, chain: &[Step]) -> Option<Compared> {
+        let first = positions.and_then(|positions| positions.first());
+        let dimension = first.map(|(position, _)| after(chain, position.signal.dimension));
+        let fields: Vec<&Field> = block.fields_named("value").collect();
+        self.partial = fields.len() > 1;
+        let values: Vec<Option<(Valued, Dimension)>> = fields.iter().map(|field| self.value(field, positions, chain)).collect();
+        self.partial = false;
+        let result = values.iter().flatten().map(|(_, dimension)| *dimension).next();
+        for (field, (_, other)) in fields.iter().zip(&values).filter_map(|(field, value)| Some((field, value.as_ref()?))) {
+            if Some(*other) != result {
+                let wanted = result.map_or_else(String::new, Dimension::in_words);
+                let says = format!("the values of one quantity are alike: the first is {wanted}, this is {}", other.in_words());
+                self.problems.push(Problem::error("unit-mismatch", says).at(&field.value.span).also(&fields[0].value.span, wanted));
+                return None;
+            }
+        }
+        let from = block.field("from").map(|field| self.side(field));
+        let compare = block.field("compare").map(|field| self.spread(field));
+        let difference = match from {
+            Some(_) => None,
+            None => Some(block.field("difference").and_then(|field| self.difference(field, result))),
+        };
+        let values: Vec<(Valued, Dimension)> = values.into_iter().collect::<Option<_>>()?;
+        let result = result?;
+        let processing = values.iter().map(|(value, _)| words(&value.expr)).collect::<Vec<_>>().join("; ");
+        let values: Vec<Valued> = values.into_iter().map(|(value, _)| value).collect();
+        let field_of = |key: &str| block.field(key).map(|field| field.value.span.clone());
+        let Some(difference) = difference else {
+            let side = from??;
+            let from = field_of("value").filter(|_| Some(result) != dimension);
+            let evaluation = Evaluation::Values { values, records: Records::Of(side) };
+            let comparison = format!("{} values", side.in_words());
+            return Some(Compared { evaluation, dimension: result, processing, comparison, best: None, from });
+        };
+        let (difference, compared) = difference?;
+        let spread = match compare {
+            Some(compare) => compare?,
+            None => None,
+        };
+        let comparison = words(&difference);
         let key = if compared != result { "difference" } else { "value" };
-        let from = block.field(key).filter(|_| Some(compared) != dimension).map(|field| field.value.span.clone());
-        let span = block.field("difference").map(|field| field.value.span.clone());
-        let best = of_equal_sides(&difference).map(Best::Near).zip(span);
-        let evaluation = Evaluation::Sides { value, inputs, difference };
+        let from = field_of(key).filter(|_| Some(compared) != dimension);
+        let best = of_equal_sides(&difference).map(Best::Near).zip(field_of("difference"));
+        let (records, comparison) = match spread {
+            None => (Records::Compared { difference }, comparison),
+            Some((side, center)) => {
+                let name = if center == Center::Mean { "mean" } else { "median" };
+                let words = comparison.replace("measured", &format!("{name} of all"));
+                (Records::Spread { side, center, difference }, words)
+            }
+        };
+        let evaluation = Evaluation::Values { values, records };
         Some(Compared { evaluation, dimension: compared, processing, comparison, best, from })
     }
 
-    fn value(&mut self, field: &Field, dimension: Option<Dimension>) -> Option<(Expr, Vec<Input>, Dimension)> {
+    /// `from measured`
+    fn side(&mut self, field: &Field) -> Option<Side> {
+        let word = normalised(&field.value.text);
+        let found = Side::ALL.into_iter().find(|side| side.in_words() == word);
+        if found.is_none() {
+            let problem = Problem::error("unknown-record", format!("`{word}` is no record of a campaign")).at(&field.value.span);
+            self.problems.push(problem.suggest(&word, Side::ALL.map(Side::in_words)));
+        }
+        found
+    }
+
+    /// `simulated with mean of simulated`; `None` inside for `simulated with measured`.
+    fn spread(&mut self, field: &Field) -> Option<Option<(Side, Center)>> {
+        let words = normalised(&field.value.text);
+        let all: Vec<&str> = words.split(' ').collect();
+        let side = |word: &str| Side::ALL.into_iter().find(|side| side.in_words() == word);
+        match all.as_slice() {
+            ["simulated", "with", "measured"] => return Some(None),
+            [of, "with", center @ ("mean" | "median"), "of", other] if of == other => {
+                if let Some(side) = side(of) {
+                    return Some(Some((side, if *center == "mean" { Center::Mean } else { Center::Median })));
+                }
+            }
+            _ => {}
+        }
+        let problem =
+            Problem::error("unknown-comparison", format!("`{words}` does not say which records are compared")).at(&field.value.span);
+        self.problems.push(problem.help("`simulated with measured`, or `simulated with mean of simulated` where there are several"));
+        None
+    }
+
+    fn value(&mut self, field: &Field, positions: Option<&[(Position, Assignment)]>, chain: &[Step]) -> Option<(Valued, Dimension)> {
         let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
         let phrase = from_pest::expression(&field.value, self.problems)?;
-        let mut scope = Scope::reducing(Some(dimension?), axis);
-        let expr = self.expr(&phrase, &field.value, &mut scope)?;
+        let positions = positions?;
+        let (first, at) = positions.first()?;
+        let dimension = after(chain, first.signal.dimension);
+        let mut scope = Scope { at: at.clone(), ..Scope::reducing(Some(dimension), axis) };
+        let expr = self.value_at(&phrase, field, &first.only, &mut scope)?;
         let result = self.number_type(&expr)?;
         if scope.inputs.is_empty() {
             self.problems.push(
@@ -214,7 +343,27 @@ impl Checker<'_> {
             );
             return None;
         }
-        Some((expr, scope.inputs, result))
+        let mut inputs = vec![scope.inputs];
+        for (position, at) in &positions[1..] {
+            // Only a named signal differs from position to position.
+            if inputs[0].iter().all(|input| input.signal.is_none()) {
+                inputs.push(inputs[0].clone());
+                continue;
+            }
+            let mut scope = Scope { at: at.clone(), ..Scope::reducing(Some(dimension), axis) };
+            self.value_at(&phrase, field, &position.only, &mut scope)?;
+            inputs.push(scope.inputs);
+        }
+        Some((Valued { expr, inputs }, result))
+    }
+
+    /// A value at a position, in sections in which the position is evaluated.
+    fn value_at(&mut self, phrase: &Phrase, field: &Field, only: &Option<Expr>, scope: &mut Scope) -> Option<Expr> {
+        let known = self.assumed.len();
+        self.assumed.extend(only.clone());
+        let found = self.expr(phrase, &field.value, scope);
+        self.assumed.truncate(known);
+        found
     }
 
     /// A named difference, a choice parameter that names one, or an expression; of values of unknown dimension, only its name is looked at.

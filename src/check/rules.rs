@@ -2,7 +2,9 @@
 
 use super::Checker;
 use super::names::normalised;
-use super::plan::{Axis, Check, DatumKind, Expr, Input, Kind, OnFault, Origin, Quantity, Rule, SectionRules, Type, VerdictRule, Zone};
+use super::plan::{
+    Axis, Check, DatumKind, Expr, Independent, Input, Kind, OnFault, Origin, Quantity, Rule, SectionRules, Type, VerdictRule, Zone,
+};
 use super::scalars::Scope;
 use crate::metrics::percentile::Method;
 use crate::problem::Problem;
@@ -192,6 +194,25 @@ impl Checker<'_> {
                 let problem = Problem::error("unknown-choice", format!("`{other}` is no divisor of the variance")).at(&field.value.span);
                 self.problems.push(problem.help("`n-1` or `n`"));
                 1
+            }
+        }
+    }
+
+    /// What is independent of each other, by which n and intervals are counted.
+    pub(super) fn independent(&mut self, block: Option<&Block>) -> Independent {
+        let Some(field) = block.and_then(|block| block.field("independent")) else { return Independent::Site };
+        let word = normalised(&field.value.text);
+        let column = self.names.columns.iter().position(|datum| datum.name == word);
+        match (word.as_str(), column) {
+            ("site", _) => Independent::Site,
+            ("section", _) => Independent::Section,
+            (_, Some(index)) => Independent::Column(index),
+            _ => {
+                let known: Vec<String> = self.names.columns.iter().map(|datum| datum.name.clone()).collect();
+                let says = format!("`{word}` is neither `site`, `section` nor a section column");
+                let known = known.iter().map(String::as_str).chain(["site", "section"]);
+                self.problems.push(Problem::error("unknown-name", says).at(&field.value.span).suggest(&word, known));
+                Independent::Site
             }
         }
     }

@@ -1,10 +1,10 @@
 //! What a name in an expression over numbers, words and conditions stands for.
 
 use super::Checker;
-use super::names::{Assignment, bare_word};
+use super::names::bare_word;
 use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Taken, Type};
 use super::scalars::{Reduce, Scope};
-use crate::catalog::{Metric, REDUCERS, Reducer, Statistic};
+use crate::catalog::{Metric, REDUCERS, Reducer, STATISTICS, Statistic};
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::Text;
@@ -71,7 +71,8 @@ impl Checker<'_> {
             );
             return None;
         };
-        let signal = self.signal(signal, text, &Assignment::new())?;
+        let at = scope.at.clone();
+        let signal = self.signal(signal, text, &at)?;
         let ty = Type::Number(found.gives(signal.dimension, axis));
         let kind =
             Kind::Input(add_input(scope, Input { taken: Taken::Reduced(found), signal: Some(signal), side, span: span.span.clone() }));
@@ -107,6 +108,12 @@ impl Checker<'_> {
                 "measured" => return expr(Kind::Measured, Type::Number(pair)),
                 _ => {}
             }
+        }
+        if let (Some(dimension), "value") = (scope.value, path) {
+            return expr(Kind::Input(0), Type::Number(dimension));
+        }
+        if let Some(found) = self.group_path(path, span, scope) {
+            return found;
         }
         if let Some((dimension, names)) = &scope.limits
             && names.iter().any(|name| name == path)
@@ -266,6 +273,13 @@ impl Checker<'_> {
         }
         if let Some((_, names)) = &scope.limits {
             known.extend(names.iter().cloned());
+        }
+        if scope.group.as_ref().is_some_and(|group| group.values.is_some()) {
+            known.extend(STATISTICS.iter().map(|entry| entry.name.to_string()));
+            known.extend(self.names.estimates.keys().cloned());
+        }
+        if scope.value.is_some() {
+            known.push("value".into());
         }
         if scope.reduce.is_some_and(|reduce| reduce.own.is_some()) {
             known.extend(REDUCERS.iter().map(|entry| entry.name.to_string()));

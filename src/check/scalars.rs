@@ -2,7 +2,9 @@
 
 use super::Checker;
 use super::conditions::impossible;
+use super::estimates::Group;
 use super::evaluate::{Nothing, evaluate, words};
+use super::names::Assignment;
 use super::plan::{Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Type};
 use crate::catalog::{FUNCTIONS, Function, Reducer, Signature};
 use crate::problem::Problem;
@@ -24,6 +26,12 @@ pub(super) struct Scope {
     pub limits: Option<(Dimension, Vec<String>)>,
     /// The one zone that the expression is about.
     pub zone: Option<String>,
+    /// The rows of a group.
+    pub group: Option<Group>,
+    /// `value`: that of one row, of this dimension.
+    pub value: Option<Dimension>,
+    /// The position that named signals are taken at.
+    pub at: Assignment,
     pub inputs: Vec<Input>,
 }
 
@@ -39,7 +47,18 @@ pub(super) struct Reduce {
 
 impl Scope {
     fn new(vehicle: bool, section: bool) -> Self {
-        Self { vehicle, section, reduce: None, pair: None, limits: None, zone: None, inputs: Vec::new() }
+        Self {
+            vehicle,
+            section,
+            reduce: None,
+            pair: None,
+            limits: None,
+            zone: None,
+            group: None,
+            value: None,
+            at: Assignment::new(),
+            inputs: Vec::new(),
+        }
     }
 
     /// Parameters and numbers only.
@@ -88,6 +107,7 @@ impl Checker<'_> {
                 let dimension = unit.as_ref().map_or(Dimension::ONE, |unit| unit.dimension);
                 (Kind::Constant(Scalar::Number(*value)), Type::Number(dimension))
             }
+            Node::Percentile(percent) if scope.group.is_some() => return self.group_percentile(*percent, &span, scope)?,
             Node::Percentile(percent) => return self.own_reducer(Reducer::Percentile(*percent), span, scope),
             Node::Path(path) => return self.path(path, &span, scope),
             Node::Negative(inner) => {
@@ -148,6 +168,12 @@ impl Checker<'_> {
                 let ty = self.binary_type(Operator::Multiply, &left, &right)?;
                 (Kind::Binary(Operator::Multiply, Box::new(left), Box::new(right)), ty)
             }
+            Node::Reduced(reducer, of) if scope.group.is_some() => return self.group_data(reducer, of, text, &span, scope),
+            Node::Bound { upper, confidence, of, bootstrap } => {
+                return self.group_bound((*upper, *confidence, *bootstrap), of, text, &span, scope);
+            }
+            Node::Share { of_sections, condition } => return self.group_share(*of_sections, condition, text, &span, scope),
+            Node::Fit(fit) => return self.group_fit(fit, text, &span, scope),
             Node::Reduced(reducer, signal) => return self.reduced(reducer, signal, text, &span, scope),
             Node::PlaceOf(name, _) => return self.not_a_number(&name.node, &span),
             Node::Through(inner, _) => return self.not_a_number(&words_at(text, inner), &span),
@@ -262,7 +288,7 @@ impl Checker<'_> {
     pub(super) fn covered(&mut self, conditions: &[&Expr], span: &Span) {
         let mut all: Vec<(&Expr, bool)> = self.assumed.iter().map(|condition| (condition, true)).collect();
         all.extend(conditions.iter().map(|condition| (*condition, false)));
-        if !impossible(&all) {
+        if !impossible(&all) && !self.partial {
             self.problems.push(
                 Problem::warning("no-otherwise", "where none of these conditions holds, this has no value")
                     .at(span)

@@ -138,7 +138,7 @@ fn plan_text(plan: &Plan) -> String {
         let _ = writeln!(out, "check {}: {}", check.name, check.words);
     }
     for quantity in &plan.quantities {
-        let names: Vec<&str> = quantity.signals.iter().map(|(name, _)| name.as_str()).collect();
+        let names: Vec<&str> = quantity.positions.iter().map(|position| position.name.as_str()).collect();
         let _ = writeln!(out, "quantity {} [{}]: {}", quantity.id, quantity.unit, quantity.title);
         let _ = writeln!(
             out,
@@ -149,7 +149,7 @@ fn plan_text(plan: &Plan) -> String {
             quantity.words.comparison
         );
         for limit in &quantity.limits {
-            let _ = writeln!(out, "  limit       {} {}", limit.statistic.title(limit.ddof), limit.words);
+            let _ = writeln!(out, "  limit       {} {}", limit.estimate.title, limit.words);
         }
     }
     let _ = writeln!(out, "{}", plan.verdict.words);
@@ -162,10 +162,10 @@ fn plan_json(plan: &Plan) -> Value {
         .iter()
         .map(|quantity| {
             let limits: Vec<Value> =
-                quantity.limits.iter().map(|limit| json!({"statistic": limit.statistic.name(), "limit": limit.words})).collect();
+                quantity.limits.iter().map(|limit| json!({"statistic": limit.estimate.name, "limit": limit.words})).collect();
             json!({
                 "id": quantity.id, "title": quantity.title, "unit": quantity.unit.text,
-                "signals": quantity.signals.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+                "signals": quantity.positions.iter().map(|position| position.name.as_str()).collect::<Vec<_>>(),
                 "filter": quantity.words.filter, "value": quantity.words.processing, "comparison": quantity.words.comparison,
                 "limits": limits, "minimum_signals": quantity.minimum_signals, "minimum_pairs": quantity.minimum_pairs,
             })

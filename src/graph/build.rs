@@ -2,11 +2,15 @@
 
 use indexmap::IndexMap;
 
-use super::{Graph, InputNode, Node, NodeId, Operation, PlausibilityNodes, PositionNodes, QuantityNodes, SignalNodes};
-use crate::catalog::Metric;
+use std::sync::Arc;
+
+use super::{
+    Graph, InputNode, LimitNodes, Node, NodeId, Operation, PlausibilityNodes, PositionNodes, QuantityNodes, SignalNodes, ValueNodes,
+};
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
-    Evaluation, Expr, Input, Kind, Operator, Plan, Plausibility, Quantity, Scope, Signal, SignalKind, Step, StepSpec, Taken, Test,
+    Evaluation, Expr, Input, Key, Kind, Limit, Operator, Plan, Plausibility, Position, Quantity, Scope, Signal, SignalKind, Step, StepSpec,
+    Taken, Test, Valued,
 };
 use crate::source::Span;
 use crate::units::Dimension;
@@ -17,19 +21,9 @@ pub fn from_plan(plan: &Plan) -> Graph {
     let plausibility = plan.plausibility.iter().map(|rule| builder.plausibility(rule)).collect();
     let quantities: Vec<QuantityNodes> =
         plan.quantities.iter().enumerate().map(|(index, quantity)| builder.quantity(index, quantity)).collect();
-    let mut limits = Vec::new();
-    for (index, quantity) in plan.quantities.iter().enumerate() {
-        let compares: Vec<NodeId> = quantities[index].signals.iter().map(|signal| signal.compare).collect();
-        for (number, limit) in quantity.limits.iter().enumerate() {
-            let aggregate = Operation::Aggregate { quantity: index, limit: number };
-            let label = format!("{}: {}{}", quantity.id, limit.statistic.title(limit.ddof), of_sections(&limit.scope));
-            let node = builder.add(aggregate, compares.clone(), quantity.unit.dimension, &limit.span, label, format!("aggregate {index}"));
-            let label = format!("{}: {} {}", quantity.id, limit.statistic.name(), limit.words);
-            let operation = Operation::Limit { quantity: index, limit: number };
-            limits.push(builder.add(operation, vec![node], Dimension::ONE, &limit.span, label, format!("limit {index}")));
-        }
-    }
-    let verdict = builder.add(Operation::Verdict, limits, Dimension::ONE, &plan.verdict.span, plan.verdict.words.clone(), "verdict".into());
+    let limits = quantities.iter().flat_map(|quantity: &QuantityNodes| quantity.limits.iter().map(|nodes| nodes.limit)).collect();
+    let verdict = Operation::Verdict(plan.verdict.rule);
+    let verdict = builder.add(verdict, limits, Dimension::ONE, &plan.verdict.span, plan.verdict.words.clone(), "verdict".into());
     Graph { nodes: builder.nodes, quantities, checks, plausibility, verdict }
 }
 
@@ -54,8 +48,9 @@ impl Builder {
             Operation::Read { column } => format!("read {column} {kind}"),
             Operation::Constant(expr) => format!("constant {}", shape(expr)),
             Operation::Select(conditions) => format!("select {}", conditions.iter().map(shape).collect::<Vec<_>>().join(";")),
-            Operation::Value { .. } | Operation::Compare { .. } | Operation::Aggregate { .. } | Operation::Limit { .. } => {
-                format!("{operation:?}")
+            // Each of these is a rule of its own.
+            Operation::Value(_) | Operation::Compare(_) | Operation::Estimate(_) | Operation::Limit(_) => {
+                format!("{kind} {label} {}", from.start)
             }
             _ => kind.clone(),
         };
@@ -64,7 +59,7 @@ impl Builder {
             return node;
         }
         let mut of: Vec<usize> = inputs.iter().map(|&input| self.nodes[input].class).collect();
-        if matches!(operation, Operation::Aggregate { .. } | Operation::Limit { .. } | Operation::Verdict) {
+        if matches!(operation, Operation::Estimate(_) | Operation::Limit(_) | Operation::Verdict(_)) {
             of.sort_unstable();
             of.dedup();
         }
@@ -234,58 +229,79 @@ impl Builder {
     }
 
     fn quantity(&mut self, index: usize, quantity: &Quantity) -> QuantityNodes {
-        let dimension = quantity.unit.dimension;
-        let mut signals = Vec::new();
-        for (number, (name, signal)) in quantity.signals.iter().enumerate() {
-            let (filtered, processed) = self.processed(signal, &quantity.chain, &quantity.span);
-            let (inputs, over, before, metric) = match &quantity.evaluation {
-                Evaluation::Sides { value, inputs, .. } => {
-                    let inputs: Vec<InputNode> = inputs.iter().map(|input| self.input(input, Some((filtered, processed)))).collect();
-                    let of: Vec<NodeId> = inputs.iter().map(|input| input.node).collect();
-                    // A value that is one reduced signal needs no node of its own.
-                    if matches!(value.kind, Kind::Input(0)) {
-                        let compare = self.compare(index, quantity, number, name, of, None);
-                        signals.push(SignalNodes { processed, filtered, inputs, over: None, compare });
-                        continue;
-                    }
-                    let label = format!("{} of {name}", words(value));
-                    let node = self.add(
-                        Operation::Value { quantity: index, signal: number },
-                        of,
-                        dimension,
-                        &value.span,
-                        label,
-                        format!("value {index}"),
-                    );
-                    (inputs, None, vec![node], None)
-                }
-                Evaluation::Metric { metric, over, .. } => {
-                    let over = over.get(number).map(|signal| self.processed(signal, &quantity.chain, &quantity.span).1);
-                    let mut before = vec![processed];
-                    before.extend(over);
-                    (Vec::new(), over, before, Some(*metric))
-                }
-            };
-            let compare = self.compare(index, quantity, number, name, before, metric);
-            signals.push(SignalNodes { processed, filtered, inputs, over, compare });
-        }
-        QuantityNodes { signals }
+        let signals: Vec<SignalNodes> = (0..quantity.positions.len()).map(|number| self.position(index, quantity, number)).collect();
+        let rows: Vec<NodeId> = signals.iter().map(|signal| signal.compare).collect();
+        let limit = |limit: &Arc<Limit>| {
+            let (title, name) = (&limit.estimate.title, &limit.estimate.name);
+            let label = format!("{}: {title}{}", quantity.id, of_rows(&limit.scope));
+            let kind = format!("estimate {index}");
+            let estimate = Operation::Estimate(Arc::clone(limit));
+            let estimate = self.add(estimate, rows.clone(), quantity.unit.dimension, &limit.span, label, kind);
+            let label = format!("{}: {name} {}", quantity.id, limit.words);
+            let operation = Operation::Limit(Arc::clone(limit));
+            let limit = self.add(operation, vec![estimate], Dimension::ONE, &limit.span, label, format!("limit {index}"));
+            LimitNodes { estimate, limit }
+        };
+        let limits = quantity.limits.iter().map(limit).collect();
+        QuantityNodes { signals, limits }
     }
 
-    fn compare(&mut self, index: usize, quantity: &Quantity, number: usize, name: &str, of: Vec<NodeId>, metric: Option<Metric>) -> NodeId {
+    fn position(&mut self, index: usize, quantity: &Quantity, number: usize) -> SignalNodes {
+        let Position { name, signal, .. } = &quantity.positions[number];
+        let (filtered, processed) = self.processed(signal, &quantity.chain, &quantity.span);
+        let (values, over, before) = match quantity.evaluation.as_ref() {
+            Evaluation::Values { values, .. } => {
+                let own = (filtered, processed);
+                let values: Vec<ValueNodes> = values.iter().map(|value| self.value((index, number), quantity, value, own)).collect();
+                let before = values.iter().map(|value| value.node).collect();
+                (values, None, before)
+            }
+            Evaluation::Metric { over, .. } => {
+                let over = over.get(number).map(|signal| self.processed(signal, &quantity.chain, &quantity.span).1);
+                (Vec::new(), over, [processed].into_iter().chain(over).collect())
+            }
+        };
         let label = format!("{} {name}: {}", quantity.id, quantity.words.comparison);
-        let operation = Operation::Compare { quantity: index, signal: number, metric };
-        self.add(operation, of, quantity.unit.dimension, &quantity.span, label, format!("compare {index}"))
+        let operation = Operation::Compare(Arc::clone(&quantity.evaluation));
+        let compare = self.add(operation, before, quantity.unit.dimension, &quantity.span, label, format!("compare {index}"));
+        SignalNodes { processed, filtered, values, over, compare }
+    }
+
+    fn value(&mut self, (index, number): (usize, usize), quantity: &Quantity, value: &Valued, own: (NodeId, NodeId)) -> ValueNodes {
+        let inputs: Vec<InputNode> = value.inputs[number].iter().map(|input| self.input(input, Some(own))).collect();
+        // A value that is one reduced signal needs no node of its own.
+        if let (Kind::Input(0), [input]) = (&value.expr.kind, inputs.as_slice()) {
+            return ValueNodes { node: input.node, inputs };
+        }
+        let of: Vec<NodeId> = inputs.iter().map(|input| input.node).collect();
+        let label = format!("{} of {}", words(&value.expr), quantity.positions[number].name);
+        let operation = Operation::Value(Arc::new(value.expr.clone()));
+        let kind = format!("value {index}");
+        let node = self.add(operation, of, quantity.unit.dimension, &value.expr.span, label, kind);
+        ValueNodes { node, inputs }
     }
 }
 
-/// Which sections a statistic is taken over, where not over all.
-fn of_sections(scope: &Scope) -> String {
-    match scope {
-        Scope::All => String::new(),
-        Scope::Zones(zones) => format!(", zone{} {}", if zones.len() == 1 { "" } else { "s" }, zones.join(", ")),
-        Scope::Where(_, words) => format!(", where {words}"),
+/// Which rows an estimate is taken over, where not over all.
+fn of_rows(scope: &Scope) -> String {
+    let mut words = String::new();
+    if !scope.zones.is_empty() {
+        words.push_str(&format!(", zone{} {}", if scope.zones.len() == 1 { "" } else { "s" }, scope.zones.join(", ")));
     }
+    for key in &scope.each {
+        words.push_str(", each ");
+        words.push_str(&match key {
+            Key::Section => "section".to_string(),
+            Key::Site => "site".into(),
+            Key::Record => "record".into(),
+            Key::Place(place) => place.replace('_', " "),
+            Key::Column(index) => format!("column {index}"),
+        });
+    }
+    if let Some((_, condition)) = &scope.condition {
+        words.push_str(&format!(", where {condition}"));
+    }
+    words
 }
 
 fn symbol(operator: Operator) -> &'static str {

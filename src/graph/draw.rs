@@ -79,9 +79,9 @@ fn cards(graph: &Graph) -> Vec<Card> {
                 .collect();
             inputs.sort_unstable();
             inputs.dedup();
-            let count = if matches!(first.operation, Operation::Aggregate { .. } | Operation::Limit { .. }) { 1 } else { members.len() };
+            let count = if matches!(first.operation, Operation::Estimate(_) | Operation::Limit(_)) { 1 } else { members.len() };
             let stage = first.operation.stage();
-            let column = (stage, matches!(first.operation, Operation::Value { .. }));
+            let column = (stage, matches!(first.operation, Operation::Value(_)));
             Card { column, lines: wrapped(&label(graph, members)), count, inputs, y: 0.0 }
         })
         .collect()
@@ -91,18 +91,18 @@ fn label(graph: &Graph, members: &[NodeId]) -> String {
     let labels: Vec<&str> = members.iter().map(|&id| graph.nodes[id].label.as_str()).collect();
     match graph.nodes[members[0]].operation {
         Operation::Read { .. } | Operation::Arithmetic(_) => shortened(&labels.join(", ")),
-        Operation::Aggregate { .. } | Operation::Limit { .. } => {
+        Operation::Estimate(_) | Operation::Limit(_) => {
             let (quantity, _) = labels[0].split_once(": ").unwrap_or(("", labels[0]));
             let mut rest: Vec<&str> = labels.iter().map(|label| label.split_once(": ").map_or(*label, |(_, rest)| rest)).collect();
             // One limit `for each zone` is one line.
             rest.dedup();
             format!("{quantity}: {}", rest.join("; "))
         }
-        Operation::Compare { .. } => {
+        Operation::Compare(_) => {
             let (head, how) = labels[0].split_once(": ").unwrap_or((labels[0], ""));
             format!("{}: {how}", head.split(' ').next().unwrap_or(head))
         }
-        Operation::Value { .. } => labels[0].rsplit_once(" of ").map_or(labels[0], |(what, _)| what).to_string(),
+        Operation::Value(_) => labels[0].rsplit_once(" of ").map_or(labels[0], |(what, _)| what).to_string(),
         _ => labels[0].to_string(),
     }
 }

@@ -1,8 +1,8 @@
 //! The processing graph: typed operations from channels to the verdict, common parts once, each knowing the line it came from.
 //!
-//! Nodes up to [`Operation::Reduce`] work on one record and run once for the simulated and once for the measured one;
-//! [`Operation::Value`] is a number of one side, [`Operation::Compare`] and what follows join both sides. Inputs always have
-//! a smaller number than the node, so the order of the nodes is an order to run them in, and there can be no cycle.
+//! Nodes up to [`Operation::Value`] work on one record and run once for each; [`Operation::Compare`] makes the rows of the table of
+//! values, of one record or of several; what follows works on groups of rows. Inputs always have a smaller number than the node, so the
+//! order of the nodes is an order to run them in, and there can be no cycle.
 
 mod build;
 mod draw;
@@ -12,8 +12,10 @@ pub use build::from_plan;
 pub use draw::svg;
 pub use print::{dot, json, text};
 
+use std::sync::Arc;
+
 use crate::catalog::{Function, Metric, Reducer};
-use crate::check::plan::{Expr, InputSide, Operator, StepSpec};
+use crate::check::plan::{Evaluation, Expr, InputSide, Limit, Operator, Rule, StepSpec};
 use crate::source::Span;
 use crate::units::Dimension;
 
@@ -65,28 +67,15 @@ pub enum Operation {
     /// A step inside the section.
     Window(StepSpec),
     Reduce(Reducer),
-    /// The value expression over reduced inputs.
-    Value {
-        quantity: usize,
-        signal: usize,
-    },
-    /// The difference or metric of a pair.
-    Compare {
-        quantity: usize,
-        signal: usize,
-        metric: Option<Metric>,
-    },
-    /// A statistic over all pairs of a quantity.
-    Aggregate {
-        quantity: usize,
-        limit: usize,
-    },
-    /// The statistic against its limit.
-    Limit {
-        quantity: usize,
-        limit: usize,
-    },
-    Verdict,
+    /// A number of one record from reduced signals.
+    Value(Arc<Expr>),
+    /// Rows of the table of values: of one record each, or of records compared.
+    Compare(Arc<Evaluation>),
+    /// What a limit is of, once for each group of rows.
+    Estimate(Arc<Limit>),
+    /// What was estimated against the limit, group by group.
+    Limit(Arc<Limit>),
+    Verdict(Rule),
 }
 
 impl Operation {
@@ -98,11 +87,11 @@ impl Operation {
             Self::Step(_) => Stage::Filter,
             Self::Window(_) => Stage::Window,
             Self::Cut => Stage::Cut,
-            Self::Reduce(_) | Self::Value { .. } => Stage::Process,
-            Self::Compare { .. } => Stage::Compare,
-            Self::Aggregate { .. } => Stage::Aggregate,
-            Self::Limit { .. } => Stage::Limit,
-            Self::Verdict => Stage::Verdict,
+            Self::Reduce(_) | Self::Value(_) => Stage::Process,
+            Self::Compare(_) => Stage::Compare,
+            Self::Estimate(_) => Stage::Estimate,
+            Self::Limit(_) => Stage::Limit,
+            Self::Verdict(_) => Stage::Verdict,
         }
     }
 }
@@ -116,7 +105,7 @@ pub enum Stage {
     Cut,
     Process,
     Compare,
-    Aggregate,
+    Estimate,
     Limit,
     Verdict,
 }
@@ -131,7 +120,7 @@ impl Stage {
             Self::Cut => "cut",
             Self::Process => "process",
             Self::Compare => "compare",
-            Self::Aggregate => "aggregate",
+            Self::Estimate => "estimate",
             Self::Limit => "limit",
             Self::Verdict => "verdict",
         }
@@ -141,8 +130,16 @@ impl Stage {
 /// Where the numbers of one quantity come from.
 #[derive(Clone, Debug)]
 pub struct QuantityNodes {
-    /// One per signal of the quantity.
+    /// One per position of the quantity.
     pub signals: Vec<SignalNodes>,
+    /// One per limit of the quantity.
+    pub limits: Vec<LimitNodes>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct LimitNodes {
+    pub estimate: NodeId,
+    pub limit: NodeId,
 }
 
 #[derive(Clone, Debug)]
@@ -151,11 +148,18 @@ pub struct SignalNodes {
     pub processed: NodeId,
     /// The same signal through the filters but not cut: what plots show. `None` where the chain resamples.
     pub filtered: NodeId,
-    /// Reduced inputs of the value expression.
-    pub inputs: Vec<InputNode>,
+    /// One per value of the quantity; none where a metric takes both signals.
+    pub values: Vec<ValueNodes>,
     /// The signal a metric runs over, processed.
     pub over: Option<NodeId>,
     pub compare: NodeId,
+}
+
+#[derive(Clone, Debug)]
+pub struct ValueNodes {
+    /// The value, or the reduced signal that it is.
+    pub node: NodeId,
+    pub inputs: Vec<InputNode>,
 }
 
 /// Where the numbers of one plausibility rule come from.

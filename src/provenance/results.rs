@@ -116,6 +116,8 @@ pub struct Pair {
     #[serde(default, deserialize_with = "word")]
     pub zone: Option<String>,
     pub signal: String,
+    /// Which record, where there are several of a side.
+    pub record: Option<String>,
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
     #[serde(alias = "value")]
@@ -163,6 +165,7 @@ impl Results {
         let value = |pair: &Pair| RecordedValue {
             section: pair.section.clone(),
             signal: pair.signal.clone(),
+            record: pair.record.clone(),
             simulated: pair.simulated,
             measured: pair.measured,
             difference: pair.difference,

@@ -39,7 +39,7 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
     let (quantity, pair) = find(carried, asked).map_err(|problem| Problems(vec![problem]))?;
     let index = compiled.and_then(|compiled| {
         let index = compiled.plan.quantities.iter().position(|known| known.id == quantity.id)?;
-        let signal = compiled.plan.quantities[index].signals.iter().position(|(name, _)| *name == pair.signal)?;
+        let signal = compiled.plan.quantities[index].positions.iter().position(|position| position.name == pair.signal)?;
         Some((index, signal))
     });
     let again = match (compiled, index, campaign) {
@@ -57,12 +57,11 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
     let mut agrees = true;
     let files: Vec<&File> = records(carried, asked.section).collect();
     for file in &files {
-        let side =
-            again.as_ref().and_then(|again| [&again.simulated, &again.measured].into_iter().find(|side| side.file.path == file.path));
+        let side = again.as_ref().and_then(|again| again.records.iter().find(|side| side.file.path == file.path));
         agrees &= record(&mut out, file, pair, side, compiled.zip(index));
     }
     if let Some(again) = &again {
-        agrees &= [&again.simulated, &again.measured].iter().all(|side| files.iter().any(|file| file.path == side.file.path));
+        agrees &= again.records.iter().all(|side| files.iter().any(|file| file.path == side.file.path));
         agrees &= near(again.difference, pair.difference);
         let same = if near(again.difference, pair.difference) { "as in the report" } else { "NOT as in the report" };
         let _ = writeln!(out, "\ncomputed again: {}{}, {same}", again.difference, suffix(&quantity.unit));

@@ -156,7 +156,7 @@ fn protocol_text(carried: &Carried, texts: &[&str]) -> Check {
 /// Checks that statistics, verdict and reasons follow from the printed values.
 fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
     const NAME: &str = "statistics";
-    let replayed = carried.results.recorded(&compiled.plan).and_then(|recorded| replay(&compiled.plan, &recorded));
+    let replayed = carried.results.recorded(&compiled.plan).and_then(|recorded| replay(&compiled.plan, &compiled.graph, &recorded));
     let replayed = match replayed {
         Ok(replayed) => replayed,
         Err(says) => return Check::differs(NAME, "the values cannot be evaluated with the protocol", vec![says]),

@@ -157,6 +157,10 @@ pub struct CampaignInfo {
     pub report: Vec<ReportItem>,
 }
 
+fn as_map<S: serde::Serializer>(pairs: &[(String, String)], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(pairs.iter().map(|(key, value)| (key, value)))
+}
+
 fn as_tree<S: serde::Serializer>(items: &[ReportItem], to: S) -> Result<S::Ok, S::Error> {
     report::tree(items).serialize(to)
 }
@@ -219,8 +223,11 @@ pub struct QuantityResult {
     pub clause: Option<String>,
     pub source: Option<String>,
     pub notes: Vec<String>,
-    /// Whether `values` contain simulated and measured values; false for a metric that gives one number for both signals.
+    /// Whether `values` contain simulated and measured values; false for a metric that gives one number for both signals, and for an
+    /// assessment.
     pub has_sides: bool,
+    /// The record that is assessed by itself: `measured`; `None` where records are compared.
+    pub from: Option<String>,
     pub statistics: Vec<StatisticResult>,
     /// Number of sites of the values.
     pub n: usize,
@@ -242,6 +249,9 @@ pub struct StatisticResult {
     pub title: String,
     /// Pairs included: `all`, `zone 1`.
     pub scope: String,
+    /// The same by key and member: `zone` `1`, `wheelset` `2`.
+    #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "as_map")]
+    pub group: Vec<(String, String)>,
     /// Number of pairs.
     pub count: usize,
     /// Number of sites of the pairs. Pairs of one site (its positions, its repeats) are not independent.
@@ -282,9 +292,12 @@ pub struct PairValue {
     pub section: String,
     pub zone: Option<String>,
     pub signal: String,
+    /// Which record, where the campaign has several of a side.
+    pub record: Option<String>,
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
-    /// Difference, or value of the metric.
+    /// Whether `values` contain simulated and measured values; false for a metric that gives one number for both signals, and for an
+    /// assessment.
     pub difference: f64,
     /// Number of samples (or windows) of the measured value.
     pub samples: usize,

@@ -60,7 +60,7 @@ pub fn parameters(
     let quiet = |_: &str| {};
     let evaluated = evaluate(plan, &compiled.graph, campaign, &Shifts::NONE, &quiet)?.swap_remove(0);
     progress("baseline");
-    let base = at_value(&evaluated, plan, settings, "baseline", true);
+    let base = at_value(&evaluated, compiled, settings, "baseline", true);
     let mut parameters = Vec::new();
     for (varied, variable, values) in compiled_values {
         let as_it_is = variable.as_it_is();
@@ -73,7 +73,7 @@ pub fn parameters(
                 continue;
             }
             let evaluated = evaluate(&other.plan, &other.graph, campaign, &Shifts::NONE, &quiet)?.swap_remove(0);
-            found.push(at_value(&evaluated, &other.plan, settings, &shown, false));
+            found.push(at_value(&evaluated, &other, settings, &shown, false));
         }
         parameters.push(Varied {
             name: varied.name.clone(),
@@ -159,8 +159,8 @@ fn with(family: Family, overrides: &Overrides, name: &str, value: &str, problems
     compile(family, &overrides, problems)
 }
 
-fn at_value(evaluated: &Evaluated, plan: &Plan, settings: &Settings, value: &str, is_base: bool) -> AtValue {
-    let judged = evaluated.judge(plan);
+fn at_value(evaluated: &Evaluated, compiled: &Compiled, settings: &Settings, value: &str, is_base: bool) -> AtValue {
+    let judged = evaluated.judge(&compiled.plan, &compiled.graph);
     let statistics: Vec<Selected> = judged
         .quantities
         .iter()
@@ -179,7 +179,7 @@ fn at_value(evaluated: &Evaluated, plan: &Plan, settings: &Settings, value: &str
         .iter()
         .filter_map(|statistic| statistic.normalised.map(|share| (format!("{} of {}", statistic.name, statistic.symbol), share)))
         .max_by(|a, b| a.1.total_cmp(&b.1));
-    let study = case_of(evaluated, plan, settings).map(|(case, _)| marked(&case, &settings.selections).0);
+    let study = case_of(evaluated, &compiled.plan, settings).map(|(case, _)| marked(&case, &settings.selections).0);
     AtValue {
         value: value.to_owned(),
         is_base,

@@ -55,7 +55,7 @@ pub fn synchronisation(
     let fails = marked(&base, &settings.selections).1;
     let without = Without { case: &base, fails, selection: &selection };
     let mut found: Vec<AtOffset> =
-        all.iter().zip(&offsets).map(|(evaluated, offset)| at_offset(evaluated, plan, settings, *offset, &without)).collect();
+        all.iter().zip(&offsets).map(|(evaluated, offset)| at_offset(evaluated, compiled, settings, *offset, &without)).collect();
     for at in (0..found.len()).filter(|at| *at != zero) {
         found[at].changes = changes(&found[zero], &found[at]);
         found[at].lost = lost(&all[zero], &all[at], plan);
@@ -87,8 +87,9 @@ struct Without<'a> {
     selection: &'a [usize],
 }
 
-fn at_offset(evaluated: &Evaluated, plan: &Plan, settings: &Settings, offset: f64, without: &Without<'_>) -> AtOffset {
-    let judged = evaluated.judge(plan);
+fn at_offset(evaluated: &Evaluated, compiled: &Compiled, settings: &Settings, offset: f64, without: &Without<'_>) -> AtOffset {
+    let Compiled { plan, graph, .. } = compiled;
+    let judged = evaluated.judge(plan, graph);
     let pool = evaluated.pool(plan);
     let usable = without.selection.iter().all(|&at| pool.sections[at].used);
     let case = Case::of(&pool, settings.take).and_then(|case| match settings.reduce {

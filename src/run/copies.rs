@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use rayon::slice::ParallelSliceMut;
 
-use super::pairs::SectionValues;
 use super::plausibility::consequence;
+use super::section::SectionValues;
 use super::sections::Unit;
 use crate::check::plan::{Distinct, Plan, Plausibility, Test};
 use crate::data::RecordKind;

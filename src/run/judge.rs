@@ -1,12 +1,14 @@
-//! From the pairs of all sections to results of quantities and the verdict.
+//! From the rows of all sections to results of quantities and the verdict: the nodes of the graph after the table of values.
 
 use std::collections::BTreeSet;
 
 use super::facts::Facts;
-use super::limits::{self, Member};
-use super::pairs::SectionValues;
+use super::limits::{self, Compared, Judging};
+use super::section::SectionValues;
 use super::sections::Unit;
-use crate::check::plan::{Evaluation, Plan, Quantity, Rule, Zone};
+use super::table::{Member, count_independent, independent};
+use crate::check::plan::{Evaluation, Plan, Quantity, Records, Rule, Zone};
+use crate::graph::{Graph, Operation, QuantityNodes};
 use crate::result::{Consequence, Finding, PairValue, QuantityResult, Verdict, ZoneResult};
 
 #[derive(Debug)]
@@ -17,7 +19,7 @@ pub struct Judged {
     pub zones: Vec<ZoneResult>,
 }
 
-pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues], findings: &[Finding]) -> Judged {
+pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: &[SectionValues], findings: &[Finding]) -> Judged {
     let used: Vec<(&Unit, &SectionValues)> = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
     let mut missing = Vec::new();
     let zones: Vec<ZoneResult> = plan.zones.iter().map(|zone| zone_result(zone, units)).collect();
@@ -32,7 +34,7 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
     let mut quantities = Vec::new();
     let mut reasons = Vec::new();
     for (index, quantity) in plan.quantities.iter().enumerate() {
-        let (result, fails) = quantity_result(plan, facts, quantity, index, &used);
+        let (result, fails) = quantity_result(plan, graph, facts, quantity, index, &used);
         // A quantity without limits is reported and decides nothing.
         if let (Some(reason), false) = (&result.reason, result.statistics.is_empty()) {
             missing.push(format!("{}: {reason}", quantity.id));
@@ -49,7 +51,11 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
     let holding = quantities.iter().filter(|quantity| quantity.holds == Some(true) && !quantity.statistics.is_empty()).count();
     let limits_holding =
         quantities.iter().flat_map(|quantity| &quantity.statistics).filter(|statistic| statistic.holds == Some(true)).count();
-    let validated = match plan.verdict.rule {
+    let Operation::Verdict(rule) = graph.nodes[graph.verdict].operation else {
+        let reasons = vec!["the graph ends without a verdict; this is a fault of the program".into()];
+        return Judged { verdict: Verdict::NotAssessable, reasons, quantities, zones };
+    };
+    let validated = match rule {
         Rule::EveryLimit => reasons.is_empty(),
         Rule::AtLeastQuantities(count) => holding >= count,
         Rule::AtLeastLimits(count) => limits_holding >= count,
@@ -57,7 +63,7 @@ pub fn judge(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues
     if validated {
         return Judged { verdict: Verdict::Validated, reasons: Vec::new(), quantities, zones };
     }
-    match plan.verdict.rule {
+    match rule {
         Rule::EveryLimit => {}
         Rule::AtLeastQuantities(needed) => reasons
             .insert(0, format!("{} of {} meet their criteria; at least {needed} required", holding, count(quantities.len(), "quantity"))),
@@ -147,27 +153,42 @@ fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
     }
 }
 
+/// The rows of a quantity over all sections that are used.
+pub fn members<'a>(quantity: &'a Quantity, index: usize, used: &[(&'a Unit, &'a SectionValues)]) -> Vec<Member<'a>> {
+    let mut members = Vec::new();
+    for (unit, values) in used {
+        for row in values.rows.get(index).into_iter().flatten() {
+            members.push(Member { unit, signal: &quantity.positions[row.position].name, row });
+        }
+    }
+    members
+}
+
+/// Runs the estimates and limits of a quantity: what each limit came to, group by group.
+fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Vec<Compared> {
+    let of_limit = |nodes: &crate::graph::LimitNodes| match (&graph.nodes[nodes.estimate].operation, &graph.nodes[nodes.limit].operation) {
+        (Operation::Estimate(estimate), Operation::Limit(limit)) => {
+            let judging = *judging;
+            judging.against(limit, judging.estimate(estimate))
+        }
+        _ => Vec::new(),
+    };
+    nodes.limits.iter().flat_map(of_limit).collect()
+}
+
 /// The result, and a sentence for each limit that does not hold.
 fn quantity_result(
     plan: &Plan,
+    graph: &Graph,
     facts: &Facts,
     quantity: &Quantity,
     index: usize,
     used: &[(&Unit, &SectionValues)],
 ) -> (QuantityResult, Vec<String>) {
-    let mut members: Vec<Member<'_>> = Vec::new();
-    let mut signals = vec![false; quantity.signals.len()];
-    for (unit, values) in used {
-        for (number, pair) in values.pairs.get(index).into_iter().flatten().enumerate() {
-            if let Some(pair) = pair {
-                signals[number] = true;
-                members.push((unit, &quantity.signals[number].0, *pair));
-            }
-        }
-    }
-    let pairs = members.iter().map(|(unit, signal, _)| (unit.site, *signal)).collect::<BTreeSet<_>>().len();
+    let members = members(quantity, index, used);
+    let recorded = members.iter().map(|member| member.signal).collect::<BTreeSet<_>>().len();
+    let pairs = independent(plan, &members).into_iter().zip(members.iter().map(|member| member.signal)).collect::<BTreeSet<_>>().len();
     let impossible = impossible(index, used);
-    let recorded = signals.iter().filter(|recorded| **recorded).count();
     let reason = if impossible.is_some() {
         impossible
     } else if recorded < quantity.minimum_signals {
@@ -178,8 +199,9 @@ fn quantity_result(
     } else {
         None
     };
+    let judging = Judging { plan, facts, quantity, members: &members };
     let (statistics, fails): (Vec<_>, Vec<_>) =
-        limits::compare(plan, facts, quantity, &members).into_iter().map(|compared| (compared.result, compared.fails)).unzip();
+        compared(graph, &graph.quantities[index], &judging).into_iter().map(|compared| (compared.result, compared.fails)).unzip();
     let undefined = statistics.iter().find(|statistic| statistic.holds.is_none()).map(|statistic| {
         let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
         format!("{}{scope}: {}", statistic.title, statistic.reason.as_deref().unwrap_or_default())
@@ -199,19 +221,24 @@ fn quantity_result(
         clause: quantity.clause.clone(),
         source: quantity.source.clone(),
         notes: quantity.notes.clone(),
-        has_sides: matches!(quantity.evaluation, Evaluation::Sides { .. }),
+        has_sides: quantity.evaluation.has_sides(),
+        from: match quantity.evaluation.as_ref() {
+            Evaluation::Values { records: Records::Of(side), .. } => Some(side.in_words().into()),
+            _ => None,
+        },
         statistics,
-        n: limits::independent(&members),
+        n: count_independent(plan, &members),
         values: members
             .iter()
-            .map(|(unit, signal, pair)| PairValue {
-                section: unit.name.clone(),
-                zone: unit.zone.clone(),
-                signal: (*signal).to_string(),
-                simulated: pair.simulated.map(show),
-                measured: pair.measured.map(show),
-                difference: show(pair.difference),
-                samples: pair.samples,
+            .map(|member| PairValue {
+                section: member.unit.name.clone(),
+                zone: member.unit.zone.clone(),
+                signal: member.signal.to_string(),
+                record: member.row.record.as_deref().map(str::to_string),
+                simulated: member.row.simulated.map(show),
+                measured: member.row.measured.map(show),
+                difference: show(member.row.value),
+                samples: member.row.samples,
             })
             .collect(),
         holds,

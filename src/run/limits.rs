@@ -1,176 +1,194 @@
-//! Statistics over the pairs of a quantity, and their limits.
+//! What is estimated of the rows of a quantity, against its limits.
 
-use std::collections::BTreeSet;
-
+use super::estimates::{Group, Taken};
 use super::facts::{Facts, Known};
-use super::pairs::PairSi;
-use super::sections::Unit;
+use super::groups::{Closeness, Part, parts};
+use super::table::{Member, count_independent};
 use super::told::factors;
 use crate::catalog::Statistic;
 use crate::check::evaluate::{Values, flag, number};
-use crate::check::plan::{Limit, Plan, Quantity, Scalar, Scope};
-use crate::metrics::percentile::{Method, percentile};
+use crate::check::plan::{EstimateKind, Limit, Plan, Quantity, Scalar};
 use crate::result::{RulePlace, StatisticResult};
 use crate::source::Span;
+use crate::units::Unit;
 
 /// A value equal to its limit passes; this much room is for the rounding of units and sums.
 const EQUAL: f64 = 1e-12;
 
-/// One pair with the section and the signal it is of.
-pub type Member<'a> = (&'a Unit, &'a str, PairSi);
+/// A group of rows and what was estimated of it.
+#[derive(Debug)]
+pub struct Estimated<'a> {
+    pub part: Part<'a>,
+    pub members: Vec<Member<'a>>,
+    /// In SI; `None` of limits of each value.
+    pub value: Result<Option<f64>, String>,
+    pub interval: Option<(f64, f64)>,
+}
 
-/// A statistic against its limit, and the sentence for the verdict where it does not hold.
+/// An estimate against its limit, and the sentence for the verdict where it does not hold.
 #[derive(Debug)]
 pub struct Compared {
     pub result: StatisticResult,
     pub fails: Option<String>,
 }
 
-/// Every limit that applies to this vehicle, once for each of its scopes, in the protocol's order.
-pub fn compare(plan: &Plan, facts: &Facts, quantity: &Quantity, members: &[Member<'_>]) -> Vec<Compared> {
-    let mut all = Vec::new();
-    for limit in &quantity.limits {
-        match applies(limit, facts) {
-            Ok(false) => {}
-            Ok(true) => all.extend(
-                parts(plan, quantity, limit, members).into_iter().map(|part| of_part(plan, facts, quantity, limit, &part, members)),
-            ),
-            Err(reason) => {
-                let mut result = empty(quantity, limit, "all".into(), &[]);
-                result.reason = Some(format!("it cannot be determined whether the limit applies: {reason}"));
-                all.push(Compared { result, fails: None });
-            }
-        }
-    }
-    all
+/// Rows and rules of one quantity.
+#[derive(Clone, Copy, Debug)]
+pub struct Judging<'a> {
+    pub plan: &'a Plan,
+    pub facts: &'a Facts,
+    pub quantity: &'a Quantity,
+    pub members: &'a [Member<'a>],
 }
 
 pub fn applies(limit: &Limit, facts: &Facts) -> Result<bool, String> {
     limit.only_when.as_ref().map_or(Ok(true), |condition| flag(condition, &Known::vehicle(facts)))
 }
 
-/// What a statistic is taken over.
-#[derive(Clone, Debug)]
-pub enum Part<'a> {
-    All,
-    Zones(Vec<String>),
-    Where(&'a Scope),
-}
-
-/// A limit of zones that need no section and have none is left out; so is that of zones that the quantity leaves out by its own
-/// condition, unless it leaves out all.
-pub fn parts<'a>(plan: &Plan, quantity: &Quantity, limit: &'a Limit, members: &[Member<'_>]) -> Vec<Part<'a>> {
-    let selective = quantity.only.is_some() && !members.is_empty();
-    let needed = |name: &str| !selective && plan.zones.iter().any(|zone| zone.name == name && zone.minimum_sections > 0);
-    let filled = |zone: &str| members.iter().any(|(unit, _, _)| unit.zone.as_deref() == Some(zone));
-    match &limit.scope {
-        Scope::All => vec![Part::All],
-        Scope::Zones(zones) if !zones.iter().any(|zone| needed(zone) || filled(zone)) => Vec::new(),
-        Scope::Zones(zones) => vec![Part::Zones(zones.clone())],
-        scope @ Scope::Where(..) => vec![Part::Where(scope)],
-    }
-}
-
-impl Part<'_> {
-    /// What a limit of a single value is about: the zone of its section.
-    pub fn of_section(plan: &Plan, unit: &Unit) -> Self {
-        unit.zone.as_ref().filter(|_| !plan.zones.is_empty()).map_or(Part::All, |zone| Part::Zones(vec![zone.clone()]))
+impl<'a> Judging<'a> {
+    /// What a limit is of, group by group; nothing where the limit does not apply to this vehicle.
+    ///
+    /// # Errors
+    /// Whether it applies cannot be told.
+    pub fn estimate(&self, limit: &'a Limit) -> Result<Vec<Estimated<'a>>, String> {
+        if !applies(limit, self.facts)? {
+            return Ok(Vec::new());
+        }
+        let parts = parts(self.plan, self.quantity, limit, self.members, self.facts);
+        Ok(parts.into_iter().map(|part| self.of_part(limit, part)).collect())
     }
 
-    pub fn in_words(&self) -> String {
-        match self {
-            Self::All => "all".into(),
-            Self::Zones(zones) => format!("{} {}", if zones.len() == 1 { "zone" } else { "zones" }, zones.join(", ")),
-            Self::Where(Scope::Where(_, words)) => words.clone(),
-            Self::Where(_) => String::new(),
+    fn of_part(&self, limit: &Limit, part: Part<'a>) -> Estimated<'a> {
+        let members = match part.members(self.plan, self.quantity, self.facts, self.members) {
+            Ok(members) => members,
+            Err(reason) => return Estimated { part, members: Vec::new(), value: Err(reason), interval: None },
+        };
+        if members.is_empty() {
+            return Estimated { part, members, value: Err("no value is available".into()), interval: None };
+        }
+        let group = Group { plan: self.plan, facts: self.facts, members: &members };
+        let (value, interval) = match &limit.estimate.kind {
+            EstimateKind::Each => (Ok(None), None),
+            EstimateKind::Of(of) => {
+                let entry = match limit.estimate.statistic() {
+                    Some((Statistic::Named(entry), _)) => Some(entry),
+                    _ => None,
+                };
+                let interval = entry.and_then(|entry| entry.interval);
+                (group.number(of).map(Some), interval.and_then(|interval| interval(&group.values(), &group.units())))
+            }
+        };
+        Estimated { part, members, value, interval }
+    }
+
+    /// What was estimated against the limit, group by group.
+    pub fn against(&self, limit: &'a Limit, estimated: Result<Vec<Estimated<'a>>, String>) -> Vec<Compared> {
+        match estimated {
+            Ok(groups) => groups.iter().map(|group| self.of_group(limit, group)).collect(),
+            Err(reason) => {
+                let mut result = self.empty(limit, "all".into(), Vec::new(), &[]);
+                result.reason = Some(format!("it cannot be determined whether the limit applies: {reason}"));
+                vec![Compared { result, fails: None }]
+            }
         }
     }
 
-    pub fn has(&self, unit: &Unit, facts: &Facts) -> Result<bool, String> {
-        match self {
-            Self::All => Ok(true),
-            Self::Zones(zones) => Ok(unit.zone.as_ref().is_some_and(|zone| zones.contains(zone))),
-            Self::Where(Scope::Where(condition, _)) => flag(condition, &unit.known(facts))
-                .map_err(|reason| format!("it cannot be determined whether section {} belongs to this group: {reason}", unit.name)),
-            Self::Where(_) => Ok(false),
+    fn empty(&self, limit: &'a Limit, scope: String, group: Vec<(String, String)>, members: &[Member<'_>]) -> StatisticResult {
+        StatisticResult {
+            name: limit.estimate.name.clone(),
+            title: limit.estimate.title.clone(),
+            scope,
+            group,
+            count: members.len(),
+            n: count_independent(self.plan, members),
+            unit: self.unit(limit).text.clone(),
+            value: None,
+            interval: None,
+            marginal: false,
+            limit: None,
+            normalised: None,
+            holds: None,
+            factors: Vec::new(),
+            limit_text: limit.words.clone(),
+            reason: None,
+            rule: rule_place(&limit.span),
         }
     }
 
-    /// Whether a limit of this scope is the limit of the part too; how closely it was meant for it.
-    fn covered_by(&self, scope: &Scope) -> Option<Closeness> {
-        match (scope, self) {
-            (Scope::All, Self::All) => Some(Closeness::Same),
-            (Scope::All, _) => Some(Closeness::General),
-            (Scope::Zones(of), Self::Zones(zones)) if zones.iter().all(|zone| of.contains(zone)) => Some(Closeness::Same),
-            (Scope::Where(_, a), Self::Where(Scope::Where(_, b))) if a == b => Some(Closeness::Same),
-            _ => None,
+    fn of_group(&self, limit: &'a Limit, group: &Estimated<'a>) -> Compared {
+        let mut result = self.empty(limit, group.part.in_words(), group.part.keys(), &group.members);
+        result.factors = factors(self.plan, self.facts, limit);
+        let outcome = match &group.value {
+            Err(reason) => Err(reason.clone()),
+            Ok(None) => self.each(limit, &group.members, &mut result),
+            Ok(Some(value)) => self.one(limit, group, *value, &mut result),
+        };
+        let mut fails = None;
+        match outcome {
+            Ok(holds) => {
+                result.holds = Some(holds);
+                fails = (!holds).then(|| sentence(self.quantity, limit, &result));
+            }
+            Err(reason) => result.reason = Some(reason),
         }
+        Compared { result, fails }
     }
-}
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Closeness {
-    General,
-    Same,
+    /// In which the estimate and its limit are told.
+    pub fn unit(&self, limit: &'a Limit) -> &'a Unit {
+        limit.estimate.unit.as_ref().unwrap_or(&self.quantity.unit)
+    }
+
+    /// One number against one limit.
+    fn one(&self, limit: &'a Limit, group: &Estimated<'a>, value: f64, result: &mut StatisticResult) -> Result<bool, String> {
+        let show = |value: f64| self.unit(limit).from_si(value);
+        result.value = Some(show(value));
+        result.interval = group.interval.map(|(low, high)| (show(low), show(high)));
+        let bound = self.bound(limit, &group.part, &group.members, &Known::vehicle(self.facts)).map_err(|reason| no_limit(&reason))?;
+        result.limit = Some(show(bound));
+        let (normalised, holds) = against(value, bound, limit.at_least);
+        result.normalised = normalised;
+        result.marginal = group.interval.is_some_and(|interval| spans(interval, bound, limit.at_least));
+        Ok(holds)
+    }
+
+    /// Every row against its own limit: the worst stands for all.
+    fn each(&self, limit: &'a Limit, members: &[Member<'_>], result: &mut StatisticResult) -> Result<bool, String> {
+        let mut worst: Option<(bool, f64, f64, f64)> = None;
+        let mut all_hold = true;
+        for member in members {
+            let unit = member.unit;
+            // The limit of another statistic, if this one refers to it, is that of the section's zone.
+            let part = Part::of_section(self.plan, limit, unit);
+            let bound = self
+                .bound(limit, &part, &[*member], &unit.known(self.facts))
+                .map_err(|reason| format!("section {}: {}", unit.name, no_limit(&reason)))?;
+            let value = member.row.value;
+            let (normalised, holds) = against(value, bound, limit.at_least);
+            all_hold &= holds;
+            // One that fails is worse than any that holds, also where a share cannot be formed.
+            let share = normalised.unwrap_or(if holds { 0.0 } else { f64::INFINITY });
+            if worst.is_none_or(|(held, before, _, _)| (!holds, share) > (!held, before)) {
+                worst = Some((holds, share, value, bound));
+            }
+        }
+        let (_, share, value, bound) = worst.ok_or("there is no value")?;
+        result.value = Some(self.quantity.unit.from_si(value));
+        result.limit = Some(self.quantity.unit.from_si(bound));
+        result.normalised = share.is_finite().then_some(share);
+        Ok(all_hold)
+    }
+
+    /// The limit of one group, SI.
+    pub fn bound(&self, limit: &Limit, part: &Part<'_>, members: &[Member<'_>], known: &Known<'_>) -> Result<f64, String> {
+        let group = Group { plan: self.plan, facts: self.facts, members };
+        Bounds { quantity: self.quantity, part, group, known }.of(limit, 0)
+    }
 }
 
 /// Where a rule stands, by the name of its file: folders differ from one machine to the next.
 pub fn rule_place(span: &Span) -> RulePlace {
     RulePlace { file: span.source.file_name(), line: span.line() }
-}
-
-fn empty(quantity: &Quantity, limit: &Limit, scope: String, members: &[Member<'_>]) -> StatisticResult {
-    StatisticResult {
-        name: limit.statistic.name(),
-        title: limit.statistic.title(limit.ddof),
-        scope,
-        count: members.len(),
-        n: independent(members),
-        unit: quantity.unit.text.clone(),
-        value: None,
-        interval: None,
-        marginal: false,
-        limit: None,
-        normalised: None,
-        holds: None,
-        factors: Vec::new(),
-        limit_text: limit.words.clone(),
-        reason: None,
-        rule: rule_place(&limit.span),
-    }
-}
-
-fn of_part(plan: &Plan, facts: &Facts, quantity: &Quantity, limit: &Limit, part: &Part<'_>, members: &[Member<'_>]) -> Compared {
-    let mut inside = Vec::new();
-    for member in members {
-        match part.has(member.0, facts) {
-            Ok(true) => inside.push(*member),
-            Ok(false) => {}
-            Err(reason) => {
-                let mut result = empty(quantity, limit, part.in_words(), &[]);
-                result.reason = Some(reason);
-                return Compared { result, fails: None };
-            }
-        }
-    }
-    let mut result = empty(quantity, limit, part.in_words(), &inside);
-    result.factors = factors(plan, facts, limit);
-    let outcome = if inside.is_empty() {
-        Err("no value is available".into())
-    } else if limit.statistic == Statistic::Each {
-        each(plan, facts, quantity, limit, &inside, &mut result)
-    } else {
-        pooled(facts, quantity, limit, part, &inside, &mut result)
-    };
-    let mut fails = None;
-    match outcome {
-        Ok(holds) => {
-            result.holds = Some(holds);
-            fails = (!holds).then(|| sentence(quantity, limit, &result));
-        }
-        Err(reason) => result.reason = Some(reason),
-    }
-    Compared { result, fails }
 }
 
 /// `Y_qst: mean 4.33 kN exceeds the limit 3.33 kN by 30 %`
@@ -221,38 +239,6 @@ fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}").replace('-', "\u{2212}")
 }
 
-/// A statistic over all members against one limit.
-fn pooled(
-    facts: &Facts,
-    quantity: &Quantity,
-    limit: &Limit,
-    part: &Part<'_>,
-    members: &[Member<'_>],
-    result: &mut StatisticResult,
-) -> Result<bool, String> {
-    let differences: Vec<f64> = members.iter().map(|(_, _, pair)| pair.difference).collect();
-    let sites: Vec<usize> = members.iter().map(|(unit, _, _)| unit.site).collect();
-    let show = |value: f64| quantity.unit.from_si(value);
-    let (value, interval) = match limit.statistic {
-        Statistic::Percentile(percent) => (percentile(&differences, percent, Method::Linear).ok(), None),
-        Statistic::Named(entry) => {
-            ((entry.run)(&differences, limit.ddof), entry.interval.and_then(|interval| interval(&differences, &sites)))
-        }
-        Statistic::Each => (None, None),
-    };
-    let value = value
-        .filter(|value| value.is_finite())
-        .ok_or_else(|| format!("not defined for {} value{}", differences.len(), if differences.len() == 1 { "" } else { "s" }))?;
-    result.value = Some(show(value));
-    result.interval = interval.map(|(low, high)| (show(low), show(high)));
-    let bound = Bounds { quantity, part, facts, known: &Known::vehicle(facts) }.of(limit, 0).map_err(|reason| no_limit(&reason))?;
-    result.limit = Some(show(bound));
-    let (normalised, holds) = against(value, bound, limit.at_least);
-    result.normalised = normalised;
-    result.marginal = interval.is_some_and(|interval| spans(interval, bound, limit.at_least));
-    Ok(holds)
-}
-
 /// Whether values on both sides of a limit lie in an interval, so that the data do not decide. Where a magnitude is limited,
 /// minus the limit is one, too.
 fn spans((low, high): (f64, f64), bound: f64, at_least: bool) -> bool {
@@ -260,45 +246,8 @@ fn spans((low, high): (f64, f64), bound: f64, at_least: bool) -> bool {
     inside(bound) || !at_least && inside(-bound)
 }
 
-/// How many sites some pairs are of: pairs of one site are not independent of each other.
-pub fn independent(members: &[Member<'_>]) -> usize {
-    members.iter().map(|(unit, _, _)| unit.site).collect::<BTreeSet<_>>().len()
-}
-
 fn no_limit(reason: &str) -> String {
     format!("its limit cannot be evaluated: {reason}")
-}
-
-/// Every pair against its own limit: the worst stands for all.
-fn each(
-    plan: &Plan,
-    facts: &Facts,
-    quantity: &Quantity,
-    limit: &Limit,
-    members: &[Member<'_>],
-    result: &mut StatisticResult,
-) -> Result<bool, String> {
-    let mut worst: Option<(bool, f64, f64, f64)> = None;
-    let mut all_hold = true;
-    for (unit, _, pair) in members {
-        // The limit of another statistic, if this one refers to it, is that of the section's zone.
-        let part = Part::of_section(plan, unit);
-        let bound = Bounds { quantity, part: &part, facts, known: &unit.known(facts) }
-            .of(limit, 0)
-            .map_err(|reason| format!("section {}: {}", unit.name, no_limit(&reason)))?;
-        let (normalised, holds) = against(pair.difference, bound, limit.at_least);
-        all_hold &= holds;
-        // One that fails is worse than any that holds, also where a share cannot be formed.
-        let share = normalised.unwrap_or(if holds { 0.0 } else { f64::INFINITY });
-        if worst.is_none_or(|(held, before, _, _)| (!holds, share) > (!held, before)) {
-            worst = Some((holds, share, pair.difference, bound));
-        }
-    }
-    let (_, share, value, bound) = worst.ok_or("there is no value")?;
-    result.value = Some(quantity.unit.from_si(value));
-    result.limit = Some(quantity.unit.from_si(bound));
-    result.normalised = share.is_finite().then_some(share);
-    Ok(all_hold)
 }
 
 /// Share of the limit used, and whether it holds. With "at least", the limit over the value.
@@ -315,7 +264,8 @@ fn against(value: f64, bound: f64, at_least: bool) -> (Option<f64>, bool) {
 pub struct Bounds<'a> {
     pub quantity: &'a Quantity,
     pub part: &'a Part<'a>,
-    pub facts: &'a Facts,
+    /// Data of its sections may be in the limit.
+    pub group: Group<'a>,
     pub known: &'a Known<'a>,
 }
 
@@ -326,7 +276,8 @@ impl Bounds<'_> {
             return Err("it depends on itself".into());
         }
         let names = Named { bounds: self, depth };
-        let mut value = number(&limit.bound, &names)?;
+        let taken = self.group.taken(&limit.bound);
+        let mut value = number(&limit.bound.expr, &Taken { values: &names, taken: &taken })?;
         for (factor, condition) in &limit.factors {
             if flag(condition, &names)? {
                 value *= number(factor, &names)?;
@@ -341,9 +292,9 @@ impl Bounds<'_> {
     /// The limit of another statistic: that given for just this part before one given for all.
     fn of_statistic(&self, name: &str, depth: usize) -> Result<f64, String> {
         let mut found: Option<(Closeness, &Limit)> = None;
-        for limit in self.quantity.limits.iter().filter(|limit| limit.statistic.name() == name) {
+        for limit in self.quantity.limits.iter().filter(|limit| limit.estimate.name == name) {
             let Some(closeness) = self.part.covered_by(&limit.scope) else { continue };
-            if applies(limit, self.facts)? && found.is_none_or(|(before, _)| closeness > before) {
+            if applies(limit, self.group.facts)? && found.is_none_or(|(before, _)| closeness > before) {
                 found = Some((closeness, limit));
             }
         }

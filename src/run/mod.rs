@@ -1,21 +1,28 @@
 //! Runs a graph over a campaign: records in parallel, one at a time per worker, to plain results.
 
 mod causes;
+mod checks;
+mod columns;
 mod copies;
 mod domain;
+mod estimates;
 mod facts;
+mod groups;
 mod judge;
 mod limits;
-mod pairs;
+mod margins;
 mod plausibility;
 pub mod pool;
 mod record;
 pub mod replay;
 mod requirements;
+mod section;
 mod sections;
+mod sides;
 mod signal;
 pub mod single;
 mod synchronisation;
+mod table;
 mod told;
 mod traces;
 
@@ -30,9 +37,9 @@ use crate::result::{Consequence, DataItem, FileHash, Finding, QuantityResult, Se
 
 pub use facts::{Facts, scalar};
 pub use judge::Judged;
-use pairs::SectionValues;
 use pool::Pool;
 use record::Found;
+use section::SectionValues;
 use sections::Unit;
 pub use synchronisation::{Offset, Shifts};
 
@@ -84,7 +91,7 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
     let prepared = Prepared::new(plan, graph, campaign)?;
     let evaluated = prepared.evaluate(&Shifts::NONE, progress)?.swap_remove(0);
     let Evaluated { units, values, findings, notes, files, .. } = &evaluated;
-    let judged = judge::judge(plan, &evaluated.facts, units, values, findings);
+    let judged = judge::judge(plan, graph, &evaluated.facts, units, values, findings);
     let mut findings = findings.clone();
     findings.extend(requirements::findings(plan, &evaluated.facts, units));
     findings.extend(told::findings(plan, &evaluated.facts, &judged.quantities));
@@ -127,8 +134,8 @@ pub fn evaluate(
 
 impl Evaluated {
     /// What a certification of all usable sections finds.
-    pub fn judge(&self, plan: &Plan) -> Judged {
-        judge::judge(plan, &self.facts, &self.units, &self.values, &self.findings)
+    pub fn judge(&self, plan: &Plan, graph: &Graph) -> Judged {
+        judge::judge(plan, graph, &self.facts, &self.units, &self.values, &self.findings)
     }
 
     /// Every value and limit that the verdict rests on.
@@ -173,9 +180,9 @@ impl<'a> Prepared<'a> {
             return Err(problems);
         }
         let mut notes = Vec::new();
-        let seen = record::seen_columns(campaign, &units);
-        let present = record::present_columns(graph, &seen, &facts, &units, &mut notes);
-        let recorded = record::recorded_positions(graph, &seen, &facts, &units);
+        let seen = columns::seen_columns(plan, campaign, &units);
+        let present = columns::present_columns(plan, graph, &seen, &facts, &units, &mut notes);
+        let recorded = columns::recorded_positions(graph, &seen, &facts, &units);
         requirements::check_data(plan, &facts, &mut units);
         stop_on_fault(plan, &units, &[])?;
         Ok(Self { plan, graph, campaign, facts, units, notes, present, recorded })
@@ -201,7 +208,7 @@ impl<'a> Prepared<'a> {
             .with_max_len(1)
             .map(|unit| {
                 let faulty = || vec![SectionValues::default(); shifts.offsets.len()];
-                let values = if unit.fault.is_some() { faulty() } else { pairs::of_section(&work, unit, shifts) };
+                let values = if unit.fault.is_some() { faulty() } else { section::of_section(&work, unit, shifts) };
                 progress(&unit.name);
                 values
             })

@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 use super::causes;
 use super::copies::Print;
 use super::facts::{Known, trimmed};
-use super::pairs::{Evaluated, SectionValues, Sides, number_of, section};
 use super::record::{Work, needed};
+use super::section::SectionValues;
 use super::sections::Unit;
+use super::sides::{Evaluated, Two, number_of, samples_of, section};
 use crate::check::evaluate::{flag, number, words};
 use crate::check::plan::{InputSide, Looks, OnFault, Plausibility, Requirement, Test};
 use crate::data::RecordKind;
@@ -50,7 +51,7 @@ fn positions<'a>(work: &'a Work<'_>, known: &'a Known<'_>) -> impl Iterator<Item
 }
 
 /// Looks at one section; what is found goes into its values.
-pub fn look(work: &Work<'_>, unit: &Unit, sides: &Sides<'_>, track: &Evaluated, values: &mut SectionValues) {
+pub fn look(work: &Work<'_>, unit: &Unit, sides: &Two<'_>, track: &Evaluated, values: &mut SectionValues) {
     for (rule, nodes, name) in positions(work, sides.known) {
         match &rule.test {
             Test::Require(requirement) => {
@@ -58,9 +59,10 @@ pub fn look(work: &Work<'_>, unit: &Unit, sides: &Sides<'_>, track: &Evaluated, 
                 at.look(sides, nodes, track, &mut values.findings);
             }
             Test::Distinct(_) => {
-                let Some((simulated, measured)) = nodes.own.and_then(|own| sides.samples_of(own).ok()) else { continue };
-                for (kind, samples) in [(RecordKind::Simulation, simulated), (RecordKind::Measurement, measured)] {
-                    values.prints.push(Print::of(&rule.name, name, kind, &samples.values));
+                for (kind, record) in [(RecordKind::Simulation, sides.simulated), (RecordKind::Measurement, sides.measured)] {
+                    if let Some(samples) = nodes.own.and_then(|own| samples_of(record, own).ok()) {
+                        values.prints.push(Print::of(&rule.name, name, kind, &samples.values));
+                    }
                 }
             }
         }
@@ -76,7 +78,7 @@ struct Position<'a> {
 }
 
 impl Position<'_> {
-    fn look(&self, sides: &Sides<'_>, nodes: &PositionNodes, track: &Evaluated, findings: &mut Vec<Finding>) {
+    fn look(&self, sides: &Two<'_>, nodes: &PositionNodes, track: &Evaluated, findings: &mut Vec<Finding>) {
         let of_side = |side: InputSide| -> Vec<Result<f64, String>> { nodes.inputs.iter().map(|input| sides.input(input, side)).collect() };
         match self.requirement.of {
             Looks::Data => findings.extend(self.finding(sides.known, &[], None)),

@@ -2,11 +2,14 @@
 //! limit with its bound, in the unit of the quantity.
 
 use super::facts::{Facts, Known};
-use super::limits::{Bounds, Part, applies, parts};
-use super::pairs::SectionValues;
+use super::groups::{Part, parts};
+use super::judge::members;
+use super::limits::{Judging, applies};
+use super::section::SectionValues;
 use super::sections::Unit;
+use super::table::Member;
 use crate::catalog::Statistic;
-use crate::check::plan::{Limit, Plan, Quantity};
+use crate::check::plan::{EstimateKind, Limit, Plan, Quantity};
 
 pub use crate::check::plan::Rule;
 
@@ -60,6 +63,8 @@ pub struct PooledLimit {
     /// `all`, `zone 1`
     pub scope: String,
     pub inside: Vec<bool>,
+    /// For each position of the quantity whether its values are among those that the limit is about; all where it does not say.
+    pub positions: Vec<bool>,
     /// One for each section where every value has its own limit, else one.
     pub bounds: Vec<f64>,
 }
@@ -94,23 +99,18 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
 }
 
 fn pooled(plan: &Plan, facts: &Facts, quantity: &Quantity, index: usize, units: &[Unit], values: &[SectionValues]) -> PooledQuantity {
+    let used: Vec<(&Unit, &SectionValues)> = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
+    let members = members(quantity, index, &used);
     let of_section = |(unit, values): (&Unit, &SectionValues)| {
-        let pairs = values.pairs.get(index).filter(|_| unit.fault.is_none());
-        let recorded = pairs.into_iter().flatten().enumerate();
-        recorded.filter_map(|(signal, pair)| pair.map(|pair| (signal, quantity.unit.from_si(pair.difference)))).collect::<Vec<_>>()
+        let rows = values.rows.get(index).filter(|_| unit.fault.is_none()).into_iter().flatten();
+        rows.map(|row| (row.position, quantity.unit.from_si(row.value))).collect::<Vec<_>>()
     };
-    let members: Vec<_> = units
-        .iter()
-        .zip(values)
-        .filter(|(unit, _)| unit.fault.is_none())
-        .flat_map(|(unit, values)| values.pairs.get(index).into_iter().flatten().flatten().map(move |pair| (unit, "", *pair)))
-        .collect();
-    let impossible =
-        units.iter().zip(values).any(|(unit, values)| unit.fault.is_none() && values.impossible.iter().any(|(at, _)| *at == index));
+    let impossible = used.iter().any(|(_, values)| values.impossible.iter().any(|(at, _)| *at == index));
+    let judging = Judging { plan, facts, quantity, members: &members };
     let mut limits = Vec::new();
     for limit in quantity.limits.iter().filter(|limit| applies(limit, facts) == Ok(true)) {
-        for part in parts(plan, quantity, limit, &members) {
-            limits.extend(of_part(plan, facts, quantity, limit, &part, units));
+        for part in parts(plan, quantity, limit, &members, facts) {
+            limits.extend(of_part(&judging, limit, &part, units));
         }
     }
     PooledQuantity {
@@ -126,27 +126,33 @@ fn pooled(plan: &Plan, facts: &Facts, quantity: &Quantity, index: usize, units: 
     }
 }
 
-fn of_part(plan: &Plan, facts: &Facts, quantity: &Quantity, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Option<PooledLimit> {
-    let inside = units.iter().map(|unit| part.has(unit, facts)).collect::<Result<Vec<_>, _>>().ok()?;
-    let shown = |known: &Known<'_>, part: &Part<'_>| {
-        Bounds { quantity, part, facts, known }.of(limit, 0).ok().map(|bound| quantity.unit.from_si(bound))
+fn of_part(judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Option<PooledLimit> {
+    let Judging { plan, facts, quantity, members } = *judging;
+    let inside = units.iter().map(|unit| part.has_section(unit, facts)).collect::<Result<Vec<_>, _>>().ok()?;
+    let positions = part.positions(quantity);
+    let statistic = limit.estimate.statistic();
+    let shown = |known: &Known<'_>, part: &Part<'_>, members: &[Member<'_>]| {
+        judging.bound(limit, part, members, known).ok().map(|bound| judging.unit(limit).from_si(bound))
     };
-    let bounds = if limit.statistic == Statistic::Each {
+    let bounds = if matches!(limit.estimate.kind, EstimateKind::Each) {
         let own = |unit: &Unit| match unit.fault {
             Some(_) => Some(f64::NAN),
-            None => shown(&unit.known(facts), &Part::of_section(plan, unit)),
+            None => shown(&unit.known(facts), &Part::of_section(plan, limit, unit), &[]),
         };
         units.iter().map(own).collect::<Option<Vec<_>>>()?
     } else {
-        vec![shown(&Known::vehicle(facts), part)?]
+        let members = part.members(plan, quantity, facts, members).ok()?;
+        vec![shown(&Known::vehicle(facts), part, &members)?]
     };
+    let (statistic, ddof) = statistic?;
     Some(PooledLimit {
-        statistic: limit.statistic,
-        ddof: limit.ddof,
+        statistic,
+        ddof,
         at_least: limit.at_least,
-        title: limit.statistic.title(limit.ddof),
+        title: limit.estimate.title.clone(),
         scope: part.in_words(),
         inside,
+        positions,
         bounds,
     })
 }

@@ -2,12 +2,13 @@
 
 use super::facts::{Facts, Known, NOT_STATED, absent, scalar};
 use super::judge::{Judged, judge};
-use super::pairs::{PairSi, SectionValues};
 use super::record::needed;
 use super::requirements;
+use super::section::SectionValues;
 use super::sections::Unit;
+use super::table::Row;
 use crate::check::evaluate::number;
-use crate::check::plan::{Evaluation, Plan, Scalar};
+use crate::check::plan::{Evaluation, Plan, Records, Scalar};
 use crate::graph::{Graph, NodeId};
 use crate::result::{Consequence, Finding};
 use crate::source::{Source, Spanned};
@@ -42,6 +43,7 @@ pub struct RecordedSection {
 pub struct RecordedValue {
     pub section: String,
     pub signal: String,
+    pub record: Option<String>,
     /// In the unit of the quantity, as all values.
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
@@ -65,37 +67,42 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// # Errors
 /// What the result says does not fit the protocol, in words.
-pub fn replay(plan: &Plan, recorded: &Recorded) -> Result<Replayed, String> {
+pub fn replay(plan: &Plan, graph: &Graph, recorded: &Recorded) -> Result<Replayed, String> {
     let facts = facts(plan, recorded)?;
     let mut units = units(plan, recorded)?;
     let mut values = vec![SectionValues::default(); units.len()];
     let mut contradictions = Vec::new();
     for (index, quantity) in plan.quantities.iter().enumerate() {
         for values in &mut values {
-            values.pairs.push(vec![None; quantity.signals.len()]);
+            values.rows.push(Vec::new());
         }
         for value in recorded.values.get(index).into_iter().flatten() {
             let place = format!("{} {} {}", quantity.id, value.section, value.signal);
             let unit = units.iter().position(|unit| unit.name == value.section);
             let unit = unit.ok_or_else(|| format!("{place}: there is no section `{}`", value.section))?;
-            let signal = quantity.signals.iter().position(|(name, _)| *name == value.signal);
-            let signal = signal.ok_or_else(|| format!("{place}: the quantity has no signal `{}`", value.signal))?;
+            let position = quantity.positions.iter().position(|position| position.name == value.signal);
+            let position = position.ok_or_else(|| format!("{place}: the quantity has no signal `{}`", value.signal))?;
             if units[unit].fault.is_some() {
                 contradictions.push(format!("{place}: a value of a section that is not used"));
             }
             let si = |value: f64| quantity.unit.to_si(value);
-            let pair = PairSi {
+            let row = Row {
+                position,
+                record: value.record.as_deref().map(Into::into),
                 simulated: value.simulated.map(si),
                 measured: value.measured.map(si),
-                difference: si(value.difference),
+                value: si(value.difference),
                 samples: value.samples,
             };
-            if let Some(says) = difference(plan, &facts, &units[unit], index, &pair) {
+            if let Some(says) = difference(plan, &facts, &units[unit], index, &row) {
                 contradictions.push(format!("{place}: {says}"));
             }
-            if values[unit].pairs[index][signal].replace(pair).is_some() {
-                contradictions.push(format!("{place}: two values"));
+            let rows = &mut values[unit].rows[index];
+            let before = rows.iter().filter(|other| other.position == position && other.record == row.record).count();
+            if before >= values_of(&quantity.evaluation) {
+                contradictions.push(format!("{place}: {} values", before + 1));
             }
+            rows.push(row);
         }
     }
     contradictions.extend(refused(plan, &facts, &units));
@@ -103,7 +110,15 @@ pub fn replay(plan: &Plan, recorded: &Recorded) -> Result<Replayed, String> {
     for unit in &mut units {
         unit.faulty = unit.fault.is_some();
     }
-    Ok(Replayed { judged: judge(plan, &facts, &units, &values, &recorded.findings), contradictions })
+    Ok(Replayed { judged: judge(plan, graph, &facts, &units, &values, &recorded.findings), contradictions })
+}
+
+/// How many values one position of a section may have of one record.
+fn values_of(evaluation: &Evaluation) -> usize {
+    match evaluation {
+        Evaluation::Values { values, .. } => values.len(),
+        Evaluation::Metric { .. } => 1,
+    }
 }
 
 fn facts(plan: &Plan, recorded: &Recorded) -> Result<Facts, String> {
@@ -149,18 +164,22 @@ fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
 }
 
 /// Why a recorded difference does not follow from its two sides.
-fn difference(plan: &Plan, facts: &Facts, unit: &Unit, index: usize, pair: &PairSi) -> Option<String> {
-    let Evaluation::Sides { difference, .. } = &plan.quantities[index].evaluation else { return None };
-    let (Some(s), Some(m)) = (pair.simulated, pair.measured) else { return Some("a side has no value".into()) };
+fn difference(plan: &Plan, facts: &Facts, unit: &Unit, index: usize, row: &Row) -> Option<String> {
+    let Evaluation::Values { records: Records::Compared { difference } | Records::Spread { difference, .. }, .. } =
+        plan.quantities[index].evaluation.as_ref()
+    else {
+        return None;
+    };
+    let (Some(s), Some(m)) = (row.simulated, row.measured) else { return Some("a side has no value".into()) };
     let known = Known { sides: Some((s, m)), ..unit.known(facts) };
     let follows = number(difference, &known).ok()?;
-    let far = (follows - pair.difference).abs();
-    let scale = s.abs().max(m.abs()).max(pair.difference.abs());
+    let far = (follows - row.value).abs();
+    let scale = s.abs().max(m.abs()).max(row.value.abs());
     let unit = &plan.quantities[index].unit;
     let shown = |value: f64| format!("{}{}", unit.from_si(value), unit.suffix());
     // A value that is no number compares as far away.
     (far.is_nan() || far > ROUNDING * scale)
-        .then(|| format!("its difference is {}, {} follows from the two sides", shown(pair.difference), shown(follows)))
+        .then(|| format!("its difference is {}, {} follows from the two sides", shown(row.value), shown(follows)))
 }
 
 /// Sections that are used though requirements on their data are not met.

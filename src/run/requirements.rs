@@ -1,7 +1,7 @@
 //! Requirements on sections: what is asked of their data and of their records, and what comes of one that is not met.
 
 use super::facts::{Facts, item, trimmed};
-use super::pairs::SectionValues;
+use super::section::SectionValues;
 use super::sections::Unit;
 use crate::check::evaluate::{Watched, flag, number};
 use crate::check::plan::{Expr, Kind, OnFault, Plan, Zone};
@@ -183,7 +183,7 @@ pub fn take_over(
     }
     notes.extend(unchecked(plan, facts, units));
     let used = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).map(|(_, values)| values);
-    notes.extend(super::pairs::margin_note(used));
+    notes.extend(super::margins::margin_note(used));
     if stop.any_error() { Err(stop) } else { Ok(()) }
 }
 

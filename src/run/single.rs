@@ -1,9 +1,10 @@
 //! One value by itself, with what it was made of: for who asks where a number of a result comes from.
 
-use super::pairs::{self, PairSi};
 use super::record::Opened;
+use super::section;
+use super::sides::Evaluated;
 use super::{Found, Prepared};
-use crate::check::plan::Plan;
+use crate::check::plan::{self, Plan};
 use crate::data::Campaign;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
@@ -12,9 +13,9 @@ use crate::result::FileHash;
 /// One section and signal of a quantity, computed anew.
 #[derive(Debug)]
 pub struct Single {
-    pub simulated: Side,
-    pub measured: Side,
-    /// In the unit of the quantity.
+    /// What was read, the simulation first.
+    pub records: Vec<Side>,
+    /// Difference, metric, or the value of the record that is assessed, in the unit of the quantity.
     pub difference: f64,
     /// Samples or windows of the measured value.
     pub samples: usize,
@@ -23,6 +24,8 @@ pub struct Single {
 /// What one record gave.
 #[derive(Debug)]
 pub struct Side {
+    /// `simulated`
+    pub side: &'static str,
     pub file: FileHash,
     /// First and last row of the file that lie in the section, the header being row 1.
     pub inside: (usize, usize),
@@ -53,27 +56,30 @@ pub fn single(
     if let Some(fault) = &unit.fault {
         return Err(one(Problem::error("not-evaluated", format!("section {section} is not used: {fault}"))));
     }
-    let found = pairs::single(&prepared.work(), unit, quantity, signal).map_err(|fault| {
+    let found = section::single(&prepared.work(), unit, quantity, signal).map_err(|fault| {
         let mut problems = Problems(fault.problems);
         problems.push(Problem::error("not-evaluated", format!("section {section} cannot be evaluated: {}", fault.says)));
         problems
     })?;
-    let pairs::Computed { pair: PairSi { simulated, measured, difference, samples }, sides: [of_simulated, of_measured] } = found;
+    let row = found.rows.first().ok_or_else(|| one(Problem::error("not-evaluated", format!("section {section} has no such value"))))?;
     let of = &plan.quantities[quantity].unit;
-    let side = |(found, opened): (Vec<(usize, Found)>, Opened), value: Option<f64>| {
+    let assessed = found.records.len() == 1;
+    let side = |(side, found, opened): (plan::Side, Evaluated, Opened)| {
         let reduced = found.iter().filter_map(|(node, found)| match found {
             Found::Number(value, samples) => Some((*node, *value, *samples)),
             Found::Samples(_) | Found::Failed(_) => None,
         });
+        let value = match side {
+            _ if assessed => Some(row.value),
+            plan::Side::Simulated => row.simulated,
+            plan::Side::Measured => row.measured,
+        };
         let (inside, last) = opened.rows();
-        Side { reduced: reduced.collect(), inside, last, value: value.map(|value| of.from_si(value)), file: opened.file }
+        let value = value.map(|value| of.from_si(value));
+        Side { side: side.in_words(), reduced: reduced.collect(), inside, last, value, file: opened.file }
     };
-    Ok(Single {
-        simulated: side(of_simulated, simulated),
-        measured: side(of_measured, measured),
-        difference: of.from_si(difference),
-        samples,
-    })
+    let (difference, samples) = (of.from_si(row.value), row.samples);
+    Ok(Single { records: found.records.into_iter().map(side).collect(), difference, samples })
 }
 
 fn one(problem: Problem) -> Problems {

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use super::pairs::Simulated;
 use super::record::{Found, Held, Work};
 use super::sections::Unit;
+use super::sides::Evaluated;
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::synchronise::{self, Estimate, Search};
 
@@ -43,11 +43,11 @@ pub struct Offset {
 const STEPS: f64 = 100.0;
 
 /// The filtered signals that are compared: each once, none that is resampled on the way.
-pub fn signals(work: &Work<'_>, active: &[bool]) -> BTreeSet<NodeId> {
+pub fn signals(work: &Work<'_>, active: &[Vec<bool>]) -> BTreeSet<NodeId> {
     let mut found = BTreeSet::new();
     for (index, quantity) in work.graph.quantities.iter().enumerate() {
         for (number, signal) in quantity.signals.iter().enumerate() {
-            if active[index] && work.present[index][number] {
+            if active[index][number] {
                 found.insert(signal.filtered);
             }
         }
@@ -56,7 +56,7 @@ pub fn signals(work: &Work<'_>, active: &[bool]) -> BTreeSet<NodeId> {
 }
 
 /// `None` where the records do not tell: no signal of both, or none that varies.
-pub fn estimate(graph: &Graph, unit: &Unit, farthest: f64, simulated: Simulated<'_>, measured: &Held<'_>) -> Option<Offset> {
+pub fn estimate(graph: &Graph, unit: &Unit, farthest: f64, simulated: &Evaluated, measured: &Held<'_>) -> Option<Offset> {
     let (start, end) = unit.extent?;
     let mut pairs = Vec::new();
     let nodes: Vec<NodeId> = simulated.iter().map(|(node, _)| *node).collect();

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::record::{Found, Work, needed, open};
 use super::sections::Unit as Section;
 use super::signal::Samples;
-use crate::check::plan::Evaluation;
+use crate::check::plan::{Evaluation, Side};
 use crate::data::RecordKind;
 use crate::graph::NodeId;
 use crate::result::{Curve, QuantityResult, Trace};
@@ -26,7 +26,7 @@ pub fn traces(work: &Work<'_>, units: &[Section], quantities: &[QuantityResult],
         let worst = quantity.values.iter().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs()));
         let Some(worst) = worst else { continue };
         let unit = units.iter().position(|unit| unit.name == worst.section);
-        let signal = work.plan.quantities[index].signals.iter().position(|(name, _)| *name == worst.signal);
+        let signal = work.plan.quantities[index].positions.iter().position(|position| position.name == worst.signal);
         if let (Some(unit), Some(signal)) = (unit, signal) {
             picks.push((worst.difference.abs() / scale, index, unit, signal));
         }
@@ -56,7 +56,7 @@ fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Result
     let quantity = &work.plan.quantities[index];
     let nodes = &work.graph.quantities[index].signals[signal];
     let axis = &work.plan.axis;
-    let over = match (&quantity.evaluation, nodes.over) {
+    let over = match (quantity.evaluation.as_ref(), nodes.over) {
         (Evaluation::Metric { over_axis: Some(over), .. }, Some(node)) => {
             Over { node: Some(node), name: over.column.clone(), unit: over.unit.clone() }
         }
@@ -83,8 +83,11 @@ fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Result
         };
         Ok::<_, String>((thinned(samples, x, &quantity.signal_unit, &over.unit), opened.extent))
     };
-    let (measured, extent) = curve(RecordKind::Measurement)?;
-    let (simulated, _) = curve(RecordKind::Simulation)?;
+    let of = |side: Side| -> Result<_, String> { if quantity.evaluation.reads(side) { curve(side.kind()).map(Some) } else { Ok(None) } };
+    let (measured, simulated) = (of(Side::Measured)?, of(Side::Simulated)?);
+    let extent = measured.as_ref().or(simulated.as_ref()).map_or((0.0, 0.0), |(_, extent)| *extent);
+    let of_curve = |curve: Option<(Curve, _)>| curve.map(|(curve, _)| curve).unwrap_or_default();
+    let (measured, simulated) = (of_curve(measured), of_curve(simulated));
     let (start, end) = match over.node {
         None => (over.unit.from_si(extent.0), over.unit.from_si(extent.1)),
         Some(_) => measured.x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x))),
@@ -93,7 +96,7 @@ fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Result
         quantity: quantity.id.clone(),
         section: unit.name.clone(),
         zone: unit.zone.clone(),
-        signal: quantity.signals[signal].0.clone(),
+        signal: quantity.positions[signal].name.clone(),
         why: format!("largest difference of {}", quantity.id),
         unit: quantity.signal_unit.text.clone(),
         axis: over.name,

@@ -211,7 +211,11 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
             return Vec::new();
         }
         let own = if each && limit.bounds[at] > 0.0 { 1.0 / limit.bounds[at] } else { 1.0 };
-        values.iter().map(|(_, value)| value * own).collect()
+        values
+            .iter()
+            .filter(|(position, _)| limit.positions.get(*position).copied().unwrap_or(true))
+            .map(|(_, value)| value * own)
+            .collect()
     };
     Measure {
         name: limit.statistic.name(),

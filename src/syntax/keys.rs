@@ -334,16 +334,26 @@ pub const KINDS: &[Kind] = &[
         keys: &[
             FOR_EACH,
             text("symbol", "As printed in tables.", "(Y/Q)max"),
-            phrase("of", "The signal and the positions at which it is evaluated.", "Y at wheelsets 1, 3"),
+            many(phrase(
+                "of",
+                "The signal and the positions at which it is evaluated, `when` the section is so; more than one of them where that differs.",
+                "Y at wheelsets 1, 3",
+            )),
             phrase("filter", "Filters in order: names, or steps.", "LP20, then sliding mean 2 m every 0.5 m"),
-            phrase(
+            phrase("from", "In place of a comparison: the record whose values are assessed by themselves.", "measured"),
+            many(phrase(
                 "value",
-                "The number taken from the filtered signal of a section, for simulation and measurement alike.",
+                "The number taken from the filtered signal of a section, of each record alike. More than one of them: those whose case applies.",
                 "larger of |p0.15|, |p99.85|",
+            )),
+            phrase(
+                "compare",
+                "Which records are compared: `simulated with measured` (the default), or each with the mean or median of all.",
+                "simulated with mean of simulated",
             ),
             phrase("difference", "How the two numbers are compared.", "|simulated| - |measured|"),
             phrase("metric", "In place of value and difference: one number from the two signals.", "sprague-geers magnitude"),
-            many(phrase("limit", "A statistic over all section x signal pairs and its limit.", "std 9 kN")),
+            many(phrase("limit", "A statistic or estimate over all values, or over those of each group, and its limit.", "std 9 kN")),
             phrase("minimum signals", "How many signals it needs.", "2"),
             phrase("minimum pairs", "How many section x signal pairs it needs.", "24"),
             phrase("in", "The unit in which its values are printed, if not that of its signal.", "kN"),
@@ -352,6 +362,14 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
+    },
+    Kind {
+        word: "estimate",
+        group: "estimates",
+        named: true,
+        single: false,
+        about: "A name for what is estimated from the values of a group: an expression of statistics, regressions, shares.",
+        keys: &[phrase("is", "The expression.", "mean + 3 * std"), CLAUSE, SOURCE, NOTE],
     },
     Kind {
         word: "verdict",
@@ -364,6 +382,11 @@ pub const KINDS: &[Kind] = &[
             phrase("minimum signals", "How many signals a quantity needs unless it says so itself.", "2"),
             phrase("minimum pairs", "How many section x signal pairs a quantity needs unless it says so itself.", "24"),
             phrase("standard deviation", "Divisor of the variance: `n-1` or `n`.", "n-1"),
+            phrase(
+                "independent",
+                "What is independent of each other: `site` (the default), `section`, or a section column. Counts, n and intervals are of it.",
+                "site",
+            ),
             NOTE,
         ],
     },

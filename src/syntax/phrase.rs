@@ -69,15 +69,45 @@ pub enum Node {
     PlaceOf(At<String>, Vec<At<String>>),
     /// `Y through LP20`.
     Through(Box<Phrase>, At<String>),
+    /// `upper 95 % of std`: an end of the confidence interval of what is estimated.
+    Bound {
+        upper: bool,
+        /// From 0 to 1, as a share.
+        confidence: f64,
+        of: Box<Phrase>,
+        bootstrap: bool,
+    },
+    /// `share where value <= 1`, `share of sections where radius < 300 m`.
+    Share {
+        of_sections: bool,
+        condition: Box<Phrase>,
+    },
+    /// `prediction over cant_deficiency at 143 mm, confidence 99 %`.
+    Fit(Box<Fit>),
     /// `a when b, c when d, otherwise e`.
     Cases(Vec<(Phrase, Phrase)>, Option<Box<Phrase>>),
 }
 
-/// `Y at wheelsets 1, 3 and side R`.
+/// A regression of the values of a group over data of their sections, and where it is read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// `prediction`: a bound is one of a further value; else of the mean of values.
+    pub prediction: bool,
+    pub over: Vec<Phrase>,
+    pub at: Vec<Phrase>,
+    /// Without one, the fitted value itself.
+    pub confidence: Option<At<f64>>,
+    pub one_sided: bool,
+    pub lower: bool,
+}
+
+/// `Y at wheelsets 1, 3 and side R when direction is right`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OfPlaces {
     pub signal: At<String>,
     pub picks: Vec<Pick>,
+    /// Sections in which these positions are evaluated.
+    pub when: Option<Phrase>,
 }
 
 /// `running gears I, II`: the words before the first comma, then the further members.
@@ -110,7 +140,10 @@ pub enum Item {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
+    /// What is limited, as written: `std`, `p95`, `(mean + 3 * std)`.
     pub statistic: At<String>,
+    /// The same as an expression.
+    pub estimate: Phrase,
     pub at_least: bool,
     pub bound: Phrase,
     pub factors: Vec<(Phrase, Phrase)>,
@@ -118,12 +151,13 @@ pub struct Limit {
     pub scope: At<Scope>,
 }
 
-#[derive(Clone, Debug, PartialEq)]
-pub enum Scope {
-    All,
-    EachZone,
-    Zones(Vec<At<String>>),
-    Where(Box<Phrase>),
+/// Which values a limit is about, and how they are grouped. Without anything: all together.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scope {
+    pub zones: Vec<At<String>>,
+    /// `for each zone and wheelset`.
+    pub each: Vec<At<String>>,
+    pub condition: Option<Phrase>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -151,6 +185,14 @@ impl Phrase {
             Node::Reduced(reducer, signal) => format!("{} of {}", reducer.meaning(), signal.meaning()),
             Node::PlaceOf(signal, words) => format!("{}@{}", signal.node, joined(words, ".", |word| word.node.clone())),
             Node::Through(inner, filter) => format!("{}>{}", inner.meaning(), filter.node),
+            Node::Bound { upper, confidence, of, bootstrap } => {
+                let (end, by) = (if *upper { "upper" } else { "lower" }, if *bootstrap { " by bootstrap" } else { "" });
+                format!("{end} {confidence} of {}{by}", of.meaning())
+            }
+            Node::Share { of_sections, condition } => {
+                format!("share{} where {}", if *of_sections { " of sections" } else { "" }, condition.meaning())
+            }
+            Node::Fit(fit) => fit.meaning(),
             Node::Cases(arms, otherwise) => {
                 let arms = joined(arms, ", ", |(value, condition)| format!("{}?{}", value.meaning(), condition.meaning()));
                 format!("[{arms}; {}]", otherwise.as_ref().map_or(String::new(), |value| value.meaning()))
@@ -171,22 +213,45 @@ impl Limit {
 
     /// What it is a limit of: `std`, `p95 at least`.
     pub fn bounds(&self) -> String {
-        format!("{}{}", self.statistic.node, if self.at_least { " at least" } else { "" })
+        format!("{}{}", self.estimate.meaning(), if self.at_least { " at least" } else { "" })
     }
 }
 
 impl Scope {
+    pub fn is_all(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// As [`Phrase::meaning`]: `for zones 2, 3 and each wheelset where ...`.
     pub fn meaning(&self) -> String {
-        match self {
-            Self::All => String::new(),
-            Self::EachZone => "for each zone".into(),
-            Self::Zones(zones) => {
-                let mut zones: Vec<&str> = zones.iter().map(|zone| zone.node.as_str()).collect();
-                zones.sort_unstable();
-                format!("for zones {}", zones.join(", "))
-            }
-            Self::Where(condition) => format!("for sections where {}", condition.meaning()),
+        let sorted = |names: &[At<String>]| {
+            let mut names: Vec<&str> = names.iter().map(|name| name.node.as_str()).collect();
+            names.sort_unstable();
+            names.join(", ")
+        };
+        let mut parts = Vec::new();
+        if !self.zones.is_empty() {
+            parts.push(format!("zones {}", sorted(&self.zones)));
         }
+        if !self.each.is_empty() {
+            parts.push(format!("each {}", sorted(&self.each)));
+        }
+        let mut words = parts.join(" and ");
+        if let Some(condition) = &self.condition {
+            let sections = if words.is_empty() { "sections " } else { " " };
+            words = format!("{words}{sections}where {}", condition.meaning());
+        }
+        if words.is_empty() { words } else { format!("for {words}") }
+    }
+}
+
+impl Fit {
+    fn meaning(&self) -> String {
+        let all = |phrases: &[Phrase]| joined(phrases, ", ", Phrase::meaning);
+        let kind = if self.prediction { "prediction" } else { "regression" };
+        let confidence = self.confidence.as_ref().map_or(String::new(), |share| format!(" confidence {}", share.node));
+        let (tails, end) = (if self.one_sided { "one" } else { "two" }, if self.lower { "lower" } else { "upper" });
+        format!("{kind} over {} at {}{confidence} {tails} {end}", all(&self.over), all(&self.at))
     }
 }
 

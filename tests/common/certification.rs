@@ -239,6 +239,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
                 * if kind.processing == "median" && section.section.len() % 2 == 1 { -1.0 } else { 1.0 };
             let difference = kind.limit * wide * noise.next();
             values.push(PairValue {
+                record: None,
                 section: section.section.clone(),
                 zone: section.zone.clone(),
                 signal: if kind.signals == WHEELS {
@@ -257,6 +258,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
     let mean = values.iter().map(|pair| pair.difference).sum::<f64>() / n;
     let std = (values.iter().map(|pair| (pair.difference - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
     let statistic = |name: &str, title: &str, value: f64, limit: f64, text: &str| StatisticResult {
+        group: Vec::new(),
         name: name.into(),
         title: title.into(),
         scope: "all".into(),
@@ -279,6 +281,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         statistic("mean", "mean", mean, kind.limit * 2.0 / 3.0, "2/3 of std"),
     ];
     QuantityResult {
+        from: None,
         id: kind.id.into(),
         title: kind.title.into(),
         symbol: kind.symbol.into(),
@@ -306,6 +309,7 @@ fn make_unassessable(quantity: &mut QuantityResult) {
     quantity.reason = Some(format!("channel {LONG} has samples that are no numbers"));
     for statistic in &mut quantity.statistics {
         *statistic = StatisticResult {
+            group: Vec::new(),
             count: 0,
             n: 0,
             value: None,
@@ -326,6 +330,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         .flat_map(|section| {
             let value = 0.15 + 0.1 * noise.next();
             [LONG, "ay_II"].map(|signal| PairValue {
+                record: None,
                 section: section.section.clone(),
                 zone: section.zone.clone(),
                 signal: signal.into(),
@@ -338,6 +343,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         .collect();
     let statistics = (1..=4)
         .map(|zone| StatisticResult {
+            group: Vec::new(),
             name: "p95".into(),
             title: "95 % value".into(),
             scope: format!("zone {zone}"),
@@ -357,6 +363,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         })
         .collect();
     QuantityResult {
+        from: None,
         id: "sprague_geers_ay".into(),
         title: format!("Sprague-Geers metric {HOSTILE}"),
         symbol: STRANGE.into(),

@@ -173,6 +173,7 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
             let measured = typical * (0.35 + 0.2 * zone + 0.12 * nth as f64 + 0.12 * noise.next());
             let difference = limit * (2.0 / 3.0 * bias + scatter * noise.bell());
             values.push(PairValue {
+                record: None,
                 section: section.section.clone(),
                 zone: section.zone.clone(),
                 signal: (*signal).to_owned(),
@@ -186,6 +187,7 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
     let statistics = if missing { Vec::new() } else { statistics(&values, unit, limit) };
     let holds = (!missing).then(|| statistics.iter().all(|statistic| statistic.holds == Some(true)));
     QuantityResult {
+        from: None,
         id: id.into(),
         title: title.into(),
         symbol: symbol.into(),
@@ -212,6 +214,7 @@ fn statistics(values: &[PairValue], unit: &str, limit: f64) -> Vec<StatisticResu
     let mean = values.iter().map(|pair| pair.difference).sum::<f64>() / n;
     let std = (values.iter().map(|pair| (pair.difference - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
     let one = |name: &str, title: &str, value: f64, limit: f64, half: f64, text: &str| StatisticResult {
+        group: Vec::new(),
         name: name.into(),
         title: title.into(),
         scope: "all".into(),

@@ -22,6 +22,7 @@ pub fn limit(statistic: &str, bound: f64, ddof: usize, sections: usize) -> Poole
         title: statistic.title(ddof),
         scope: "all".into(),
         inside: vec![true; sections],
+        positions: Vec::new(),
         bounds,
     }
 }

@@ -61,9 +61,6 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     if rule == Rule::expression && joins_places(before) {
         return problem.help("in an expression places follow one another without `and`: `Y at wheelset 1 side R`");
     }
-    if rule == Rule::limit && found == "where" && (before.contains("for zone") || before.contains("for each zone")) {
-        return problem.help("zones and other conditions go into one: `for sections where zone is ... and ...`");
-    }
     match expected.as_slice() {
         [] => problem,
         [..] if expected.len() <= 6 => problem.help(format!("expected {}", one_of(&expected))),
@@ -178,6 +175,9 @@ pub(super) fn is_keyword(rule: Rule) -> bool {
             | Rule::kw_every
             | Rule::kw_near
             | Rule::kw_within
+            | Rule::kw_over
+            | Rule::kw_confidence
+            | Rule::kw_share
             | Rule::kw_holds
             | Rule::then
             | Rule::comma
@@ -204,19 +204,29 @@ fn in_words(rule: Rule) -> &'static str {
         Rule::range => "a range (`a to b`)",
         Rule::chain => "a filter chain",
         Rule::step | Rule::steps | Rule::part => "a step",
-        Rule::step_when | Rule::kw_when => "`when`",
+        Rule::step_when | Rule::of_when | Rule::kw_when => "`when`",
         Rule::part_item | Rule::phrase_word => "a word or a number",
         Rule::then => "`then`",
         Rule::limit => "a limit",
-        Rule::statistic => "a statistic such as `mean` or `std`",
+        Rule::statistic => "a statistic such as `mean` or `std`, or an estimate in parentheses",
         Rule::at_least => "`at least`",
         Rule::limit_part => "`doubled when`, `times`, `only when` or `for zones`",
         Rule::doubled | Rule::kw_doubled => "`doubled when`",
         Rule::times | Rule::kw_times => "`times ... when`",
         Rule::only | Rule::kw_only => "`only when`",
-        Rule::scope | Rule::each_zone | Rule::zones_only | Rule::sections_only | Rule::kw_for => {
+        Rule::scope | Rule::each_group | Rule::zones_only | Rule::sections_only | Rule::kw_for => {
             "`for zones`, `for each zone` or `for sections where`"
         }
+        Rule::each_keys => "`each` and a key such as `zone` or `wheelset`",
+        Rule::key => "a key such as `zone` or `wheelset`",
+        Rule::fit | Rule::fit_kind => "`prediction over ... at ...`",
+        Rule::regressor => "section data, or an expression of them in parentheses",
+        Rule::fit_option | Rule::tails => "`one-sided` or `two-sided`",
+        Rule::confidence | Rule::kw_confidence => "`confidence` and a share",
+        Rule::bound_of | Rule::end => "`upper 95 % of ...`",
+        Rule::by_bootstrap => "`by bootstrap`",
+        Rule::share | Rule::kw_share => "`share where ...`",
+        Rule::kw_over => "`over`",
         Rule::verdict | Rule::every_limit | Rule::at_least_n => "`when every limit holds` or `when at least N quantities hold`",
         Rule::of_quantities | Rule::of_limits => "`quantities` or `limits`",
         Rule::otherwise | Rule::kw_otherwise => "`otherwise`",
@@ -250,7 +260,7 @@ fn in_words(rule: Rule) -> &'static str {
         Rule::kw_zones => "`zones`",
         Rule::kw_each => "`each`",
         Rule::kw_sections => "`sections`",
-        Rule::kw_where => "`where`",
+        Rule::kw_where | Rule::scope_where => "`where`",
         Rule::kw_to => "`to`",
         Rule::kw_in => "`in`",
         Rule::kw_every => "`every`",

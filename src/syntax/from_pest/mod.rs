@@ -12,7 +12,7 @@ use pest::iterators::Pair;
 use super::document::Text;
 use super::phrase::{Alias, At, Limit, Node, OfPlaces, Phrase, Pick, Scope, Step, Verdict};
 use crate::problem::Problems;
-use tree::{cases, either, pick, step, sum};
+use tree::{cases, either, estimate, pick, step, sum};
 
 #[derive(pest_derive::Parser)]
 #[grammar = "syntax/phrase.pest"]
@@ -24,8 +24,14 @@ pub fn expression(text: &Text, problems: &mut Problems) -> Option<Phrase> {
 
 pub fn of_places(text: &Text, problems: &mut Problems) -> Option<OfPlaces> {
     let mut inner = parts(parse(Rule::of_places, text, problems)?);
-    let signal = named(&inner.next()?);
-    Some(OfPlaces { signal, picks: inner.map(pick).collect() })
+    let mut found = OfPlaces { signal: named(&inner.next()?), picks: Vec::new(), when: None };
+    for pair in inner {
+        match pair.as_rule() {
+            Rule::of_when => found.when = Some(either(parts(pair).next()?)?),
+            _ => found.picks.push(pick(pair)),
+        }
+    }
+    Some(found)
 }
 
 pub fn places(text: &Text, problems: &mut Problems) -> Option<Vec<Pick>> {
@@ -67,10 +73,14 @@ pub fn step_alone(text: &Text, problems: &mut Problems) -> Option<At<Step>> {
 
 pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
     let mut inner = parts(parse(Rule::limit, text, problems)?).peekable();
-    let statistic = named(&inner.next()?);
+    let first = inner.next()?;
+    let statistic = named(&first);
+    let statistic = At { node: statistic.node.split_whitespace().collect::<Vec<_>>().join(" "), ..statistic };
+    let estimate = estimate(first)?;
     let at_least = inner.next_if(|pair| pair.as_rule() == Rule::at_least).is_some();
     let bound = cases(inner.next()?)?;
-    let mut limit = Limit { statistic, at_least, bound, factors: Vec::new(), only_when: None, scope: At { node: Scope::All, range: 0..0 } };
+    let everywhere = At { node: Scope::default(), range: 0..0 };
+    let mut limit = Limit { statistic, estimate, at_least, bound, factors: Vec::new(), only_when: None, scope: everywhere };
     for part in inner {
         let part = parts(part).next()?;
         let range = bytes(&part);
@@ -91,7 +101,7 @@ pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
                 limit.only_when = Some(condition);
             }
             _ => {
-                if limit.scope.node != Scope::All {
+                if !limit.scope.node.is_all() {
                     problems.push(explain::twice("for ...", text, range));
                     return None;
                 }
@@ -103,13 +113,16 @@ pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
 }
 
 fn scope(pair: Pair<'_, Rule>) -> Option<Scope> {
-    let rule = pair.as_rule();
-    let mut inner = parts(pair);
-    Some(match rule {
-        Rule::zones_only => Scope::Zones(inner.map(|pair| named(&pair)).collect()),
-        Rule::sections_only => Scope::Where(Box::new(either(inner.next()?)?)),
-        _ => Scope::EachZone,
-    })
+    let mut scope = Scope::default();
+    for part in parts(pair) {
+        match part.as_rule() {
+            Rule::zone => scope.zones.push(named(&part)),
+            Rule::each_keys => scope.each = parts(part).map(|key| named(&key)).collect(),
+            Rule::scope_where => scope.condition = Some(either(parts(part).next()?)?),
+            _ => scope.condition = Some(either(part)?),
+        }
+    }
+    Some(scope)
 }
 
 pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {
@@ -212,9 +225,9 @@ mod tests {
         let found = limit(&text("std 0.40 m/s^2, doubled when soft, for zones 3, 4"), &mut problems).expect("a limit");
         assert_eq!(found.statistic.node, "std");
         assert_eq!(found.factors.len(), 1);
-        assert!(matches!(&found.scope.node, Scope::Zones(zones) if zones.len() == 2));
+        assert!(found.scope.node.zones.len() == 2);
         let found = limit(&text("p95 at least 0.8 only when a is b for each zone"), &mut problems).expect("a limit");
-        assert!(found.at_least && found.only_when.is_some() && found.scope.node == Scope::EachZone);
+        assert!(found.at_least && found.only_when.is_some() && found.scope.node.each[0].node == "zone");
     }
 
     #[test]

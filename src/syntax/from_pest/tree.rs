@@ -3,7 +3,7 @@
 use pest::iterators::Pair;
 
 use super::{Rule, bytes, named, parts};
-use crate::syntax::phrase::{At, Item, Node, Operator, Phrase, Pick, Step};
+use crate::syntax::phrase::{At, Fit, Item, Node, Operator, Phrase, Pick, Step};
 use crate::units::Unit;
 
 pub(super) fn pick(pair: Pair<'_, Rule>) -> Pick {
@@ -193,6 +193,13 @@ fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
             let reducer = At { range: bytes(&reducer), node: word(&reducer)? };
             Node::Reduced(Box::new(reducer), Box::new(signed(inner.next()?)?))
         }
+        Rule::bound_of => bound_of(first)?,
+        Rule::share => {
+            let of_sections = first.as_str()["share".len()..].trim_start().starts_with("of");
+            let condition = parts(first).find(|pair| pair.as_rule() == Rule::either)?;
+            Node::Share { of_sections, condition: Box::new(either(condition)?) }
+        }
+        Rule::fit => Node::Fit(Box::new(fit(first)?)),
         Rule::place_of => {
             let mut inner = parts(first);
             let signal = named(&inner.next()?);
@@ -207,6 +214,65 @@ fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
         phrase = At { node: Node::Through(Box::new(phrase), filter), range: whole.start..end };
     }
     Some(phrase)
+}
+
+/// What a limit is of: the name of a statistic or estimate, a percentile, an end of an interval, or an expression in parentheses.
+pub(super) fn estimate(pair: Pair<'_, Rule>) -> Option<Phrase> {
+    let inner = parts(pair).next()?;
+    let range = bytes(&inner);
+    let node = match inner.as_rule() {
+        Rule::bound_of => bound_of(inner)?,
+        Rule::parens => cases(parts(inner).next()?)?.node,
+        _ => word(&inner)?,
+    };
+    Some(At { node, range })
+}
+
+/// `upper 95 % of std by bootstrap`.
+fn bound_of(pair: Pair<'_, Rule>) -> Option<Node> {
+    let mut inner = parts(pair).filter(|pair| pair.as_rule() != Rule::of);
+    let upper = inner.next()?.as_str().trim() == "upper";
+    let Node::Number { value: confidence, .. } = quantity(inner.next()?)? else { return None };
+    let of = inner.next()?;
+    let range = bytes(&of);
+    let node = if of.as_rule() == Rule::parens { cases(parts(of).next()?)?.node } else { word(&of)? };
+    Some(Node::Bound { upper, confidence, of: Box::new(At { node, range }), bootstrap: inner.next().is_some() })
+}
+
+/// `prediction over radius, speed at 300 m, 80 km/h, confidence 99 %`.
+fn fit(pair: Pair<'_, Rule>) -> Option<Fit> {
+    let mut inner = parts(pair);
+    let prediction = inner.next()?.as_str().trim() == "prediction";
+    let mut fit = Fit { prediction, over: Vec::new(), at: Vec::new(), confidence: None, one_sided: false, lower: false };
+    for part in inner {
+        match part.as_rule() {
+            Rule::regressor => {
+                let range = bytes(&part);
+                let of = parts(part).next()?;
+                let node = match of.as_rule() {
+                    Rule::parens => cases(parts(of).next()?)?.node,
+                    Rule::magnitude => Node::Magnitude(Box::new(sum(parts(of).next()?)?)),
+                    _ => word(&of)?,
+                };
+                fit.over.push(At { node, range });
+            }
+            Rule::sum => fit.at.push(sum(part)?),
+            _ => {
+                let option = parts(part).next()?;
+                match option.as_rule() {
+                    Rule::confidence => {
+                        let written = parts(option).next()?;
+                        let range = bytes(&written);
+                        let Node::Number { value, .. } = quantity(written)? else { return None };
+                        fit.confidence = Some(At { node: value, range });
+                    }
+                    Rule::tails => fit.one_sided = option.as_str().starts_with("one"),
+                    _ => fit.lower = option.as_str().trim() == "lower",
+                }
+            }
+        }
+    }
+    Some(fit)
 }
 
 /// A percentile or a path.

@@ -1,0 +1,321 @@
+//! Checks estimates: expressions over the values of a group and over the data of its sections.
+
+use super::Checker;
+use super::names::normalised;
+use super::plan::{DataReducer, Estimate, EstimateKind, Expr, Fit, Kind, OfGroup, Origin, Taking, Type};
+use super::scalars::{Scope, in_words};
+use crate::catalog::{STATISTICS, Statistic};
+use crate::problem::Problem;
+use crate::source::Span;
+use crate::syntax::document::Text;
+use crate::syntax::phrase::{At, Fit as WrittenFit, Limit as Written, Node, Phrase};
+use crate::units::Dimension;
+
+/// Most regressors: more say nothing of the numbers of sections that tests have.
+const MOST_REGRESSORS: usize = 8;
+
+/// What an expression over a group may use.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    /// Dimension of the values; `None` where only data of the sections are at hand.
+    pub values: Option<Dimension>,
+    pub taken: Vec<Taking>,
+}
+
+impl Group {
+    fn take(&mut self, taking: Taking) -> Kind {
+        self.taken.push(taking);
+        Kind::Input(self.taken.len() - 1)
+    }
+}
+
+impl Checker<'_> {
+    /// What a limit is of; of values that were not understood (no dimension), names alone are looked at.
+    pub(super) fn estimate(&mut self, written: &Written, text: &Text, dimension: Option<Dimension>) -> Option<Estimate> {
+        let name = written.statistic.node.clone();
+        if let Node::Path(_) | Node::Percentile(_) = written.estimate.node
+            && !self.names.estimates.contains_key(&name)
+        {
+            return self.statistic(&written.statistic, text).map(|statistic| self.of_statistic(statistic));
+        }
+        let kind = self.of_values(&written.estimate, text, dimension?)?;
+        let title = self.blocks.iter().find(|block| block.kind.text == "estimate" && block.name_text() == name);
+        let title = title.and_then(|block| block.title.as_ref()).map_or_else(|| self.with_values(&bare(&name)), |title| title.text.clone());
+        let of_scatter = matches!(&kind.taken[..], [Taking::Bound { of, .. }] if of.of_scatter && matches!(kind.expr.kind, Kind::Input(0)));
+        let found = self.number_type(&kind.expr)?;
+        let unit = (Some(found) != dimension).then(|| self.own_unit("", found));
+        Some(Estimate { name: bare(&name), title, kind: EstimateKind::Of(Box::new(kind)), of_scatter, unit })
+    }
+
+    fn of_statistic(&self, statistic: Statistic) -> Estimate {
+        let kind = match statistic {
+            Statistic::Each => EstimateKind::Each,
+            statistic => {
+                let source = crate::source::Source::new("statistic", statistic.name());
+                let span = Origin { span: source.whole(), words: statistic.name().into() };
+                let expr = Expr { kind: Kind::Input(0), ty: Type::Number(Dimension::ONE), span };
+                EstimateKind::Of(Box::new(OfGroup { expr, taken: vec![Taking::Statistic(statistic, self.ddof)] }))
+            }
+        };
+        Estimate { name: statistic.name(), title: statistic.title(self.ddof), kind, of_scatter: statistic.of_scatter(), unit: None }
+    }
+
+    /// An expression over the values of a group, which must have their dimension.
+    fn of_values(&mut self, phrase: &Phrase, text: &Text, dimension: Dimension) -> Option<OfGroup> {
+        let found = self.of_group(phrase, text, Some(dimension), &Scope::vehicle())?;
+        if found.taken.is_empty() {
+            self.problems.push(
+                Problem::error("estimate-of-nothing", "this takes nothing from the values of a group")
+                    .at(&found.expr.span)
+                    .help("for instance `mean + 3 * std`"),
+            );
+            return None;
+        }
+        self.number_type(&found.expr)?;
+        Some(found)
+    }
+
+    /// An expression over a group, with the names that the given scope has.
+    pub(super) fn of_group(&mut self, phrase: &Phrase, text: &Text, values: Option<Dimension>, with: &Scope) -> Option<OfGroup> {
+        let group = Some(Group { values, taken: Vec::new() });
+        let mut scope = Scope { zone: with.zone.clone(), limits: with.limits.clone(), group, ..Scope::vehicle() };
+        let expr = self.expr(phrase, text, &mut scope)?;
+        Some(OfGroup { expr, taken: scope.group.map_or_else(Vec::new, |group| group.taken) })
+    }
+
+    pub(super) fn statistic(&mut self, written: &At<String>, text: &Text) -> Option<Statistic> {
+        let found = Statistic::named(&written.node);
+        if found.is_none() && !self.is_failed(&written.node) {
+            let span = text.place(written.range.clone());
+            let percent: Option<f64> = written.node.strip_prefix('p').and_then(|percent| percent.parse().ok());
+            self.problems.push(match percent {
+                Some(percent) => {
+                    Problem::error("out-of-range", format!("a percentile lies between 0 and 100, this is {percent}")).at(&span)
+                }
+                None => {
+                    let estimates: Vec<String> = self.names.estimates.keys().cloned().collect();
+                    let known = STATISTICS.iter().map(|entry| entry.name).chain(["each"]).chain(estimates.iter().map(String::as_str));
+                    Problem::error("unknown-statistic", format!("`{}` is no statistic", written.node))
+                        .at(&span)
+                        .suggest(&written.node, known)
+                }
+            });
+        }
+        found
+    }
+
+    /// A name that means something over a group: a statistic, `n`, an estimate.
+    pub(super) fn group_path(&mut self, path: &str, span: &Origin, scope: &mut Scope) -> Option<Option<Expr>> {
+        let dimension = scope.group.as_ref()?.values?;
+        let ddof = self.ddof;
+        let group = scope.group.as_mut()?;
+        let expr = |kind, dimension| Some(Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() }));
+        if path == "n" && !self.names.parameter_blocks.contains_key(path) {
+            let kind = group.take(Taking::Count);
+            return expr(kind, Dimension::ONE);
+        }
+        if let Some(written) = self.names.estimates.get(path).cloned() {
+            let found = self.inside("estimate", path, span, |checker| checker.expr(&written.phrase, &written.text, scope));
+            return Some(found);
+        }
+        match Statistic::named(path)? {
+            Statistic::Each => {
+                self.problems.push(Problem::error("each-value", "`each` is every value by itself and no number of a group").at(span));
+                Some(None)
+            }
+            statistic => {
+                let kind = group.take(Taking::Statistic(statistic, ddof));
+                expr(kind, dimension)
+            }
+        }
+    }
+
+    /// `p95` over a group.
+    pub(super) fn group_percentile(&mut self, percent: f64, span: &Origin, scope: &mut Scope) -> Option<Option<Expr>> {
+        let group = scope.group.as_mut()?;
+        let Some(dimension) = group.values else { return Some(self.no_values(span)) };
+        if !(0.0..=100.0).contains(&percent) {
+            let says = format!("a percentile lies between 0 and 100, this is {percent}");
+            self.problems.push(Problem::error("out-of-range", says).at(span));
+            return Some(None);
+        }
+        let kind = group.take(Taking::Statistic(Statistic::Percentile(percent), self.ddof));
+        Some(Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() }))
+    }
+
+    /// `mean of radius`, `total of length`: over the sections of a group.
+    pub(super) fn group_data(&mut self, reducer: &Phrase, of: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+        let name = match &reducer.node {
+            Node::Percentile(percent) => format!("p{percent}"),
+            Node::Path(path) => path.clone(),
+            _ => String::new(),
+        };
+        let found = match (name.as_str(), Statistic::named(&name)) {
+            ("total", _) => Some(DataReducer::Total),
+            (_, Some(Statistic::Each) | None) => None,
+            (_, Some(statistic)) => Some(DataReducer::Statistic(statistic, self.ddof)),
+        };
+        let Some(reducer_found) = found else {
+            let known = STATISTICS.iter().map(|entry| entry.name).chain(["total"]);
+            let says = format!("`{name} of` is nothing that is taken from the sections of a group");
+            self.problems.push(Problem::error("unknown-statistic", says).at(&text.place(reducer.range.clone())).suggest(&name, known));
+            return None;
+        };
+        if let Node::Path(signal) = &of.node
+            && (self.names.channels.contains_key(signal) || self.names.signals.contains_key(signal))
+        {
+            let says = format!("`{name} of {signal}` is taken from the records of a section, which are not at hand here");
+            let help = "here it can be taken of section data: `mean of radius`";
+            self.problems.push(Problem::error("no-records", says).at(span).help(help));
+            return None;
+        }
+        let of = self.expr(of, text, &mut Scope { zone: scope.zone.clone(), ..Scope::section() })?;
+        let dimension = self.number_type(&of)?;
+        let kind = scope.group.as_mut()?.take(Taking::Data { reducer: reducer_found, of });
+        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+    }
+
+    /// `upper 95 % of std`.
+    pub(super) fn group_bound(
+        &mut self,
+        (upper, confidence, bootstrap): (bool, f64, bool),
+        of: &Phrase,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let Some(dimension) = scope.group.as_ref().and_then(|group| group.values) else { return self.no_values(span) };
+        self.confidence(confidence, span)?;
+        let name = match &of.node {
+            Node::Path(path) => path.clone(),
+            Node::Percentile(percent) => format!("p{percent}"),
+            _ => bare(&normalised(text.text.get(of.range.clone()).unwrap_or(""))),
+        };
+        let plain = matches!(of.node, Node::Path(_) | Node::Percentile(_)) && !self.names.estimates.contains_key(&name);
+        let estimate = if plain {
+            let statistic = self.statistic(&At { node: name, range: of.range.clone() }, text)?;
+            if statistic == Statistic::Each {
+                self.problems.push(Problem::error("each-value", "`each` is every value by itself and no number of a group").at(span));
+                return None;
+            }
+            self.of_statistic(statistic)
+        } else {
+            let kind = self.of_values(of, text, dimension)?;
+            Estimate { title: name.clone(), name, kind: EstimateKind::Of(Box::new(kind)), of_scatter: false, unit: None }
+        };
+        let kind = scope.group.as_mut()?.take(Taking::Bound { of: estimate, upper, confidence, bootstrap });
+        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+    }
+
+    /// `share where value <= 1`.
+    pub(super) fn group_share(
+        &mut self,
+        of_sections: bool,
+        condition: &Phrase,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let Some(group) = &scope.group else {
+            self.problems.push(Problem::error("no-group", "a share is one of the values of a group, and there is none here").at(span));
+            return None;
+        };
+        let value = group.values.filter(|_| !of_sections);
+        if value.is_none() && !of_sections {
+            return self.no_values(span);
+        }
+        let condition = self.expr(condition, text, &mut Scope { value, zone: scope.zone.clone(), ..Scope::section() })?;
+        self.flag_type(&condition)?;
+        let kind = scope.group.as_mut()?.take(Taking::Share { condition, of_sections });
+        Some(Expr { kind, ty: Type::Number(Dimension::ONE), span: span.clone() })
+    }
+
+    /// `prediction over cant_deficiency at 143 mm, confidence 99 %`.
+    pub(super) fn group_fit(&mut self, written: &WrittenFit, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+        let Some(dimension) = scope.group.as_ref().and_then(|group| group.values) else { return self.no_values(span) };
+        if written.over.len() > MOST_REGRESSORS {
+            let says = format!("{} regressors, and {MOST_REGRESSORS} are the most", written.over.len());
+            self.problems.push(Problem::error("too-large", says).at(span));
+            return None;
+        }
+        if written.over.len() != written.at.len() {
+            let says = format!("a regression over {} is read at as many values, here at {}", written.over.len(), written.at.len());
+            self.problems.push(Problem::error("arguments", says).at(span).help("`prediction over a, b at 1, 2`"));
+            return None;
+        }
+        let confidence = written.confidence.as_ref().map(|share| (share.node, text.place(share.range.clone())));
+        if let Some((share, place)) = &confidence {
+            self.confidence(*share, place)?;
+        }
+        if written.prediction && confidence.is_none() {
+            let problem = Problem::error("missing-confidence", "a prediction is a bound, and needs its confidence").at(span);
+            self.problems.push(problem.help("add `, confidence 99 %`; the fitted value itself is `regression over ... at ...`"));
+            return None;
+        }
+        let (mut over, mut at, mut ok) = (Vec::new(), Vec::new(), true);
+        for (regressor, target) in written.over.iter().zip(&written.at) {
+            let regressor = self.expr(regressor, text, &mut Scope { zone: scope.zone.clone(), ..Scope::section() });
+            let target = self.of_group(target, text, None, scope);
+            let (Some(regressor), Some(target)) = (regressor, target) else {
+                ok = false;
+                continue;
+            };
+            let (Some(of), Some(read)) = (self.number_type(&regressor), self.number_type(&target.expr)) else {
+                ok = false;
+                continue;
+            };
+            if of != read {
+                let says = format!("the regression runs over {}, and is read at {}", of.in_words(), in_words(&target.expr.ty));
+                let problem = Problem::error("unit-mismatch", says).at(&target.expr.span).also(&regressor.span, of.in_words());
+                self.problems.push(problem);
+                ok = false;
+            }
+            over.push(regressor);
+            at.push(target);
+        }
+        if !ok {
+            return None;
+        }
+        let fit = Fit {
+            prediction: written.prediction,
+            over,
+            at,
+            confidence: confidence.map(|(share, _)| share),
+            one_sided: written.one_sided,
+            lower: written.lower,
+        };
+        let kind = scope.group.as_mut()?.take(Taking::Fit(Box::new(fit)));
+        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+    }
+
+    fn confidence(&mut self, share: f64, at: &Span) -> Option<()> {
+        if share > 0.0 && share < 1.0 {
+            return Some(());
+        }
+        let problem = Problem::error("out-of-range", "a confidence lies between 0 and 100 %").at(at);
+        self.problems.push(problem.help("write it with its sign: `95 %`"));
+        None
+    }
+
+    fn no_values(&mut self, span: &Span) -> Option<Expr> {
+        self.problems.push(
+            Problem::error("no-group", "this is estimated from values, and no values are at hand here")
+                .at(span)
+                .help("what is limited stands before its bound: `limit (mean + 3 * std) 60 kN`"),
+        );
+        None
+    }
+}
+
+/// Without the parentheses that only hold it together.
+fn bare(words: &str) -> String {
+    let inside = words.strip_prefix('(').and_then(|rest| rest.strip_suffix(')'));
+    let whole = |inside: &&str| {
+        let mut depth = 0_i32;
+        inside.chars().all(|c| {
+            depth += i32::from(c == '(') - i32::from(c == ')');
+            depth >= 0
+        })
+    };
+    inside.filter(whole).unwrap_or(words).to_string()
+}

@@ -1,0 +1,106 @@
+//! Which positions were recorded at all, from the headings of the records.
+
+use std::collections::BTreeSet;
+
+use super::facts::Facts;
+use super::record::needed;
+use super::sections::Unit;
+use crate::check::plan::{Plan, Side};
+use crate::data::record::read_headings;
+use crate::data::{Campaign, RecordKind};
+use crate::graph::{Graph, NodeId, Operation};
+
+/// Columns that some record of each kind has.
+pub type Seen = Vec<(RecordKind, BTreeSet<String>)>;
+
+/// Reads the headings of every record.
+pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[Unit]) -> Seen {
+    let mut seen = Seen::new();
+    let sides = Side::ALL.into_iter().filter(|side| plan.reads(*side)).map(Side::kind);
+    let kinds = sides.chain(Some(RecordKind::Track).filter(|kind| campaign.has(*kind)));
+    for kind in kinds {
+        let mut columns = BTreeSet::new();
+        for unit in units {
+            // A record that cannot be read is a fault of its section, told when it is opened.
+            let headings = campaign.record_place(kind, &unit.cell).ok().and_then(|place| read_headings(&place.path, &place.shown).ok());
+            columns.extend(headings.into_iter().flatten().map(|heading| heading.name));
+        }
+        seen.push((kind, columns));
+    }
+    seen
+}
+
+/// Positions of plausibility rules whose columns the records have; others are passed over.
+pub fn recorded_positions(graph: &Graph, seen: &Seen, facts: &Facts, units: &[Unit]) -> Vec<Vec<bool>> {
+    let there = |node: NodeId| {
+        let track = graph.nodes[node].track;
+        let of_kind = || seen.iter().filter(|(kind, _)| (*kind == RecordKind::Track) == track);
+        reads(graph, node, facts, units).iter().all(|column| of_kind().all(|(_, columns)| columns.contains(column)))
+    };
+    graph
+        .plausibility
+        .iter()
+        .map(|rule| {
+            rule.positions
+                .iter()
+                .map(|position| position.own.into_iter().chain(position.inputs.iter().map(|input| input.node)).all(there))
+                .collect()
+        })
+        .collect()
+}
+
+/// Which signals of which quantities were recorded at all: a position missing from every record is left out, not a fault of each section.
+pub fn present_columns(plan: &Plan, graph: &Graph, seen: &Seen, facts: &Facts, units: &[Unit], notes: &mut Vec<String>) -> Vec<Vec<bool>> {
+    graph
+        .quantities
+        .iter()
+        .zip(&plan.quantities)
+        .map(|(quantity, rule)| {
+            let read = |kind: RecordKind| Side::ALL.into_iter().any(|side| side.kind() == kind && rule.evaluation.reads(side));
+            let all: Vec<Vec<(String, RecordKind)>> = quantity
+                .signals
+                .iter()
+                .map(|signal| {
+                    let mut missing: Vec<(String, RecordKind)> = Vec::new();
+                    for column in reads(graph, signal.compare, facts, units) {
+                        for (kind, columns) in seen.iter().filter(|(kind, _)| read(*kind)) {
+                            if !columns.contains(&column) {
+                                missing.push((column.clone(), *kind));
+                            }
+                        }
+                    }
+                    missing
+                })
+                .collect();
+            // Where no position is there, the channel's name is wrong: that is a fault to be told, not a position left out.
+            let none = all.iter().all(|missing| !missing.is_empty());
+            all.iter()
+                .map(|missing| {
+                    if !none {
+                        for (column, kind) in missing {
+                            let note = format!("`{column}` is in no record of the {}: its position is left out", kind.key());
+                            if !notes.contains(&note) {
+                                notes.push(note);
+                            }
+                        }
+                    }
+                    none || missing.is_empty()
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// Columns below a node that some section needs.
+fn reads(graph: &Graph, node: NodeId, facts: &Facts, units: &[Unit]) -> BTreeSet<String> {
+    let mut read = BTreeSet::new();
+    for unit in units {
+        // Where it cannot be told which signal applies, the section is refused when it is evaluated.
+        for id in needed(graph, &BTreeSet::from([node]), &unit.known(facts)).unwrap_or_default() {
+            if let Operation::Read { column } = &graph.nodes[id].operation {
+                read.insert(column.clone());
+            }
+        }
+    }
+    read
+}

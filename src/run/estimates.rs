@@ -1,0 +1,191 @@
+//! What is estimated from the rows of a group.
+
+use std::collections::BTreeSet;
+
+use super::facts::{Facts, Known};
+use super::sections::Unit;
+use super::table::{Member, independent};
+use crate::catalog::Statistic;
+use crate::check::evaluate::{Values, flag, number};
+use crate::check::plan::{DataReducer, Estimate, EstimateKind, Fit, OfGroup, Plan, Scalar, Taking};
+use crate::metrics::cluster::{self, Bounds, Draws, Mean, StandardDeviation};
+use crate::metrics::percentile::{Method, percentile};
+use crate::metrics::regression::{self, Regression, Tails};
+
+/// The rows of one group.
+#[derive(Clone, Copy, Debug)]
+pub struct Group<'a> {
+    pub plan: &'a Plan,
+    pub facts: &'a Facts,
+    pub members: &'a [Member<'a>],
+}
+
+impl Group<'_> {
+    pub fn values(&self) -> Vec<f64> {
+        self.members.iter().map(|member| member.row.value).collect()
+    }
+
+    /// For each row the number of its unit of independence.
+    pub fn units(&self) -> Vec<usize> {
+        independent(self.plan, self.members)
+    }
+
+    fn sections(&self) -> Vec<&Unit> {
+        let mut found: Vec<&Unit> = Vec::new();
+        for member in self.members {
+            if !found.iter().any(|known| known.name == member.unit.name) {
+                found.push(member.unit);
+            }
+        }
+        found
+    }
+
+    /// The value of an expression over the group.
+    ///
+    /// # Errors
+    /// What cannot be estimated from these rows, and why.
+    pub fn number(&self, of: &OfGroup) -> Result<f64, String> {
+        let values = self.values();
+        self.over(of, &values)
+    }
+
+    /// What an expression takes from the group, one by one.
+    pub fn taken(&self, of: &OfGroup) -> Vec<Result<f64, String>> {
+        let values = self.values();
+        of.taken.iter().map(|taking| self.take(taking, &values)).collect()
+    }
+
+    /// As [`Self::number`], with other values in place of the rows' own.
+    fn over(&self, of: &OfGroup, values: &[f64]) -> Result<f64, String> {
+        let taken: Vec<Result<f64, String>> = of.taken.iter().map(|taking| self.take(taking, values)).collect();
+        number(&of.expr, &Known { inputs: &taken, ..Known::vehicle(self.facts) })
+    }
+
+    fn take(&self, taking: &Taking, values: &[f64]) -> Result<f64, String> {
+        match taking {
+            Taking::Statistic(statistic, ddof) => statistic_of(*statistic, *ddof, values),
+            Taking::Count => Ok(self.units().into_iter().collect::<BTreeSet<_>>().len() as f64),
+            Taking::Share { condition, of_sections: true } => {
+                let sections = self.sections();
+                share(sections.iter().map(|unit| flag(condition, &unit.known(self.facts))))
+            }
+            Taking::Share { condition, of_sections: false } => {
+                let of_row = |(member, value): (&Member<'_>, &f64)| {
+                    flag(condition, &Known { inputs: &[Ok(*value)], ..member.unit.known(self.facts) })
+                };
+                share(self.members.iter().zip(values).map(of_row))
+            }
+            Taking::Data { reducer, of } => {
+                let of_section =
+                    |unit: &&Unit| number(of, &unit.known(self.facts)).map_err(|reason| format!("section {}: {reason}", unit.name));
+                let data = self.sections().iter().map(of_section).collect::<Result<Vec<f64>, _>>()?;
+                match reducer {
+                    DataReducer::Total => Ok(data.iter().sum()),
+                    DataReducer::Statistic(statistic, ddof) => statistic_of(*statistic, *ddof, &data),
+                }
+            }
+            Taking::Bound { of, upper, confidence, bootstrap } => self.bound(of, *upper, *confidence, *bootstrap, values),
+            Taking::Fit(fit) => self.fit(fit, values),
+        }
+    }
+
+    /// An end of the confidence interval of an estimate, one-sided: closed where the estimate is a mean or a standard deviation, else by a
+    /// bootstrap of the units of independence.
+    fn bound(&self, of: &Estimate, upper: bool, confidence: f64, bootstrap: bool, values: &[f64]) -> Result<f64, String> {
+        let EstimateKind::Of(of_group) = &of.kind else { return Err("every value by itself has no interval".into()) };
+        let units = self.units();
+        let probability = if upper { confidence } else { 1.0 - confidence };
+        let found = match of.statistic() {
+            Some((Statistic::Named(entry), _)) if !bootstrap && entry.name == "mean" => {
+                cluster::by_site(values, &units).and_then(|sites| Mean::of(&sites)?.bound(probability))
+            }
+            Some((Statistic::Named(entry), 1)) if !bootstrap && entry.name == "std" => {
+                cluster::by_site(values, &units).and_then(|sites| StandardDeviation::of(&sites)?.bound(probability))
+            }
+            _ => {
+                let rows: Vec<usize> = (0..values.len()).collect();
+                let estimate = |rows: &[usize]| {
+                    let members: Vec<Member<'_>> = rows.iter().map(|&row| self.members[row]).collect();
+                    let values: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
+                    Group { members: &members, ..*self }.over(of_group, &values).ok()
+                };
+                cluster::by_site(&rows, &units).and_then(|sites| {
+                    let draws = Draws::new(sites.len(), cluster::REPLICATES, cluster::SEED)?;
+                    cluster::bootstrap(&sites, &draws, estimate)?.bound(probability)
+                })
+            }
+        };
+        found.map_err(|error| error.to_string())
+    }
+
+    fn fit(&self, fit: &Fit, values: &[f64]) -> Result<f64, String> {
+        let of_row = |regressor| {
+            let of = |member: &Member<'_>| {
+                number(regressor, &member.unit.known(self.facts)).map_err(|reason| format!("section {}: {reason}", member.unit.name))
+            };
+            self.members.iter().map(of).collect::<Result<Vec<f64>, String>>()
+        };
+        let regressors = fit.over.iter().map(of_row).collect::<Result<Vec<_>, _>>()?;
+        let at = fit.at.iter().map(|target| self.over(target, values)).collect::<Result<Vec<_>, _>>()?;
+        let regression = Regression::fit(values, &regressors).map_err(|error| error.to_string())?;
+        let found = match fit.confidence {
+            None => regression.at(&at),
+            Some(confidence) => {
+                let kind = if fit.prediction { regression::Kind::Prediction } else { regression::Kind::Mean };
+                let side = if fit.lower { regression::Side::Lower } else { regression::Side::Upper };
+                let tails = if fit.one_sided { Tails::One } else { Tails::Two };
+                regression.bound(&at, kind, side, tails, confidence)
+            }
+        };
+        found.map_err(|error| error.to_string())
+    }
+}
+
+/// # Errors
+/// It is not defined for so few values.
+pub fn statistic_of(statistic: Statistic, ddof: usize, values: &[f64]) -> Result<f64, String> {
+    let found = match statistic {
+        Statistic::Percentile(percent) => percentile(values, percent, Method::Linear).ok(),
+        Statistic::Named(entry) => (entry.run)(values, ddof),
+        Statistic::Each => None,
+    };
+    found
+        .filter(|value| value.is_finite())
+        .ok_or_else(|| format!("not defined for {} value{}", values.len(), if values.len() == 1 { "" } else { "s" }))
+}
+
+fn share(found: impl Iterator<Item = Result<bool, String>>) -> Result<f64, String> {
+    let found = found.collect::<Result<Vec<bool>, _>>()?;
+    if found.is_empty() {
+        return Err("there is nothing to take a share of".into());
+    }
+    Ok(found.iter().filter(|holds| **holds).count() as f64 / found.len() as f64)
+}
+
+/// What names stand for in an expression over a group, beside what is taken from it.
+#[derive(Debug)]
+pub struct Taken<'a, V: Values> {
+    pub values: &'a V,
+    pub taken: &'a [Result<f64, String>],
+}
+
+impl<V: Values> Values for Taken<'_, V> {
+    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
+        self.values.vehicle(index)
+    }
+    fn column(&self, index: usize) -> Result<Scalar, String> {
+        self.values.column(index)
+    }
+    fn extent(&self) -> Result<(f64, f64), String> {
+        self.values.extent()
+    }
+    fn input(&self, index: usize) -> Result<f64, String> {
+        self.taken.get(index).cloned().unwrap_or_else(|| self.values.input(index))
+    }
+    fn sides(&self) -> Result<(f64, f64), String> {
+        self.values.sides()
+    }
+    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
+        self.values.limit_of(statistic)
+    }
+}

@@ -1,0 +1,284 @@
+//! The records of one section, evaluated: values, differences and metrics from them.
+
+use std::sync::Arc;
+
+use super::facts::Known;
+use super::record::{Found, Work};
+use super::signal::{Extent, Samples};
+use super::table::Row;
+use crate::catalog::{Metric, Pair};
+use crate::check::evaluate::{flag, number};
+use crate::check::plan::{Center, Evaluation, Expr, InputSide, Kind, Records, Side};
+use crate::graph::{InputNode, NodeId, Operation, SignalNodes, ValueNodes};
+use crate::metrics::{resample, statistics};
+
+/// Values of the wanted nodes of one record.
+pub type Evaluated = Vec<(NodeId, Found)>;
+
+/// One record of a side.
+#[derive(Clone, Debug)]
+pub struct RecordOfSide {
+    /// Its name, where the campaign has several of the side.
+    pub name: Option<Arc<str>>,
+    pub found: Evaluated,
+}
+
+/// All records of a section.
+#[derive(Debug)]
+pub struct Sides<'a> {
+    pub simulated: &'a [RecordOfSide],
+    pub measured: &'a [RecordOfSide],
+    pub known: &'a Known<'a>,
+    pub extent: Option<Extent>,
+}
+
+/// One record of each side; a side that is not read has none.
+#[derive(Clone, Copy, Debug)]
+pub struct Two<'a> {
+    pub simulated: &'a Evaluated,
+    pub measured: &'a Evaluated,
+    pub known: &'a Known<'a>,
+    pub extent: Option<Extent>,
+}
+
+/// What a side comes to that is not read.
+pub static NOT_READ: Evaluated = Vec::new();
+
+impl<'a> Sides<'a> {
+    fn of(&self, side: Side) -> &'a [RecordOfSide] {
+        match side {
+            Side::Simulated => self.simulated,
+            Side::Measured => self.measured,
+        }
+    }
+
+    /// The first record of each side.
+    pub fn first(&self) -> Two<'a> {
+        let first = |records: &'a [RecordOfSide]| records.first().map_or(&NOT_READ, |record| &record.found);
+        Two { simulated: first(self.simulated), measured: first(self.measured), known: self.known, extent: self.extent }
+    }
+
+    /// Every record of one side with every record of the other, and the name of those of which there are several.
+    fn pairs(&self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>)> + '_ {
+        self.simulated.iter().flat_map(move |simulated| {
+            self.measured.iter().map(move |measured| {
+                let name = match (&simulated.name, &measured.name) {
+                    (Some(s), Some(m)) => Some(format!("{s}, {m}").into()),
+                    (one, other) => one.clone().or_else(|| other.clone()),
+                };
+                let two = Two { simulated: &simulated.found, measured: &measured.found, known: self.known, extent: self.extent };
+                (name, two)
+            })
+        })
+    }
+
+    /// The rows of one position.
+    pub fn rows(&self, work: &Work<'_>, position: usize, nodes: &SignalNodes) -> Result<Vec<Row>, String> {
+        let Operation::Compare(evaluation) = &work.graph.nodes[nodes.compare].operation else {
+            return Err("this node makes no rows".into());
+        };
+        match evaluation.as_ref() {
+            Evaluation::Metric { metric, .. } => {
+                let common = metric.on_common_points(keeps_samples(work, nodes));
+                let node = if common { nodes.filtered } else { nodes.processed };
+                let one = |(record, two): (Option<Arc<str>>, Two<'_>)| {
+                    let (value, samples) = two.compared(*metric, common, node, nodes.over)?;
+                    Ok(Row { position, record, simulated: None, measured: None, value, samples })
+                };
+                self.pairs().map(one).collect()
+            }
+            Evaluation::Values { values, records } => {
+                let mut rows = Vec::new();
+                let mut applied = false;
+                for (value, of) in values.iter().zip(&nodes.values) {
+                    // Of several values, those apply whose cases do.
+                    if values.len() > 1 && !applies(&value.expr, self.known)? {
+                        continue;
+                    }
+                    applied = true;
+                    rows.extend(self.of_value(work, records, position, nodes, of)?);
+                }
+                if applied { Ok(rows) } else { Err("none of its values applies to this section".into()) }
+            }
+        }
+    }
+
+    fn of_value(
+        &self,
+        work: &Work<'_>,
+        records: &Records,
+        position: usize,
+        nodes: &SignalNodes,
+        value: &ValueNodes,
+    ) -> Result<Vec<Row>, String> {
+        let samples = |two: &Two<'_>, side| two.samples(work, nodes, value, side);
+        let alone = |side: Side| {
+            self.of(side).iter().map(move |record| {
+                let two = Two { simulated: &record.found, measured: &record.found, known: self.known, extent: self.extent };
+                Ok::<_, String>((record.name.clone(), two, two.value(work, value, own(side))?))
+            })
+        };
+        let difference_of = |difference: &Expr, s: f64, m: f64| number(difference, &Known { sides: Some((s, m)), ..section(self.known) });
+        match records {
+            Records::Of(side) => {
+                let one = |(record, two, value): (Option<Arc<str>>, Two<'_>, f64)| {
+                    let samples = samples(&two, own(*side));
+                    Row { position, record, simulated: None, measured: None, value, samples }
+                };
+                alone(*side).map(|found| found.map(one)).collect()
+            }
+            Records::Compared { difference } => {
+                let one = |(record, two): (Option<Arc<str>>, Two<'_>)| {
+                    let s = two.value(work, value, InputSide::Simulated)?;
+                    let m = two.value(work, value, InputSide::Measured)?;
+                    let samples = samples(&two, InputSide::Measured);
+                    Ok(Row { position, record, simulated: Some(s), measured: Some(m), value: difference_of(difference, s, m)?, samples })
+                };
+                self.pairs().map(one).collect()
+            }
+            Records::Spread { side, center, difference } => {
+                let all = alone(*side).collect::<Result<Vec<_>, _>>()?;
+                let values: Vec<f64> = all.iter().map(|(_, _, value)| *value).collect();
+                if values.len() < 2 {
+                    return Err(format!("there is one {} record, and several are compared", side.in_words()));
+                }
+                let center = match center {
+                    Center::Mean => statistics::mean(&values),
+                    Center::Median => statistics::median(&values),
+                };
+                let center = center.ok_or("the records have no mean")?;
+                let one = |(record, two, value): (Option<Arc<str>>, Two<'_>, f64)| {
+                    let samples = samples(&two, own(*side));
+                    let difference = difference_of(difference, value, center)?;
+                    Ok(Row { position, record, simulated: Some(value), measured: Some(center), value: difference, samples })
+                };
+                all.into_iter().map(one).collect()
+            }
+        }
+    }
+}
+
+fn own(side: Side) -> InputSide {
+    match side {
+        Side::Simulated => InputSide::Simulated,
+        Side::Measured => InputSide::Measured,
+    }
+}
+
+/// Whether the samples of the record are still there after the quantity's filter.
+pub fn keeps_samples(work: &Work<'_>, nodes: &SignalNodes) -> bool {
+    let quantity = work.graph.quantities.iter().position(|known| known.signals.iter().any(|signal| signal.compare == nodes.compare));
+    quantity.is_none_or(|index| work.plan.quantities[index].keeps_samples())
+}
+
+/// Whether some case of an expression holds; one without cases always applies.
+fn applies(expr: &Expr, known: &Known<'_>) -> Result<bool, String> {
+    let Kind::Cases(arms, None) = &expr.kind else { return Ok(true) };
+    for (_, condition) in arms {
+        if flag(condition, &section(known))? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+impl Two<'_> {
+    /// The number of one side that a value node gives.
+    fn value(&self, work: &Work<'_>, value: &ValueNodes, side: InputSide) -> Result<f64, String> {
+        match &work.graph.nodes[value.node].operation {
+            Operation::Value(expr) => {
+                let inputs: Vec<Result<f64, String>> = value.inputs.iter().map(|input| self.input(input, side)).collect();
+                number(expr, &Known { inputs: &inputs, ..section(self.known) })
+            }
+            _ => self.input(value.inputs.first().ok_or("a value takes nothing")?, side),
+        }
+    }
+
+    /// A metric of both signals of a node, and of how many measured samples.
+    fn compared(&self, metric: Metric, on_common_points: bool, node: NodeId, over: Option<NodeId>) -> Result<(f64, usize), String> {
+        let (simulated, measured) = (samples_of(self.simulated, node)?, samples_of(self.measured, node)?);
+        let common = if on_common_points {
+            Common::of(simulated, measured, self.extent)?
+        } else {
+            Common { axis: Vec::new(), simulated: simulated.values.to_vec(), measured: measured.values.to_vec() }
+        };
+        let over = match over {
+            None => None,
+            Some(node) => Some((samples_of(self.simulated, node)?, samples_of(self.measured, node)?)),
+        };
+        let over = over.map(|(s, m)| (s.values.as_slice(), m.values.as_slice()));
+        let pair = Pair { axis: &common.axis, simulated: &common.simulated, measured: &common.measured, over };
+        Ok((metric.run(&pair)?, common.measured.len()))
+    }
+
+    pub fn input(&self, input: &InputNode, side: InputSide) -> Result<f64, String> {
+        if let Some(metric) = input.metric {
+            return self.compared(metric, metric.0.common_points, input.node, None).map(|(value, _)| value);
+        }
+        number_of(self.record(input.side.resolve(side)), input.node)
+    }
+
+    pub fn record(&self, side: InputSide) -> &Evaluated {
+        if side == InputSide::Measured { self.measured } else { self.simulated }
+    }
+
+    /// How many samples or windows of the quantity's own signal a value was taken from.
+    fn samples(&self, work: &Work<'_>, nodes: &SignalNodes, value: &ValueNodes, side: InputSide) -> usize {
+        let own = |input: &&InputNode| work.graph.nodes[input.node].inputs.contains(&nodes.processed);
+        let input = value.inputs.iter().find(own).or(value.inputs.first());
+        let found = input.and_then(|input| self.record(side).iter().find(|(id, _)| *id == input.node));
+        match found {
+            Some((_, Found::Number(_, samples))) => *samples,
+            Some((_, Found::Samples(samples))) => samples.values.len(),
+            Some((_, Found::Failed(_))) | None => 0,
+        }
+    }
+}
+
+pub fn number_of(found: &Evaluated, node: NodeId) -> Result<f64, String> {
+    match found.iter().find(|(id, _)| *id == node) {
+        Some((_, Found::Number(value, _))) => Ok(*value),
+        Some((_, Found::Failed(reason))) => Err(reason.clone()),
+        _ => Err("a value is missing".into()),
+    }
+}
+
+pub fn samples_of(found: &Evaluated, node: NodeId) -> Result<&Samples, String> {
+    match found.iter().find(|(id, _)| *id == node) {
+        Some((_, Found::Samples(samples))) => Ok(samples),
+        Some((_, Found::Failed(reason))) => Err(reason.clone()),
+        _ => Err("a signal is missing".into()),
+    }
+}
+
+/// The same names with nothing yet for inputs and sides.
+pub fn section<'a>(known: &Known<'a>) -> Known<'a> {
+    Known { facts: known.facts, columns: known.columns, extent: known.extent, inputs: &[], sides: None }
+}
+
+/// Both signals on the measured samples of the section.
+struct Common {
+    axis: Vec<f64>,
+    simulated: Vec<f64>,
+    measured: Vec<f64>,
+}
+
+impl Common {
+    /// The simulated signal is interpolated unless its samples lie where the measured ones do already.
+    fn of(simulated: &Samples, measured: &Samples, extent: Option<Extent>) -> Result<Self, String> {
+        let cut = |samples: &Samples| match extent {
+            Some(extent) => samples.cut(extent),
+            None => Ok(samples.clone()),
+        };
+        let (s, m) = (cut(simulated)?, cut(measured)?);
+        let same = s.along.axis.len() == m.along.axis.len()
+            && s.along.axis.iter().zip(m.along.axis.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
+        let onto = if same {
+            s.values.to_vec()
+        } else {
+            resample::interpolate(&simulated.along.axis, &simulated.values, &m.along.axis)
+                .map_err(|error| format!("the simulation cannot be brought onto the measured points: {error}"))?
+        };
+        Ok(Self { axis: m.along.axis.to_vec(), simulated: onto, measured: m.values.to_vec() })
+    }
+}

@@ -1,0 +1,65 @@
+//! The table of values: one row for each section, position and record, or records compared.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::sections::Unit;
+use crate::check::plan::{Independent, Plan, Scalar};
+
+/// One value of a section.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Index into the quantity's positions.
+    pub position: usize,
+    /// Which record, where the campaign has several of a side.
+    pub record: Option<Arc<str>>,
+    /// What was compared, where the rows compare numbers, SI.
+    pub simulated: Option<f64>,
+    pub measured: Option<f64>,
+    /// What estimates are taken over, SI: a difference, a metric, or the value of one record.
+    pub value: f64,
+    /// Samples or windows it was taken from.
+    pub samples: usize,
+}
+
+/// A row with the section that it is of.
+#[derive(Clone, Copy, Debug)]
+pub struct Member<'a> {
+    pub unit: &'a Unit,
+    /// Name of its position.
+    pub signal: &'a str,
+    pub row: &'a Row,
+}
+
+/// Numbers the units that are independent of each other, one for each member.
+pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
+    let mut names: Vec<String> = Vec::new();
+    let mut of_column = |unit: &Unit, index: usize| {
+        let name = match &unit.columns[index] {
+            Ok(Scalar::Word(word)) => word.clone(),
+            Ok(Scalar::Number(number)) => format!("{number:e}"),
+            Ok(Scalar::Flag(flag)) => flag.to_string(),
+            // A section that does not say what it depends on is by itself.
+            Err(_) => format!("section {}", unit.name),
+        };
+        names.iter().position(|known| *known == name).unwrap_or_else(|| {
+            names.push(name);
+            names.len() - 1
+        })
+    };
+    let mut sections: Vec<String> = Vec::new();
+    let one = |member: &Member<'_>| match plan.independent {
+        Independent::Site => member.unit.site,
+        Independent::Section => sections.iter().position(|known| *known == member.unit.name).unwrap_or_else(|| {
+            sections.push(member.unit.name.clone());
+            sections.len() - 1
+        }),
+        Independent::Column(index) => of_column(member.unit, index),
+    };
+    members.iter().map(one).collect()
+}
+
+/// How many independent units members are of.
+pub fn count_independent(plan: &Plan, members: &[Member<'_>]) -> usize {
+    independent(plan, members).into_iter().collect::<BTreeSet<_>>().len()
+}

@@ -1,0 +1,178 @@
+//! The table of values: assessments of one record, estimates by group, and what has no number.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use fishplate::certify::{Compiled, certify, compile};
+use fishplate::check::{Overrides, family};
+use fishplate::data::Campaign;
+use fishplate::library;
+use fishplate::problem::Problems;
+use fishplate::result::{Certification, StatisticResult, Verdict};
+use fishplate::run::Settings;
+use fishplate::source::Source;
+use serde_json::Value;
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn compiled(name: &str, text: &str) -> Compiled {
+    let mut problems = Problems::default();
+    let family = family::read(&Source::new(name, text), &library::parent, &mut problems);
+    let found = compile(family, &Overrides::new(), &mut problems).filter(|_| !problems.any_error());
+    found.unwrap_or_else(|| panic!("{}", problems.render(false)))
+}
+
+fn certified(protocol: &Compiled, campaign: &Path) -> Certification {
+    let mut problems = Problems::default();
+    let campaign = Campaign::open(campaign, &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+    certify(protocol, &campaign, Settings { traces: 1 }, &|_| {}).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
+}
+
+fn assessment() -> String {
+    fs::read_to_string(root().join("tests/cases/values/assessment.fp")).expect("a protocol")
+}
+
+fn of_group<'a>(found: &'a Certification, quantity: &str, name: &str, zone: &str, wheelset: &str) -> Option<&'a StatisticResult> {
+    let quantity = found.quantities.iter().find(|known| known.id == quantity).expect("a quantity");
+    let has = |group: &[(String, String)], key: &str, of: &str| group.iter().any(|(known, member)| known == key && member == of);
+    quantity.statistics.iter().find(|one| one.name == name && has(&one.group, "zone", zone) && has(&one.group, "wheelset", wheelset))
+}
+
+/// Estimates of each zone and wheelset against NumPy and SciPy, 1e-9 relative; see `cases/values/assessment.py`.
+#[test]
+fn an_assessment_agrees_with_scipy() {
+    let found = certified(&compiled("assessment.fp", &assessment()), &root().join("examples/coach-good"));
+    let expected = fs::read_to_string(root().join("tests/cases/values/assessment.json")).expect("expected numbers");
+    let expected: Vec<Value> = serde_json::from_str(&expected).expect("JSON");
+    let (mut numbers, mut without) = (0, 0);
+    for one in &expected {
+        let text = |key: &str| one[key].as_str().expect("a text").to_string();
+        let quantity = text("quantity").replace("_max", "");
+        let (estimate, zone, wheelset) = (text("estimate"), text("zone"), text("wheelset"));
+        let place = format!("{quantity} {estimate} zone {zone} wheelset {wheelset}");
+        let result = of_group(&found, &quantity, &estimate, &zone, &wheelset).unwrap_or_else(|| panic!("{place} is missing"));
+        match (one["value"].as_f64(), result.value) {
+            (Some(want), Some(value)) => {
+                assert!((value - want).abs() <= 1e-9 * want.abs(), "{place}: {value} in place of {want}");
+                numbers += 1;
+            }
+            (None, None) => {
+                let reason = result.reason.as_deref().expect("a reason");
+                assert!(reason.contains("does not vary") || reason.contains("collinear") || reason.contains("values"), "{place}: {reason}");
+                without += 1;
+            }
+            (want, value) => panic!("{place}: {value:?} in place of {want:?}"),
+        }
+    }
+    assert!(numbers >= 100 && without >= 10, "{numbers} {without}");
+    // A regression that has no number is a reason, never a verdict.
+    assert_eq!(found.verdict, Verdict::NotAssessable);
+    assert!(found.reasons.iter().any(|reason| reason.contains("Two-dimensional estimate")), "{:?}", found.reasons);
+}
+
+/// An assessment reads one record: the campaign need not have the other, and its numbers are the same.
+#[test]
+fn an_assessment_needs_no_simulation() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let from = root().join("examples/coach-good");
+    for name in ["vehicle.yaml", "sections.csv", "profile.csv"] {
+        fs::copy(from.join(name), folder.path().join(name)).expect("a copy");
+    }
+    for part in ["measurement", "track"] {
+        fs::create_dir(folder.path().join(part)).expect("a folder");
+        for entry in fs::read_dir(from.join(part)).expect("records") {
+            let path = entry.expect("an entry").path();
+            fs::copy(&path, folder.path().join(part).join(path.file_name().expect("a name"))).expect("a copy");
+        }
+    }
+    let campaign = fs::read_to_string(from.join("campaign.yaml")).expect("a campaign");
+    let without: String = campaign.lines().filter(|line| !line.starts_with("simulation:")).map(|line| format!("{line}\n")).collect();
+    assert_ne!(campaign, without);
+    fs::write(folder.path().join("campaign.yaml"), without).expect("written");
+    let protocol = compiled("assessment.fp", &assessment());
+    let (alone, both) = (certified(&protocol, folder.path()), certified(&protocol, &from));
+    for (a, b) in alone.quantities.iter().zip(&both.quantities) {
+        let numbers = |statistics: &[StatisticResult]| statistics.iter().map(|one| (one.value, one.limit, one.holds)).collect::<Vec<_>>();
+        assert_eq!(numbers(&a.statistics), numbers(&b.statistics), "{}", a.id);
+        assert!(a.from.as_deref() == Some("measured") && !a.has_sides && a.values.iter().all(|value| value.simulated.is_none()));
+    }
+    assert_eq!((alone.verdict, alone.reasons), (both.verdict, both.reasons));
+}
+
+const HEAD: &str = "protocol small \"Small\"\n  extends  en14363-2016-annex-t\n\n";
+
+/// Of one quantity in place of all others.
+fn small(quantity: &str) -> Compiled {
+    let shipped = library::shipped("en14363-2016-annex-t").expect("a shipped protocol");
+    let names = shipped.text.lines().filter_map(|line| line.strip_prefix("quantity ")?.split(' ').next().map(str::to_string));
+    let removed: String = names.map(|name| format!("  quantity  {name}\n")).collect();
+    compiled("small.fp", &format!("{HEAD}remove\n{removed}\n{quantity}"))
+}
+
+fn statistics(found: &Certification) -> &[StatisticResult] {
+    &found.quantities[0].statistics
+}
+
+/// Groups by key partition the values, and a group of all is the whole.
+#[test]
+fn groups_partition_the_values() {
+    let protocol = small(
+        "quantity Q \"Q\"\n  from    measured\n  of      Q at wheelsets 1, 2\n  filter  LP20\n  value   p99.85\n  limit   mean 500 kN\n  \
+         limit   p50 500 kN for each wheelset and side\n  limit   p60 500 kN for each section\n  limit   p70 500 kN for zones 2, 3 and each side\n  \
+         limit   p80 500 kN for each zone where direction is not straight\n  limit   (n + 0) at least 1\n  limit   (total of length) at least 1 m\n  \
+         limit   (share where value <= 60 kN) at least 0.01\n  limit   (share of sections where direction is straight) at least 0.01\n",
+    );
+    let found = certified(&protocol, &root().join("examples/coach-good"));
+    let values = &found.quantities[0].values;
+    let of = |name: &str| statistics(&found).iter().filter(|one| one.name == name).collect::<Vec<_>>();
+    let counted = |name: &str| of(name).iter().map(|one| one.count).sum::<usize>();
+    assert_eq!((of("p50").len(), counted("p50")), (4, values.len()));
+    assert_eq!((of("p60").len(), counted("p60")), (13, values.len()));
+    let zones_2_3 = values.iter().filter(|value| matches!(value.zone.as_deref(), Some("2" | "3"))).count();
+    assert_eq!((of("p70").len(), counted("p70")), (2, zones_2_3));
+    // Zone 1 is straight: a group that the condition empties vanishes.
+    let scopes: Vec<&str> = of("p80").iter().map(|one| one.scope.as_str()).collect();
+    assert_eq!(scopes, ["zone 2, direction is not straight", "zone 3, direction is not straight", "zone 4, direction is not straight"]);
+    assert_eq!(of("n + 0")[0].value, Some(13.0));
+    let length: f64 = found.sections.iter().map(|section| section.length).sum();
+    let total = of("total of length")[0];
+    assert!((total.value.expect("a length") - length).abs() < 1e-9 * length && total.unit == "m");
+    let low = values.iter().filter(|value| value.difference <= 60.0).count() as f64 / values.len() as f64;
+    assert_eq!(of("share where value <= 60 kN")[0].value, Some(low));
+    assert_eq!(of("share of sections where direction is straight")[0].value, Some(3.0 / 13.0));
+    assert_eq!(found.verdict, Verdict::Validated, "{:?}", found.reasons);
+}
+
+/// A position that is recorded, in a zone that has none of its values: not assessable, not left out.
+#[test]
+fn a_group_that_should_be_there_is_missed() {
+    let protocol = small(
+        "quantity Q \"Q\"\n  from    measured\n  of      Q at wheelset 1\n  of      Q at wheelset 2 when direction is straight\n  filter  LP20\n  \
+         value   p99.85\n  limit   mean 500 kN for each zone and wheelset\n",
+    );
+    let found = certified(&protocol, &root().join("examples/coach-good"));
+    assert_eq!(found.verdict, Verdict::NotAssessable);
+    let missed = statistics(&found).iter().find(|one| one.scope == "zone 2, wheelset 2").expect("the group");
+    assert_eq!((missed.value, missed.reason.as_deref()), (None, Some("no value is available")));
+}
+
+/// What an estimate cannot be had of is a reason: one value, equal values, too few for a regression.
+#[test]
+fn too_few_values_are_a_reason() {
+    let protocol = small(
+        "quantity Q \"Q\"\n  from    measured\n  of      Q at wheelset 1 and side R\n  filter  LP20\n  value   p99.85\n  \
+         limit   std 500 kN for each section\n  limit   (prediction over speed, radius, cant at 1 m/s, 1 m, 1 mm, confidence 95 %) 500 kN for zone 3\n  \
+         limit   (regression over radius, (2 * radius) at 400 m, 800 m) 500 kN for zone 4\n  limit   (upper 95 % of mean) 500 kN for each section\n",
+    );
+    let found = certified(&protocol, &root().join("examples/coach-good"));
+    assert!(statistics(&found).iter().all(|one| one.value.is_none() && one.holds.is_none()));
+    let reason = |at: usize| statistics(&found)[at].reason.as_deref().expect("a reason");
+    assert_eq!(reason(0), "not defined for 1 value");
+    let of =
+        |word: &str| statistics(&found).iter().find(|one| one.name.starts_with(word)).and_then(|one| one.reason.clone()).expect("a reason");
+    assert!(of("prediction").contains("3 values"), "{}", of("prediction"));
+    assert!(of("regression").contains("collinear"), "{}", of("regression"));
+    assert!(of("upper").contains("site"), "{}", of("upper"));
+}
