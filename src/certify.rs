@@ -235,7 +235,18 @@ fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {
             let value = list.iter().map(|item| item.raw.as_str()).collect::<Vec<_>>().join(", ");
             items.push(DataItem { name: prefix.to_string(), value, unit: None, used: false, unit_assumed: false });
         }
-        _ => items.push(DataItem { name: prefix.to_string(), value: node.raw.clone(), unit: None, used: false, unit_assumed: false }),
+        _ => {
+            let (value, unit) = number_and_unit(&node.raw);
+            items.push(DataItem { name: prefix.to_string(), value, unit, used: false, unit_assumed: false });
+        }
+    }
+}
+
+/// `9.5 m` in its parts; any other text is a value as it is.
+fn number_and_unit(text: &str) -> (String, Option<String>) {
+    match text.split_once(' ') {
+        Some((number, unit)) if number.parse::<f64>().is_ok_and(f64::is_finite) => (number.to_string(), Some(unit.trim().to_string())),
+        _ => (text.to_string(), None),
     }
 }
 

@@ -246,7 +246,7 @@ fn an_origin_that_cannot_be_read_is_an_error() {
     assert_eq!(outside.ran.code, 2, "{}", outside.ran.stderr);
 }
 
-/// A vehicle file with units makes the same simulation, byte by byte; a wrong one is refused at its place.
+/// A vehicle file in other units makes the same simulation, byte by byte; a wrong one is refused at its place.
 #[test]
 fn the_vehicle_model_reads_units_too() {
     let coach = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach");
@@ -260,15 +260,15 @@ fn the_vehicle_model_reads_units_too() {
         command.current_dir(folder.path()).args(["simulate", "--vehicle", "vehicle.yaml", "--speed", "72 km/h", "-o", out]);
         ran(command.arg("--track").arg(track))
     };
-    assert_eq!(simulate("bare.csv").code, 0);
+    assert_eq!(simulate("plain.csv").code, 0);
     let vehicle = folder.path().join("vehicle.yaml");
-    replace(&vehicle, "  mass: 32000.0", "  mass: 32 t");
-    replace(&vehicle, "half_bogie_spacing: 9.5 ", "half_bogie_spacing: 9500 mm ");
-    replace(&vehicle, "  kx: 1.2e+7", "  kx: 12 kN/mm");
+    replace(&vehicle, "  mass: 32000.0 kg", "  mass: 32 t");
+    replace(&vehicle, "half_bogie_spacing: 9.5 m", "half_bogie_spacing: 9500 mm");
+    replace(&vehicle, "  kx: 1.2e+7 N/m", "  kx: 12 kN/mm");
     let stated = simulate("stated.csv");
     assert_eq!(stated.code, 0, "{}", stated.stderr);
     let read = |name: &str| fs::read(folder.path().join(name)).expect("readable");
-    assert_eq!(read("bare.csv"), read("stated.csv"));
+    assert_eq!(read("plain.csv"), read("stated.csv"));
     replace(&vehicle, "  mass: 32 t", "  mass: 314 kN");
     let wrong = simulate("wrong.csv");
     assert_eq!(wrong.code, 2, "{}", wrong.stderr);

@@ -238,7 +238,7 @@ fn four_limits_are_doubled() {
 fn limits_follow_the_wheel_load() {
     for (written, wheel_load) in [("70", 70.0), ("62.5", 62.5)] {
         let folder = copy(Path::new("examples/coach"));
-        replace(&folder.path().join("vehicle.yaml"), "static_wheel_load: 54.546", &format!("static_wheel_load: {written}"));
+        replace(&folder.path().join("vehicle.yaml"), "static_wheel_load: 54.546 kN", &format!("static_wheel_load: {written} kN"));
         let found = certified(folder.path(), ANNEX_T, &[]).expect("certified");
         for (id, base) in [("Q_qst", 4.0), ("Q_max", 6.0)] {
             let quantity = found.quantities.iter().find(|quantity| quantity.id == id).expect("there");

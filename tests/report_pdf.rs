@@ -8,7 +8,8 @@ use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
 use certification::{HOSTILE, LONG};
-use fishplate::report::typst::{Attachment, Pdf, typeset};
+use fishplate::report::pdf::{Attachment, Pdf};
+use fishplate::report::typst::typeset;
 use fishplate::report::view::view;
 use fishplate::result::{Certification, Verdict};
 

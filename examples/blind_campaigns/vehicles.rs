@@ -113,7 +113,7 @@ fn nominal() -> Result<Vehicle, String> {
     let path = example().join("vehicle.yaml");
     let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     let source = fishplate::source::Source::new("vehicle.yaml", text);
-    let tree = fishplate::yaml::load(&source, &mut fishplate::problem::Problems::default()).ok_or("vehicle.yaml is not valid YAML")?;
-    let number = |key: &str| tree.lookup(key).and_then(fishplate::yaml::Node::number);
-    Vehicle::from_values(number).map_err(|_| "vehicle.yaml lacks a parameter".to_string())
+    let tree = fishplate::yaml::load(&source, &mut fishplate::problem::Problems::default()).ok_or("vehicle.yaml is no YAML")?;
+    let number = |key: &str| tree.lookup(key).and_then(|node| fishplate::simulate::number_of(node, key));
+    Vehicle::from_values(number).map_err(|_| "vehicle.yaml lacks something".to_string())
 }

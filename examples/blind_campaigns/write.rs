@@ -148,7 +148,7 @@ fn track_text(track: &TrackTable) -> String {
 fn vehicle_text(case: &Case, vehicle: &Vehicle) -> String {
     let design = case.design;
     let mut text = format!(
-        "name: {}\ncategory: {}\nrunning_gear: bogies\nsecondary_suspension: {}\nstatic_wheel_load: {:.4}\n",
+        "name: {}\ncategory: {}\nrunning_gear: bogies\nsecondary_suspension: {}\nstatic_wheel_load: {:.4} kN\n",
         design.name,
         design.category,
         design.secondary_suspension,
@@ -157,14 +157,15 @@ fn vehicle_text(case: &Case, vehicle: &Vehicle) -> String {
     let mut group = "";
     for parameter in fishplate::model::PARAMETERS {
         let value = vehicle.get(parameter.key).unwrap_or(0.0);
+        let unit = if parameter.unit == "-" { String::new() } else { format!(" {}", parameter.unit) };
         match parameter.key.split_once('.') {
-            None => text += &format!("{}: {value:e}\n", parameter.key),
+            None => text += &format!("{}: {value:e}{unit}\n", parameter.key),
             Some((own, name)) => {
                 if own != group {
                     text += &format!("{own}:\n");
                     group = own;
                 }
-                let value = if parameter.key == "out_of_roundness.side" { "both".to_string() } else { format!("{value:e}") };
+                let value = if parameter.key == "out_of_roundness.side" { "both".to_string() } else { format!("{value:e}{unit}") };
                 text += &format!("  {name}: {value}\n");
             }
         }

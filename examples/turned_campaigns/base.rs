@@ -46,8 +46,9 @@ impl Base {
             |(operator, ..): &(Operator, f64, Vec<String>)| matches!(operator, Operator::Gain | Operator::Offset | Operator::Polarity);
         let plan = plan.filter(|plan| plan.formulas.is_empty() && plan.operators.iter().all(can_go));
         let Plan { settings, operators: chain, .. } = plan.ok_or_else(|| format!("{shown} hides what cannot be taken off"))?;
-        let mut vehicle = Vehicle::from_values(|key| campaign.vehicle.lookup(key).and_then(fishplate::yaml::Node::number))
-            .map_err(|_| format!("{shown}: the vehicle file is not whole"))?;
+        let mut vehicle =
+            Vehicle::from_values(|key| campaign.vehicle.lookup(key).and_then(|node| fishplate::simulate::number_of(node, key)))
+                .map_err(|_| format!("{shown}: the vehicle file is not whole"))?;
         for (key, value) in &settings {
             vehicle.set(key, *value).map_err(|_| format!("{shown}: the vehicle has no `{key}` of {value}"))?;
         }

@@ -82,18 +82,21 @@ fn measured(
 fn static_load(base: &Base, moved: &[(String, f64)]) -> Option<f64> {
     let mut vehicle = base.vehicle.clone();
     let (_, mass) = moved.iter().find(|(key, _)| key == "car_body.mass")?;
-    let before = base.campaign.vehicle.lookup("static_wheel_load")?.number()?;
+    let before: f64 = base.campaign.vehicle.lookup("static_wheel_load")?.scalar_text()?.split(' ').next()?.parse().ok()?;
     let load = base.vehicle.static_wheel_load();
     vehicle.set("car_body.mass", *mass).ok()?;
     Some(before + (vehicle.static_wheel_load() - load) * 1e-3)
 }
 
-/// Sets numbers in YAML; missing maps are added.
+/// YAML with numbers set, in the units that stand behind those before; maps that are not there are made.
 fn edited<'a>(bytes: &[u8], numbers: impl Iterator<Item = (Vec<&'a str>, f64)>) -> Result<Vec<u8>, String> {
     let mut tree: serde_yaml::Value = serde_yaml::from_slice(bytes).map_err(|error| error.to_string())?;
     for (path, number) in numbers {
         let place = path.iter().fold(&mut tree, |place, key| &mut place[*key]);
-        *place = serde_yaml::Value::from(number);
+        *place = match place.as_str().and_then(|before| before.split_once(' ')) {
+            Some((_, unit)) => serde_yaml::Value::from(format!("{number} {unit}")),
+            None => serde_yaml::Value::from(number),
+        };
     }
     serde_yaml::to_string(&tree).map(String::into_bytes).map_err(|error| error.to_string())
 }

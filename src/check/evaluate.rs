@@ -5,35 +5,22 @@ use std::cell::RefCell;
 use super::plan::{Expr, Kind, Operator, Scalar};
 use super::possible::possible;
 
-/// What the names of an expression stand for. Each answer may be missing, with the reason.
+/// What the names of an expression stand for. Each answer may be missing, with the reason; what is not answered is not known.
 pub trait Values {
-    fn vehicle(&self, index: usize) -> Result<Scalar, String>;
-    fn column(&self, index: usize) -> Result<Scalar, String>;
-    /// Start and end of the section on the axis, SI.
-    fn extent(&self) -> Result<(f64, f64), String>;
-    fn input(&self, index: usize) -> Result<f64, String>;
-    /// Simulated and measured value of a pair.
-    fn sides(&self) -> Result<(f64, f64), String>;
-    fn limit_of(&self, statistic: &str) -> Result<f64, String>;
-}
-
-/// Nothing is known: what constants alone amount to.
-#[derive(Clone, Copy, Debug)]
-pub struct Nothing;
-
-impl Values for Nothing {
     fn vehicle(&self, _: usize) -> Result<Scalar, String> {
         Err("vehicle data are not known here".into())
     }
     fn column(&self, _: usize) -> Result<Scalar, String> {
         Err("section data are not known here".into())
     }
+    /// Start and end of the section on the axis, SI.
     fn extent(&self) -> Result<(f64, f64), String> {
         Err("there is no section here".into())
     }
     fn input(&self, _: usize) -> Result<f64, String> {
         Err("there is no signal here".into())
     }
+    /// Simulated and measured value of a pair.
     fn sides(&self) -> Result<(f64, f64), String> {
         Err("there is no pair of values here".into())
     }
@@ -41,6 +28,12 @@ impl Values for Nothing {
         Err(format!("the limit of {statistic} is not known here"))
     }
 }
+
+/// Nothing is known: what constants alone amount to.
+#[derive(Clone, Copy, Debug)]
+pub struct Nothing;
+
+impl Values for Nothing {}
 
 /// The same values, and which columns of the section were asked for on the way.
 #[derive(Debug)]

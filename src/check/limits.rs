@@ -1,6 +1,6 @@
 //! Checks limits: statistic, bound, factors, conditions, and to which sections each applies.
 
-use super::evaluate::{Nothing, Values, number, words};
+use super::evaluate::{Values, number, words};
 use super::names::normalised;
 use super::plan::{DatumKind, Estimate, EstimateKind, Expr, Key, Kind, Limit, OfGroup, Scalar, Scope as LimitScope, Type};
 use super::scalars::{Scope, in_words};
@@ -397,21 +397,6 @@ struct Others<'a> {
 }
 
 impl Values for Others<'_> {
-    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
-        Nothing.vehicle(index)
-    }
-    fn column(&self, index: usize) -> Result<Scalar, String> {
-        Nothing.column(index)
-    }
-    fn extent(&self) -> Result<(f64, f64), String> {
-        Nothing.extent()
-    }
-    fn input(&self, index: usize) -> Result<f64, String> {
-        Nothing.input(index)
-    }
-    fn sides(&self) -> Result<(f64, f64), String> {
-        Nothing.sides()
-    }
     fn limit_of(&self, statistic: &str) -> Result<f64, String> {
         let unknown = || format!("the limit of {statistic} is not known here");
         let mut found = self.limits.iter().filter(|limit| limit.estimate.name == statistic && same_sections(&limit.scope, &self.of.scope));

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::Checker;
-use super::evaluate::{Nothing, Values, number, words};
+use super::evaluate::{Values, number, words};
 use super::names::{Assignment, bare_word, normalised};
 use super::plan::{
-    Axis, Center, DatumKind, Evaluation, Expr, InputSide, Kind, Position, Quantity, QuantityWords, Records, Scalar, Side, Signal, Step,
+    Axis, Center, DatumKind, Evaluation, Expr, InputSide, Kind, Position, Quantity, QuantityWords, Records, Side, Signal, Step,
     Valued,
 };
 use super::scalars::Scope;
@@ -475,23 +475,8 @@ fn of_equal_sides(difference: &Expr) -> Option<f64> {
 struct Alike(f64);
 
 impl Values for Alike {
-    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
-        Nothing.vehicle(index)
-    }
-    fn column(&self, index: usize) -> Result<Scalar, String> {
-        Nothing.column(index)
-    }
-    fn extent(&self) -> Result<(f64, f64), String> {
-        Nothing.extent()
-    }
-    fn input(&self, index: usize) -> Result<f64, String> {
-        Nothing.input(index)
-    }
     fn sides(&self) -> Result<(f64, f64), String> {
         Ok((self.0, self.0))
-    }
-    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
-        Nothing.limit_of(statistic)
     }
 }
 

@@ -7,6 +7,7 @@ use super::Color;
 use crate::data::write::Outputs;
 use crate::disk::SetKind;
 use crate::problem::{Problem, Problems, acts, plain};
+use crate::report::pdf::Attachment;
 use crate::report::study::Document;
 use crate::report::{html, typst};
 
@@ -159,7 +160,7 @@ pub fn reports(
     data: &Document,
     figures: &[(String, String)],
 ) -> Result<Vec<(String, Vec<u8>)>, Problems> {
-    let attachment = typst::Attachment { name, mime: "application/json", bytes: numbers.as_bytes(), description };
+    let attachment = Attachment { name, mime: "application/json", bytes: numbers.as_bytes(), description };
     let pdf = typst::typeset_study(data, figures, &[attachment])?.bytes;
     let html = html::study_html(data, figures)?.into_bytes();
     Ok(vec![("report.pdf".into(), pdf), ("report.html".into(), html), (name.into(), numbers.into_bytes())])

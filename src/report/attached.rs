@@ -1,6 +1,6 @@
 //! Files attached to a report: its numbers and the protocol, so that the evaluation can be repeated from the report alone.
 
-use super::typst::Attachment;
+use super::pdf::Attachment;
 use crate::result::{Certification, ProtocolFile};
 
 /// Name of the results attached to a PDF.

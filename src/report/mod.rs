@@ -10,6 +10,7 @@ pub mod findings;
 pub mod html;
 pub mod json;
 pub mod number;
+pub mod pdf;
 pub mod study;
 pub mod tables;
 #[cfg_attr(not(feature = "typeset"), path = "no_typesetter.rs")]

@@ -1,27 +1,11 @@
 //! Replaces `typst` in a build without the feature `typeset`: the same functions, which return an error.
 
 use crate::problem::{Problem, Problems};
+use crate::report::pdf::{Attachment, Pdf};
 use crate::report::study::Document;
 use crate::report::view::ReportData;
 
-/// A file attached to the PDF.
-#[derive(Clone, Copy, Debug)]
-pub struct Attachment<'a> {
-    pub name: &'a str,
-    pub mime: &'a str,
-    pub bytes: &'a [u8],
-    pub description: &'a str,
-}
-
-/// A typeset report; not available in this build.
-#[derive(Debug)]
-pub struct Pdf {
-    pub bytes: Vec<u8>,
-    pub pages: usize,
-    pub warnings: Problems,
-}
-
-/// Not available in this build.
+/// Refuses: this build has no typesetter.
 ///
 /// # Errors
 ///

@@ -191,8 +191,4 @@ impl Values for Known<'_> {
     fn sides(&self) -> Result<(f64, f64), String> {
         self.sides.ok_or_else(|| "there is no pair of values here".into())
     }
-
-    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
-        Err(format!("the limit of {statistic} is not known here"))
-    }
 }

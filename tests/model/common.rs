@@ -35,7 +35,8 @@ pub fn vehicle(campaign: &str, set: &[(&str, f64)]) -> Vehicle {
             for (key, value) in entries {
                 flatten(&format!("{prefix}.{}", key.as_str().unwrap()), value, flat);
             }
-        } else if let Some(number) = value.as_f64() {
+        } else if let Some(number) = value.as_f64().or_else(|| value.as_str()?.split(' ').next()?.parse().ok()) {
+            // The unit behind a number is that of the model.
             flat.insert(prefix.trim_start_matches('.').to_owned(), number);
         }
     }

@@ -65,7 +65,7 @@ fn a_campaign_that_lacks_what_the_model_needs() {
     assert_eq!(ran.code, 2);
     assert!(ran.stderr.contains("the campaign has no `track`"), "{}", ran.stderr);
     let place = Place::new();
-    place.replace("small/vehicle.yaml", "  kx: 1.2e+7\n", "");
+    place.replace("small/vehicle.yaml", "  kx: 1.2e+7 N/m\n", "");
     let ran = place.simulate("out", &[]);
     assert_eq!(ran.code, 2);
     assert!(ran.stderr.contains("`primary.kx`"), "{}", ran.stderr);

@@ -103,7 +103,7 @@ fn files_that_are_wrong() {
     place.write("small/track/S10.csv", &track);
 
     let vehicle = place.text("small/vehicle.yaml");
-    place.replace("small/vehicle.yaml", "  ky: 4.0e+6\n", "");
+    place.replace("small/vehicle.yaml", "  ky: 4.0e+6 N/m\n", "");
     refused(&place, &speed, 2, &["key-missing", "`primary.ky`"]);
     place.write("small/vehicle.yaml", &vehicle.replace("radius: 0.46", "radius: -1"));
     refused(&place, &speed, 2, &["range", "`wheelset.radius` is -1", "small/vehicle.yaml:"]);

@@ -16,30 +16,11 @@ use typst_layout::PagedDocument;
 use typst_pdf::{PdfOptions, PdfStandard, PdfStandards, Timestamp};
 
 use crate::problem::{Problem, Problems};
+use crate::report::pdf::{Attachment, Pdf};
 use crate::report::study::Document;
 use crate::report::view::ReportData;
 use text::Printable;
 use world::Files;
-
-/// A file attached to the PDF.
-#[derive(Clone, Copy, Debug)]
-pub struct Attachment<'a> {
-    /// File name as readers list it: `results.json`.
-    pub name: &'a str,
-    /// Media type: `application/json`.
-    pub mime: &'a str,
-    pub bytes: &'a [u8],
-    pub description: &'a str,
-}
-
-/// A typeset report.
-#[derive(Debug)]
-pub struct Pdf {
-    pub bytes: Vec<u8>,
-    pub pages: usize,
-    /// Warnings of Typst; empty unless a template is at fault.
-    pub warnings: Problems,
-}
 
 /// Typesets a report as PDF/A-3a and PDF/UA-1.
 ///

@@ -1,0 +1,82 @@
+//! Files that a campaign is read from, but its records.
+
+use std::path::PathBuf;
+
+use super::{CAMPAIGN_FILE, Campaign, RecordKind};
+use crate::data::folder::Place;
+use crate::data::text::read_any;
+use crate::disk;
+use crate::problem::Problem;
+
+/// A file that was read, and its fingerprint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadFile {
+    /// Inside the campaign, with `/`.
+    pub path: String,
+    pub sha256: String,
+    pub bytes: u64,
+}
+
+/// What a campaign is read from: absolute paths.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    /// Of the campaign.
+    pub folder: PathBuf,
+    /// Of its records.
+    pub folders: Vec<PathBuf>,
+    pub files: Vec<PathBuf>,
+}
+
+impl Campaign {
+    /// Folders and files that the campaign is read from, as far as they are named, without symbolic links.
+    pub fn inputs(&self) -> Inputs {
+        let real = |place: &Place| disk::real(&place.path).ok().flatten().unwrap_or_else(|| place.path.clone());
+        let folders = RecordKind::ALL.into_iter().filter_map(|kind| Some(real(&self.record_folder(kind).ok()?.0)));
+        let named = self.files.iter().filter_map(|file| self.folder.place(&file.path, &self.tree.span.part(0..0)).ok());
+        let files = named.chain(self.vehicle_files().unwrap_or_default());
+        Inputs { folder: self.folder.real().to_path_buf(), folders: folders.collect(), files: files.map(|place| real(&place)).collect() }
+    }
+
+    /// Every file that the campaign names but its `campaign.yaml` and the records of one kind, with its path inside and its bytes:
+    /// what a copy of the campaign needs.
+    ///
+    /// # Errors
+    /// A file cannot be read, or lies outside.
+    pub fn other_files(&self, but: RecordKind) -> Result<Vec<(String, Vec<u8>)>, Problem> {
+        let mut inside: Vec<String> = self.files.iter().map(|file| file.path.clone()).filter(|path| path != CAMPAIGN_FILE).collect();
+        for kind in RecordKind::ALL.into_iter().filter(|kind| *kind != but && self.has(*kind)) {
+            for name in &self.names {
+                inside.push(self.record_place(kind, name)?.inside);
+            }
+        }
+        for place in self.vehicle_files()? {
+            if !inside.contains(&place.inside) {
+                inside.push(place.inside);
+            }
+        }
+        let read = |inside: String| {
+            let place = self.folder.place(&inside, &self.tree.span.part(0..0))?;
+            Ok((inside, read_any(&place.path, &place.shown)?))
+        };
+        inside.into_iter().map(read).collect()
+    }
+
+    /// Files that the vehicle names, as far as they are there.
+    ///
+    /// # Errors
+    /// A name leads outside.
+    pub fn vehicle_files(&self) -> Result<Vec<Place>, Problem> {
+        let mut named = vec!["profile.csv".to_string(), "profile_worn.csv".to_string()];
+        let maps = self.vehicle.entries().iter().flat_map(|(_, node)| node.entries());
+        named.extend(maps.filter_map(|(_, node)| Some(node.scalar_text()?.to_string())).filter(|text| text.ends_with(".csv")));
+        let mut found: Vec<Place> = Vec::new();
+        for written in named {
+            let place = self.folder.place(&written, &self.tree.span.part(0..0))?;
+            let unreadable = |error| Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.shown));
+            if disk::is_file(&place.path).map_err(unreadable)? && !found.contains(&place) {
+                found.push(place);
+            }
+        }
+        Ok(found)
+    }
+}

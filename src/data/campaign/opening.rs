@@ -1,0 +1,147 @@
+//! What `campaign.yaml` says of the layout of the folder, read key by key.
+
+use std::sync::Arc;
+
+use super::facts::LAYOUT;
+use super::{Parameter, ReadFile, RecordKind};
+use crate::data::folder::{Folder, Place};
+use crate::data::origin::{ORIGIN_KEY, Origin};
+use crate::data::table::Table;
+use crate::data::text::read_text;
+use crate::disk;
+use crate::problem::{Problem, Problems};
+use crate::source::{Source, Span, Spanned};
+use crate::yaml::{self, Node, Value};
+
+/// The column of the section table that names the sections; without it, the first column does.
+const SECTION_KEY: &str = "section";
+
+/// A campaign that is being opened, and what was wrong with it so far.
+pub(super) struct Opening<'a> {
+    pub(super) folder: Folder,
+    pub(super) files: Vec<ReadFile>,
+    pub(super) problems: &'a mut Problems,
+}
+
+impl Opening<'_> {
+    fn keep<T>(&mut self, result: Result<T, Problem>) -> Option<T> {
+        result.map_err(|problem| self.problems.push(problem)).ok()
+    }
+
+    pub(super) fn yaml(&mut self, place: &Place, named: Option<&Span>) -> Option<(Arc<Source>, Node)> {
+        let (source, sha256) = self.keep(read_text(&place.path, &place.shown).map_err(|problem| named_at(problem, named)))?;
+        let bytes = self.keep(size(place))?;
+        self.files.push(ReadFile { path: place.inside.clone(), sha256, bytes });
+        let tree = yaml::load(&source, self.problems)?;
+        Some((source, tree))
+    }
+
+    /// The text of a key, if it is there; it must be a single value then.
+    pub(super) fn text(&mut self, tree: &Node, key: &str) -> Option<Spanned<String>> {
+        let node = tree.get(key)?;
+        match node.scalar_text() {
+            Some(text) if !text.trim().is_empty() => Some(Spanned::new(text.to_string(), node.span.clone())),
+            _ => {
+                let says = format!("`{key}` must be text; this is {}", node.kind_in_words());
+                self.problems.push(Problem::error("wrong-kind", says).at(&node.span));
+                None
+            }
+        }
+    }
+
+    /// A key of the layout that is one letter off would be printed as a fact and otherwise ignored.
+    pub(super) fn misspelt(&mut self, tree: &Node) {
+        let layout = || LAYOUT.into_iter().chain(RecordKind::ALL.into_iter().map(RecordKind::key));
+        for (key, _) in tree.entries() {
+            let off = |known: &&str| strsim::damerau_levenshtein(&key.text.to_lowercase(), known) <= 1;
+            if layout().any(|known| known == key.text) {
+                continue;
+            }
+            if let Some(near) = layout().find(off) {
+                let problem = Problem::error("unknown-key", format!("a campaign has no key `{}`", key.text)).at(&key.span);
+                self.problems.push(problem.help(format!("did you mean `{near}`?")));
+            }
+        }
+    }
+
+    pub(super) fn vehicle(&mut self, tree: &Node) -> Option<Node> {
+        let written = self.text(tree, "vehicle")?;
+        let place = self.folder.place(&written.value, &written.span);
+        let place = self.keep(place)?;
+        let (_, vehicle) = self.yaml(&place, Some(&written.span))?;
+        if matches!(vehicle.value, Value::Map(_)) {
+            return Some(vehicle);
+        }
+        let says = format!("a vehicle is a map of keys and values; this is {}", vehicle.kind_in_words());
+        self.problems.push(Problem::error("wrong-kind", says).at(&vehicle.span));
+        None
+    }
+
+    pub(super) fn sections(&mut self, tree: &Node) -> Option<Table> {
+        let written = self.text(tree, "sections")?;
+        let place = self.folder.place(&written.value, &written.span);
+        let place = self.keep(place)?;
+        let mut found = Problems::default();
+        let table = Table::read(&place.path, &place.shown, Some(SECTION_KEY), &mut found);
+        for problem in found.0 {
+            self.problems.push(named_at(problem, Some(&written.span)));
+        }
+        let table = table?;
+        let bytes = self.keep(size(&place))?;
+        self.files.push(ReadFile { path: place.inside, sha256: table.sha256.clone(), bytes });
+        Some(table)
+    }
+
+    /// A file, or what stands in `campaign.yaml` itself.
+    pub(super) fn origin(&mut self, tree: &Node) -> Option<Origin> {
+        let node = tree.get(ORIGIN_KEY)?;
+        if matches!(node.value, Value::Map(_)) {
+            return Origin::read(node, self.problems);
+        }
+        let written = self.text(tree, ORIGIN_KEY)?;
+        let place = self.folder.place(&written.value, &written.span);
+        let place = self.keep(place)?;
+        let (_, found) = self.yaml(&place, Some(&written.span))?;
+        Origin::read(&found, self.problems)
+    }
+
+    pub(super) fn parameters(&mut self, tree: &Node) -> Vec<Parameter> {
+        let Some(node) = tree.get("parameters") else { return Vec::new() };
+        if !matches!(node.value, Value::Map(_) | Value::Null) {
+            let says = format!("`parameters` must be a map of names and values; this is {}", node.kind_in_words());
+            self.problems.push(Problem::error("wrong-kind", says).at(&node.span));
+        }
+        for (key, value) in node.entries() {
+            // What the campaign lacks was meant, whatever the protocol calls its parameters.
+            let layout = ["vehicle", "sections", "protocol"].into_iter().chain(RecordKind::ALL.map(RecordKind::key));
+            if layout.into_iter().any(|known| known == key.text) && tree.get(&key.text).is_none() {
+                let says = format!("`{}` stands among the parameters of the protocol", key.text);
+                let problem = Problem::error("unknown-key", says).at(&key.span);
+                self.problems.push(problem.help(format!("`{}` is a key of the campaign: it stands at the left margin", key.text)));
+                continue;
+            }
+            if value.scalar_text().is_none() {
+                let says = format!("the parameter `{}` must be a single value; this is {}", key.text, value.kind_in_words());
+                self.problems.push(Problem::error("wrong-kind", says).at(&value.span));
+            }
+        }
+        node.entries().iter().map(|(name, value)| Parameter { name: name.clone(), value: value.clone() }).collect()
+    }
+}
+
+/// A problem of a file as a whole is shown where the file is named.
+fn named_at(problem: Problem, span: Option<&Span>) -> Problem {
+    match span {
+        Some(span) if problem.at.is_none() => problem.at(span),
+        _ => problem,
+    }
+}
+
+/// Size of a file that was just read.
+fn size(place: &Place) -> Result<u64, Problem> {
+    match disk::kind(&place.path) {
+        Ok(Some(disk::Kind::File(size))) => Ok(size),
+        Ok(_) => Err(Problem::error("file-missing", format!("`{}` went away while it was read", place.shown))),
+        Err(error) => Err(Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.shown))),
+    }
+}

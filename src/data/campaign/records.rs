@@ -1,0 +1,129 @@
+//! Where the records of a campaign are: a folder of each kind, a file for each section.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use super::{Campaign, ReadFile};
+use crate::data::folder::{Place, check_file_name};
+use crate::data::record::{Record, Wanted, read_record};
+use crate::data::table::Cell;
+use crate::data::text::other_format;
+use crate::disk;
+use crate::problem::Problem;
+use crate::source::{Span, Spanned};
+
+/// The kinds of records that a campaign has, each in a folder of its own with a file per section.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum RecordKind {
+    Measurement,
+    Simulation,
+    Track,
+}
+
+impl RecordKind {
+    pub const ALL: [Self; 3] = [Self::Measurement, Self::Simulation, Self::Track];
+
+    /// The key in `campaign.yaml`.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Measurement => "measurement",
+            Self::Simulation => "simulation",
+            Self::Track => "track",
+        }
+    }
+}
+
+/// Most comparisons of names with names that are made to suggest what was meant for missing records of a campaign.
+const MOST_COMPARISONS: usize = 1_000_000;
+
+impl Campaign {
+    /// The names of the measured records.
+    pub(super) fn measured(&self) -> Result<Vec<Cell>, Problem> {
+        let kind = RecordKind::Measurement;
+        let (place, span) = self.record_folder(kind)?;
+        let entries = disk::names(&place.path).map_err(|error| no_folder(&error, &place.shown).at(span))?;
+        let mut names: Vec<String> = entries
+            .iter()
+            .filter_map(|name| Some(name.to_str()?.strip_suffix(".csv")?.to_string()))
+            .filter(|name| !name.starts_with('.'))
+            .collect();
+        if names.is_empty() {
+            let others: Vec<String> = entries.into_iter().filter_map(|name| name.into_string().ok()).collect();
+            if let Some(problem) = others.iter().find_map(|name| other_format(Path::new(name), &format!("{}/{name}", place.inside))) {
+                return Err(problem.at(span));
+            }
+            return Err(Problem::error("no-records", format!("there is no CSV file in `{}`", place.shown)).at(span));
+        }
+        names.sort();
+        Ok(names.into_iter().map(|name| Spanned::new(name, span.clone())).collect())
+    }
+
+    pub(super) fn record_folder(&self, kind: RecordKind) -> Result<(Place, &Span), Problem> {
+        let Some((_, written)) = self.record_folders.iter().find(|(known, _)| *known == kind) else {
+            return Err(Problem::error("key-missing", format!("the campaign has no `{}`: the folder of its records", kind.key()))
+                .at(&self.tree.span.part(0..0)));
+        };
+        Ok((self.folder.place(&written.value, &written.span)?, &written.span))
+    }
+
+    /// Whether the campaign names a folder for records of a kind.
+    pub fn has(&self, kind: RecordKind) -> bool {
+        self.record_folders.iter().any(|(known, _)| *known == kind)
+    }
+
+    /// Where the record of a section is, which must exist.
+    ///
+    /// # Errors
+    /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in that folder).
+    pub fn record_place(&self, kind: RecordKind, section: &Cell) -> Result<Place, Problem> {
+        check_file_name(&section.value, &section.span)?;
+        let (folder, span) = self.record_folder(kind)?;
+        let place = self.folder.place(&format!("{}/{}.csv", folder.inside, section.value), &section.span)?;
+        let unreadable = |error| Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.inside)).at(&section.span);
+        if disk::is_file(&place.path).map_err(unreadable)? {
+            return Ok(place);
+        }
+        if !disk::is_folder(&folder.path).map_err(unreadable)? {
+            return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside)).at(span));
+        }
+        let others = self.strangers[kind as usize].get_or_init(|| self.strangers(&folder.path));
+        let in_other_format = |name: &String| {
+            let same = Path::new(name).file_stem().and_then(|stem| stem.to_str()) == Some(&section.value);
+            other_format(Path::new(name), &format!("{}/{name}", folder.inside)).filter(|_| same)
+        };
+        if let Some(problem) = others.iter().find_map(in_other_format) {
+            return Err(problem.at(&section.span));
+        }
+        let problem = Problem::error("file-missing", format!("there is no file `{}`", place.inside)).at(&section.span);
+        if others.len().saturating_mul(self.names.len()) > MOST_COMPARISONS {
+            return Err(problem);
+        }
+        Err(problem.suggest(&format!("{}.csv", section.value), others.iter().map(String::as_str)))
+    }
+
+    /// Files of a folder but the records of sections: the record of another section is not what was meant.
+    fn strangers(&self, folder: &Path) -> Vec<String> {
+        let sections: HashSet<&str> = self.names.iter().map(|name| name.value.as_str()).collect();
+        let names = disk::names(folder).unwrap_or_default().into_iter().filter_map(|name| name.into_string().ok());
+        names.filter(|name| !name.strip_suffix(".csv").is_some_and(|name| sections.contains(name))).collect()
+    }
+
+    /// Reads the wanted columns of a section's record. Its faults go into results, which must be the same wherever the campaign lies:
+    /// they name the record by its path inside the campaign.
+    ///
+    /// # Errors
+    /// As [`Campaign::record_place`] and [`read_record`].
+    pub fn read(&self, kind: RecordKind, section: &Cell, wanted: &[Wanted]) -> Result<(Record, ReadFile), Vec<Problem>> {
+        let place = self.record_place(kind, section).map_err(|problem| vec![problem])?;
+        let record = read_record(&place.path, &place.inside, wanted)?;
+        let file = ReadFile { path: place.inside, sha256: record.sha256.clone(), bytes: record.bytes as u64 };
+        Ok((record, file))
+    }
+}
+
+fn no_folder(error: &std::io::Error, shown: &str) -> Problem {
+    match disk::missing(error) {
+        true => Problem::error("folder-missing", format!("there is no folder `{shown}`")),
+        false => Problem::error("folder-unreadable", format!("`{shown}` cannot be read: {error}")),
+    }
+}
