@@ -48,13 +48,17 @@ pub fn choices(study: &ParameterStudy) -> String {
         layer.text("validated", (WIDTH - 2.0, top - 6.0), &Font::right(SMALL).color(MUTED));
     });
     frame.x_axis(&mut canvas, &x.ticks(8), "largest statistic / limit, all sections");
-    let mut y = top;
+    let (mut y, mut limit) = (top, vec![top]);
     for parameter in &study.parameters {
         let title = cut(&parameter.title, TEXT, WIDTH - SHARES - 8.0);
         canvas.draw(|layer| {
-            // No grid lines behind the title; the background beyond the limit is kept.
-            let end = (6.0 + text_width(&title, TEXT)).min(x.at(1.0) - 1.0);
-            layer.rect((0.0, y + 3.0), (end.max(0.0), y + 13.0), WHITE);
+            // No grid behind the title, and no limit; the ground beyond the limit stays whole.
+            let end = 6.0 + text_width(&title, TEXT);
+            layer.rect((0.0, y + 3.0), (end.min(x.at(1.0)).max(0.0), y + 13.0), WHITE);
+            if end > x.at(1.0) - 1.0 {
+                layer.rect((x.at(1.0), y + 3.0), (end.clamp(x.at(1.0), frame.right()), y + 13.0), BEYOND);
+                limit.extend([y + 2.0, y + 14.0]);
+            }
             layer.text(&title, (2.0, y + 8.0), &Font::left(TEXT).bold(parameter.decides));
         });
         y += GAP;
@@ -63,8 +67,11 @@ pub fn choices(study: &ParameterStudy) -> String {
             y += ROW;
         }
     }
+    limit.push(frame.bottom());
     canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
-        layer.line((x.at(1.0), top), (x.at(1.0), frame.bottom()), INK, 0.9);
+        for piece in limit.chunks_exact(2) {
+            layer.line((x.at(1.0), piece[0]), (x.at(1.0), piece[1]), INK, 0.9);
+        }
     });
     canvas.draw(|layer| layer.line((frame.left(), frame.bottom()), (frame.right(), frame.bottom()), INK, 0.7));
     canvas.finish()

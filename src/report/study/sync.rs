@@ -61,7 +61,7 @@ fn shares(found: &SyncStudy) -> Vec<Item> {
     let row = |at: &AtOffset| {
         let (validated, selections) = match &at.study {
             Ok(study) => (share(&study.share), number::large(study.combinations)),
-            Err(reason) => (reason.clone(), number::NONE.to_owned()),
+            Err(_) => (number::NONE.to_owned(), number::NONE.to_owned()),
         };
         let of = |share: f64, interval| super::share_with(share, interval);
         let (lost, gained) = match &at.flips {
@@ -93,18 +93,44 @@ fn shares(found: &SyncStudy) -> Vec<Item> {
             },
         },
     ];
-    let lost: Vec<String> = found
+    let none: Vec<String> = found
         .offsets
         .iter()
-        .flat_map(|at| {
-            at.lost.iter().map(move |(section, reason)| format!("Offset {}: {section} is not used: {reason}", shown(found, at.offset)))
+        // What stands in brackets are the sections that are lost, which a table of their own lists.
+        .filter_map(|at| {
+            let reason = at.study.as_ref().err()?;
+            Some(format!("Offset {}: {}", shown(found, at.offset), reason.split(" (").next().unwrap_or(reason)))
         })
         .collect();
-    if !lost.is_empty() {
-        items.push(Item::text("Sections that cannot be used at some offsets, so that the selections differ:"));
-        items.push(Item::List { entries: lost });
+    if !none.is_empty() {
+        items.push(Item::text("Offsets at which no selection can be made:"));
+        items.push(Item::List { entries: none });
+    }
+    let rows: Vec<Vec<String>> = found.offsets.iter().flat_map(|at| lost(at, &shown(found, at.offset))).collect();
+    if !rows.is_empty() {
+        items.push(Item::Table {
+            table: Table {
+                caption: "Sections that cannot be used at some offsets, so that the selections differ; the reason of the first of them"
+                    .into(),
+                head: vec![Head::short("Offset"), Head::text("Sections"), Head::text("Reason")],
+                rows,
+            },
+        });
     }
     items
+}
+
+/// A row for each rule that sections do not meet at an offset.
+fn lost(at: &AtOffset, offset: &str) -> Vec<Vec<String>> {
+    let rule = |reason: &str| reason.split(": ").next().unwrap_or(reason).to_owned();
+    let mut rules: Vec<(String, Vec<&str>, &str)> = Vec::new();
+    for (section, reason) in &at.lost {
+        match rules.iter_mut().find(|(known, ..)| *known == rule(reason)) {
+            Some((_, sections, _)) => sections.push(section),
+            None => rules.push((rule(reason), vec![section], reason)),
+        }
+    }
+    rules.into_iter().map(|(_, sections, reason)| vec![offset.to_owned(), sections.join(", "), reason.to_owned()]).collect()
 }
 
 fn one(found: &SyncStudy) -> Vec<Item> {
