@@ -10,7 +10,7 @@ use super::output::{Console, Exit};
 use super::places::{REPORT, check_folder};
 use super::sign;
 use crate::certify::certify;
-use crate::disk::SetKind;
+use crate::disk::{SIGNATURE, SetKind};
 use crate::problem::{Problem, Problems, plain};
 use crate::provenance::carried::REPORT_PDF;
 use crate::provenance::signature::{self, SecretKey, secret_key};
@@ -135,7 +135,7 @@ impl Certify {
         files.push((statement::FILE.into(), statement::statement(found, &files).into_bytes()));
         if let Some(key) = key {
             let signed = files.iter().filter(|(name, _)| [REPORT_PDF, statement::FILE].contains(&name.as_str()));
-            let signed = signed.map(|(name, bytes)| Ok((format!("{name}.minisig"), signature::sign(key, name, bytes)?.into_bytes())));
+            let signed = signed.map(|(name, bytes)| Ok((format!("{name}{SIGNATURE}"), signature::sign(key, name, bytes)?.into_bytes())));
             let signed = signed.collect::<Result<Vec<_>, _>>().map_err(|problem| Problems(vec![problem]))?;
             files.extend(signed);
         }

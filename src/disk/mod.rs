@@ -22,7 +22,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use faults::{Op, pass, passed};
-pub use set::{Set, SetKind, UNFINISHED};
+pub use set::{SIGNATURE, Set, SetKind, UNFINISHED};
 pub use single::{create_new, keep, remove, write_whole};
 
 /// Kind of the object at a path.

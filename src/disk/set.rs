@@ -22,7 +22,11 @@ const OWN: &str = ".fishplate-";
 const NEW: &str = ".fishplate-new";
 /// Folder of a set after the commit point.
 pub const UNFINISHED: &str = ".fishplate-unfinished";
-/// Maximum size of manifest and journal in bytes: a hundred thousand files.
+/// How the name of a signature ends that lies beside its file.
+pub const SIGNATURE: &str = ".minisig";
+/// Largest file before, in bytes, that is compared with the one in its place; its signature goes if it is larger.
+const LARGEST_SIGNED: u64 = 512 << 20;
+/// Largest manifest and journal in bytes: a hundred thousand files.
 const LARGEST_LIST: u64 = 32 << 20;
 
 /// Kind of a set. A set replaces only a set of its own kind.
@@ -124,7 +128,7 @@ impl Set {
         }
         self.begin()?;
         self.stage(inside, bytes)?;
-        self.hashes.push(Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect());
+        self.hashes.push(hashed(bytes));
         Ok(())
     }
 
@@ -156,6 +160,7 @@ impl Set {
         let new: HashSet<&str> = self.paths.iter().map(String::as_str).collect();
         let mut removes = before(&self.folder, self.kind.manifest())?;
         removes.retain(|path| !new.contains(path.as_str()));
+        removes.extend(self.outdated_signatures(&removes, &new)?);
         self.stage(self.kind.manifest(), manifest.as_bytes())?;
         let journal = Journal { installs: self.paths.clone(), removes };
         self.write(JOURNAL, journal.text().as_bytes())?;
@@ -183,6 +188,29 @@ impl Set {
         self.begun = false;
         Ok(())
     }
+
+    /// Signatures of files of the set before that change or go: they are those of nothing that is still there. The manifest does not
+    /// list them where they were made later.
+    fn outdated_signatures(&self, removes: &[String], new: &HashSet<&str>) -> io::Result<Vec<String>> {
+        let changed = |path: &str, hash: Option<&String>| {
+            let before = read(&self.folder.join(path), LARGEST_SIGNED);
+            hash.is_none() || !before.is_ok_and(|bytes| hash.is_some_and(|hash| *hash == hashed(&bytes)))
+        };
+        let written = self.paths.iter().zip(&self.hashes).map(|(path, hash)| (path, Some(hash)));
+        let mut outdated = Vec::new();
+        for (path, hash) in written.chain(removes.iter().map(|path| (path, None))) {
+            let signature = format!("{path}{SIGNATURE}");
+            let listed = new.contains(signature.as_str()) || removes.contains(&signature);
+            if !listed && !behind_link(&self.folder, &signature)? && is_file(&self.folder.join(&signature))? && changed(path, hash) {
+                outdated.push(signature);
+            }
+        }
+        Ok(outdated)
+    }
+}
+
+fn hashed(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl Drop for Set {

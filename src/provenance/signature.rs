@@ -24,7 +24,7 @@ const LARGE: u64 = 512 << 20;
 /// Default path of the signature of a file.
 pub fn beside(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(".minisig");
+    name.push(disk::SIGNATURE);
     path.with_file_name(name)
 }
 
@@ -120,6 +120,15 @@ fn number(key: &[u8]) -> String {
     key.iter().rev().map(|byte| format!("{byte:02X}")).collect()
 }
 
+/// What file a signature says it is of, if that is not the one it lies beside.
+fn of_another_file(comment: &str, bytes: &[u8]) -> Option<String> {
+    let (_, signed) = comment.split_once("sha256:")?;
+    let own = sha256(bytes);
+    let is_hash = signed.len() == own.len() && signed.bytes().all(|sign| sign.is_ascii_hexdigit());
+    (is_hash && signed != own)
+        .then(|| format!("signed: SHA-256 {signed}; this file: SHA-256 {own}; sign this file, if it is the one meant"))
+}
+
 /// Checks the signature of a file.
 ///
 /// # Errors
@@ -156,7 +165,12 @@ pub fn check(path: &Path, signature: Option<&Path>, key: Option<&PublicKey>) -> 
         Ok(()) => Check::agrees(NAME, format!("signed with key {by}: {}", signed.trusted_comment())),
         Err(error) => {
             let keys = format!("signed with key {by}, checked with key {}: {error}", number(key.keynum()));
-            Check::differs(NAME, "the signature does not match this file and key", vec![keys])
+            match of_another_file(signed.trusted_comment(), &bytes).filter(|_| by == number(key.keynum())) {
+                Some(says) => {
+                    Check::differs(NAME, "the signature is not one of this file, but of an earlier report or another file", vec![says])
+                }
+                None => Check::differs(NAME, "the signature is not one of this file with this key", vec![keys]),
+            }
         }
     })
 }

@@ -93,6 +93,36 @@ fn certify_signs_what_it_writes() {
     assert!(wrong.code == 2 && wrong.stderr.contains("key-unreadable"), "{}", wrong.stderr);
 }
 
+/// A signature that was made after a report goes with it, and stays where the report is written again as it was.
+#[test]
+fn a_signature_of_an_earlier_report_goes_with_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let name = keys(folder.path());
+    let out = text(&folder.path().join("out"));
+    let statement = folder.path().join("out/statement.json");
+    let certified = |further: &[&str]| {
+        let ran = fishplate(&[&["certify", &text(&example("coach-good")), "--out", &out, "--only", "results", "-q"], further].concat());
+        assert!(ran.code < 2, "{}", ran.stderr);
+    };
+    certified(&[]);
+    assert_eq!(fishplate(&["sign", &text(&statement), "--key", &format!("{name}.key")]).code, 0);
+    let signature = folder.path().join("out/statement.json.minisig");
+    let signed = fs::read(&signature).expect("signed");
+    certified(&[]);
+    assert_eq!(fs::read(&signature).expect("still of this file"), signed);
+    certified(&["--set", "lowpass_order=2"]);
+    assert!(statement.is_file() && !signature.exists());
+    // Put back by hand, it is told for what it is.
+    fs::write(&signature, &signed).expect("written");
+    let key = public_key(&format!("{name}.pub")).expect("a key");
+    let found = checked(&statement, None, Some(&key)).expect("read");
+    assert_eq!(
+        (found.outcome, found.says.as_str()),
+        (Outcome::Differs, "the signature is not one of this file, but of an earlier report or another file")
+    );
+    assert!(found.details.len() == 1 && found.details[0].starts_with("signed: SHA-256 "), "{:?}", found.details);
+}
+
 #[test]
 fn keys_are_protected_and_never_overwritten() {
     let folder = tempfile::tempdir().expect("a folder");
