@@ -253,34 +253,34 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     let lower = word.to_lowercase();
     let candidates: Vec<&str> = candidates.into_iter().filter(|candidate| *candidate != word).collect();
     let slips = candidates.iter().filter_map(|candidate| {
+        let other = candidate.to_lowercase();
         let longer = word.chars().count().max(candidate.chars().count());
-        let distance = strsim::damerau_levenshtein(&lower, &candidate.to_lowercase());
+        let distance = strsim::damerau_levenshtein(&lower, &other);
         // A completely different word is not suggested: zone 7 is no misspelling of zone 1. One letter in three may differ.
-        let near = distance <= longer.max(SHORTEST_BEGINNING) / 3 && distance < longer && !other_position(word, candidate);
-        near.then_some((distance, *candidate))
+        let near = distance <= longer.max(SHORTEST_BEGINNING) / 3 && distance < longer && same_symbol(&lower, &other);
+        let alike = lower.chars().zip(other.chars()).take_while(|(a, b)| a == b).count();
+        near.then_some((distance, std::cmp::Reverse(alike), *candidate))
     });
-    let slip = slips.min_by_key(|(distance, _)| *distance);
-    if let Some((1, slip)) = slip {
+    let slip = slips.min_by_key(|(distance, alike, _)| (*distance, *alike));
+    if let Some((1, _, slip)) = slip {
         return Some(slip);
     }
     let mut begun = candidates.iter().filter(|candidate| {
         let rest = candidate.to_lowercase().strip_prefix(&lower).map(str::to_string);
-        lower.chars().count() >= SHORTEST_BEGINNING
-            && rest.is_some_and(|rest| rest.starts_with(char::is_alphabetic))
-            && !other_position(word, candidate)
+        lower.chars().count() >= SHORTEST_BEGINNING && rest.is_some_and(|rest| rest.starts_with(char::is_alphabetic))
     });
     match (begun.next(), begun.next()) {
         (Some(only), None) => Some(only),
-        _ => slip.map(|(_, slip)| slip),
+        _ => slip.map(|(.., slip)| slip),
     }
 }
 
-/// Whether two names are the same channel at different positions: `Y_1L` is not suggested for `Y_1R`.
-fn other_position(a: &str, b: &str) -> bool {
-    let position = |end: &str| !end.is_empty() && end.chars().all(|c| c.is_ascii_digit() || c.is_ascii_uppercase());
-    match (a.rsplit_once('_'), b.rsplit_once('_')) {
-        (Some((stem, end)), Some((other, its))) => stem == other && end != its && position(end) && position(its),
-        _ => false,
+/// Whether two names may be of one symbol, which stands before the first `_`: `Q_1R` is another force than `Y_1R`, and `az_max` another
+/// acceleration than `ay_max`. A longer symbol may have a slip in it.
+fn same_symbol(a: &str, b: &str) -> bool {
+    match (a.split_once('_'), b.split_once('_')) {
+        (Some((a, _)), Some((b, _))) => strsim::damerau_levenshtein(a, b) <= a.chars().count().max(b.chars().count()) / 3,
+        _ => true,
     }
 }
 
@@ -295,8 +295,10 @@ mod tests {
         assert_eq!(nearest("friction", ["Y_max", "SigmaY_max"]), None);
         assert_eq!(nearest("7", ["1", "2"]), None);
         assert_eq!(nearest("max", ["mean", "median", "maximum"]), Some("maximum"));
-        assert_eq!(nearest("Y_1R", ["Y_1L", "Y_2R", "Q_1R"]), Some("Q_1R"));
-        assert_eq!(nearest("ay_I", ["ay_II"]), None);
+        assert_eq!(nearest("Y_1R", ["Q_1R", "Y_2R", "Y_1L"]), Some("Y_1L"));
+        assert_eq!(nearest("Y_1R", ["Q_1R", "YQ_1R"]), None);
+        assert_eq!(nearest("ay_max", ["az_max"]), None);
+        assert_eq!(nearest("y_1r", ["Q_1R", "Y_1R"]), Some("Y_1R"));
         assert_eq!(nearest("min", ["minimum", "minimum pairs"]), None);
     }
 

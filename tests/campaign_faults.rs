@@ -35,6 +35,20 @@ fn thinned(path: &Path, nth: usize) {
     });
 }
 
+/// What stands beside `parameters` instead of below it sets nothing, and says so.
+#[test]
+fn a_parameter_at_the_margin_is_told() {
+    let found = with(|campaign| {
+        let path = campaign.join("campaign.yaml");
+        let text = fs::read_to_string(&path).expect("readable");
+        fs::write(&path, text + "lowpass_frequency: 10 Hz\n").expect("written");
+    });
+    assert_eq!(found.ran.code, 0, "{}", found.ran.stderr);
+    for part in ["warning[fact-like-parameter]: `lowpass_frequency`", "campaign.yaml:6:20", "below `parameters`"] {
+        assert!(found.ran.stderr.contains(part), "{part}: {}", found.ran.stderr);
+    }
+}
+
 #[test]
 fn a_sound_campaign_validates() {
     let found = with(|_| {});

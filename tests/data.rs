@@ -41,6 +41,12 @@ fn faulty_records() {
         ("wrong_unit", &["unit-mismatch wrong_unit.csv:1:29"]),
         ("unknown_unit", &["unknown-unit unknown_unit.csv:1:29"]),
         ("no_unit", &["unit-missing no_unit.csv:1:23"]),
+        ("no_units", &["unit-missing no_units.csv:1:1"]),
+        ("units_in_row", &["units-in-row units_in_row.csv:2:1"]),
+        ("unit_in_cell", &["units-in-cell unit_in_cell.csv:1:28"]),
+        ("units_in_cells", &["units-in-cell units_in_cells.csv:1:6"]),
+        ("other_brackets", &["unknown-channel other_brackets.csv:1:1"]),
+        ("header_repeated", &["header-repeated header_repeated.csv:4:1"]),
         ("empty_cell", &["not-a-number empty_cell.csv:3:13"]),
         ("nan", &["not-finite nan.csv:3:13"]),
         ("infinite", &["not-finite infinite.csv:3:13"]),
@@ -83,6 +89,23 @@ fn faulty_records() {
         let path = cases("bad/record").join(format!("{case}.csv"));
         let problems = read_record(&path, &path.display().to_string(), &wanted()).expect_err(case);
         same(case, &problems, expected);
+    }
+}
+
+/// What is wrong with many columns, or many times, is said once, with the words to write.
+#[test]
+fn a_fault_of_many_columns_is_one_problem() {
+    for (case, says, help) in [
+        ("no_units", "the column `time` has no unit; a time is needed; the same of `distance`, `Y_1R`", "`time [...]`"),
+        ("unit_in_cell", "the unit of `Y_1R` stands in a cell of its own", "in one cell: `Y_1R [kN]`"),
+        ("other_brackets", "has no columns `time`, `distance`, `Y_1R`", "`Y_1R [kN]` for `Y_1R/kN`"),
+        ("header_repeated", "the header stands between the rows again, in line 4, and once more", "one file holds one record"),
+    ] {
+        let path = cases("bad/record").join(format!("{case}.csv"));
+        let problems = read_record(&path, &path.display().to_string(), &wanted()).expect_err(case);
+        let [problem] = problems.as_slice() else { panic!("{case}: {}", problems.len()) };
+        assert!(problem.says.contains(says), "{case}: {}", problem.says);
+        assert!(problem.help.as_ref().is_some_and(|told| told.contains(help)), "{case}: {:?}", problem.help);
     }
 }
 
@@ -148,6 +171,9 @@ fn faulty_campaigns() {
         ("no_records", &["no-records campaign.yaml:3:14"]),
         ("folder_missing", &["folder-missing campaign.yaml:3:14"]),
         ("parameter_is_list", &["wrong-kind campaign.yaml:7:11"]),
+        ("key_in_report", &["unknown-key campaign.yaml:5:3"]),
+        ("key_in_parameters", &["unknown-key campaign.yaml:4:3"]),
+        ("key_too_deep", &["yaml-syntax campaign.yaml:2:10"]),
         ("absent", &["folder-missing"]),
         ("no_records/measurement", &["file-missing"]),
     ] {

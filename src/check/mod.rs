@@ -229,6 +229,10 @@ impl Checker<'_> {
         let blocks = self.blocks.clone();
         let of = |kind: &'static str| blocks.iter().filter(move |block| block.kind.text == kind);
         let Some(head) = of("protocol").next() else {
+            // Of a text that could not be read, nothing more is known.
+            if self.problems.0.iter().any(|problem| problem.code == "yaml-syntax") {
+                return None;
+            }
             self.problems.push(
                 Problem::error("no-protocol", "the text does not say which protocol it is")
                     .at(&document.source.span(0..0))

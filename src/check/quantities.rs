@@ -6,8 +6,7 @@ use super::Checker;
 use super::evaluate::{Values, number, words};
 use super::names::{Assignment, bare_word, normalised};
 use super::plan::{
-    Axis, Center, DatumKind, Evaluation, Expr, InputSide, Kind, Position, Quantity, QuantityWords, Records, Side, Signal, Step,
-    Valued,
+    Axis, Center, DatumKind, Evaluation, Expr, InputSide, Kind, Position, Quantity, QuantityWords, Records, Side, Signal, Step, Valued,
 };
 use super::scalars::Scope;
 use super::steps::after;

@@ -15,7 +15,23 @@ impl Checker<'_> {
     /// The signal an expression stands for at the given positions.
     pub(super) fn signal(&mut self, phrase: &Phrase, text: &Text, at: &Assignment) -> Option<Signal> {
         let span = text.place(phrase.range.clone());
-        self.deeper(&span.clone(), |checker| checker.signal_inside(phrase, text, span, at))
+        let found = self.deeper(&span.clone(), |checker| checker.signal_inside(phrase, text, span, at))?;
+        self.finite(&found).then_some(found)
+    }
+
+    /// What is made of constants alone must have a value, and nothing may be divided by a constant zero.
+    fn finite(&mut self, signal: &Signal) -> bool {
+        let problem = match &signal.kind {
+            SignalKind::Binary(Operator::Divide, _, right) if constant(right) == Some(0.0) => {
+                Problem::error("not-finite", "this is a division by zero").at(&signal.span).also(&right.span, "zero")
+            }
+            _ if constant(signal).is_some_and(|value| !value.is_finite()) => {
+                Problem::error("not-finite", format!("`{}` is not a finite number", signal.span.text())).at(&signal.span)
+            }
+            _ => return true,
+        };
+        self.problems.push(problem);
+        false
     }
 
     fn signal_inside(&mut self, phrase: &Phrase, text: &Text, span: Span, at: &Assignment) -> Option<Signal> {
@@ -279,5 +295,29 @@ impl Checker<'_> {
             filled = filled.replace(&format!("{{{place}}}"), member);
         }
         Some(filled)
+    }
+}
+
+/// The value of what is made of constants alone.
+fn constant(signal: &Signal) -> Option<f64> {
+    match &signal.kind {
+        SignalKind::Scalar(Expr { kind: Kind::Constant(Scalar::Number(value)), .. }) => Some(*value),
+        SignalKind::Negative(inner) => Some(-constant(inner)?),
+        SignalKind::Power(inner, exponent) => Some(constant(inner)?.powi(i32::from(*exponent))),
+        SignalKind::Binary(operator, left, right) => {
+            let (left, right) = (constant(left)?, constant(right)?);
+            match operator {
+                Operator::Add => Some(left + right),
+                Operator::Subtract => Some(left - right),
+                Operator::Multiply => Some(left * right),
+                Operator::Divide => Some(left / right),
+                _ => None,
+            }
+        }
+        SignalKind::Call(function, arguments) => {
+            let arguments = arguments.iter().map(constant).collect::<Option<Vec<_>>>()?;
+            Some((function.run)(&arguments))
+        }
+        _ => None,
     }
 }

@@ -55,10 +55,20 @@ pub fn prepare(folder: &Path, protocol: Option<&str>, set: &[String], problems: 
     }?;
     let overrides = overrides(set, &campaign, problems)?;
     let compiled = compile(family, &overrides, problems)?;
+    facts_like_parameters(&compiled, &campaign, problems);
     Some(Prepared { compiled, campaign, overrides })
 }
 
-/// Parameters of the campaign, overridden by those of the command line.
+/// A fact of the campaign sets nothing; one with the name of a parameter was most likely meant to.
+fn facts_like_parameters(compiled: &Compiled, campaign: &Campaign, problems: &mut Problems) {
+    for fact in campaign.facts.iter().filter(|fact| compiled.plan.parameters.iter().any(|parameter| parameter.name == fact.name)) {
+        let says = format!("`{}` is a parameter of the protocol, and is not set by a fact of the campaign", fact.name);
+        let problem = Problem::warning("fact-like-parameter", says).at(&fact.span);
+        problems.push(problem.help("to set it, let it stand below `parameters`, indented"));
+    }
+}
+
+/// Parameters of the campaign, and over them those of the command line.
 fn overrides(set: &[String], campaign: &Campaign, problems: &mut Problems) -> Option<Overrides> {
     let mut overrides = Overrides::new();
     for parameter in &campaign.parameters {

@@ -152,6 +152,11 @@ pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<H
     let mut sorted: Vec<&Heading> = headings.iter().filter(|heading| !heading.name.is_empty()).collect();
     sorted.sort_by(|a, b| (&a.name, a.span.start).cmp(&(&b.name, b.span.start)));
     let before = problems.len();
+    let twice = sorted.windows(2).any(|pair| pair[0].name == pair[1].name);
+    if let Some(problem) = unit_in_cell(&headings).filter(|_| twice) {
+        problems.push(problem);
+        return None;
+    }
     problems.extend(sorted.windows(2).filter(|pair| pair[0].name == pair[1].name).map(|pair| {
         Problem::error("duplicate-column", format!("two columns are called `{}`", pair[1].name))
             .at(&pair[1].span)
@@ -160,7 +165,18 @@ pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<H
     (problems.len() == before).then_some(headings)
 }
 
-/// A header without commas but with another separator.
+/// `Y_1R,kN,Q_1R,kN`: a cell that is a unit and nothing else, behind a name that has none.
+pub(super) fn unit_in_cell(headings: &[Heading]) -> Option<Problem> {
+    let is_unit = |heading: &Heading| heading.unit.is_none() && Unit::parse(&heading.name).is_ok();
+    let [name, unit] = headings.windows(2).find(|pair| pair[0].unit.is_none() && !is_unit(&pair[0]) && is_unit(&pair[1]))? else {
+        return None;
+    };
+    let says = format!("the unit of `{}` stands in a cell of its own: the comma parts columns", name.name);
+    let problem = Problem::error("units-in-cell", says).at(&unit.span).also(&name.span, "its name");
+    Some(problem.help(format!("write the unit behind the name, in one cell: `{} [{}]`", name.name, unit.name)))
+}
+
+/// A header without a comma that is parted by something else.
 fn other_separator(line: &Span) -> Option<Problem> {
     let text = line.text();
     [(';', "semicolon-separated", "semicolons"), ('\t', "tab-separated", "tabs")].into_iter().find_map(|(separator, code, word)| {

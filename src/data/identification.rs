@@ -116,10 +116,17 @@ fn entry(key: &Key, node: &Node, found: &mut [Stated], problems: &mut Problems) 
             let groups = FIELDS.iter().filter_map(|field| field.group);
             let dates = ["date of receipt", "date of test", "date of issue"];
             let alone = FIELDS.iter().filter(|field| field.group.is_none()).map(|field| field.key);
-            problems.push(unknown(key, "a report", alone.chain(groups).chain(dates)));
+            let problem = unknown(key, "a report", alone.chain(groups).chain(dates));
+            problems.push(match CAMPAIGN_KEYS.contains(&key.text.as_str()) {
+                true => problem.help(format!("`{}` is a key of the campaign: it stands at the left margin", key.text)),
+                false => problem,
+            });
         }
     }
 }
+
+/// Keys of `campaign.yaml` that may have been indented into the block.
+const CAMPAIGN_KEYS: [&str; 8] = ["name", "vehicle", "sections", "measurement", "simulation", "track", "parameters", "protocol"];
 
 /// Keys of a map inside the block.
 fn members(group: &'static str) -> impl Iterator<Item = &'static str> {

@@ -4,6 +4,7 @@
 //! is parsed again cell by cell to determine the fault (`fault`).
 
 mod fault;
+mod header_fault;
 mod marks;
 mod number;
 mod rows;
@@ -100,10 +101,10 @@ impl Record {
 /// `shown` is the name of the file in messages.
 ///
 /// # Errors
-/// A few problems and the number of further ones. File: `file-missing`, `file-unreadable`, `file-empty`,
-/// `file-too-large`, `encoding`, `no-rows`. Header: `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`,
-/// `unknown-channel`, `unit-missing`, `unknown-unit`, `unit-mismatch`. Row: `ragged-row`, `truncated-row`, `blank-line`, `stray-quote`,
-/// `not-a-number`, `not-finite`, `decimal-comma`.
+/// At most a handful of problems and how many more there are. Of the file: `file-missing`, `file-unreadable`, `file-empty`,
+/// `file-too-large`, `encoding`, `no-rows`. Of its header: `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`,
+/// `unknown-channel`, `unit-missing`, `unknown-unit`, `unit-mismatch`, `units-in-row`, `units-in-cell`. Of a row: `header-repeated`, `ragged-row`, `truncated-row`, `blank-line`,
+/// `stray-quote`, `not-a-number`, `not-finite`, `decimal-comma`.
 pub fn read_record(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
     let mut buffer = BUFFER.take();
     let record = read_into(&mut buffer, path, shown, wanted);
@@ -126,8 +127,12 @@ fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -
     let text = decode(bytes, shown).map_err(|problem| vec![problem])?;
     let (headings, body) = header(text, shown)?;
     let found = find_columns(&headings, wanted, shown);
-    let mut columns = found.map_err(|problems| units_in_row(text, body, &headings, shown).map_or(problems, |problem| vec![problem]))?;
-    let rows = rows::read(text, body, headings.len(), &mut columns, shown)?;
+    let mut columns = found.map_err(|problems| match header_fault::units_elsewhere(text, body, &headings, shown) {
+        Some(problem) => vec![problem],
+        None => problems,
+    })?;
+    let read = rows::read(text, body, headings.len(), &mut columns, shown);
+    let rows = read.map_err(|problems| header_fault::repeated(text, body, shown).map_or(problems, |problem| vec![problem]))?;
     let channels = headings.into_iter().map(|heading| heading.name).collect();
     Ok(Record { shown: shown.to_string(), columns, channels, rows, sha256: sha256(bytes), bytes: bytes.len(), path: path.to_path_buf() })
 }
@@ -160,6 +165,7 @@ fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<
     let mut columns: Vec<Column> = Vec::with_capacity(wanted.len());
     let mut faults = Faults::new(shown);
     let mut lacking: Vec<&str> = Vec::new();
+    let mut wrong: Vec<(&Heading, Problem)> = Vec::new();
     for wanted in wanted {
         let Some(position) = headings.iter().position(|heading| heading.name == wanted.name) else {
             if wanted.required {
@@ -171,68 +177,16 @@ fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<
             // A column requested twice is read once.
             Ok(_) if columns.iter().any(|column| column.position == position) => {}
             Ok(unit) => columns.push(Column { name: wanted.name.clone(), unit, values: Vec::new(), position }),
-            Err(problem) => faults.push(|| problem),
+            Err(problem) => wrong.push((&headings[position], problem)),
         }
+    }
+    for problem in header_fault::alike(wrong) {
+        faults.push(|| problem);
     }
     if !lacking.is_empty() {
-        faults.push(|| missing(headings, &lacking, shown));
+        faults.push(|| header_fault::missing(headings, &lacking, wanted, shown));
     }
     faults.finish(columns)
-}
-
-/// Detects units in a separate row below the names.
-fn units_in_row(text: &str, body: usize, headings: &[Heading], shown: &str) -> Option<Problem> {
-    let line = text[body..].lines().next().filter(|_| headings.iter().all(|heading| heading.unit.is_none()))?;
-    let cells = cells::split(line).ok()?;
-    let unit = |text: &str| Unit::parse(text.trim_matches(['[', ']', '(', ')'])).is_ok();
-    if cells.len() != headings.len() || !cells.iter().all(|cell| unit(&cell.text) && cell.text.parse::<f64>().is_err()) {
-        return None;
-    }
-    let (name, unit) = (&headings.first()?.name, cells.first()?.text.trim_matches(['[', ']', '(', ')']));
-    Some(
-        Problem::error("units-in-row", "the units are in a separate row")
-            .at(&Source::excerpt(shown, line, 2).whole())
-            .help(format!("write each unit after its name, in one header line: `{name} [{unit}]`")),
-    )
-}
-
-/// The unit in `Y_1R (kN)`, `Y_1R_kN` or `Y_1R/kN` for a column `Y_1R`.
-fn unit_otherwise<'a>(heading: &'a str, name: &str) -> Option<&'a str> {
-    let rest = heading.strip_prefix(name)?;
-    let unit = rest.trim_matches(|c: char| c.is_whitespace() || "()<>{}_/-,".contains(c));
-    (unit.len() < rest.len() && !unit.is_empty() && Unit::parse(unit).is_ok()).then_some(unit)
-}
-
-/// One problem for all missing columns.
-fn missing(headings: &[Heading], names: &[&str], shown: &str) -> Problem {
-    let known = || headings.iter().map(|heading| heading.name.as_str()).filter(|name| !name.is_empty());
-    let problem = match names {
-        [name] => {
-            let problem = Problem::error("unknown-channel", format!("`{shown}` has no column `{name}`"));
-            match known().find_map(|heading| Some((heading, unit_otherwise(heading, name)?))) {
-                Some((heading, unit)) => problem.help(format!("write the unit of `{heading}` in square brackets: `{name} [{unit}]`")),
-                None => problem.suggest(name, known()),
-            }
-        }
-        _ => {
-            let list = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-            let problem = Problem::error("unknown-channel", format!("`{shown}` has no columns {list}"));
-            let slips = names.iter().filter_map(|name| {
-                let otherwise = known().find_map(|heading| Some((heading, unit_otherwise(heading, name)?)));
-                match otherwise {
-                    Some((heading, unit)) => Some(format!("`{name} [{unit}]` for `{heading}`")),
-                    None => crate::problem::nearest(name, known()).map(|near| format!("`{near}` for `{name}`")),
-                }
-            });
-            let slips: Vec<String> = slips.collect();
-            if slips.is_empty() { problem } else { problem.help(format!("did you mean {}?", slips.join(", "))) }
-        }
-    };
-    match headings {
-        [first, .., last] => problem.at(&first.span.to(&last.span)),
-        [only] => problem.at(&only.span),
-        [] => problem,
-    }
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ pub mod from_pest;
 pub mod keys;
 mod layout;
 mod lines;
+mod nesting;
 pub mod phrase;
 mod print_text;
 mod print_yaml;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::document::{Block, Comments, Document, Field, Text};
 use super::keys::{Key, Kind, Sort};
 use super::layout::Quotes;
+use super::nesting;
 use super::remarks::Remarks;
 use super::rules::{self, Form, Reader};
 use crate::problem::{Problem, Problems};
@@ -40,6 +41,13 @@ impl YamlReader<'_> {
         while let Some((key, node)) = groups.next() {
             let end = groups.peek().map_or(usize::MAX, |(next, _)| next.span.start);
             self.remarks.pass(key.span.start);
+            let margin = nesting::block_at_margin(&key.text, node).filter(|_| rules::meant_kind(Form::Yaml, &key.text).is_none());
+            if let Some(help) = margin {
+                let says = format!("`{}` is no block of a protocol", key.text);
+                self.reader.problems.push(Problem::error("unknown-block", says).at(&key.span).help(help));
+                self.remarks.pass(end);
+                continue;
+            }
             let Some(kind) = self.reader.kind(&key.text, &key.span) else {
                 self.remarks.pass(end);
                 continue;
@@ -71,6 +79,11 @@ impl YamlReader<'_> {
         while let Some((key, node)) = blocks.next() {
             let end = blocks.peek().map_or(end, |(next, _)| next.span.start);
             self.remarks.pass(key.span.start);
+            if let Some(help) = nesting::too_deep(&key.text, node) {
+                self.wrong_shape(&key.span, format!("`{}` stands among the names of `{}`", key.text, kind.group), &help);
+                self.remarks.pass(end);
+                continue;
+            }
             let name = Text { text: key.text.clone(), span: key.span.clone(), exact: key.exact };
             self.read_block(kind, word.clone(), Some(name), node, end);
         }
@@ -84,7 +97,9 @@ impl YamlReader<'_> {
         let mut block = Block { kind: kind_place, name: name.filter(|_| !nameless), title: None, fields: Vec::new(), comments };
         let what =
             if kind.single { format!("`{}` is a map of fields", kind.group) } else { format!("a `{}` is a map of fields", kind.word) };
-        if node.value != Value::Null && !self.is_map(node, &what) {
+        if node.value != Value::Null && !matches!(node.value, Value::Map(_)) {
+            let help = block.name.as_ref().and_then(|name| nesting::field_among_names(kind, &name.text)).unwrap_or_default();
+            self.wrong_shape(&node.span, format!("{what}, not {}", node.kind_in_words()), &help);
             self.remarks.pass(end);
             return;
         }
@@ -130,6 +145,15 @@ impl YamlReader<'_> {
     fn read_field(&mut self, kind: &'static Kind, key: Text, node: &Node, block: &mut Block) {
         let words: Vec<&str> = key.text.split(' ').collect();
         let known = rules::key(kind, &words).filter(|(_, count)| *count == words.len());
+        if known.is_none() {
+            let beside = block.name.as_ref().map(|name| name.text.as_str());
+            let nested = nesting::too_deep(&key.text, node).or_else(|| nesting::block_among_fields(kind, &key.text, node, beside));
+            if let Some(help) = nested {
+                let says = format!("a `{}` has no field `{}`", kind.word, key.text);
+                self.reader.problems.push(Problem::error("unknown-field", says).at(&key.span).help(help));
+                return;
+            }
+        }
         let Some((known, _)) = known.or_else(|| self.reader.unknown_field(kind, &words, &key.span)) else { return };
         let key = Text { exact: key.exact && key.text == known.word, text: known.word.to_owned(), span: key.span };
         let above = Comments { before: self.remarks.above(), beside: self.remarks.beside(key.span.end), after: Vec::new() };
@@ -155,6 +179,7 @@ impl YamlReader<'_> {
                 Sort::Phrase => format!("for example: {}: {}", known.word, known.example),
                 Sort::Text => "one text is expected".to_owned(),
             };
+            let help = nesting::field_below_field(kind, known.word, node).unwrap_or(help);
             self.wrong_shape(&node.span, format!("`{}` is {}", known.word, node.kind_in_words()), &help);
             return;
         }

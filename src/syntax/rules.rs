@@ -69,7 +69,9 @@ impl<'a> Reader<'a> {
             (None, false) if self.form == Form::Lines => {
                 problem.help(format!("`{word}` is a field of {}; fields are indented below their block", listed(&owners)))
             }
-            (None, false) => problem.help(format!("`{word}` is a field of {}", listed(&owners))),
+            (None, false) => {
+                problem.help(format!("`{word}` is a field of {}; fields stand below the name of their block, indented", listed(&owners)))
+            }
             (None, true) => problem.help(format!("known here: {}", KINDS.iter().map(spelt).collect::<Vec<_>>().join(", "))),
         });
         near

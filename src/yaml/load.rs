@@ -248,6 +248,7 @@ impl<'a> Loader<'a> {
         let at = self.source.text.get(at..).and_then(|rest| rest.find('\t')).filter(|_| tab).map_or(at, |tab| at + tab);
         let span = self.source.span(at..at);
         let (says, help) = in_words(error.kind());
+        let help = self.begins_deeper(error.kind(), at).or_else(|| help.map(str::to_string));
         let code = match error.kind() {
             _ if tab => "tab-indentation",
             ErrorKind::RecursionLimitExceeded => "yaml-too-deep",
@@ -258,6 +259,26 @@ impl<'a> Loader<'a> {
             Some(help) => problem.help(help),
             None => problem,
         }
+    }
+}
+
+impl Loader<'_> {
+    /// `key: value` below a key that has its value already, and deeper: to the parser it goes on that value.
+    fn begins_deeper(&self, kind: &ErrorKind, at: usize) -> Option<String> {
+        let text = self.source.text.get(..at)?;
+        let indent = |line: &str| line.len() - line.trim_start_matches(' ').len();
+        let mut lines = text.rsplit('\n');
+        let this = lines.next()?;
+        let above = lines.find(|line| !line.trim().is_empty() && !line.trim_start().starts_with('#'))?;
+        let value = above.split_once(": ").is_some_and(|(_, value)| !value.trim().is_empty());
+        let first = this.matches(": ").count() == 0;
+        (matches!(kind, ErrorKind::MappingValueNotAllowed) && value && first && indent(this) > indent(above)).then(|| {
+            format!(
+                "this line begins in column {}; the key above has its value, and begins in column {}",
+                indent(this) + 1,
+                indent(above) + 1
+            )
+        })
     }
 }
 

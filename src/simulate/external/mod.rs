@@ -179,10 +179,11 @@ impl<'a> External<'a> {
         let channels = self.program.channels.iter().map(String::as_str);
         let wanted: Vec<&str> =
             if self.program.channels.is_empty() { known.iter().map(|one| one.name.as_str()).collect() } else { channels.collect() };
-        for name in wanted {
+        for &name in &wanted {
             let Some(heading) = made.iter().find(|one| one.name == name) else {
                 let problem = Problem::error("unknown-channel", format!("{shown} has no column `{name}`"));
-                return Err(problem.suggest(name, made.iter().map(|one| one.name.as_str())));
+                let strangers = made.iter().map(|one| one.name.as_str()).filter(|one| !wanted.contains(one));
+                return Err(problem.suggest(name, strangers));
             };
             heading.unit(unit_in(&known, name).map(|unit| unit.dimension))?;
         }
