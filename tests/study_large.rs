@@ -115,7 +115,7 @@ fn drawing_ends_somewhere() {
     let case = case(&[30; 2], &[3; 2], &[("std", 0.6)], Rule::EveryLimit, |_, _| vec![even(&mut random)]);
     let found = selections(&case, &Settings { most: 0.0, width: 1e-6, seed: 1 });
     assert_eq!(found.share.looked_at, 1 << 22);
-    assert!(found.methods[0].contains("more than the 0.000001 wanted"), "{:?}", found.methods);
+    assert!(found.methods[0].contains("more than the required 0.000001"), "{:?}", found.methods);
 }
 
 proptest! {
