@@ -168,7 +168,7 @@ fn a_second_fault_is_told_and_mended() {
         let found = files(&folder);
         if run.gave.is_err() && found != old && found != new {
             let says = run.gave.expect_err("an error").to_string();
-            assert!(says.contains("left unfinished"), "{at}: {says}");
+            assert!(says.contains("the folder is incomplete"), "{at}: {says}");
             commit(&folder, &NEW).expect("mended");
             assert_eq!(files(&folder), new);
         }
