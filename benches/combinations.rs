@@ -11,7 +11,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use fishplate::catalog::Statistic;
-use fishplate::run::pool::{Pool, PooledLimit, PooledQuantity, Rule, Section, Zone};
+use fishplate::run::pool::{Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone};
 use fishplate::study::case::Case;
 use fishplate::study::enumerate::core;
 use fishplate::study::halves::Halves;
@@ -28,8 +28,7 @@ fn pool(counts: &[usize]) -> Pool {
     let mut normal = || (0..12).map(|_| random.below(1 << 30) as f64 / f64::from(1 << 30)).sum::<f64>() - 6.0;
     let named = |name: &str| Statistic::named(name).expect("a statistic");
     let limit = |name: &str, bound: f64| PooledLimit {
-        statistic: named(name),
-        ddof: 1,
+        estimate: Pooled::Statistic(named(name), 1),
         at_least: false,
         title: name.into(),
         scope: "all".into(),
@@ -58,7 +57,7 @@ fn pool(counts: &[usize]) -> Pool {
         quantities: quantities.collect(),
         sections: zone_of
             .enumerate()
-            .map(|(at, zone)| Section { name: format!("s{:02}", at + 1), zone: Some(zone), used: true, reason: None })
+            .map(|(at, zone)| Section { name: format!("s{:02}", at + 1), zone: Some(zone), site: at, used: true, reason: None })
             .collect(),
         zones: (1..=counts.len()).map(|zone| Zone { name: zone.to_string(), title: String::new(), needed: 3 }).collect(),
         minimum: 12,

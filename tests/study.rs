@@ -88,7 +88,11 @@ fn peer(name: &str) -> (Case, serde_json::Value) {
         quantity(id, names.iter().map(|section| of(section)).collect(), limits)
     });
     let pool = Pool {
-        sections: names.iter().map(|name| Section { name: (*name).into(), zone: zone(name), used: true, reason: None }).collect(),
+        sections: names
+            .iter()
+            .enumerate()
+            .map(|(site, name)| Section { name: (*name).into(), zone: zone(name), site, used: true, reason: None })
+            .collect(),
         zones: zones(&[3, 3, 3, 3]),
         minimum: 12,
         quantities: quantities.collect(),

@@ -2,7 +2,7 @@
 
 use fishplate::catalog::Statistic;
 use fishplate::result::Verdict;
-use fishplate::run::pool::{Pool, PooledLimit, PooledQuantity, Rule, Section, Zone};
+use fishplate::run::pool::{Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone};
 use fishplate::study::case::Case;
 use fishplate::study::flips::{Marked, flips};
 use fishplate::study::random::{Random, draw};
@@ -17,8 +17,7 @@ fn case(seed: u64, rule: Rule, unused: &[usize]) -> Case {
     let mut own = Random::new(seed, 1);
     let mut value = || 2.4 * (common.below(1000) as f64 / 1000.0 - 0.5) + 1.2 * (own.below(1000) as f64 / 1000.0 - 0.45);
     let limit = |name: &str, bound: f64| PooledLimit {
-        statistic: Statistic::named(name).expect("a statistic"),
-        ddof: 1,
+        estimate: Pooled::Statistic(Statistic::named(name).expect("a statistic"), 1),
         at_least: false,
         title: name.into(),
         scope: "all".into(),
@@ -41,7 +40,7 @@ fn case(seed: u64, rule: Rule, unused: &[usize]) -> Case {
         quantities: quantities.collect(),
         sections: zone_of
             .enumerate()
-            .map(|(at, zone)| Section { name: format!("s{at:02}"), zone: Some(zone), used: !unused.contains(&at), reason: None })
+            .map(|(at, zone)| Section { name: format!("s{at:02}"), zone: Some(zone), site: at, used: !unused.contains(&at), reason: None })
             .collect(),
         zones: (1..=4).map(|zone| Zone { name: zone.to_string(), title: String::new(), needed: 3 }).collect(),
         minimum: 12,

@@ -176,3 +176,52 @@ fn too_few_values_are_a_reason() {
     assert!(of("regression").contains("collinear"), "{}", of("regression"));
     assert!(of("upper").contains("site"), "{}", of("upper"));
 }
+
+/// A study of sections evaluates an estimate over every selection, and takes a repeat with the section that it repeats.
+#[test]
+fn a_study_takes_estimates_and_repeats() {
+    use fishplate::run::{Shifts, evaluate};
+    use fishplate::study::{Settings as StudySettings, case::Case, selections};
+
+    let protocol = small(
+        "quantity Q \"Q\"\n  from    measured\n  of      Q at wheelset 1 and side R\n  filter  LP20\n  value   p99.85\n  \
+         limit   (mean + 2.2 * std) 90 kN\n  limit   (regression over cant_deficiency at 100 mm) 500 kN\n",
+    );
+    let mut problems = Problems::default();
+    let campaign = Campaign::open(&root().join("examples/coach-good"), &mut problems).expect("a campaign");
+    let all = evaluate(&protocol.plan, &protocol.graph, &campaign, &Shifts::NONE, &|_| {}).expect("values").swap_remove(0);
+    let pool = all.pool(&protocol.plan);
+    let case = Case::of(&pool, None).expect("a case");
+    let found = selections(&case, &StudySettings::default());
+    // Zones of 3, 3, 3 and 4 sections, 3 of each.
+    assert_eq!(found.combinations, 4.0);
+    let value = |sections: &[usize]| {
+        let values: Vec<f64> = sections.iter().flat_map(|&at| case.quantities[0].values[at].iter().copied()).collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
+        (mean + 2.2 * (squares / (values.len() as f64 - 1.0)).sqrt()) / 90.0
+    };
+    let measure = &case.quantities[0].measures[0];
+    let largest = case
+        .strata[3]
+        .members
+        .iter()
+        .map(|left_out| {
+            let chosen: Vec<usize> = case.usable().into_iter().filter(|at| at != left_out).collect();
+            let found = measure.over(chosen.iter().copied()).expect("a value");
+            assert!((found - value(&chosen)).abs() < 1e-12 * found, "{found}");
+            found
+        })
+        .fold(0.0, f64::max);
+    let spread = &found.quantities[0].statistics[0];
+    assert!((spread.spread.as_ref().expect("a spread").max - largest).abs() < 1e-12);
+
+    let mut repeated = pool.clone();
+    repeated.sections[1].site = 0;
+    let refused = Case::of(&repeated, None).expect_err("zone 1 has two sites");
+    assert!(refused.contains("zone 1 has 2 usable sites"), "{refused}");
+    let merged = Case::of(&repeated, Some(2)).expect("a case");
+    assert_eq!((merged.strata[0].members.as_slice(), merged.quantities[0].values[0].len()), ([0, 2].as_slice(), 2));
+    let found = merged.quantities[0].measures[0].over(merged.usable().into_iter()).expect("a value");
+    assert!((found - value(&(0..13).collect::<Vec<_>>())).abs() < 1e-12 * found, "{found}");
+}

@@ -1,13 +1,16 @@
 //! What a verdict rests on, for who asks what another choice of sections would have said: values of every section and every
 //! limit with its bound, in the unit of the quantity.
 
+use std::sync::Arc;
+
+use super::estimates::Group;
 use super::facts::{Facts, Known};
 use super::groups::{Part, parts};
 use super::judge::members;
 use super::limits::{Judging, applies};
 use super::section::SectionValues;
 use super::sections::Unit;
-use super::table::Member;
+use super::table::{Member, Row};
 use crate::catalog::Statistic;
 use crate::check::plan::{EstimateKind, Limit, Plan, Quantity};
 
@@ -28,6 +31,8 @@ pub struct Pool {
 pub struct Section {
     pub name: String,
     pub zone: Option<String>,
+    /// Number of the first section of its site: repeats have the same.
+    pub site: usize,
     pub used: bool,
     pub reason: Option<String>,
 }
@@ -52,11 +57,75 @@ pub struct PooledQuantity {
     pub limits: Vec<PooledLimit>,
 }
 
+/// What a limit is of.
+#[derive(Clone, Debug)]
+pub enum Pooled {
+    /// With the divisor's n - `ddof`.
+    Statistic(Statistic, usize),
+    Estimate(Estimator),
+}
+
+/// An estimate of a group of rows and its limit, for any choice of sections.
+#[derive(Clone)]
+pub struct Estimator {
+    rules: Arc<(Plan, Facts)>,
+    quantity: usize,
+    limit: usize,
+    /// The rows of the group, each with the number of its section and the section.
+    rows: Arc<Vec<(usize, Unit, Row)>>,
+    bound: f64,
+}
+
+impl Estimator {
+    fn new(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Self {
+        let Judging { plan, facts, quantity, members } = *judging;
+        let inside = part.members(plan, quantity, facts, members).unwrap_or_default();
+        let number = |unit: &Unit| units.iter().position(|known| known.name == unit.name).unwrap_or_default();
+        let rows = inside.iter().map(|member| (number(member.unit), member.unit.clone(), member.row.clone())).collect();
+        let bound = judging.bound(limit, part, &inside, &Known::vehicle(facts)).unwrap_or(f64::NAN);
+        Self {
+            rules: Arc::clone(rules),
+            quantity: plan.quantities.iter().position(|known| known.id == quantity.id).unwrap_or_default(),
+            limit: quantity.limits.iter().position(|known| known.span == limit.span && known.scope.same(&limit.scope)).unwrap_or_default(),
+            rows: Arc::new(rows),
+            bound,
+        }
+    }
+
+    /// Rows of a repeat go with those of the section that it repeats.
+    pub fn take_together(&mut self, first: usize, repeat: usize) {
+        let moved =
+            |(section, unit, row): &(usize, Unit, Row)| (if *section == repeat { first } else { *section }, unit.clone(), row.clone());
+        self.rows = Arc::new(self.rows.iter().map(moved).collect());
+    }
+
+    /// The estimate over the rows of some sections, by number, divided by the limit of all; `None` where it is not defined.
+    pub fn over(&self, sections: &[usize]) -> Option<f64> {
+        let (plan, facts) = self.rules.as_ref();
+        let quantity = &plan.quantities[self.quantity];
+        let limit = &quantity.limits[self.limit];
+        let members: Vec<Member<'_>> = self
+            .rows
+            .iter()
+            .filter(|(section, ..)| sections.contains(section))
+            .map(|(_, unit, row)| Member { unit, signal: &quantity.positions[row.position].name, row })
+            .collect();
+        let EstimateKind::Of(of) = &limit.estimate.kind else { return None };
+        let group = Group { plan, facts, members: &members };
+        group.number(of).ok().map(|value| value / self.bound).filter(|value| value.is_finite())
+    }
+}
+
+impl std::fmt::Debug for Estimator {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Estimator").field("quantity", &self.quantity).field("limit", &self.limit).field("rows", &self.rows.len()).finish()
+    }
+}
+
 /// A limit that applies to this vehicle, for one of its scopes.
 #[derive(Clone, Debug)]
 pub struct PooledLimit {
-    pub statistic: Statistic,
-    pub ddof: usize,
+    pub estimate: Pooled,
     pub at_least: bool,
     /// `standard deviation (n-1)`
     pub title: String,
@@ -72,12 +141,14 @@ pub struct PooledLimit {
 /// # Errors
 /// None: a limit whose bound has no value is left out with its quantity told as not assessable by the run itself.
 pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]) -> Pool {
+    let rules = Arc::new((plan.clone(), facts.clone()));
     Pool {
         sections: units
             .iter()
             .map(|unit| Section {
                 name: unit.name.clone(),
                 zone: unit.zone.clone(),
+                site: unit.site,
                 used: unit.fault.is_none(),
                 reason: unit.fault.clone(),
             })
@@ -88,17 +159,13 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
             .map(|zone| Zone { name: zone.name.clone(), title: zone.title.clone(), needed: zone.minimum_sections })
             .collect(),
         minimum: plan.sections.minimum,
-        quantities: plan
-            .quantities
-            .iter()
-            .enumerate()
-            .map(|(index, quantity)| pooled(plan, facts, quantity, index, units, values))
-            .collect(),
+        quantities: plan.quantities.iter().enumerate().map(|(index, quantity)| pooled(&rules, quantity, index, units, values)).collect(),
         rule: plan.verdict.rule,
     }
 }
 
-fn pooled(plan: &Plan, facts: &Facts, quantity: &Quantity, index: usize, units: &[Unit], values: &[SectionValues]) -> PooledQuantity {
+fn pooled(rules: &Arc<(Plan, Facts)>, quantity: &Quantity, index: usize, units: &[Unit], values: &[SectionValues]) -> PooledQuantity {
+    let (plan, facts) = rules.as_ref();
     let used: Vec<(&Unit, &SectionValues)> = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
     let members = members(quantity, index, &used);
     let of_section = |(unit, values): (&Unit, &SectionValues)| {
@@ -110,7 +177,7 @@ fn pooled(plan: &Plan, facts: &Facts, quantity: &Quantity, index: usize, units: 
     let mut limits = Vec::new();
     for limit in quantity.limits.iter().filter(|limit| applies(limit, facts) == Ok(true)) {
         for part in parts(plan, quantity, limit, &members, facts) {
-            limits.extend(of_part(&judging, limit, &part, units));
+            limits.extend(of_part(rules, &judging, limit, &part, units));
         }
     }
     PooledQuantity {
@@ -126,11 +193,10 @@ fn pooled(plan: &Plan, facts: &Facts, quantity: &Quantity, index: usize, units: 
     }
 }
 
-fn of_part(judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Option<PooledLimit> {
+fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Option<PooledLimit> {
     let Judging { plan, facts, quantity, members } = *judging;
     let inside = units.iter().map(|unit| part.has_section(unit, facts)).collect::<Result<Vec<_>, _>>().ok()?;
     let positions = part.positions(quantity);
-    let statistic = limit.estimate.statistic();
     let shown = |known: &Known<'_>, part: &Part<'_>, members: &[Member<'_>]| {
         judging.bound(limit, part, members, known).ok().map(|bound| judging.unit(limit).from_si(bound))
     };
@@ -142,12 +208,15 @@ fn of_part(judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]
         units.iter().map(own).collect::<Option<Vec<_>>>()?
     } else {
         let members = part.members(plan, quantity, facts, members).ok()?;
+        // Data of sections may be in the limit: that of all sections stands here, and an estimate takes its own.
         vec![shown(&Known::vehicle(facts), part, &members)?]
     };
-    let (statistic, ddof) = statistic?;
+    let estimate = match limit.estimate.statistic() {
+        Some((statistic, ddof)) => Pooled::Statistic(statistic, ddof),
+        None => Pooled::Estimate(Estimator::new(rules, judging, limit, part, units)),
+    };
     Some(PooledLimit {
-        statistic,
-        ddof,
+        estimate,
         at_least: limit.at_least,
         title: limit.estimate.title.clone(),
         scope: part.in_words(),

@@ -1,7 +1,7 @@
 //! Values and limits of a campaign for a study, by stratum, section and quantity.
 
 use crate::catalog::Statistic;
-use crate::run::pool::{Pool, PooledLimit, PooledQuantity, Rule};
+use crate::run::pool::{Estimator, Pool, Pooled, PooledLimit, PooledQuantity, Rule};
 
 /// Tolerance for rounding where a value equals its limit, which counts as met. Relative to the limit.
 const EQUAL: f64 = 1e-12;
@@ -51,6 +51,8 @@ pub struct Measure {
     pub limit: f64,
     pub at_least: bool,
     pub kind: Kind,
+    /// Of [`Kind::Estimated`].
+    pub estimator: Option<Estimator>,
     /// Factor of a value before it is compared with `low` and `high`.
     pub scale: f64,
     /// The limit is met from `low` to `high`.
@@ -74,6 +76,8 @@ pub enum Kind {
     LargestMagnitude,
     /// Only from all values together.
     Pooled(Statistic),
+    /// Only from all rows together, with the data of their sections.
+    Estimated,
 }
 
 /// Reason why a study of a campaign is not possible.
@@ -127,12 +131,44 @@ impl Case {
                 return Err(format!("zone {} has {has} usable sections, and a selection takes {needs}{why}", stratum.zone));
             }
         }
-        Ok(Self {
+        let mut case = Self {
             strata,
             sections: pool.sections.iter().map(|section| section.name.clone()).collect(),
             quantities: pool.quantities.iter().map(quantity).collect(),
             rule: pool.rule,
-        })
+        };
+        for (first, repeat) in repeats(pool) {
+            case.take_together(first, repeat);
+        }
+        for stratum in &case.strata {
+            if stratum.members.len() < stratum.take {
+                let (zone, has, needs) = (&stratum.zone, stratum.members.len(), stratum.take);
+                return Err(format!("zone {zone} has {has} usable sites, and a selection takes {needs} (a repeat is no further section)"));
+            }
+        }
+        Ok(case)
+    }
+
+    /// A repeat is taken with the section that it repeats, as one member of its zone.
+    fn take_together(&mut self, first: usize, repeat: usize) {
+        for stratum in &mut self.strata {
+            stratum.members.retain(|section| *section != repeat);
+        }
+        for quantity in &mut self.quantities {
+            let values = std::mem::take(&mut quantity.values[repeat]);
+            quantity.values[first].extend(values);
+            quantity.signals[first] |= std::mem::take(&mut quantity.signals[repeat]);
+            for measure in &mut quantity.measures {
+                let values = std::mem::take(&mut measure.values[repeat]);
+                measure.values[first].extend(values);
+                if let Some(estimator) = &mut measure.estimator {
+                    estimator.take_together(first, repeat);
+                }
+            }
+        }
+        let name = std::mem::take(&mut self.sections[repeat]);
+        self.sections[first] = format!("{} with {name}", self.sections[first]);
+        self.sections[repeat] = name;
     }
 
     /// Restricts the case to the sections of another case.
@@ -163,6 +199,15 @@ impl Case {
     }
 }
 
+/// Each used section that repeats another used one of its zone, with the first of these.
+fn repeats(pool: &Pool) -> Vec<(usize, usize)> {
+    let alike = |a: usize, b: usize| {
+        let (a, b) = (&pool.sections[a], &pool.sections[b]);
+        a.used && b.used && a.site == b.site && a.zone == b.zone
+    };
+    (0..pool.sections.len()).filter_map(|at| Some(((0..at).find(|&first| alike(first, at))?, at))).collect()
+}
+
 /// Binomial coefficient.
 pub fn choose(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |product, at| (product * (n - at) as f64 / (at + 1) as f64).round())
@@ -183,22 +228,26 @@ fn quantity(pooled: &PooledQuantity) -> Quantity {
 }
 
 fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
-    let each = limit.statistic == Statistic::Each;
-    let kind = match limit.statistic {
+    let (statistic, ddof) = match &limit.estimate {
+        Pooled::Statistic(statistic, ddof) => (Some(*statistic), *ddof),
+        Pooled::Estimate(_) => (None, 0),
+    };
+    let each = statistic == Some(Statistic::Each);
+    let kind = statistic.map_or(Kind::Estimated, |statistic| match statistic {
         Statistic::Each if limit.at_least => Kind::Smallest,
         Statistic::Each => Kind::LargestMagnitude,
-        Statistic::Percentile(_) => Kind::Pooled(limit.statistic),
+        Statistic::Percentile(_) => Kind::Pooled(statistic),
         Statistic::Named(entry) => match entry.name {
             "mean" => Kind::Mean,
-            "std" => Kind::Deviation { ddof: limit.ddof },
+            "std" => Kind::Deviation { ddof },
             "rms" => Kind::RootMeanSquare,
             "maximum" => Kind::Largest,
             "minimum" => Kind::Smallest,
             "peak" => Kind::LargestMagnitude,
-            _ => Kind::Pooled(limit.statistic),
+            _ => Kind::Pooled(statistic),
         },
-    };
-    let (bound, scale) = if each {
+    });
+    let (bound, scale) = if each || kind == Kind::Estimated {
         (1.0, 1.0)
     } else {
         let bound = limit.bounds[0];
@@ -218,7 +267,11 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
             .collect()
     };
     Measure {
-        name: limit.statistic.name(),
+        name: statistic.map_or_else(|| limit.title.clone(), Statistic::name),
+        estimator: match &limit.estimate {
+            Pooled::Estimate(estimator) => Some(estimator.clone()),
+            Pooled::Statistic(..) => None,
+        },
         title: limit.title.clone(),
         scope: limit.scope.clone(),
         limit: if each { 1.0 } else { limit.bounds[0] },
@@ -234,6 +287,9 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
 impl Measure {
     /// The statistic over some sections divided by the limit; `None` where it is not defined.
     pub fn over(&self, sections: impl Iterator<Item = usize>) -> Option<f64> {
+        if let Some(estimator) = &self.estimator {
+            return estimator.over(&sections.collect::<Vec<usize>>());
+        }
         let values: Vec<f64> = sections.flat_map(|at| self.values[at].iter().copied()).collect();
         let named = |name: &str, ddof: usize| match Statistic::named(name) {
             Some(Statistic::Named(entry)) => (entry.run)(&values, ddof),
@@ -250,7 +306,7 @@ impl Measure {
                 crate::metrics::percentile::percentile(&values, percent, crate::metrics::percentile::Method::Linear).ok()
             }
             Kind::Pooled(Statistic::Named(entry)) => (entry.run)(&values, 0),
-            Kind::Pooled(Statistic::Each) => None,
+            Kind::Pooled(Statistic::Each) | Kind::Estimated => None,
         };
         value.map(|value| value * self.scale).filter(|value| value.is_finite())
     }

@@ -179,7 +179,7 @@ impl Measure {
             Kind::Largest => extremes(1.0, false),
             Kind::Smallest => extremes(-1.0, false),
             Kind::LargestMagnitude => extremes(1.0, true),
-            Kind::Pooled(_) => Parts::Pooled,
+            Kind::Pooled(_) | Kind::Estimated => Parts::Pooled,
         }
     }
 

@@ -19,7 +19,7 @@ pub fn known(case: &Case) -> Vec<Option<Spread>> {
     let combinations = case.combinations();
     let measures: Vec<&Measure> = case.measures().map(|(_, measure)| measure).collect();
     let of = |measure: &&Measure| match (measure.kind, &halves) {
-        (Kind::Deviation { .. } | Kind::Pooled(_), _) => None,
+        (Kind::Deviation { .. } | Kind::Pooled(_) | Kind::Estimated, _) => None,
         (Kind::Largest | Kind::Smallest | Kind::LargestMagnitude, _) => extremes::over_all(case, measure).map(Spread::from),
         (Kind::Mean | Kind::RootMeanSquare, Some(halves)) => match measure.parts(halves) {
             Parts::Sums { blocks, form, .. } => sums(&blocks, form).map(Spread::from),

@@ -71,7 +71,7 @@ impl Default for Settings {
 impl Settings {
     /// The number of selections up to which all selections of a case are evaluated.
     fn most_of(&self, case: &Case) -> f64 {
-        let pooled = case.measures().any(|(_, measure)| matches!(measure.kind, case::Kind::Pooled(_)));
+        let pooled = case.measures().any(|(_, measure)| matches!(measure.kind, case::Kind::Pooled(_) | case::Kind::Estimated));
         if pooled { self.most.min(MOST_POOLED) } else { self.most }
     }
 }

@@ -4,7 +4,7 @@
 
 use fishplate::catalog::Statistic;
 use fishplate::result::study::Spread;
-use fishplate::run::pool::{PooledLimit, PooledQuantity, Section, Zone};
+use fishplate::run::pool::{Pooled, PooledLimit, PooledQuantity, Section, Zone};
 use fishplate::study::case::Case;
 use fishplate::study::halves::subsets;
 
@@ -16,8 +16,7 @@ pub fn limit(statistic: &str, bound: f64, ddof: usize, sections: usize) -> Poole
     let bounds = if statistic == "each" { vec![bound; sections] } else { vec![bound] };
     let statistic = named(statistic);
     PooledLimit {
-        statistic,
-        ddof,
+        estimate: Pooled::Statistic(statistic, ddof),
         at_least: false,
         title: statistic.title(ddof),
         scope: "all".into(),
@@ -30,7 +29,7 @@ pub fn limit(statistic: &str, bound: f64, ddof: usize, sections: usize) -> Poole
 pub fn sections(zones: &[usize]) -> Vec<Section> {
     let of = zones.iter().enumerate().flat_map(|(zone, count)| (0..*count).map(move |_| zone + 1));
     of.enumerate()
-        .map(|(at, zone)| Section { name: format!("S{:02}", at + 1), zone: Some(zone.to_string()), used: true, reason: None })
+        .map(|(at, zone)| Section { name: format!("S{:02}", at + 1), zone: Some(zone.to_string()), site: at, used: true, reason: None })
         .collect()
 }
 
