@@ -121,7 +121,7 @@ fn groups_partition_the_values() {
     let protocol = small(
         "quantity Q \"Q\"\n  from    measured\n  of      Q at wheelsets 1, 2\n  filter  LP20\n  value   p99.85\n  limit   mean 500 kN\n  \
          limit   p50 500 kN for each wheelset and side\n  limit   p60 500 kN for each section\n  limit   p70 500 kN for zones 2, 3 and each side\n  \
-         limit   p80 500 kN for each zone where direction is not straight\n  limit   (n + 0) at least 1\n  limit   (total of length) at least 1 m\n  \
+         limit   p80 500 kN for each zone where direction is not straight\n  limit   (n) at least 1\n  limit   (total of length) at least 1 m\n  \
          limit   (share where value <= 60 kN) at least 0.01\n  limit   (share of sections where direction is straight) at least 0.01\n",
     );
     let found = certified(&protocol, &root().join("examples/coach-good"));
@@ -135,7 +135,7 @@ fn groups_partition_the_values() {
     // Zone 1 is straight: a group that the condition empties vanishes.
     let scopes: Vec<&str> = of("p80").iter().map(|one| one.scope.as_str()).collect();
     assert_eq!(scopes, ["zone 2, direction is not straight", "zone 3, direction is not straight", "zone 4, direction is not straight"]);
-    assert_eq!(of("n + 0")[0].value, Some(13.0));
+    assert_eq!(of("n")[0].value, Some(13.0));
     let length: f64 = found.sections.iter().map(|section| section.length).sum();
     let total = of("total of length")[0];
     assert!((total.value.expect("a length") - length).abs() < 1e-9 * length && total.unit == "m");
@@ -202,8 +202,7 @@ fn a_study_takes_estimates_and_repeats() {
         (mean + 2.2 * (squares / (values.len() as f64 - 1.0)).sqrt()) / 90.0
     };
     let measure = &case.quantities[0].measures[0];
-    let largest = case
-        .strata[3]
+    let largest = case.strata[3]
         .members
         .iter()
         .map(|left_out| {
@@ -224,4 +223,34 @@ fn a_study_takes_estimates_and_repeats() {
     assert_eq!((merged.strata[0].members.as_slice(), merged.quantities[0].values[0].len()), ([0, 2].as_slice(), 2));
     let found = merged.quantities[0].measures[0].over(merged.usable().into_iter()).expect("a value");
     assert!((found - value(&(0..13).collect::<Vec<_>>())).abs() < 1e-12 * found, "{found}");
+}
+
+/// Neither the order of keys nor the unit of a quantity changes what is found.
+#[test]
+fn order_and_units_change_nothing() {
+    let of = |unit: &str, keys: &str| {
+        small(&format!(
+            "quantity Q \"Q\"\n  from    measured\n  of      Q at wheelsets 1, 2\n  filter  LP20\n  value   p99.85\n  in      {unit}\n  \
+             limit   (mean + 2.2 * std) 90 kN for each {keys}\n  limit   (upper 95 % of std) 20 kN for each {keys}\n"
+        ))
+    };
+    let campaign = root().join("examples/coach-good");
+    let found = |unit: &str, keys: &str| {
+        let found = certified(&of(unit, keys), &campaign);
+        let mut all: Vec<(String, Vec<(String, String)>, f64, f64, Option<bool>)> = Vec::new();
+        for one in statistics(&found) {
+            let mut group = one.group.clone();
+            group.sort();
+            let (value, limit) = (one.value.expect("a value"), one.limit.expect("a limit"));
+            all.push((one.name.clone(), group, value, limit, one.holds));
+        }
+        all.sort_by(|a, b| (&a.0, &a.1).cmp(&(&b.0, &b.1)));
+        all
+    };
+    let (plain, turned, newton) = (found("kN", "wheelset and side"), found("kN", "side and wheelset"), found("N", "wheelset and side"));
+    assert_eq!(plain.len(), 8);
+    assert_eq!(plain, turned);
+    for (a, b) in plain.iter().zip(&newton) {
+        assert!((a.2 * 1000.0 - b.2).abs() <= 1e-12 * b.2 && (a.3 * 1000.0 - b.3).abs() <= 1e-12 * b.3 && a.4 == b.4, "{a:?} {b:?}");
+    }
 }

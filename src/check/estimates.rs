@@ -14,6 +14,9 @@ use crate::units::Dimension;
 /// Most regressors: more say nothing of the numbers of sections that tests have.
 const MOST_REGRESSORS: usize = 8;
 
+/// The number of independent units of a group.
+const COUNT: &str = "n";
+
 /// What an expression over a group may use.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
@@ -33,10 +36,13 @@ impl Checker<'_> {
     /// What a limit is of; of values that were not understood (no dimension), names alone are looked at.
     pub(super) fn estimate(&mut self, written: &Written, text: &Text, dimension: Option<Dimension>) -> Option<Estimate> {
         let name = written.statistic.node.clone();
+        let plain = bare(&name);
         if let Node::Path(_) | Node::Percentile(_) = written.estimate.node
-            && !self.names.estimates.contains_key(&name)
+            && !self.names.estimates.contains_key(&plain)
+            && plain != COUNT
         {
-            return self.statistic(&written.statistic, text).map(|statistic| self.of_statistic(statistic));
+            let statistic = At { node: plain, range: written.statistic.range.clone() };
+            return self.statistic(&statistic, text).map(|statistic| self.of_statistic(statistic));
         }
         let kind = self.of_values(&written.estimate, text, dimension?)?;
         let title = self.blocks.iter().find(|block| block.kind.text == "estimate" && block.name_text() == name);
@@ -110,7 +116,7 @@ impl Checker<'_> {
         let ddof = self.ddof;
         let group = scope.group.as_mut()?;
         let expr = |kind, dimension| Some(Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() }));
-        if path == "n" && !self.names.parameter_blocks.contains_key(path) {
+        if path == COUNT && !self.names.parameter_blocks.contains_key(path) {
             let kind = group.take(Taking::Count);
             return expr(kind, Dimension::ONE);
         }
