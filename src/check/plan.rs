@@ -505,6 +505,18 @@ impl Evaluation {
         }
     }
 
+    /// The words of one of several values.
+    pub fn value_in_words(&self, which: usize) -> Option<String> {
+        match self {
+            Self::Values { values, .. } if values.len() > 1 => {
+                // Without the case that it applies in.
+                let words = &values.get(which)?.expr.span.words;
+                Some(words.split_once(" when ").map_or(words.as_ref(), |(value, _)| value).to_string())
+            }
+            _ => None,
+        }
+    }
+
     /// Whether rows have two sides and a difference.
     pub fn has_sides(&self) -> bool {
         matches!(self, Self::Values { records: Records::Compared { .. } | Records::Spread { .. }, .. })

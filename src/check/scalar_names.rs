@@ -206,7 +206,7 @@ impl Checker<'_> {
             self.problems.push(match (scope.vehicle, is_zone) {
                 (true, true) => problem.help("a limit that depends on the zone ends with `for each zone`"),
                 (true, false) => problem
-                    .help("a limit of some sections ends with `for sections where ...`; a limit of `each` value may depend on its section"),
+                    .help("a bound may use a mean, such as `mean of radius`; a limit of some sections ends with `for sections where ...`; a limit of `each` value may depend on its section"),
                 (false, _) => problem,
             });
             return Some(None);

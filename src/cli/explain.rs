@@ -148,8 +148,13 @@ fn plan_text(plan: &Plan) -> String {
             quantity.words.processing,
             quantity.words.comparison
         );
+        // A limit `for each zone` is written once.
+        let mut written: Vec<&crate::source::Span> = Vec::new();
         for limit in &quantity.limits {
-            let _ = writeln!(out, "  limit       {} {}", limit.estimate.title, limit.words);
+            if !written.contains(&&limit.span) {
+                written.push(&limit.span);
+                let _ = writeln!(out, "  limit       {} {}", limit.estimate.title, limit.words);
+            }
         }
     }
     let _ = writeln!(out, "{}", plan.verdict.words);

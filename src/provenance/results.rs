@@ -118,6 +118,8 @@ pub struct Pair {
     pub signal: String,
     /// Which record, where there are several of a side.
     pub record: Option<String>,
+    /// Which of several values, in words.
+    pub taken: Option<String>,
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
     #[serde(alias = "value")]
@@ -166,6 +168,7 @@ impl Results {
             section: pair.section.clone(),
             signal: pair.signal.clone(),
             record: pair.record.clone(),
+            taken: pair.taken.clone(),
             simulated: pair.simulated,
             measured: pair.measured,
             difference: pair.difference,

@@ -212,8 +212,10 @@ fn in_unit(value: f64, node: &Node, units: [&Unit; 2]) -> String {
 
 fn statistics(out: &mut String, carried: &Carried, quantity: &Quantity, pair: &Pair) {
     let _ = writeln!(out, "\nenters");
+    // Of groups told apart by more than the zone, the estimates of the section's zone are listed.
     let zone = pair.zone.as_ref().map(|zone| format!("zone {zone}"));
-    let other = |statistic: &&Statistic| statistic.scope.starts_with("zone ") && Some(&statistic.scope) != zone.as_ref();
+    let of_zone = |scope: &str| scope.split(", ").next().filter(|first| first.starts_with("zone ")).map(str::to_string);
+    let other = |statistic: &&Statistic| of_zone(&statistic.scope).is_some_and(|of| Some(of) != zone);
     for statistic in quantity.statistics.iter().filter(|statistic| !other(statistic)) {
         let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
         let unit = suffix(&statistic.unit);

@@ -97,6 +97,12 @@ fn quantity(quantity: &QuantityResult) -> Value {
         row.insert("section".into(), json!(pair.section));
         row.insert("zone".into(), json!(pair.zone));
         row.insert("signal".into(), json!(pair.signal));
+        if pair.taken.is_some() {
+            row.insert("taken".into(), json!(pair.taken));
+        }
+        if pair.record.is_some() {
+            row.insert("record".into(), json!(pair.record));
+        }
         if quantity.has_sides {
             row.insert("simulated".into(), json!(pair.simulated));
             row.insert("measured".into(), json!(pair.measured));

@@ -292,6 +292,8 @@ pub struct PairValue {
     pub section: String,
     pub zone: Option<String>,
     pub signal: String,
+    /// Which of the quantity's values, in words, where it has several.
+    pub taken: Option<String>,
     /// Which record, where the campaign has several of a side.
     pub record: Option<String>,
     pub simulated: Option<f64>,
@@ -301,6 +303,14 @@ pub struct PairValue {
     pub difference: f64,
     /// Number of samples (or windows) of the measured value.
     pub samples: usize,
+}
+
+impl PairValue {
+    /// The signal, and which value and record it is where there are several: `SigmaY_1, p99.85`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        [Some(&self.signal), self.taken.as_ref(), self.record.as_ref()].into_iter().flatten().cloned().collect::<Vec<_>>().join(", ")
+    }
 }
 
 #[derive(Clone, Debug, Serialize)]

@@ -234,6 +234,7 @@ fn quantity_result(
                 section: member.unit.name.clone(),
                 zone: member.unit.zone.clone(),
                 signal: member.signal.to_string(),
+                taken: quantity.evaluation.value_in_words(member.row.which),
                 record: member.row.record.as_deref().map(str::to_string),
                 simulated: member.row.simulated.map(show),
                 measured: member.row.measured.map(show),

@@ -44,6 +44,8 @@ pub struct RecordedValue {
     pub section: String,
     pub signal: String,
     pub record: Option<String>,
+    /// Which of several values, in words.
+    pub taken: Option<String>,
     /// In the unit of the quantity, as all values.
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
@@ -88,6 +90,7 @@ pub fn replay(plan: &Plan, graph: &Graph, recorded: &Recorded) -> Result<Replaye
             let si = |value: f64| quantity.unit.to_si(value);
             let row = Row {
                 position,
+                which: which(&quantity.evaluation, value.taken.as_deref()),
                 record: value.record.as_deref().map(Into::into),
                 simulated: value.simulated.map(si),
                 measured: value.measured.map(si),
@@ -98,9 +101,8 @@ pub fn replay(plan: &Plan, graph: &Graph, recorded: &Recorded) -> Result<Replaye
                 contradictions.push(format!("{place}: {says}"));
             }
             let rows = &mut values[unit].rows[index];
-            let before = rows.iter().filter(|other| other.position == position && other.record == row.record).count();
-            if before >= values_of(&quantity.evaluation) {
-                contradictions.push(format!("{place}: {} values", before + 1));
+            if rows.iter().any(|other| (other.position, other.which, &other.record) == (position, row.which, &row.record)) {
+                contradictions.push(format!("{place}: two values"));
             }
             rows.push(row);
         }
@@ -113,12 +115,10 @@ pub fn replay(plan: &Plan, graph: &Graph, recorded: &Recorded) -> Result<Replaye
     Ok(Replayed { judged: judge(plan, graph, &facts, &units, &values, &recorded.findings), contradictions })
 }
 
-/// How many values one position of a section may have of one record.
-fn values_of(evaluation: &Evaluation) -> usize {
-    match evaluation {
-        Evaluation::Values { values, .. } => values.len(),
-        Evaluation::Metric { .. } => 1,
-    }
+/// Which of several values a recorded one is, by its words.
+fn which(evaluation: &Evaluation, taken: Option<&str>) -> usize {
+    let Evaluation::Values { values, .. } = evaluation else { return 0 };
+    (0..values.len()).find(|&at| evaluation.value_in_words(at).as_deref() == taken).unwrap_or_default()
 }
 
 fn facts(plan: &Plan, recorded: &Recorded) -> Result<Facts, String> {

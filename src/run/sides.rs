@@ -83,20 +83,20 @@ impl<'a> Sides<'a> {
                 let node = if common { nodes.filtered } else { nodes.processed };
                 let one = |(record, two): (Option<Arc<str>>, Two<'_>)| {
                     let (value, samples) = two.compared(*metric, common, node, nodes.over)?;
-                    Ok(Row { position, record, simulated: None, measured: None, value, samples })
+                    Ok(Row { position, which: 0, record, simulated: None, measured: None, value, samples })
                 };
                 self.pairs().map(one).collect()
             }
             Evaluation::Values { values, records } => {
                 let mut rows = Vec::new();
                 let mut applied = false;
-                for (value, of) in values.iter().zip(&nodes.values) {
+                for (which, (value, of)) in values.iter().zip(&nodes.values).enumerate() {
                     // Of several values, those apply whose cases do.
                     if values.len() > 1 && !applies(&value.expr, self.known)? {
                         continue;
                     }
                     applied = true;
-                    rows.extend(self.of_value(work, records, position, nodes, of)?);
+                    rows.extend(self.of_value(work, records, (position, which), nodes, of)?);
                 }
                 if applied { Ok(rows) } else { Err("none of its values applies to this section".into()) }
             }
@@ -107,7 +107,7 @@ impl<'a> Sides<'a> {
         &self,
         work: &Work<'_>,
         records: &Records,
-        position: usize,
+        (position, which): (usize, usize),
         nodes: &SignalNodes,
         value: &ValueNodes,
     ) -> Result<Vec<Row>, String> {
@@ -123,7 +123,7 @@ impl<'a> Sides<'a> {
             Records::Of(side) => {
                 let one = |(record, two, value): (Option<Arc<str>>, Two<'_>, f64)| {
                     let samples = samples(&two, own(*side));
-                    Row { position, record, simulated: None, measured: None, value, samples }
+                    Row { position, which, record, simulated: None, measured: None, value, samples }
                 };
                 alone(*side).map(|found| found.map(one)).collect()
             }
@@ -132,7 +132,15 @@ impl<'a> Sides<'a> {
                     let s = two.value(work, value, InputSide::Simulated)?;
                     let m = two.value(work, value, InputSide::Measured)?;
                     let samples = samples(&two, InputSide::Measured);
-                    Ok(Row { position, record, simulated: Some(s), measured: Some(m), value: difference_of(difference, s, m)?, samples })
+                    Ok(Row {
+                        position,
+                        which,
+                        record,
+                        simulated: Some(s),
+                        measured: Some(m),
+                        value: difference_of(difference, s, m)?,
+                        samples,
+                    })
                 };
                 self.pairs().map(one).collect()
             }
@@ -150,7 +158,7 @@ impl<'a> Sides<'a> {
                 let one = |(record, two, value): (Option<Arc<str>>, Two<'_>, f64)| {
                     let samples = samples(&two, own(*side));
                     let difference = difference_of(difference, value, center)?;
-                    Ok(Row { position, record, simulated: Some(value), measured: Some(center), value: difference, samples })
+                    Ok(Row { position, which, record, simulated: Some(value), measured: Some(center), value: difference, samples })
                 };
                 all.into_iter().map(one).collect()
             }

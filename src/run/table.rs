@@ -11,6 +11,8 @@ use crate::check::plan::{Independent, Plan, Scalar};
 pub struct Row {
     /// Index into the quantity's positions.
     pub position: usize,
+    /// Index into the quantity's values, of which several may apply.
+    pub which: usize,
     /// Which record, where the campaign has several of a side.
     pub record: Option<Arc<str>>,
     /// What was compared, where the rows compare numbers, SI.

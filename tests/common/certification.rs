@@ -239,6 +239,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
                 * if kind.processing == "median" && section.section.len() % 2 == 1 { -1.0 } else { 1.0 };
             let difference = kind.limit * wide * noise.next();
             values.push(PairValue {
+                taken: None,
                 record: None,
                 section: section.section.clone(),
                 zone: section.zone.clone(),
@@ -330,6 +331,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         .flat_map(|section| {
             let value = 0.15 + 0.1 * noise.next();
             [LONG, "ay_II"].map(|signal| PairValue {
+                taken: None,
                 record: None,
                 section: section.section.clone(),
                 zone: section.zone.clone(),

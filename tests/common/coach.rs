@@ -173,6 +173,7 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
             let measured = typical * (0.35 + 0.2 * zone + 0.12 * nth as f64 + 0.12 * noise.next());
             let difference = limit * (2.0 / 3.0 * bias + scatter * noise.bell());
             values.push(PairValue {
+                taken: None,
                 record: None,
                 section: section.section.clone(),
                 zone: section.zone.clone(),

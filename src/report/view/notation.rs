@@ -53,7 +53,7 @@ const COMPARISONS: [(&str, &str); 3] = [
 /// Terms explained in every report.
 const WORDS: [(&str, &str); 8] = [
     ("Pair", "The simulated and the measured value of one quantity, in one section, for one signal."),
-    ("n", "Number of pairs that a statistic is taken over."),
+    ("n", "Number of sites of the pairs: repeats and positions of one section are not independent of each other."),
     ("Mean", "Arithmetic mean of the differences of the pairs."),
     ("Standard deviation", "Scatter of the differences about their mean. The divisor, n − 1 or n, is stated with it."),
     ("95 % interval", "Confidence interval of the statistic. The mean: Student's t; the standard deviation: chi-square."),
