@@ -254,3 +254,31 @@ fn order_and_units_change_nothing() {
         assert!((a.2 * 1000.0 - b.2).abs() <= 1e-12 * b.2 && (a.3 * 1000.0 - b.3).abs() <= 1e-12 * b.3 && a.4 == b.4, "{a:?} {b:?}");
     }
 }
+
+/// A condition that cannot be told, or that no section meets, is a reason: its limit does not vanish.
+#[test]
+fn a_limit_does_not_vanish() {
+    let protocol = small(
+        "quantity Q \"Q\"\n  from    measured\n  of      Q at wheelset 1 and side R\n  filter  LP20\n  value   p99.85\n  limit   mean 500 kN\n  \
+         limit   p60 500 kN for each wheelset where speed > 5000 km/h\n  limit   p70 500 kN for zone 1 and each wheelset where radius < 600 m\n",
+    );
+    let found = certified(&protocol, &root().join("examples/coach-good"));
+    let of = |name: &str| statistics(&found).iter().find(|one| one.name == name).unwrap_or_else(|| panic!("{name} is missing"));
+    assert_eq!(of("p60").reason.as_deref(), Some("no value is available"));
+    assert!(of("p70").reason.as_deref().expect("a reason").contains("cannot be determined"), "{:?}", of("p70").reason);
+    assert_eq!(found.verdict, Verdict::NotAssessable);
+}
+
+/// A limit of groups is one limit where limits are counted.
+#[test]
+fn groups_are_no_further_limits() {
+    let protocol = |needed: usize| {
+        small(&format!(
+            "quantity Q \"Q\"\n  from    measured\n  of      Q at wheelset 1 and side R\n  filter  LP20\n  value   p99.85\n  \
+             limit   mean 0.001 kN\n  limit   (n) 100 for each section\n\nverdict\n  validated  when at least {needed} limits hold\n  minimum pairs  1\n  minimum signals  1\n"
+        ))
+    };
+    let campaign = root().join("examples/coach-good");
+    assert_eq!(certified(&protocol(1), &campaign).verdict, Verdict::Validated);
+    assert_eq!(certified(&protocol(2), &campaign).verdict, Verdict::NotValidated);
+}

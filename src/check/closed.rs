@@ -3,11 +3,13 @@
 use std::collections::BTreeSet;
 
 use super::Checker;
+use super::estimates::Group;
 use super::names::Assignment;
 use super::scalars::Scope;
 use crate::catalog::{Reducer, Statistic};
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
+use crate::units::Dimension;
 
 impl Checker<'_> {
     pub(super) fn unused_parts(&mut self) {
@@ -24,6 +26,18 @@ impl Checker<'_> {
             let at = self.first_position(&signal.places);
             let text = Text { text: String::new(), span: signal.span.clone(), exact: false };
             self.signal(&At { node: Node::Path(name), range: 0..0 }, &text, &at);
+        }
+        let estimates: Vec<_> = self.names.estimates.iter().map(|(name, written)| (name.clone(), written.clone())).collect();
+        for (name, written) in estimates {
+            if self.used_defines.contains(&format!("estimate {name}")) {
+                continue;
+            }
+            // The dimension of the values is not known of one that is not used: units that do not agree are not told.
+            let before = self.problems.0.len();
+            let mut scope = Scope { group: Some(Group { values: Some(Dimension::ONE), taken: Vec::new() }), ..Scope::vehicle() };
+            self.inside("estimate", &name, &written.text.span, |checker| checker.expr(&written.phrase, &written.text, &mut scope));
+            let told = self.problems.0.split_off(before);
+            self.problems.0.extend(told.into_iter().filter(|problem| problem.code != "unit-mismatch"));
         }
         let defines: Vec<_> = self.names.defines.iter().map(|(name, define)| (name.clone(), define.clone())).collect();
         for (name, define) in defines {

@@ -92,8 +92,13 @@ fn rule(field: &Field) -> String {
     format!("{} {}", field.key.text, statistic(field)).trim().to_string()
 }
 
-fn statistic(field: &Field) -> &str {
-    if field.key.text == "limit" { field.value.text.split_whitespace().next().unwrap_or("") } else { "" }
+/// What a limit is of, as written.
+fn statistic(field: &Field) -> String {
+    if field.key.text != "limit" {
+        return String::new();
+    }
+    let first = || field.value.text.split_whitespace().next().unwrap_or("").to_string();
+    from_pest::limit(&field.value, &mut Problems::default()).map_or_else(first, |limit| limit.statistic.node)
 }
 
 fn one(block: &Block, rule: &str, old: Option<&Field>, new: Option<&Field>, found: &mut Vec<Deviation>) {
@@ -125,7 +130,10 @@ fn meaning(kind: &str, field: &Field) -> Option<String> {
         "filter" | "step" | "metric" => {
             from_pest::chain(text, quiet).map(|chain| chain.iter().map(|step| step.node.meaning()).collect::<Vec<_>>().join("; "))
         }
-        "of" => from_pest::of_places(text, quiet).map(|of| format!("{} {}", of.signal.node, picks(&of.picks))),
+        "of" => from_pest::of_places(text, quiet).map(|of| {
+            let when = of.when.as_ref().map_or(String::new(), |when| format!(" when {}", when.meaning()));
+            format!("{} {}{when}", of.signal.node, picks(&of.picks))
+        }),
         "at" => from_pest::places(text, quiet).map(|at| picks(&at)),
         "one of" | "members" => {
             from_pest::list(text, quiet).map(|list| list.into_iter().map(|item| item.node).collect::<Vec<_>>().join(", "))

@@ -14,6 +14,9 @@ use crate::units::Dimension;
 /// Most regressors: more say nothing of the numbers of sections that tests have.
 const MOST_REGRESSORS: usize = 8;
 
+/// Confidence that draws of a bootstrap can tell: 10 of 2000 lie beyond.
+const DRAWN: (f64, f64) = (0.005, 0.995);
+
 /// The number of independent units of a group.
 const COUNT: &str = "n";
 
@@ -49,7 +52,11 @@ impl Checker<'_> {
         let title = title.and_then(|block| block.title.as_ref()).map_or_else(|| self.with_values(&bare(&name)), |title| title.text.clone());
         let of_scatter = matches!(&kind.taken[..], [Taking::Bound { of, .. }] if of.of_scatter && matches!(kind.expr.kind, Kind::Input(0)));
         let found = self.number_type(&kind.expr)?;
-        let unit = (Some(found) != dimension).then(|| self.own_unit("", found));
+        let of_data = kind.taken.iter().find_map(|taking| match taking {
+            Taking::Data { of, .. } => self.datum_unit(of, found),
+            _ => None,
+        });
+        let unit = (Some(found) != dimension).then(|| of_data.unwrap_or_else(|| self.own_unit("", found)));
         Some(Estimate { name: bare(&name), title, kind: EstimateKind::Of(Box::new(kind)), of_scatter, unit })
     }
 
@@ -121,6 +128,7 @@ impl Checker<'_> {
             return expr(kind, Dimension::ONE);
         }
         if let Some(written) = self.names.estimates.get(path).cloned() {
+            self.used_defines.insert(format!("estimate {path}"));
             let found = self.inside("estimate", path, span, |checker| checker.expr(&written.phrase, &written.text, scope));
             return Some(found);
         }
@@ -207,10 +215,28 @@ impl Checker<'_> {
             self.of_statistic(statistic)
         } else {
             let kind = self.of_values(of, text, dimension)?;
+            if kind.taken.iter().any(|taking| matches!(taking, Taking::Bound { .. })) {
+                self.problems
+                    .push(Problem::error("interval-of-interval", "a confidence interval has no confidence interval itself").at(span));
+                return None;
+            }
             Estimate { title: name.clone(), name, kind: EstimateKind::Of(Box::new(kind)), of_scatter: false, unit: None }
         };
+        let closed = estimate.statistic().is_some_and(|(statistic, ddof)| match statistic {
+            Statistic::Named(entry) => entry.name == "mean" || entry.name == "std" && ddof == 1,
+            _ => false,
+        });
+        if (bootstrap || !closed) && !(DRAWN.0..=DRAWN.1).contains(&confidence) {
+            let says = "a bootstrap of 2000 draws says nothing of a bound beyond 0.5 % to 99.5 %";
+            self.problems.push(Problem::error("out-of-range", says).at(span));
+            return None;
+        }
+        let ty = match &estimate.kind {
+            EstimateKind::Of(of) if estimate.statistic().is_none() => of.expr.ty.clone(),
+            _ => Type::Number(dimension),
+        };
         let kind = scope.group.as_mut()?.take(Taking::Bound { of: estimate, upper, confidence, bootstrap });
-        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+        Some(Expr { kind, ty, span: span.clone() })
     }
 
     /// `share where value <= 1`.

@@ -210,14 +210,22 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: 
 /// Takes away the limits of a statistic and scope, or all of them, from some quantities.
 fn remove_limits<'a>(quantities: impl Iterator<Item = &'a mut Block>, name: &str, words: &[&str], field: &Field, problems: &mut Problems) {
     let wanted = |other: &Field| {
-        let [statistic, scope @ ..] = words else { return true };
+        if words.is_empty() {
+            return true;
+        }
+        // What a limit is of may be several words: an estimate in parentheses.
+        let wanted = words.join(" ");
         let limit = from_pest::limit(&other.value, &mut Problems::default());
-        limit.is_some_and(|limit| limit.statistic.node == *statistic && (scope.is_empty() || limit.scope.node.meaning() == scope.join(" ")))
+        limit.is_some_and(|limit| {
+            let statistic = &limit.statistic.node;
+            *statistic == wanted || format!("{statistic} {}", limit.scope.node.meaning()) == wanted
+        })
     };
     let mut removed = false;
     let mut known: Vec<String> = Vec::new();
     for quantity in quantities {
-        known.extend(quantity.fields_named("limit").filter_map(|limit| Some(limit.value.text.split_whitespace().next()?.to_owned())));
+        let of = |field: &Field| from_pest::limit(&field.value, &mut Problems::default()).map(|limit| limit.statistic.node);
+        known.extend(quantity.fields_named("limit").filter_map(of));
         let before = quantity.fields.len();
         quantity.fields.retain(|other| other.key.text != "limit" || !wanted(other));
         removed |= quantity.fields.len() < before;
@@ -234,5 +242,5 @@ fn remove_limits<'a>(quantities: impl Iterator<Item = &'a mut Block>, name: &str
     };
     known.dedup();
     let problem = Problem::error("nothing-to-remove", says).at(&field.value.span);
-    problems.push(problem.suggest(words.first().unwrap_or(&""), known.iter().map(String::as_str)));
+    problems.push(problem.suggest(&words.join(" "), known.iter().map(String::as_str)));
 }

@@ -165,7 +165,8 @@ impl Checker<'_> {
             return;
         }
         let percentile = name.strip_prefix('p').is_some_and(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit()));
-        let taken = if WORDS.contains(&name) {
+        const OF_GROUPS: [&str; 8] = ["n", "value", "share", "total", "upper", "lower", "prediction", "regression"];
+        let taken = if WORDS.contains(&name) || kind == "estimate" && OF_GROUPS.contains(&name) {
             Some("a word of the language")
         } else if percentile {
             Some("a percentile")

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Checker;
+use super::conditions::impossible;
 use super::evaluate::{Values, number, words};
 use super::names::{Assignment, bare_word, normalised};
 use super::plan::{
@@ -202,6 +203,13 @@ impl Checker<'_> {
                     self.problems.push(Problem::error("unit-mismatch", says).at(&field.value.span).label(signal.dimension.in_words()));
                     return None;
                 }
+                let again = found.iter().find(|(known, _)| known.name == name && both_apply(&known.only, &only));
+                if again.is_some() {
+                    let says = format!("`{name}` is evaluated twice: its values would count double");
+                    let problem = Problem::error("position-twice", says).at(&field.value.span);
+                    self.problems.push(problem.help("give the fields `of` conditions that exclude each other: `when ...`"));
+                    return None;
+                }
                 let places = at.iter().map(|(place, member)| (place.clone(), member.clone())).collect();
                 found.push((Position { name, signal, places, only: only.clone() }, at));
             }
@@ -255,6 +263,13 @@ impl Checker<'_> {
                 return None;
             }
         }
+        for (at, field) in fields.iter().enumerate() {
+            if let Some(first) = fields[..at].iter().find(|first| normalised(&first.value.text) == normalised(&field.value.text)) {
+                let problem = Problem::error("value-twice", "this value stands twice and would count double").at(&field.value.span);
+                self.problems.push(problem.also(&first.value.span, "the same value"));
+                return None;
+            }
+        }
         let from = block.field("from").map(|field| self.side(field));
         let compare = block.field("compare").map(|field| self.spread(field));
         let difference = match from {
@@ -268,6 +283,12 @@ impl Checker<'_> {
         let field_of = |key: &str| block.field(key).map(|field| field.value.span.clone());
         let Some(difference) = difference else {
             let side = from??;
+            let other = if side == Side::Measured { InputSide::Simulated } else { InputSide::Measured };
+            if let Some(input) = values.iter().flat_map(|value| value.inputs.iter().flatten()).find(|input| input.side == other) {
+                let says = format!("the values are {}, and the other record is not read", side.in_words());
+                self.problems.push(Problem::error("record-not-read", says).at(&input.span));
+                return None;
+            }
             let from = field_of("value").filter(|_| Some(result) != dimension);
             let evaluation = Evaluation::Values { values, records: Records::Of(side) };
             let comparison = format!("{} values", side.in_words());
@@ -459,6 +480,12 @@ impl Checker<'_> {
         }
         Some(value as usize)
     }
+}
+
+/// Whether there may be sections in which two positions are evaluated.
+fn both_apply(a: &Option<Expr>, b: &Option<Expr>) -> bool {
+    let conditions: Vec<(&Expr, bool)> = a.iter().chain(b).map(|condition| (condition, true)).collect();
+    !impossible(&conditions)
 }
 
 /// What a comparison comes to where both sides are alike: 0 of a difference, 1 of a ratio; `None` where that depends on the side.

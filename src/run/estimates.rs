@@ -1,6 +1,6 @@
 //! What is estimated from the rows of a group.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 use super::facts::{Facts, Known};
 use super::sections::Unit;
@@ -31,13 +31,8 @@ impl Group<'_> {
     }
 
     fn sections(&self) -> Vec<&Unit> {
-        let mut found: Vec<&Unit> = Vec::new();
-        for member in self.members {
-            if !found.iter().any(|known| known.name == member.unit.name) {
-                found.push(member.unit);
-            }
-        }
-        found
+        let mut seen = HashSet::new();
+        self.members.iter().map(|member| member.unit).filter(|unit| seen.insert(unit.name.as_str())).collect()
     }
 
     /// The value of an expression over the group.

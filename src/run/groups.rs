@@ -1,5 +1,9 @@
 //! Groups of rows: which a limit is about.
 
+use std::collections::HashMap;
+
+use indexmap::IndexSet;
+
 use super::facts::Facts;
 use super::sections::Unit;
 use super::table::Member;
@@ -14,11 +18,13 @@ pub struct Part<'a> {
     zones: Vec<String>,
     /// Each key with the member that the group is of, and what it is called.
     keys: Vec<(&'a Key, String, String)>,
+    /// Numbers of its rows among those of the quantity, where keys tell groups apart.
+    rows: Vec<usize>,
 }
 
 /// The groups of a limit. Its zones that need no section and have none are left out; so are zones that the quantity leaves out by its own
-/// condition, unless it leaves out all, and groups of which a condition leaves no row. A group of a place is there wherever the place was
-/// recorded.
+/// condition, unless it leaves out all, and groups of which a condition leaves no row, unless it leaves none at all. A group of a place is
+/// there wherever the place was recorded.
 pub fn parts<'a>(plan: &Plan, quantity: &Quantity, limit: &'a Limit, members: &[Member<'_>], facts: &Facts) -> Vec<Part<'a>> {
     let scope = &limit.scope;
     let selective = quantity.only.is_some() && !members.is_empty();
@@ -27,39 +33,25 @@ pub fn parts<'a>(plan: &Plan, quantity: &Quantity, limit: &'a Limit, members: &[
     if !scope.zones.is_empty() && !scope.zones.iter().any(|zone| needed(zone) || filled(zone)) {
         return Vec::new();
     }
-    let whole = Part { scope, zones: scope.zones.clone(), keys: Vec::new() };
+    let whole = Part { scope, zones: scope.zones.clone(), keys: Vec::new(), rows: Vec::new() };
+    let inside: Vec<Result<bool, String>> = members.iter().map(|member| whole.has_section(member.unit, facts)).collect();
+    // Where it cannot be told which rows belong to it, the limit is not assessable, and says why.
+    if inside.iter().any(Result::is_err) {
+        return vec![whole];
+    }
+    let everywhere = Part { zones: Vec::new(), ..whole.clone() };
+    let meets = |member: &Member<'_>| everywhere.has_section(member.unit, facts) == Ok(true);
+    if scope.condition.is_some() && !members.iter().any(meets) {
+        return vec![whole];
+    }
+    let rows: Vec<usize> = (0..members.len()).filter(|&at| inside[at] == Ok(true)).collect();
     if scope.each.is_empty() {
-        let excluded =
-            scope.condition.is_some() && !scope.zones.is_empty() && members.iter().all(|member| whole.has(member, facts) == Ok(false));
+        let excluded = scope.condition.is_some() && !scope.zones.is_empty() && rows.is_empty();
         return if excluded { Vec::new() } else { vec![whole] };
     }
-    // What differs by place is expected in every zone that has rows at all; what differs by section is what there is.
-    let in_scope: Vec<&Member<'_>> = members.iter().filter(|member| whole.has(member, facts) == Ok(true)).collect();
-    let mut groups = vec![whole];
-    for key in &scope.each {
-        let mut found: Vec<(String, String)> = Vec::new();
-        let all: &mut dyn Iterator<Item = &Member<'_>> =
-            if matches!(key, Key::Place(_)) { &mut members.iter() } else { &mut in_scope.iter().copied() };
-        for member in all {
-            let of = of_key(plan, quantity, key, member);
-            if !found.contains(&of) {
-                found.push(of);
-            }
-        }
-        let with = |group: &Part<'a>, (member, words): &(String, String)| {
-            let mut group = group.clone();
-            group.keys.push((key, member.clone(), words.clone()));
-            group
-        };
-        groups = groups.iter().flat_map(|group| found.iter().map(move |member| with(group, member))).collect();
-    }
-    let there = |group: &Part<'_>| in_scope.iter().any(|member| group.has_keys_of_section(plan, quantity, member));
-    groups.retain(|group| there(group) || in_scope.is_empty() && scope.condition.is_none());
+    let groups = whole.by_keys(plan, quantity, members, &rows);
     // What should be there and is not is told by the group of all.
-    if groups.is_empty() && scope.condition.is_none() {
-        return vec![Part { scope, zones: scope.zones.clone(), keys: Vec::new() }];
-    }
-    groups
+    if groups.is_empty() && scope.condition.is_none() { vec![whole] } else { groups }
 }
 
 /// The member of a key that a row is of, and what the group is called.
@@ -67,7 +59,7 @@ fn of_key(plan: &Plan, quantity: &Quantity, key: &Key, member: &Member<'_>) -> (
     let named = |of: &str, name: String| (name.clone(), format!("{of} {name}"));
     match key {
         Key::Section => named("section", member.unit.name.clone()),
-        Key::Site => named("site", (member.unit.site + 1).to_string()),
+        Key::Site => named("site", member.unit.site_name.clone()),
         Key::Record => named("record", member.row.record.as_deref().unwrap_or("1").to_string()),
         Key::Place(place) => {
             let places = &quantity.positions[member.row.position].places;
@@ -88,10 +80,52 @@ fn of_key(plan: &Plan, quantity: &Quantity, key: &Key, member: &Member<'_>) -> (
 }
 
 impl<'a> Part<'a> {
+    /// The groups of some rows. What differs by place is expected wherever there are rows; what differs by section is what there is.
+    fn by_keys(&self, plan: &Plan, quantity: &Quantity, members: &[Member<'_>], rows: &[usize]) -> Vec<Self> {
+        let keys = &self.scope.each;
+        let of = |member: &Member<'_>, key: &Key| of_key(plan, quantity, key, member);
+        let mut rows_of: HashMap<Vec<String>, Vec<usize>> = HashMap::new();
+        // What sections have in common, one after another.
+        let mut of_sections: IndexSet<Vec<Option<(String, String)>>> = IndexSet::new();
+        for &row in rows {
+            let found: Vec<(String, String)> = keys.iter().map(|key| of(&members[row], key)).collect();
+            rows_of.entry(found.iter().map(|(name, _)| name.clone()).collect()).or_default().push(row);
+            let by_section = keys.iter().zip(found).map(|(key, found)| (!matches!(key, Key::Place(_))).then_some(found));
+            of_sections.insert(by_section.collect());
+        }
+        if rows.is_empty() && self.scope.condition.is_none() && keys.iter().all(|key| matches!(key, Key::Place(_))) {
+            of_sections.insert(vec![None; keys.len()]);
+        }
+        let places: Vec<IndexSet<(String, String)>> = keys
+            .iter()
+            .map(|key| if let Key::Place(_) = key { members.iter().map(|member| of(member, key)).collect() } else { IndexSet::new() })
+            .collect();
+        let mut groups = Vec::new();
+        for section in &of_sections {
+            let mut all = vec![Self { keys: Vec::new(), ..self.clone() }];
+            for (at, key) in keys.iter().enumerate() {
+                let choices: Vec<(String, String)> =
+                    section[at].clone().map_or_else(|| places[at].iter().cloned().collect(), |of| vec![of]);
+                let with = |group: &Self, (member, words): &(String, String)| {
+                    let mut group = group.clone();
+                    group.keys.push((key, member.clone(), words.clone()));
+                    group
+                };
+                all = all.iter().flat_map(|group| choices.iter().map(move |choice| with(group, choice))).collect();
+            }
+            groups.extend(all);
+        }
+        for group in &mut groups {
+            let names: Vec<String> = group.keys.iter().map(|(_, member, _)| member.clone()).collect();
+            group.rows = rows_of.remove(&names).unwrap_or_default();
+        }
+        groups
+    }
+
     /// What a limit of a single value is about: the zone of its section.
     pub fn of_section(plan: &Plan, limit: &'a Limit, unit: &Unit) -> Self {
         let zones = unit.zone.iter().filter(|_| !plan.zones.is_empty()).cloned().collect();
-        Self { scope: &limit.scope, zones, keys: Vec::new() }
+        Self { scope: &limit.scope, zones, keys: Vec::new(), rows: Vec::new() }
     }
 
     /// `all`, `zones 2, 3`, `zone 1, wheelset 2`
@@ -124,10 +158,13 @@ impl<'a> Part<'a> {
     ///
     /// # Errors
     /// It cannot be told whether a section belongs to it.
-    pub fn members<'m>(&self, plan: &Plan, quantity: &Quantity, facts: &Facts, all: &[Member<'m>]) -> Result<Vec<Member<'m>>, String> {
+    pub fn members<'m>(&self, facts: &Facts, all: &[Member<'m>]) -> Result<Vec<Member<'m>>, String> {
+        if !self.keys.is_empty() {
+            return Ok(self.rows.iter().map(|&row| all[row]).collect());
+        }
         let mut inside = Vec::new();
         for member in all {
-            if self.has(member, facts)? && self.has_keys(plan, quantity, member) {
+            if self.has_section(member.unit, facts)? {
                 inside.push(*member);
             }
         }
@@ -150,20 +187,6 @@ impl<'a> Part<'a> {
         let asked: Vec<(String, &String)> = self.keys.iter().filter_map(|(key, of, _)| Some((of_place(key)?, of))).collect();
         let at = |places: &[(String, String)], place: &str, of: &str| places.iter().any(|(known, member)| known == place && member == of);
         quantity.positions.iter().map(|position| asked.iter().all(|(place, of)| at(&position.places, place, of))).collect()
-    }
-
-    fn has(&self, member: &Member<'_>, facts: &Facts) -> Result<bool, String> {
-        self.has_section(member.unit, facts)
-    }
-
-    pub fn has_keys(&self, plan: &Plan, quantity: &Quantity, member: &Member<'_>) -> bool {
-        self.keys.iter().all(|(key, of, _)| of_key(plan, quantity, key, member).0 == *of)
-    }
-
-    /// As [`Self::has_keys`], whatever the position.
-    fn has_keys_of_section(&self, plan: &Plan, quantity: &Quantity, member: &Member<'_>) -> bool {
-        let mut of_section = self.keys.iter().filter(|(key, ..)| !matches!(key, Key::Place(_)));
-        of_section.all(|(key, of, _)| of_key(plan, quantity, key, member).0 == *of)
     }
 
     /// Whether a limit of this scope is the limit of the group, too; how closely it was meant for it.

@@ -49,8 +49,20 @@ pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: 
         return Judged { verdict: Verdict::NotAssessable, reasons: missing, quantities, zones };
     }
     let holding = quantities.iter().filter(|quantity| quantity.holds == Some(true) && !quantity.statistics.is_empty()).count();
-    let limits_holding =
-        quantities.iter().flat_map(|quantity| &quantity.statistics).filter(|statistic| statistic.holds == Some(true)).count();
+    // A limit of groups holds where all of them do: as many groups are no further limits.
+    let of_limits = |quantity: &QuantityResult| {
+        let mut limits: Vec<(&str, &str, usize, bool)> = Vec::new();
+        for one in &quantity.statistics {
+            let zone = one.scope.split(", ").next().filter(|first| first.starts_with("zone ")).unwrap_or("");
+            let holds = one.holds == Some(true);
+            match limits.iter_mut().find(|(name, of, line, _)| (*name, *of, *line) == (&one.name, zone, one.rule.line)) {
+                Some((.., all)) => *all &= holds,
+                None => limits.push((&one.name, zone, one.rule.line, holds)),
+            }
+        }
+        limits.into_iter().filter(|(.., holds)| *holds).count()
+    };
+    let limits_holding: usize = quantities.iter().map(of_limits).sum();
     let Operation::Verdict(rule) = graph.nodes[graph.verdict].operation else {
         let reasons = vec!["the graph ends without a verdict; this is a fault of the program".into()];
         return Judged { verdict: Verdict::NotAssessable, reasons, quantities, zones };

@@ -59,7 +59,7 @@ impl<'a> Judging<'a> {
     }
 
     fn of_part(&self, limit: &Limit, part: Part<'a>) -> Estimated<'a> {
-        let members = match part.members(self.plan, self.quantity, self.facts, self.members) {
+        let members = match part.members(self.facts, self.members) {
             Ok(members) => members,
             Err(reason) => return Estimated { part, members: Vec::new(), value: Err(reason), interval: None },
         };

@@ -79,7 +79,7 @@ pub struct Estimator {
 impl Estimator {
     fn new(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Self {
         let Judging { plan, facts, quantity, members } = *judging;
-        let inside = part.members(plan, quantity, facts, members).unwrap_or_default();
+        let inside = part.members(facts, members).unwrap_or_default();
         let number = |unit: &Unit| units.iter().position(|known| known.name == unit.name).unwrap_or_default();
         let rows = inside.iter().map(|member| (number(member.unit), member.unit.clone(), member.row.clone())).collect();
         let bound = judging.bound(limit, part, &inside, &Known::vehicle(facts)).unwrap_or(f64::NAN);
@@ -207,7 +207,7 @@ fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, par
         };
         units.iter().map(own).collect::<Option<Vec<_>>>()?
     } else {
-        let members = part.members(plan, quantity, facts, members).ok()?;
+        let members = part.members(facts, members).ok()?;
         // Data of sections may be in the limit: that of all sections stands here, and an estimate takes its own.
         vec![shown(&Known::vehicle(facts), part, &members)?]
     };

@@ -151,6 +151,7 @@ fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
             cell: Spanned::new(section.name.clone(), nowhere.clone()),
             zone: section.zone.clone(),
             site: place(&section.site).or_else(|| place(&section.name)).unwrap_or_default(),
+            site_name: section.site.clone(),
             extent: (!plan.sections.whole_records).then(|| (axis.to_si(section.start), axis.to_si(section.end))),
             covered: None,
             columns: plan.columns.iter().zip(&section.columns).map(column).collect(),

@@ -20,6 +20,8 @@ pub struct Unit {
     pub zone: Option<String>,
     /// Number of its site: sections of the same stretch of track have the same.
     pub site: usize,
+    /// Name of the first section of the site.
+    pub site_name: String,
     /// `None` for a whole record.
     pub extent: Option<Extent>,
     /// What a report says it covers: the section, or the measured record.
@@ -98,6 +100,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
                 _ => None,
             }),
             site: sites[row.row],
+            site_name: campaign.names[sites[row.row]].value.clone(),
             extent: None,
             covered: None,
             columns,
@@ -130,6 +133,7 @@ fn whole_record(plan: &Plan, name: &Cell, site: usize) -> Unit {
         cell: name.clone(),
         zone: None,
         site,
+        site_name: name.value.clone(),
         extent: None,
         covered: None,
         columns,

@@ -41,8 +41,8 @@ pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
             Ok(Scalar::Word(word)) => word.clone(),
             Ok(Scalar::Number(number)) => format!("{number:e}"),
             Ok(Scalar::Flag(flag)) => flag.to_string(),
-            // A section that does not say what it depends on is by itself.
-            Err(_) => format!("section {}", unit.name),
+            // A section that does not say what it depends on depends on its site.
+            Err(_) => format!("site {}", unit.site),
         };
         names.iter().position(|known| *known == name).unwrap_or_else(|| {
             names.push(name);

@@ -37,6 +37,9 @@ quantity Y_max
   limit  p70 upper 95 % of std
   limit  (3 * median of radius) 9 kN
   limit  (totl of length) at least 500 m
+  limit  (upper 95 % of (upper 90 % of p80)) 9 kN
+  limit  (upper 99.9 % of p70) 9 kN
+  limit  (upper 95 % of (share where value <= 9 kN)) at least 9 kN
 
 quantity Q_max
   from  measured
@@ -67,3 +70,29 @@ quantity of_two_values "Values of two kinds"
   value  p99.85
   value  slope
   limit  p95 9 kN
+
+quantity other_record "The record that is not read"
+  of     Y at wheelset 1
+  from   measured
+  value  mean - simulated(mean)
+  limit  p95 9 kN
+
+quantity twice "One position by two ways"
+  of     Y at wheelset 1
+  of     Y at wheelsets 1, 3 when direction is right
+  from   measured
+  value  median
+  limit  p95 9 kN
+
+quantity doubled_value "One value in two lines"
+  of     Y at wheelset 1
+  from   measured
+  value  median
+  value  median
+  limit  p95 9 kN
+
+estimate upper "A word of estimates"
+  is  mean
+
+estimate unused "Unknown names are told all the same"
+  is  mean + nonsense
