@@ -179,7 +179,7 @@ impl Checker<'_> {
         };
         if let Some(what) = taken {
             self.problems.push(
-                Problem::error("reserved-name", format!("`{name}` is {what} and cannot name a {kind}"))
+                Problem::error("reserved-name", format!("`{name}` is {what} and cannot be the name of this {kind}"))
                     .at(block.span())
                     .help(format!("for instance `{name}_1`, or a longer name")),
             );
