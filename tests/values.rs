@@ -282,3 +282,64 @@ fn groups_are_no_further_limits() {
     assert_eq!(certified(&protocol(1), &campaign).verdict, Verdict::Validated);
     assert_eq!(certified(&protocol(2), &campaign).verdict, Verdict::NotValidated);
 }
+
+fn numbers(name: &str) -> Vec<Value> {
+    let text = fs::read_to_string(root().join("tests/cases/values").join(name)).expect("expected numbers");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+/// Metrics in expressions, coherence, numbers of both sides' samples, derivative, integral, shift and slope over a signal: against
+/// an independent program (12 digits) and NumPy (`cases/values/both_sides.py`), 1e-9 relative.
+#[test]
+fn numbers_of_both_sides_agree_with_numpy() {
+    let protocol = fs::read_to_string(root().join("tests/cases/values/both_sides.fp")).expect("a protocol");
+    let found = certified(&compiled("both_sides.fp", &protocol), &root().join("examples/coach-good"));
+    let value_of = |quantity: &str, section: &str, signal: &str| {
+        let known = found.quantities.iter().find(|known| known.id == quantity).unwrap_or_else(|| panic!("no {quantity}"));
+        let factor = fishplate::units::Unit::parse(&known.unit).expect("a unit").factor;
+        let value = known.values.iter().find(|value| value.section == section && value.signal == signal);
+        let value = value.unwrap_or_else(|| panic!("{quantity} {section} {signal} is missing: {:?}", found.reasons));
+        (value.difference * factor, value.simulated.map(|side| side * factor), value.measured.map(|side| side * factor))
+    };
+    let near = |place: &str, value: f64, want: f64, scale: f64| {
+        assert!((value - want).abs() <= 1e-9 * scale.abs(), "{place}: {value} in place of {want}");
+    };
+    let mut compared = 0;
+    for one in numbers("both_sides_filtered.json") {
+        let (section, signal) = (one["section"].as_str().expect("a text"), one["signal"].as_str().expect("a text"));
+        let want = |key: &str| one[key].as_f64().unwrap_or_else(|| panic!("no {key}"));
+        let channel = &signal[..1];
+        let mut all: Vec<(String, f64)> = ["1_2", "2_4", "4_8", "8_16"]
+            .iter()
+            .flat_map(|band| {
+                [
+                    (format!("coherence_{band}"), want(&format!("coherence_{band}"))),
+                    (format!("octave_{band}"), want(&format!("band_ratio_{band}"))),
+                ]
+            })
+            .collect();
+        all.push(("nrmse".into(), want("nrmse_rms")));
+        all.push(("nrmse_of_metric".into(), want("nrmse_rms")));
+        all.push(("nrmse_range".into(), want("nrmse_range")));
+        all.push(("rating".into(), 0.4 * want("correlation") + 0.6 * (1.0 - want("theil_U1"))));
+        for (quantity, want) in all {
+            let quantity = format!("{channel}_{quantity}");
+            near(&format!("{quantity} {section} {signal}"), value_of(&quantity, section, signal).0, want, want);
+            compared += 1;
+        }
+    }
+    for one in numbers("both_sides.json") {
+        let text = |key: &str| one[key].as_str().expect("a text");
+        let (value, simulated, measured) = value_of(text("quantity"), text("section"), text("signal"));
+        let place = format!("{} {} {}", text("quantity"), text("section"), text("signal"));
+        // A difference of two sums over a record loses the digits of these.
+        let scale = one["measured"].as_f64().or(one["value"].as_f64()).expect("a number").abs().max(1e-3);
+        for (key, value) in [("simulated", simulated), ("measured", measured), ("value", Some(value))] {
+            if let (Some(want), Some(value)) = (one[key].as_f64(), value) {
+                near(&place, value, want, scale);
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 2000, "{compared}");
+}

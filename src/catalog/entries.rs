@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
-use super::{Best, DIFFERENCES, FUNCTIONS, Form, METRICS, NumberOption, REDUCERS, STATISTICS, STEPS, Signature};
+use super::{Best, DIFFERENCES, FUNCTIONS, Form, METRICS, NumberOption, REDUCERS, SIGNAL_FUNCTIONS, STATISTICS, STEPS, Signature};
 use crate::units::Dimension;
 
 /// One thing the language can do with signals or numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// `step`, `reducer`, `metric`, `difference`, `statistic` or `function`.
+    /// `step`, `reducer`, `metric`, `difference`, `statistic`, `function` or `signal-function`.
     pub kind: &'static str,
     /// How it is written: `low-pass <cut-off: a frequency>`.
     pub wording: String,
@@ -90,6 +90,9 @@ pub fn entries() -> Vec<Entry> {
     all.push(Entry::new("statistic", "each", "each pair of D", "Every pair by itself; the worst decides."));
     for function in FUNCTIONS {
         all.push(Entry::new("function", function.name, signature(function.signature), function.about));
+    }
+    for (name, signature, about) in SIGNAL_FUNCTIONS {
+        all.push(Entry::new("signal-function", name, signature, about));
     }
     all
 }

@@ -46,3 +46,22 @@ pub const FUNCTIONS: &[Function] = &[
     one("atan", Signature::Plain, "Inverse tangent, an angle.", |a| a[0].atan()),
     one("floor", Signature::Plain, "The next whole number below.", |a| a[0].floor()),
 ];
+
+/// Functions of a signal along its axis: name, what it takes and gives, what it is. Only signals have them.
+pub const SIGNAL_FUNCTIONS: [(&str, &str, &str); 3] = [
+    (
+        "shifted",
+        "(signal<D>, distance along the axis) -> signal<D>",
+        "The signal moved forward: at x it has the value from x less the distance, linear between samples.",
+    ),
+    (
+        "derivative",
+        "(signal<D>) -> signal<D per axis>",
+        "Slope at each sample: central differences, at the first and last sample the difference to its neighbour. With a second argument `time`, per time.",
+    ),
+    (
+        "integral",
+        "(signal<D>) -> signal<D times axis>",
+        "Integral by trapezoids, 0 at the first sample of the record. With a second argument `time`, over time.",
+    ),
+];

@@ -11,10 +11,10 @@ mod two_signals;
 
 pub use entries::{Entry, entries};
 pub use forms::{Choice, Form, NumberOption, Part};
-pub use functions::{FUNCTIONS, Function, Signature};
+pub use functions::{FUNCTIONS, Function, SIGNAL_FUNCTIONS, Signature};
 pub use reducers::{REDUCERS, Reducer, ReducerEntry, STATISTICS, Statistic, StatisticEntry};
 pub use steps::{STEPS, StepEntry, StepKind};
-pub use two_signals::{Best, METRICS, Metric, MetricEntry, Pair};
+pub use two_signals::{Asked, Best, METRICS, Metric, MetricEntry, Pair};
 
 /// Comparisons of a simulated and a measured value with a name, so that protocols need not spell them out.
 pub const DIFFERENCES: [(&str, &str); 3] = [

@@ -1,7 +1,7 @@
 //! Metrics: one number from the simulated and the measured signal of a section, the measured one being the reference.
 
 use super::forms::{Form, NumberOption, Part};
-use crate::metrics::{hysteresis, pair};
+use crate::metrics::{coherence, hysteresis, pair};
 use crate::units::Dimension;
 
 /// The two signals, cut to the section and on common points unless the metric says otherwise; SI.
@@ -11,6 +11,10 @@ pub struct Pair<'a> {
     pub axis: &'a [f64],
     pub simulated: &'a [f64],
     pub measured: &'a [f64],
+    /// Samples of the measured signal per second, or per metre where the record has no time.
+    pub rate: f64,
+    /// The frequencies that the wording names.
+    pub band: Option<(f64, f64)>,
     /// The signal that the metric runs over, where its wording names one: simulated, measured.
     pub over: Option<(&'a [f64], &'a [f64])>,
 }
@@ -44,20 +48,20 @@ impl Best {
     }
 }
 
-/// An entry, and the number of points that both distributions are taken at, where the wording has one.
+/// An entry, and what its wording asks for besides.
 #[derive(Clone, Copy, Debug)]
-pub struct Metric(pub &'static MetricEntry, pub Option<usize>);
+pub struct Metric(pub &'static MetricEntry, pub Asked);
+
+/// What the wording of a metric has besides its words.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Asked {
+    /// How many points both distributions are taken at.
+    pub points: Option<usize>,
+    /// The frequencies from the first up to the second, SI.
+    pub band: Option<(f64, f64)>,
+}
 
 impl Metric {
-    /// A metric whose wording is one word, so that expressions can use it as a name.
-    pub fn named(word: &str) -> Option<Self> {
-        METRICS.iter().find(|entry| matches!(entry.form.head, [Part::Word(only)] if *only == word)).map(|entry| Self(entry, None))
-    }
-
-    pub fn of_one_word() -> impl Iterator<Item = &'static str> {
-        METRICS.iter().filter_map(|entry| if let [Part::Word(only)] = entry.form.head { Some(*only) } else { None })
-    }
-
     /// Whether the simulated signal is brought onto the points of the measured one before. Distributions need that nowhere, and are
     /// taken of windows and resampled signals as these are.
     pub fn on_common_points(self, chain_keeps_samples: bool) -> bool {
@@ -67,7 +71,8 @@ impl Metric {
     /// # Errors
     /// The reason where it is not defined.
     pub fn run(self, pair: &Pair<'_>) -> Result<f64, String> {
-        let Some(points) = self.1 else { return (self.0.run)(pair) };
+        let pair = &Pair { band: self.1.band, ..*pair };
+        let Some(points) = self.1.points else { return (self.0.run)(pair) };
         let of = |signal: &[f64]| pair::quantiles(signal, points).map_err(|undefined| undefined.to_string());
         let (simulated, measured) = (of(pair.simulated)?, of(pair.measured)?);
         (self.0.run)(&Pair { simulated: &simulated, measured: &measured, ..*pair })
@@ -94,6 +99,36 @@ pub struct MetricEntry {
     pub source: &'static str,
     /// The reason where it is not defined.
     pub run: fn(&Pair<'_>) -> Result<f64, String>,
+}
+
+impl MetricEntry {
+    /// The metric that expressions call by this name.
+    pub fn called(name: &str) -> Option<&'static Self> {
+        METRICS.iter().find(|entry| entry.function_name() == name)
+    }
+
+    /// Its words up to what it takes, joined: `theil_inequality`, `hysteresis_maximum`, `coherence`.
+    pub fn function_name(&self) -> String {
+        let head = self.form.head;
+        let slot = head.iter().position(|part| !matches!(part, Part::Word(_)));
+        // The last word before a slot only leads to it: `over`, `from`.
+        let words = &head[..slot.map_or(head.len(), |slot| slot.saturating_sub(1))];
+        let words: Vec<&str> = words.iter().filter_map(|part| if let Part::Word(word) = part { Some(*word) } else { None }).collect();
+        words.join("_").replace('-', "_")
+    }
+
+    /// As expressions call it: `coherence(<low>, <high>)`, `matching_probability` with or without `(<points>)`.
+    pub fn call_in_words(&self) -> String {
+        let slots = self.form.head.iter().filter_map(|part| match part {
+            Part::Word(_) => None,
+            Part::Number(name, _) | Part::Extent(name) | Part::Frequency(name) | Part::FrequencyOrZero(name) | Part::Signal(name) => {
+                Some(format!("<{name}>"))
+            }
+        });
+        let slots: Vec<String> = slots.chain(self.form.numbers.iter().map(|option| format!("<{}>", option.name))).collect();
+        let name = self.function_name();
+        if slots.is_empty() { name } else { format!("{name}({})", slots.join(", ")) }
+    }
 }
 
 const fn form(head: &'static [Part]) -> Form {
@@ -235,6 +270,19 @@ pub const METRICS: &[MetricEntry] = &[
         form: Form { numbers: POINTS, ..form(&[Part::Word("area"), Part::Word("between"), Part::Word("distributions")]) },
         of_distributions: true,
         ..of_signal!(&[], false, "Area between the two cumulative distributions of the samples.", "Ferson, Oberkampf & Ginzburg 2008", area)
+    },
+    MetricEntry {
+        form: form(&[Part::Word("coherence"), Part::Word("from"), Part::Frequency("low"), Part::Word("to"), Part::Frequency("high")]),
+        gives: |_, _| Dimension::ONE,
+        common_points: true,
+        of_distributions: false,
+        best: Best::Greatest(1.0),
+        about: "Mean coherence of the lines from the one frequency to below the other: Welch, Hann windows of 256 samples, half overlapping.",
+        source: "Welch 1967",
+        run: |p| {
+            let band = p.band.ok_or("the frequencies are missing")?;
+            coherence::in_band(p.simulated, p.measured, p.rate, band).map_err(|undefined| undefined.to_string())
+        },
     },
     MetricEntry {
         form: form(&[Part::Word("hysteresis"), Part::Word("maximum"), Part::Word("over"), Part::Signal("axis")]),

@@ -6,7 +6,8 @@ use super::Checker;
 use super::estimates::Group;
 use super::names::Assignment;
 use super::scalars::Scope;
-use crate::catalog::{Reducer, Statistic};
+use super::signals::is_signal_function;
+use crate::catalog::{MetricEntry, Reducer, Statistic};
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Dimension;
@@ -69,9 +70,12 @@ impl Checker<'_> {
         match &phrase.node {
             Node::Number { .. } => Meaning::Closed,
             // Values of a signal, of a side or of other limits mean nothing before they are used.
-            Node::Percentile(_) | Node::Reduced(..) | Node::Bound { .. } | Node::Share { .. } | Node::Fit(_) => Meaning::Open,
+            Node::Percentile(_) | Node::Reduced(..) | Node::Over(..) | Node::Bound { .. } | Node::Share { .. } | Node::Fit(_) => {
+                Meaning::Open
+            }
             Node::Path(path)
                 if Reducer::named(path).is_some()
+                    || MetricEntry::called(path).is_some()
                     || Statistic::named(path).is_some()
                     || self.names.estimates.contains_key(path)
                     || matches!(path.as_str(), "simulated" | "measured") =>
@@ -88,6 +92,10 @@ impl Checker<'_> {
             Node::Near { value, target, tolerance, .. } => of(value).with(of(target)).with(of(tolerance)),
             Node::Negative(inner) | Node::Not(inner) | Node::Magnitude(inner) | Node::Power(inner, _) => of(inner),
             Node::Call(name, _) if matches!(name.node.as_str(), "simulated" | "measured") => Meaning::Open,
+            Node::Call(name, _) if MetricEntry::called(&name.node).is_some() => Meaning::Open,
+            Node::Call(name, arguments) if is_signal_function(&name.node) => {
+                Meaning::Signal.with(arguments.first().map_or(Meaning::Closed, of))
+            }
             Node::Call(_, arguments) => arguments.iter().map(&mut of).fold(Meaning::Closed, Meaning::with),
             Node::Cases(arms, otherwise) => {
                 let mut all = Meaning::Closed;

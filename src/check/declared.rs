@@ -4,6 +4,7 @@ use super::Checker;
 use super::names::{Channel, Place, SignalDef, normalised};
 use super::plan::{Datum, DatumKind, DatumRange, Scalar};
 use crate::problem::Problem;
+use crate::source::Span;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::phrase::{At, Pick};
 use crate::syntax::{families, from_pest};
@@ -140,6 +141,9 @@ impl Checker<'_> {
             }
             DatumKind::Flag if matches!(word, "true" | "false") => Scalar::Flag(word == "true"),
             DatumKind::Words(words) if words.iter().any(|known| known == word) => Scalar::Word(word.to_string()),
+            DatumKind::Words(words) if self.stands_for_one_of(word, &words, &field.value.span) => {
+                Scalar::Word(self.choice_word(word, &field.value.span)?)
+            }
             kind => {
                 let words = if let DatumKind::Words(words) = kind { words } else { vec!["true".into(), "false".into()] };
                 self.problems.push(
@@ -153,6 +157,11 @@ impl Checker<'_> {
         let data = if block.kind.text == "vehicle" { &mut self.names.vehicle } else { &mut self.names.columns };
         data[index].default = Some(default);
         Some(())
+    }
+
+    /// Whether a word is a choice parameter that stands for one of these.
+    fn stands_for_one_of(&mut self, word: &str, words: &[String], span: &Span) -> bool {
+        self.names.parameter_blocks.contains_key(word) && self.choice_word(word, span).is_some_and(|choice| words.contains(&choice))
     }
 
     /// A vehicle datum without a default that may be absent. An empty cell of the table of sections needs no such word.

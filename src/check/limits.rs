@@ -3,15 +3,16 @@
 use super::evaluate::{Values, number, words};
 use super::names::normalised;
 use super::plan::{DatumKind, Estimate, EstimateKind, Expr, Key, Kind, Limit, OfGroup, Scalar, Scope as LimitScope, Type};
+use super::scalar_names::LIMITS_NOT_VALUES;
 use super::scalars::{Scope, in_words};
 use super::{Checker, overlap};
-use crate::catalog::Best;
+use crate::catalog::{Best, Statistic};
 use crate::metrics::rounded;
 use crate::problem::{Problem, Problems};
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
-use crate::syntax::phrase::{At, Limit as Written, Scope as WrittenScope};
+use crate::syntax::phrase::{At, Limit as Written, Node, Scope as WrittenScope};
 use crate::units::{Dimension, Unit};
 
 /// What all limits of a quantity have in common.
@@ -38,8 +39,13 @@ impl Checker<'_> {
     ) -> Option<Vec<Limit>> {
         let fields: Vec<&Field> = block.fields_named("limit").collect();
         // A quiet first look for the names that other limits may refer to.
-        let quiet = |field: &&Field| from_pest::limit(&field.value, &mut Problems::default()).map(|limit| limit.statistic.node);
-        let common = Common { block, unit, best, names: fields.iter().filter_map(quiet).collect(), places };
+        let mut names = Vec::new();
+        for field in &fields {
+            if let Some(limit) = from_pest::limit(&field.value, &mut Problems::default()) {
+                names.push(self.with_statistic(limit, &field.value).statistic.node);
+            }
+        }
+        let common = Common { block, unit, best, names, places };
         let mut limits = Vec::new();
         let mut ok = true;
         for field in fields {
@@ -57,9 +63,27 @@ impl Checker<'_> {
         ok.then_some(limits)
     }
 
+    /// A choice parameter stands for the statistic that it names.
+    fn with_statistic(&mut self, mut limit: Written, text: &Text) -> Written {
+        let At { node: word, range } = &limit.statistic;
+        let named = Statistic::named(word).is_some() || self.names.estimates.contains_key(word);
+        if let (false, Node::Path(_)) = (named, &limit.estimate.node)
+            && let Some(choice) = self.choice_word(&word.clone(), &text.place(range.clone()))
+        {
+            limit.estimate.node = if let Some(Statistic::Percentile(percent)) = Statistic::named(&choice) {
+                Node::Percentile(percent)
+            } else {
+                Node::Path(choice.clone())
+            };
+            limit.statistic.node = choice;
+        }
+        limit
+    }
+
     /// One limit, or one for every zone.
     fn limit(&mut self, text: &Text, common: &Common<'_>) -> Option<Vec<Limit>> {
         let written = from_pest::limit(text, self.problems)?;
+        let written = self.with_statistic(written, text);
         let estimate = self.estimate(&written, text, common.unit.map(|(unit, _)| unit.dimension));
         let scope = self.limit_scope(&written.scope, text, common);
         let (estimate, (scope, each_zone)) = (estimate?, scope?);
@@ -384,7 +408,7 @@ impl Checker<'_> {
             }
             told.extend(others);
             told.push(&limit.span);
-            self.problems.push(problem);
+            self.problems.push(problem.help(LIMITS_NOT_VALUES));
         }
     }
 }

@@ -10,6 +10,7 @@ mod estimates;
 pub mod evaluate;
 pub mod family;
 mod limits;
+mod metrics;
 mod names;
 mod near;
 mod overlap;
@@ -73,6 +74,10 @@ struct Checker<'a> {
     /// Conditions that hold wherever the expression in hand is evaluated.
     assumed: Vec<Expr>,
     in_quantity: bool,
+    /// Whether records have a time.
+    has_time: bool,
+    /// The dimension of the own signal, where `simulated` and `measured` stand for its samples.
+    own_of_both: Option<Dimension>,
     /// What is looked at is one of several values, of which those apply whose cases do.
     partial: bool,
     depth: usize,
@@ -108,6 +113,8 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
         used_defines: BTreeSet::new(),
         assumed: Vec::new(),
         in_quantity: false,
+        has_time: false,
+        own_of_both: None,
         partial: false,
         depth: 0,
         work: 0,
@@ -245,6 +252,7 @@ impl Checker<'_> {
             None => None,
         };
         let time = head.field("time").and_then(|field| self.axis_field(field, &[Dimension::TIME]));
+        self.has_time = time.is_some();
         self.gather_names();
         self.unknown_overrides(head);
         let sections = self.section_rules(of("sections").next());

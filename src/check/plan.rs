@@ -231,8 +231,24 @@ pub enum SignalKind {
     Power(Box<Signal>, i8),
     Call(&'static Function, Vec<Signal>),
     Filtered(Box<Signal>, Vec<Step>),
+    OverAxis(AxisOperation, Box<Signal>),
+    /// The own processed signal of this side, on the points at which both sides have one. Only in what is taken from both sides.
+    Side(Side),
     /// The first whose condition on the section holds.
     Select(Vec<(Expr, Signal)>, Option<Box<Signal>>),
+}
+
+/// An operation on a signal along its axis.
+#[derive(Clone, Debug)]
+pub enum AxisOperation {
+    /// Forward by this distance.
+    Shifted(Expr),
+    Derivative {
+        over_time: bool,
+    },
+    Integral {
+        over_time: bool,
+    },
 }
 
 #[derive(Clone, Debug)]
@@ -365,6 +381,8 @@ pub struct Input {
     pub taken: Taken,
     /// `None`: the quantity's own processed signal.
     pub signal: Option<Signal>,
+    /// The signal that a slope or a metric runs over, in place of the axis.
+    pub over: Option<Signal>,
     pub side: InputSide,
     pub span: Span,
 }
@@ -375,12 +393,23 @@ pub enum Taken {
     Reduced(Reducer),
     /// From the simulated and the measured signal.
     Compared(Metric),
+    /// From an expression over the samples of both.
+    OfBoth(Reducer),
 }
 
 impl Taken {
+    /// Whether it is taken from samples on common points, which are not there after a window or resampling.
+    pub fn needs_samples(self) -> bool {
+        match self {
+            Self::Reduced(_) => false,
+            Self::Compared(metric) => metric.on_common_points(false),
+            Self::OfBoth(_) => true,
+        }
+    }
+
     pub fn gives(self, signal: Dimension, axis: Dimension) -> Dimension {
         match self {
-            Self::Reduced(reducer) => reducer.gives(signal, axis),
+            Self::Reduced(reducer) | Self::OfBoth(reducer) => reducer.gives(signal, axis),
             Self::Compared(metric) => (metric.0.gives)(signal, axis),
         }
     }
@@ -452,6 +481,8 @@ pub enum Evaluation {
     Values { values: Vec<Valued>, records: Records },
     /// One number of the two signals; `over` is the other signal its wording names, one for each position, with its name and unit.
     Metric { metric: Metric, over: Vec<Signal>, over_axis: Option<Axis> },
+    /// One number of metrics, of numbers of one side, and of numbers of both sides' samples.
+    Combined(Valued),
 }
 
 /// A number of one record.
@@ -501,7 +532,7 @@ impl Evaluation {
     pub fn reads(&self, side: Side) -> bool {
         match self {
             Self::Values { records: Records::Of(of) | Records::Spread { side: of, .. }, .. } => *of == side,
-            Self::Values { records: Records::Compared { .. }, .. } | Self::Metric { .. } => true,
+            Self::Values { records: Records::Compared { .. }, .. } | Self::Metric { .. } | Self::Combined(_) => true,
         }
     }
 

@@ -61,7 +61,7 @@ impl Checker<'_> {
             };
             let otherwise = otherwise?;
             if let (Test::Require(requirement), Some(step)) = (&test, chain.iter().find(|step| !step.kind.keeps_samples()))
-                && requirement.inputs.iter().any(|input| matches!(input.taken, Taken::Compared(metric) if metric.on_common_points(false)))
+                && requirement.inputs.iter().any(|input| input.taken.needs_samples())
             {
                 self.problems.push(
                     Problem::error("metric-of-window", "a metric that compares samples cannot follow a window or resampling")
@@ -92,17 +92,18 @@ impl Checker<'_> {
         Some((signals.into_iter().map(|(name, signal, _)| (name, signal)).collect(), unit))
     }
 
-    fn requirement(&mut self, field: &Field, signals: &[(String, Signal)], chain: &[Step], own: Option<&Unit>) -> Option<Requirement> {
+    fn requirement(&mut self, field: &Field, signals: &[(String, Signal)], chain: &[Step], own_unit: Option<&Unit>) -> Option<Requirement> {
         let phrase = from_pest::expression(&field.value, self.problems)?;
         let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
-        let mut scope = Scope::comparing(signals.first().map(|(_, signal)| after(chain, signal.dimension)), axis);
+        let own = signals.first().map(|(_, signal)| after(chain, signal.dimension));
+        let mut scope = Scope { factor: after(chain, Dimension::ONE), ..Scope::comparing(own, axis) };
         let (holds, compared) = self.compared(&phrase, &field.value, &mut scope)?;
         self.flag_type(&holds)?;
         self.inputs_of_one_record(&scope.inputs)?;
         let compared = match compared {
             Some((found, expected)) => {
                 let dimension = self.number_type(&found)?;
-                let unit = self.unit_of(&found, &expected, &scope.inputs, dimension, own);
+                let unit = self.unit_of(&found, &expected, &scope.inputs, dimension, own_unit);
                 Some((found, expected, unit))
             }
             None => None,

@@ -7,7 +7,7 @@ use super::conditions::impossible;
 use super::evaluate::{Values, number, words};
 use super::names::{Assignment, bare_word, normalised};
 use super::plan::{
-    Axis, Center, DatumKind, Evaluation, Expr, InputSide, Kind, Position, Quantity, QuantityWords, Records, Side, Signal, Step, Valued,
+    Center, DatumKind, Evaluation, Expr, InputSide, Kind, Position, Quantity, QuantityWords, Records, Side, Signal, Step, Valued,
 };
 use super::scalars::Scope;
 use super::steps::after;
@@ -20,15 +20,15 @@ use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::{Dimension, Unit};
 
 /// What a quantity's value and difference, or its metric, come to.
-struct Compared {
-    evaluation: Evaluation,
-    dimension: Dimension,
-    processing: String,
-    comparison: String,
+pub(super) struct Compared {
+    pub evaluation: Evaluation,
+    pub dimension: Dimension,
+    pub processing: String,
+    pub comparison: String,
     /// Which values are good and what says so, where that can be told.
-    best: Option<(Best, Span)>,
+    pub best: Option<(Best, Span)>,
     /// What the dimension comes from, where it is not that of the signal.
-    from: Option<Span>,
+    pub from: Option<Span>,
 }
 
 impl Checker<'_> {
@@ -73,7 +73,7 @@ impl Checker<'_> {
         let dimension = positions.as_ref().and_then(|positions| positions.first()).map(|(position, _)| position.signal.dimension);
         let dimension = dimension.map(|dimension| after(chain.as_deref().unwrap_or_default(), dimension));
         let compared = match metric {
-            Some(field) => self.compared_by_metric(field, positions.as_deref(), chain.as_deref()),
+            Some(field) => self.by_metric(field, positions.as_deref(), chain.as_deref()),
             None => self.by_values(block, positions.as_deref(), chain.as_deref().unwrap_or_default()),
         };
         let result = compared.as_ref().map(|compared| compared.dimension);
@@ -127,49 +127,6 @@ impl Checker<'_> {
             minimum_signals: minimum_signals?,
             minimum_pairs: minimum_pairs?,
             span: block.span().clone(),
-        })
-    }
-
-    fn compared_by_metric(
-        &mut self,
-        field: &Field,
-        positions: Option<&[(Position, Assignment)]>,
-        chain: Option<&[Step]>,
-    ) -> Option<Compared> {
-        let (metric, over) = self.metric(&field.value)?;
-        let over_name = over.as_ref().and_then(|over| bare_word(&over.phrase)).map(str::to_string);
-        let positions = positions?;
-        let over = match over {
-            None => Vec::new(),
-            Some(over) => positions
-                .iter()
-                .map(|(_, at)| self.signal_where(&over.phrase, &over.text, at, &over.text.span))
-                .collect::<Option<Vec<_>>>()?,
-        };
-        let chain = chain?;
-        if let (true, Some(step)) = (metric.on_common_points(false), chain.iter().find(|step| !step.kind.keeps_samples())) {
-            self.problems.push(
-                Problem::error("metric-of-window", "this metric compares samples and cannot follow a window or resampling")
-                    .at(&field.value.span)
-                    .also(&step.span, "this step"),
-            );
-            return None;
-        }
-        let over_axis = over_name
-            .zip(over.first())
-            .map(|(name, signal)| Axis { unit: self.own_unit(&name, after(chain, signal.dimension)), column: name });
-        let words = normalised(&field.value.text);
-        let (first, _) = positions.first()?;
-        Some(Compared {
-            evaluation: Evaluation::Metric { metric, over, over_axis },
-            dimension: (metric.0.gives)(
-                after(chain, first.signal.dimension),
-                self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension),
-            ),
-            processing: words.clone(),
-            comparison: words,
-            best: Some((metric.0.best, field.value.span.clone())),
-            from: Some(field.value.span.clone()),
         })
     }
 
@@ -317,7 +274,7 @@ impl Checker<'_> {
 
     /// `from measured`
     fn side(&mut self, field: &Field) -> Option<Side> {
-        let word = normalised(&field.value.text);
+        let word = self.choice_field(field)?;
         let found = Side::ALL.into_iter().find(|side| side.in_words() == word);
         if found.is_none() {
             let problem = Problem::error("unknown-record", format!("`{word}` is no record of a campaign")).at(&field.value.span);
@@ -347,13 +304,26 @@ impl Checker<'_> {
     }
 
     fn value(&mut self, field: &Field, positions: Option<&[(Position, Assignment)]>, chain: &[Step]) -> Option<(Valued, Dimension)> {
-        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
         let phrase = from_pest::expression(&field.value, self.problems)?;
-        let positions = positions?;
+        self.valued(&phrase, field, positions?, chain, Scope::reducing)
+    }
+
+    /// An expression of what is taken from the own and from named signals, at every position.
+    pub(super) fn valued(
+        &mut self,
+        phrase: &Phrase,
+        field: &Field,
+        positions: &[(Position, Assignment)],
+        chain: &[Step],
+        scope: fn(Option<Dimension>, Dimension) -> Scope,
+    ) -> Option<(Valued, Dimension)> {
+        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
         let (first, at) = positions.first()?;
         let dimension = after(chain, first.signal.dimension);
-        let mut scope = Scope { at: at.clone(), ..Scope::reducing(Some(dimension), axis) };
-        let expr = self.value_at(&phrase, field, &first.only, &mut scope)?;
+        let factor = after(chain, Dimension::ONE);
+        let scope_at = |at: &Assignment| Scope { at: at.clone(), factor, ..scope(Some(dimension), axis) };
+        let mut scope = scope_at(at);
+        let expr = self.value_at(phrase, field, &first.only, &mut scope)?;
         let result = self.number_type(&expr)?;
         if scope.inputs.is_empty() {
             self.problems.push(
@@ -366,12 +336,12 @@ impl Checker<'_> {
         let mut inputs = vec![scope.inputs];
         for (position, at) in &positions[1..] {
             // Only a named signal differs from position to position.
-            if inputs[0].iter().all(|input| input.signal.is_none()) {
+            if inputs[0].iter().all(|input| input.signal.is_none() && input.over.is_none()) {
                 inputs.push(inputs[0].clone());
                 continue;
             }
-            let mut scope = Scope { at: at.clone(), ..Scope::reducing(Some(dimension), axis) };
-            self.value_at(&phrase, field, &position.only, &mut scope)?;
+            let mut scope = scope_at(at);
+            self.value_at(phrase, field, &position.only, &mut scope)?;
             inputs.push(scope.inputs);
         }
         Some((Valued { expr, inputs }, result))

@@ -111,7 +111,7 @@ impl Checker<'_> {
     /// What is done with a fault, of the treatments that a field may name; by default the section is not used.
     pub(super) fn on_fault(&mut self, block: &Block, key: &str, treatments: &[&str]) -> Option<OnFault> {
         let Some(field) = block.field(key) else { return Some(OnFault::NotUsed) };
-        let word = normalised(&field.value.text);
+        let word = self.choice_field(field)?;
         match word.as_str() {
             word if !treatments.contains(&word) => {}
             "not used" => return Some(OnFault::NotUsed),
@@ -139,7 +139,7 @@ impl Checker<'_> {
         };
         let Some(block) = block else { return rules };
         if let Some(field) = block.field("use") {
-            match normalised(&field.value.text).as_str() {
+            match self.choice_field(field).as_deref().unwrap_or("sections") {
                 "sections" => {}
                 "whole records" => rules.whole_records = true,
                 other => {
@@ -181,7 +181,7 @@ impl Checker<'_> {
     }
 
     /// A word, or the value of the choice parameter it names.
-    fn choice_field(&mut self, field: &Field) -> Option<String> {
+    pub(super) fn choice_field(&mut self, field: &Field) -> Option<String> {
         self.choice_word(&normalised(&field.value.text), &field.value.span)
     }
 
@@ -201,7 +201,7 @@ impl Checker<'_> {
     /// What is independent of each other, by which n and intervals are counted.
     pub(super) fn independent(&mut self, block: Option<&Block>) -> Independent {
         let Some(field) = block.and_then(|block| block.field("independent")) else { return Independent::Site };
-        let word = normalised(&field.value.text);
+        let Some(word) = self.choice_field(field) else { return Independent::Site };
         let column = self.names.columns.iter().position(|datum| datum.name == word);
         match (word.as_str(), column) {
             ("site", _) => Independent::Site,

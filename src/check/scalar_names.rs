@@ -1,15 +1,21 @@
 //! What a name in an expression over numbers, words and conditions stands for.
 
+use std::collections::BTreeSet;
+
 use super::Checker;
 use super::names::bare_word;
 use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Taken, Type};
 use super::scalars::{Reduce, Scope};
-use crate::catalog::{Metric, REDUCERS, Reducer, STATISTICS, Statistic};
+use crate::catalog::{METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Unit;
+
+/// What the names of statistics are in the bound of a limit, and how to limit an expression of their values.
+pub(super) const LIMITS_NOT_VALUES: &str = "in a limit, the name of a statistic stands for the limit of that statistic, not for its \
+    value; an expression of values stands before the limit: `limit (mean + 3 * std) 60 kN`";
 
 impl Checker<'_> {
     /// A value taken from the quantity's own signal.
@@ -22,7 +28,10 @@ impl Checker<'_> {
             return None;
         };
         let ty = Type::Number(reducer.gives(dimension, axis));
-        let kind = Kind::Input(add_input(scope, Input { taken: Taken::Reduced(reducer), signal: None, side, span: span.span.clone() }));
+        let kind = Kind::Input(add_input(
+            scope,
+            Input { taken: Taken::Reduced(reducer), signal: None, over: None, side, span: span.span.clone() },
+        ));
         Some(Expr { kind, ty, span })
     }
 
@@ -71,12 +80,25 @@ impl Checker<'_> {
             );
             return None;
         };
+        if self.names_side(signal, &mut BTreeSet::new()) {
+            return self.of_both(found, signal, text, span, scope);
+        }
         let at = scope.at.clone();
-        let signal = self.signal(signal, text, &at)?;
+        // `slope of A over B` reads as `slope of (A over B)`.
+        let (signal, over) = match &signal.node {
+            Node::Over(signal, over) => (signal.as_ref(), Some(over.as_ref())),
+            _ => (signal, None),
+        };
+        let signal = self.signal(signal, text, &at);
+        let over = match over {
+            None => None,
+            Some(over) => Some(self.slope_axis(found, over, &place, text, &at)?),
+        };
+        let signal = signal?;
+        let axis = over.as_ref().map_or(axis, |over| over.dimension);
         let ty = Type::Number(found.gives(signal.dimension, axis));
-        let kind =
-            Kind::Input(add_input(scope, Input { taken: Taken::Reduced(found), signal: Some(signal), side, span: span.span.clone() }));
-        Some(Expr { kind, ty, span: span.clone() })
+        let input = Input { taken: Taken::Reduced(found), signal: Some(signal), over, side, span: span.span.clone() };
+        Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
     }
 
     /// `measured(p99.85)`: the value of that side, whichever side is evaluated.
@@ -122,22 +144,16 @@ impl Checker<'_> {
         }
         if let Some(statistic) = Statistic::named(path).filter(|_| scope.limits.is_some()) {
             let says = format!("there is no other limit of the {} that this could refer to", statistic.title(self.ddof));
-            self.problems.push(
-                Problem::error("no-such-limit", says)
-                    .at(span)
-                    .help("in a limit, the name of a statistic stands for the limit of that statistic, not for its value"),
-            );
+            self.problems.push(Problem::error("no-such-limit", says).at(span).help(LIMITS_NOT_VALUES));
             return None;
         }
         if let Some(reducer) = Reducer::named(path) {
             return self.own_reducer(reducer, span.clone(), scope);
         }
-        if let Some(Reduce { own: Some(dimension), axis, metrics: true, .. }) = scope.reduce
-            && let Some(metric) = Metric::named(path)
+        if scope.reduce.is_some_and(|reduce| reduce.metrics)
+            && let Some(entry) = MetricEntry::called(path)
         {
-            let taken = Taken::Compared(metric);
-            let input = Input { taken, signal: None, side: InputSide::Own, span: span.span.clone() };
-            return expr(Kind::Input(add_input(scope, input)), Type::Number(taken.gives(dimension, axis)));
+            return self.metric_named(entry, span, scope);
         }
         if self.names.parameter_blocks.contains_key(path) {
             let parameter = self.parameter(path, span)?;
@@ -156,7 +172,7 @@ impl Checker<'_> {
         if let Some(found) = self.extent_path(path, span, scope) {
             return Some(found);
         }
-        let signal = self.names.channels.contains_key(path) || self.names.signals.contains_key(path) || self.is_failed(path);
+        let signal = self.is_signal(path) || self.is_failed(path);
         if let Some(unit) = Unit::parse(path).ok().filter(|_| !signal) {
             return expr(Kind::Constant(Scalar::Number(unit.factor)), Type::Number(unit.dimension));
         }
@@ -250,7 +266,7 @@ impl Checker<'_> {
         if self.is_failed(path) {
             return;
         }
-        if self.names.channels.contains_key(path) || self.names.signals.contains_key(path) {
+        if self.is_signal(path) {
             self.problems.push(
                 Problem::error("signal-not-number", format!("`{path}` is a signal, and a number is needed"))
                     .at(span)
@@ -285,7 +301,7 @@ impl Checker<'_> {
             known.extend(REDUCERS.iter().map(|entry| entry.name.to_string()));
         }
         if scope.reduce.is_some_and(|reduce| reduce.metrics) {
-            known.extend(Metric::of_one_word().map(str::to_string));
+            known.extend(METRICS.iter().map(MetricEntry::call_in_words));
         }
         if scope.section {
             known.extend(self.names.columns.iter().map(|datum| datum.name.clone()));
@@ -329,7 +345,7 @@ fn datum_type(kind: &DatumKind) -> Type {
     }
 }
 
-fn add_input(scope: &mut Scope, input: Input) -> usize {
+pub(super) fn add_input(scope: &mut Scope, input: Input) -> usize {
     scope.inputs.push(input);
     scope.inputs.len() - 1
 }

@@ -6,7 +6,8 @@ use super::estimates::Group;
 use super::evaluate::{Nothing, evaluate, words};
 use super::names::Assignment;
 use super::plan::{Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Type};
-use crate::catalog::{FUNCTIONS, Function, Reducer, Signature};
+use super::signals::is_signal_function;
+use crate::catalog::{FUNCTIONS, Function, MetricEntry, Reducer, SIGNAL_FUNCTIONS, Signature};
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::Text;
@@ -32,6 +33,8 @@ pub(super) struct Scope {
     pub value: Option<Dimension>,
     /// The position that named signals are taken at.
     pub at: Assignment,
+    /// Of the own signal after its filter over before.
+    pub factor: Dimension,
     pub inputs: Vec<Input>,
 }
 
@@ -57,6 +60,7 @@ impl Scope {
             group: None,
             value: None,
             at: Assignment::new(),
+            factor: Dimension::ONE,
             inputs: Vec::new(),
         }
     }
@@ -152,6 +156,9 @@ impl Checker<'_> {
             Node::Call(name, arguments) if matches!(name.node.as_str(), "measured" | "simulated") => {
                 return self.on_side(name, arguments, text, &span, scope);
             }
+            Node::Call(name, arguments) if self.metric_called(name, scope) => {
+                return self.metric_call(name, arguments, text, &span, scope);
+            }
             Node::Call(name, arguments) => {
                 let function = self.function(name, arguments.len(), text)?;
                 let arguments: Vec<Option<Expr>> = arguments.iter().map(|argument| self.expr(argument, text, scope)).collect();
@@ -175,6 +182,7 @@ impl Checker<'_> {
             Node::Share { of_sections, condition } => return self.group_share(*of_sections, condition, text, &span, scope),
             Node::Fit(fit) => return self.group_fit(fit, text, &span, scope),
             Node::Reduced(reducer, signal) => return self.reduced(reducer, signal, text, &span, scope),
+            Node::Over(value, over) => return self.slope_over(value, over, text, &span, scope),
             Node::PlaceOf(name, _) => return self.not_a_number(&name.node, &span),
             Node::Through(inner, _) => return self.not_a_number(&words_at(text, inner), &span),
             Node::Cases(arms, otherwise) => return self.cases(arms, otherwise.as_deref(), text, &span, scope),
@@ -452,11 +460,14 @@ impl Checker<'_> {
     pub(super) fn function(&mut self, name: &At<String>, count: usize, text: &Text) -> Option<&'static Function> {
         let span = text.place(name.range.clone());
         let Some(found) = function(&name.node) else {
-            self.problems.push(
-                Problem::error("unknown-function", format!("`{}` is no function", name.node))
-                    .at(&span)
-                    .suggest(&name.node, FUNCTIONS.iter().map(|function| function.name)),
-            );
+            let problem = Problem::error("unknown-function", format!("`{}` is no function", name.node)).at(&span);
+            self.problems.push(if MetricEntry::called(&name.node).is_some() {
+                problem.help("it is a metric, which takes both signals: it stands in the `metric` of a quantity")
+            } else if is_signal_function(&name.node) {
+                problem.help(format!("it gives a signal, and a number is needed: `rms of {}(...)`", name.node))
+            } else {
+                problem.suggest(&name.node, FUNCTIONS.iter().map(|function| function.name).chain(SIGNAL_FUNCTIONS.map(|(name, ..)| name)))
+            });
             return None;
         };
         let needed = if found.signature == Signature::PairSame { 2 } else { 1 };
@@ -512,7 +523,7 @@ pub(super) fn origin(phrase: &Phrase, text: &Text) -> Origin {
     Origin { span: text.place(phrase.range.clone()), words: words_at(text, phrase).into() }
 }
 
-fn words_at(text: &Text, phrase: &Phrase) -> String {
+pub(super) fn words_at(text: &Text, phrase: &Phrase) -> String {
     super::names::normalised(text.text.get(phrase.range.clone()).unwrap_or(""))
 }
 

@@ -2,9 +2,10 @@
 
 use super::Checker;
 use super::names::{Assignment, Channel, SignalDef};
-use super::plan::{Expr, Kind, Operator, Scalar, Signal, SignalKind};
+use super::plan::{AxisOperation, Expr, Kind, Operator, Scalar, Side, Signal, SignalKind};
 use super::scalars::{Scope, function};
 use super::steps::after;
+use crate::catalog::SIGNAL_FUNCTIONS;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::Text;
@@ -79,6 +80,7 @@ impl Checker<'_> {
                 let track = self.one_record(&[&left, &right])?;
                 Some(Signal { dimension, track, kind: SignalKind::Binary(*operator, Box::new(left), Box::new(right)), span })
             }
+            Node::Call(name, arguments) if is_signal_function(&name.node) => self.over_axis(name, arguments, text, span, at),
             Node::Call(name, arguments) => {
                 let function = self.function(name, arguments.len(), text)?;
                 let arguments: Vec<Option<Signal>> = arguments.iter().map(|argument| self.signal(argument, text, at)).collect();
@@ -116,6 +118,53 @@ impl Checker<'_> {
             Node::Cases(arms, otherwise) => self.signal_cases(arms, otherwise.as_deref(), text, &span, at),
             _ => self.scalar_signal(phrase, text, span),
         }
+    }
+
+    /// `shifted(X, 2 m)`, `derivative(X)`, `integral(X, time)`.
+    fn over_axis(&mut self, name: &At<String>, arguments: &[Phrase], text: &Text, span: Span, at: &Assignment) -> Option<Signal> {
+        let shifted = name.node == "shifted";
+        let (of, second) = match arguments {
+            [of] if !shifted => (of, None),
+            [of, second] => (of, Some(second)),
+            _ => {
+                let takes = if shifted { "a signal and a distance" } else { "a signal, and `time` where that is meant" };
+                let says = format!("`{}` takes {takes}, there are {}", name.node, arguments.len());
+                self.problems.push(Problem::error("arguments", says).at(&text.place(name.range.clone())));
+                return None;
+            }
+        };
+        let signal = self.signal(of, text, at);
+        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+        if let (true, Some(distance)) = (shifted, second) {
+            let distance = self.expr(distance, text, &mut Scope::section())?;
+            let found = self.number_type(&distance)?;
+            self.suits("distance", found == axis, &format!("one along the axis, {}", axis.in_words()), found, &distance.span)?;
+            let signal = signal?;
+            let (dimension, track) = (signal.dimension, signal.track);
+            return Some(Signal { dimension, track, kind: SignalKind::OverAxis(AxisOperation::Shifted(distance), Box::new(signal)), span });
+        }
+        let over_time = second.is_some();
+        if let Some(second) = second
+            && !(matches!(&second.node, Node::Path(path) if path == "time") && (self.has_time || axis == Dimension::TIME))
+        {
+            let problem = Problem::error("arguments", format!("`{}` runs over the axis, or over `time`", name.node));
+            let problem = problem.at(&text.place(second.range.clone()));
+            self.problems.push(if self.has_time { problem } else { problem.help("the protocol has no field `time`") });
+            return None;
+        }
+        let signal = signal?;
+        if over_time && signal.track {
+            let problem = Problem::error("arguments", "the track record has no time").at(&span);
+            self.problems.push(problem.help("leave `time` out: over the axis"));
+            return None;
+        }
+        let axis = if over_time { Dimension::TIME } else { axis };
+        let (operation, dimension) = match name.node.as_str() {
+            "derivative" => (AxisOperation::Derivative { over_time }, signal.dimension / axis),
+            _ => (AxisOperation::Integral { over_time }, signal.dimension * axis),
+        };
+        let track = signal.track;
+        Some(Signal { dimension, track, kind: SignalKind::OverAxis(operation, Box::new(signal)), span })
     }
 
     /// A number that stays the same along the record.
@@ -209,6 +258,9 @@ impl Checker<'_> {
     }
 
     fn signal_named(&mut self, name: &str, span: &Span, phrase: &Phrase, text: &Text, at: &Assignment) -> Option<Signal> {
+        if let Some(side) = Side::ALL.into_iter().find(|side| side.in_words() == name && !self.is_signal(name)) {
+            return self.side_of_own(side, span);
+        }
         if let Some(channel) = self.names.channels.get(name).cloned() {
             return self.channel_at(name, &channel, span, at);
         }
@@ -229,6 +281,21 @@ impl Checker<'_> {
         }
         self.unknown_signal(name, span);
         None
+    }
+
+    pub(super) fn is_signal(&self, name: &str) -> bool {
+        self.names.channels.contains_key(name) || self.names.signals.contains_key(name)
+    }
+
+    /// `simulated`, `measured`: the samples of one side.
+    fn side_of_own(&mut self, side: Side, span: &Span) -> Option<Signal> {
+        let Some(dimension) = self.own_of_both else {
+            let says = format!("`{}` stands for samples in the `metric` of a quantity and in plausibility rules", side.in_words());
+            let problem = Problem::error("side", says).at(span);
+            self.problems.push(problem.help("elsewhere a signal is the same of simulation and measurement"));
+            return None;
+        };
+        Some(Signal { dimension, track: false, kind: SignalKind::Side(side), span: span.clone() })
     }
 
     pub(super) fn unknown_signal(&mut self, name: &str, span: &Span) {
@@ -320,4 +387,8 @@ fn constant(signal: &Signal) -> Option<f64> {
         }
         _ => None,
     }
+}
+
+pub(super) fn is_signal_function(name: &str) -> bool {
+    SIGNAL_FUNCTIONS.iter().any(|(known, ..)| *known == name)
 }

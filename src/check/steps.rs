@@ -1,10 +1,9 @@
 //! Checks filter chains: wordings from the registry, numbers with the right dimension, an order of steps that makes sense.
 
 use super::Checker;
-use super::names::Written;
 use super::plan::{Kind, Scalar, Step, StepSpec};
 use super::scalars::Scope;
-use crate::catalog::{Form, METRICS, Metric, Part, STEPS, StepEntry, StepKind};
+use crate::catalog::{Form, METRICS, Part, STEPS, StepEntry, StepKind};
 use crate::metrics::filter::{Band, Cutoff, Phase};
 use crate::metrics::window::Ends;
 use crate::problem::{Problem, nearest};
@@ -20,10 +19,6 @@ const MOST_STEPS: usize = 32;
 const FINEST_LENGTH: f64 = 1e-4;
 /// Finest step of a grid along the time, in s: records of test runs have at most some 10 kHz.
 const FINEST_TIME: f64 = 1e-5;
-
-/// Points of a distribution: one has no scatter, and with more than that a record has samples they only cost time.
-const LEAST_POINTS: f64 = 2.0;
-const MOST_POINTS: f64 = 10_000.0;
 
 /// What the slots and options of a wording were filled with.
 #[derive(Debug, Default)]
@@ -191,47 +186,31 @@ impl Checker<'_> {
         {
             return self.filter_named(word, &text.place(range.clone()));
         }
+        let written = self.with_choices(written, text, STEPS.iter().map(|entry| &entry.form));
         let entry = self.find_form(&written, &span, "step", STEPS.iter().map(|entry| &entry.form))?;
         let entry = &STEPS[entry];
         let filled = self.fill_form(&entry.form, &written, text, &span)?;
         Some(vec![self.spec(entry, &filled, &span)?])
     }
 
-    /// A metric and the signal its wording names, at given positions.
-    pub(super) fn metric(&mut self, text: &Text) -> Option<(Metric, Option<Written>)> {
-        let step = from_pest::step_alone(text, self.problems)?;
-        let span = text.place(step.range.clone());
-        let index = self.find_form(&step.node, &span, "metric", METRICS.iter().map(|entry| &entry.form))?;
-        let entry = &METRICS[index];
-        if let Some(extra) = step.node.parts.get(1).and_then(|part| part.first()).filter(|_| entry.form.numbers.is_empty()) {
-            self.problems.push(Problem::error("unknown-option", "this metric has no options").at(&text.place(extra.range.clone())));
-            return None;
+    /// Where words fit no wording, those that are choice parameters stand for their words.
+    pub(super) fn with_choices<'f>(&mut self, mut step: Written_, text: &Text, mut forms: impl Iterator<Item = &'f Form>) -> Written_ {
+        let Some(items) = step.parts.first_mut() else { return step };
+        if forms.any(|form| fits(form, items)) {
+            return step;
         }
-        if let Some(condition) = &step.node.when {
-            let problem = Problem::error("unknown-option", "a metric has no condition").at(&text.place(condition.range.clone()));
-            self.problems.push(problem.help("sections are left out of a quantity by its field `where`"));
-            return None;
-        }
-        let slot = entry.form.head.iter().position(|part| matches!(part, Part::Signal(_)));
-        let over = match slot {
-            None => None,
-            Some(slot) => {
-                let item = step.node.parts.first()?.get(slot)?;
-                let phrase = item_phrase(item);
-                Some(Written { phrase, text: text.clone() })
+        for item in items {
+            if let Item::Word(word) = &item.node
+                && let Some(choice) = self.choice_word(word, &text.place(item.range.clone()))
+            {
+                item.node = Item::Word(choice);
             }
-        };
-        let points = self.fill_form(&entry.form, &step.node, text, &span)?.options.first().copied().flatten().map(|(points, _)| points);
-        if let Some(points) = points.filter(|points| points.fract() != 0.0 || !(LEAST_POINTS..=MOST_POINTS).contains(points)) {
-            let says = format!("the points are a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}");
-            self.problems.push(Problem::error("out-of-range", says).at(&span));
-            return None;
         }
-        Some((Metric(entry, points.map(|points| points as usize)), over))
+        step
     }
 
     /// Which wording the words fit: as many fixed words in place as possible.
-    fn find_form<'f>(
+    pub(super) fn find_form<'f>(
         &mut self,
         step: &Written_,
         span: &Span,
@@ -240,15 +219,7 @@ impl Checker<'_> {
     ) -> Option<usize> {
         let all = forms.clone();
         let items: &[At<Item>] = step.parts.first().map_or(&[], Vec::as_slice);
-        let fits = |form: &Form| {
-            form.head.len() == items.len()
-                && form.head.iter().zip(items).all(|(part, item)| match (part, &item.node) {
-                    (Part::Word(word), Item::Word(found)) => word == found,
-                    (Part::Word(_), Item::Value(_)) => false,
-                    _ => true,
-                })
-        };
-        if let Some(index) = forms.clone().position(fits) {
+        if let Some(index) = forms.clone().position(|form| fits(form, items)) {
             return Some(index);
         }
         let said: Vec<&str> =
@@ -276,7 +247,7 @@ impl Checker<'_> {
         None
     }
 
-    fn fill_form(&mut self, form: &Form, step: &Written_, text: &Text, span: &Span) -> Option<Filled> {
+    pub(super) fn fill_form(&mut self, form: &Form, step: &Written_, text: &Text, span: &Span) -> Option<Filled> {
         let mut filled = Filled {
             options: form.numbers.iter().map(|option| Some((option.default?, Dimension::ONE))).collect(),
             choices: form.choices.iter().map(|choice| choice.words[0]).collect(),
@@ -481,7 +452,17 @@ pub(super) fn after(steps: &[Step], dimension: Dimension) -> Dimension {
     steps.iter().fold(dimension, |dimension, step| dimension * step.factor)
 }
 
-fn item_phrase(item: &At<Item>) -> Phrase {
+/// Whether items stand where the wording has its words and slots.
+pub(super) fn fits(form: &Form, items: &[At<Item>]) -> bool {
+    form.head.len() == items.len()
+        && form.head.iter().zip(items).all(|(part, item)| match (part, &item.node) {
+            (Part::Word(word), Item::Word(found)) => word == found,
+            (Part::Word(_), Item::Value(_)) => false,
+            _ => true,
+        })
+}
+
+pub(super) fn item_phrase(item: &At<Item>) -> Phrase {
     match &item.node {
         Item::Value(phrase) => phrase.clone(),
         Item::Word(word) => At { node: Node::Path(word.clone()), range: item.range.clone() },
@@ -489,7 +470,7 @@ fn item_phrase(item: &At<Item>) -> Phrase {
 }
 
 /// A number in the unit an engineer would write it in.
-fn show_number(value: f64, dimension: Dimension) -> String {
+pub(super) fn show_number(value: f64, dimension: Dimension) -> String {
     let unit = match dimension {
         Dimension::FREQUENCY => " Hz",
         Dimension::LENGTH => " m",

@@ -5,18 +5,19 @@ use indexmap::IndexMap;
 use std::sync::Arc;
 
 use super::{
-    Graph, InputNode, LimitNodes, Node, NodeId, Operation, PlausibilityNodes, PositionNodes, QuantityNodes, SignalNodes, ValueNodes,
+    Graph, InputNode, Joint, LimitNodes, Node, NodeId, Operation, PlausibilityNodes, PositionNodes, QuantityNodes, SignalNodes, ValueNodes,
 };
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
-    Evaluation, Expr, Input, Key, Kind, Limit, Operator, Plan, Plausibility, Position, Quantity, Scope, Signal, SignalKind, Step, StepSpec,
-    Taken, Test, Valued,
+    AxisOperation, Evaluation, Expr, Input, Key, Kind, Limit, Operator, Plan, Plausibility, Position, Quantity, Scope, Signal, SignalKind,
+    Step, StepSpec, Taken, Test, Valued,
 };
+use crate::metrics::percentile::Method;
 use crate::source::Span;
 use crate::units::Dimension;
 
 pub fn from_plan(plan: &Plan) -> Graph {
-    let mut builder = Builder { axis: plan.axis.unit.dimension, ..Builder::default() };
+    let mut builder = Builder { axis: plan.axis.unit.dimension, method: plan.sections.percentiles, ..Builder::default() };
     let checks = plan.checks.iter().map(|check| check.inputs.iter().map(|input| builder.input(input, None)).collect()).collect();
     let plausibility = plan.plausibility.iter().map(|rule| builder.plausibility(rule)).collect();
     let quantities: Vec<QuantityNodes> =
@@ -29,6 +30,8 @@ pub fn from_plan(plan: &Plan) -> Graph {
 
 struct Builder {
     axis: Dimension,
+    /// How percentiles are read between samples.
+    method: Method,
     nodes: Vec<Node>,
     /// What was built before: operation and inputs in words.
     known: IndexMap<String, NodeId>,
@@ -37,8 +40,16 @@ struct Builder {
 
 impl Default for Builder {
     fn default() -> Self {
-        Self { axis: Dimension::LENGTH, nodes: Vec::new(), known: IndexMap::new(), classes: IndexMap::new() }
+        Self { axis: Dimension::LENGTH, method: Method::Linear, nodes: Vec::new(), known: IndexMap::new(), classes: IndexMap::new() }
     }
+}
+
+/// The own signal of a rule: filtered over the record, processed in the section.
+#[derive(Clone, Copy)]
+struct Own<'a> {
+    filtered: NodeId,
+    processed: NodeId,
+    chain: &'a [Step],
 }
 
 impl Builder {
@@ -111,6 +122,9 @@ impl Builder {
                 let inner = self.signal(inner);
                 steps.iter().fold(inner, |node, step| self.step(node, step))
             }
+            SignalKind::OverAxis(operation, inner) => self.over_axis(operation, inner, signal),
+            // Never reached: the checker has sides only in what is taken from both.
+            SignalKind::Side(_) => self.add(Operation::Cut, Vec::new(), dimension, from, String::new(), "nothing".into()),
             SignalKind::Select(arms, otherwise) => {
                 let mut inputs: Vec<NodeId> = arms.iter().map(|(_, signal)| self.signal(signal)).collect();
                 if let Some(otherwise) = otherwise {
@@ -122,6 +136,19 @@ impl Builder {
                 self.add(Operation::Select(conditions), inputs, dimension, from, label, kind)
             }
         }
+    }
+
+    fn over_axis(&mut self, operation: &AxisOperation, inner: &Signal, signal: &Signal) -> NodeId {
+        let inner = self.signal(inner);
+        let of_time = |over_time: bool| if over_time { ", time" } else { "" };
+        let (name, more, kind) = match operation {
+            AxisOperation::Shifted(distance) => ("shifted", format!(", {}", words(distance)), shape(distance)),
+            AxisOperation::Derivative { over_time } => ("derivative", of_time(*over_time).to_string(), over_time.to_string()),
+            AxisOperation::Integral { over_time } => ("integral", of_time(*over_time).to_string(), over_time.to_string()),
+        };
+        let label = format!("{name}({}{more})", self.named(inner));
+        let operation = Operation::OverAxis(operation.clone());
+        self.add(operation, vec![inner], signal.dimension, &signal.span, label, format!("{name} {kind}"))
     }
 
     fn constant(&mut self, expr: &Expr, dimension: Dimension) -> NodeId {
@@ -186,44 +213,68 @@ impl Builder {
         (filtered, node)
     }
 
-    /// A number taken from a named signal, or from the own one: filtered over the record, and processed in the section.
-    fn input(&mut self, input: &Input, own: Option<(NodeId, NodeId)>) -> InputNode {
-        let (filtered, processed) = match (&input.signal, own) {
-            (Some(signal), _) => self.processed(signal, &[], &input.span),
-            (None, Some(own)) => own,
+    /// A number taken from a named signal, from the own one, or from the own one of both sides.
+    fn input(&mut self, input: &Input, own: Option<Own<'_>>) -> InputNode {
+        let own = match (&input.signal, own) {
+            (Some(signal), _) if !matches!(input.taken, Taken::OfBoth(_)) => {
+                let (filtered, processed) = self.processed(signal, &[], &input.span);
+                Own { filtered, processed, chain: &[] }
+            }
+            (_, Some(own)) => own,
             // Never reached: the checker gives an input without signal only where there is an own one.
-            (None, None) => {
+            (_, None) => {
                 let nothing = self.add(Operation::Cut, Vec::new(), Dimension::ONE, &input.span, String::new(), "nothing".into());
-                (nothing, nothing)
+                Own { filtered: nothing, processed: nothing, chain: &[] }
             }
         };
-        match input.taken {
-            Taken::Reduced(reducer) => {
-                let dimension = reducer.gives(self.nodes[processed].dimension, self.axis);
-                let label = reducer.in_words();
-                let kind = format!("reduce {label}");
-                let node = self.add(Operation::Reduce(reducer), vec![processed], dimension, &input.span, label, kind);
-                InputNode { node, side: input.side, metric: None }
+        let over = input.over.as_ref().map(|over| self.processed(over, own.chain, &input.span).1);
+        let (node, joint) = match (input.taken, &input.signal) {
+            (Taken::Compared(metric), _) => {
+                let on_common_points = metric.on_common_points(own.chain.iter().all(|step| step.kind.keeps_samples()));
+                let node = if on_common_points { own.filtered } else { own.processed };
+                (node, Some(Joint::Metric { metric, on_common_points, over }))
             }
-            Taken::Compared(metric) => {
-                let node = if metric.0.common_points { filtered } else { processed };
-                InputNode { node, side: input.side, metric: Some(metric) }
+            (Taken::OfBoth(reducer), Some(signal)) => {
+                (own.filtered, Some(Joint::Samples { reducer, method: self.method, signal: Arc::new(signal.clone()) }))
             }
+            (Taken::Reduced(reducer) | Taken::OfBoth(reducer), _) => {
+                let axis = over.map_or(self.axis, |over| self.nodes[over].dimension);
+                let dimension = reducer.gives(self.nodes[own.processed].dimension, axis);
+                let kind = format!("reduce {}", reducer.in_words());
+                let label = over.map_or(reducer.in_words(), |over| format!("{} over {}", reducer.in_words(), self.origin(over)));
+                let of = std::iter::once(own.processed).chain(over).collect();
+                (self.add(Operation::Reduce(reducer), of, dimension, &input.span, label, kind), None)
+            }
+        };
+        InputNode { node, side: input.side, joint }
+    }
+
+    /// The label of what a processed signal was made from.
+    fn origin(&self, mut node: NodeId) -> String {
+        while let (Operation::Cut | Operation::Window(_) | Operation::Step(_), Some(&input)) =
+            (&self.nodes[node].operation, self.nodes[node].inputs.first())
+        {
+            node = input;
         }
+        self.named(node)
     }
 
     fn plausibility(&mut self, rule: &Plausibility) -> PlausibilityNodes {
-        let own: Vec<Option<(NodeId, NodeId)>> = if rule.signals.is_empty() {
+        let own: Vec<Option<Own<'_>>> = if rule.signals.is_empty() {
             vec![None]
         } else {
-            rule.signals.iter().map(|(_, signal)| Some(self.processed(signal, &rule.chain, &rule.span))).collect()
+            let own = |(_, signal): &(String, Signal)| {
+                let (filtered, processed) = self.processed(signal, &rule.chain, &rule.span);
+                Some(Own { filtered, processed, chain: &rule.chain })
+            };
+            rule.signals.iter().map(own).collect()
         };
-        let position = |builder: &mut Self, own: Option<(NodeId, NodeId)>| {
+        let position = |builder: &mut Self, own: Option<Own<'_>>| {
             let inputs = match &rule.test {
                 Test::Require(requirement) => requirement.inputs.iter().map(|input| builder.input(input, own)).collect(),
                 Test::Distinct(_) => Vec::new(),
             };
-            PositionNodes { own: own.map(|(_, processed)| processed), inputs }
+            PositionNodes { own: own.map(|own| own.processed), inputs }
         };
         PlausibilityNodes { positions: own.into_iter().map(|own| position(self, own)).collect() }
     }
@@ -249,9 +300,10 @@ impl Builder {
     fn position(&mut self, index: usize, quantity: &Quantity, number: usize) -> SignalNodes {
         let Position { name, signal, .. } = &quantity.positions[number];
         let (filtered, processed) = self.processed(signal, &quantity.chain, &quantity.span);
+        let own = Own { filtered, processed, chain: &quantity.chain };
+        let mut inputs = Vec::new();
         let (values, over, before) = match quantity.evaluation.as_ref() {
             Evaluation::Values { values, .. } => {
-                let own = (filtered, processed);
                 let values: Vec<ValueNodes> = values.iter().map(|value| self.value((index, number), quantity, value, own)).collect();
                 let before = values.iter().map(|value| value.node).collect();
                 (values, None, before)
@@ -260,14 +312,20 @@ impl Builder {
                 let over = over.get(number).map(|signal| self.processed(signal, &quantity.chain, &quantity.span).1);
                 (Vec::new(), over, [processed].into_iter().chain(over).collect())
             }
+            Evaluation::Combined(of) => {
+                inputs = of.inputs[number].iter().map(|input| self.input(input, Some(own))).collect();
+                let mut before: Vec<NodeId> = inputs.iter().flat_map(InputNode::nodes).collect();
+                before.dedup();
+                (Vec::new(), None, before)
+            }
         };
         let label = format!("{} {name}: {}", quantity.id, quantity.words.comparison);
         let operation = Operation::Compare(Arc::clone(&quantity.evaluation));
         let compare = self.add(operation, before, quantity.unit.dimension, &quantity.span, label, format!("compare {index}"));
-        SignalNodes { processed, filtered, values, over, compare }
+        SignalNodes { processed, filtered, values, over, inputs, compare }
     }
 
-    fn value(&mut self, (index, number): (usize, usize), quantity: &Quantity, value: &Valued, own: (NodeId, NodeId)) -> ValueNodes {
+    fn value(&mut self, (index, number): (usize, usize), quantity: &Quantity, value: &Valued, own: Own<'_>) -> ValueNodes {
         let inputs: Vec<InputNode> = value.inputs[number].iter().map(|input| self.input(input, Some(own))).collect();
         // A value that is one reduced signal needs no node of its own.
         if let (Kind::Input(0), [input]) = (&value.expr.kind, inputs.as_slice()) {

@@ -15,7 +15,8 @@ pub use print::{dot, json, text};
 use std::sync::Arc;
 
 use crate::catalog::{Function, Metric, Reducer};
-use crate::check::plan::{Evaluation, Expr, InputSide, Limit, Operator, Rule, StepSpec};
+use crate::check::plan::{AxisOperation, Evaluation, Expr, InputSide, Limit, Operator, Rule, Signal, StepSpec};
+use crate::metrics::percentile::Method;
 use crate::source::Span;
 use crate::units::Dimension;
 
@@ -58,6 +59,8 @@ pub enum Operation {
     Negative,
     Power(i8),
     Apply(&'static Function),
+    /// Moved, derived or integrated along the axis.
+    OverAxis(AxisOperation),
     /// The first input whose condition on the section holds, else the last.
     Select(Vec<Expr>),
     /// A step over the whole record.
@@ -66,6 +69,7 @@ pub enum Operation {
     Cut,
     /// A step inside the section.
     Window(StepSpec),
+    /// A number from a signal; a slope over a second one, where there is one.
     Reduce(Reducer),
     /// A number of one record from reduced signals.
     Value(Arc<Expr>),
@@ -83,7 +87,13 @@ impl Operation {
     pub fn stage(&self) -> Stage {
         match self {
             Self::Read { .. } => Stage::Read,
-            Self::Constant(_) | Self::Arithmetic(_) | Self::Negative | Self::Power(_) | Self::Apply(_) | Self::Select(_) => Stage::Derive,
+            Self::Constant(_)
+            | Self::Arithmetic(_)
+            | Self::Negative
+            | Self::Power(_)
+            | Self::Apply(_)
+            | Self::OverAxis(_)
+            | Self::Select(_) => Stage::Derive,
             Self::Step(_) => Stage::Filter,
             Self::Window(_) => Stage::Window,
             Self::Cut => Stage::Cut,
@@ -148,10 +158,12 @@ pub struct SignalNodes {
     pub processed: NodeId,
     /// The same signal through the filters but not cut: what plots show. `None` where the chain resamples.
     pub filtered: NodeId,
-    /// One per value of the quantity; none where a metric takes both signals.
+    /// One per value of the quantity; none where a metric takes both signals, or an expression of metrics.
     pub values: Vec<ValueNodes>,
     /// The signal a metric runs over, processed.
     pub over: Option<NodeId>,
+    /// What the expression of a metric is made of.
+    pub inputs: Vec<InputNode>,
     pub compare: NodeId,
 }
 
@@ -176,10 +188,31 @@ pub struct PositionNodes {
     pub inputs: Vec<InputNode>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct InputNode {
-    /// A number, or the signal of which a metric takes one.
+    /// A number, or the signal of both sides that a number is taken from.
     pub node: NodeId,
     pub side: InputSide,
-    pub metric: Option<Metric>,
+    pub joint: Option<Joint>,
+}
+
+impl InputNode {
+    /// The nodes whose values it needs.
+    pub fn nodes(&self) -> impl Iterator<Item = NodeId> {
+        let over = if let Some(Joint::Metric { over, .. }) = &self.joint { *over } else { None };
+        std::iter::once(self.node).chain(over)
+    }
+}
+
+/// How a number is taken from the signals of both sides.
+#[derive(Clone, Debug)]
+pub enum Joint {
+    Metric {
+        metric: Metric,
+        /// Whether the simulated signal is brought onto the points of the measured one.
+        on_common_points: bool,
+        over: Option<NodeId>,
+    },
+    /// From an expression over the samples of both.
+    Samples { reducer: Reducer, method: Method, signal: Arc<Signal> },
 }

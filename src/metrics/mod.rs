@@ -18,9 +18,13 @@
 //! | [`pair`] | simulated and measured signal | how well they agree |
 //! | [`random_effects`] | estimates with variances | by how much they scatter beyond these |
 //! | [`synchronise`] | signals of two records | by how much one lies ahead of the other |
+//! | [`coherence`] | simulated and measured signal | how far one follows the other linearly, by frequency |
+//! | [`along`] | signal over an axis | derivative, integral, the signal elsewhere |
 //! | [`hysteresis`] | two loops of output over input | how well they agree, branch by branch |
 
+pub mod along;
 pub mod cluster;
+pub mod coherence;
 pub mod filter;
 pub mod hysteresis;
 mod incomplete_beta;

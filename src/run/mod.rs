@@ -3,6 +3,7 @@
 mod causes;
 mod checks;
 mod columns;
+mod common;
 mod copies;
 mod domain;
 mod estimates;

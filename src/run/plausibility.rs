@@ -22,7 +22,7 @@ const DIGITS: usize = 4;
 pub fn wanted(work: &Work<'_>, known: &Known<'_>, track: bool) -> BTreeSet<NodeId> {
     let mut wanted = BTreeSet::new();
     for (rule, nodes, _) in positions(work, known) {
-        let of_rule = nodes.inputs.iter().map(|input| input.node);
+        let of_rule = nodes.inputs.iter().flat_map(InputNode::nodes);
         wanted.extend(of_rule.filter(|&node| work.graph.nodes[node].track == track));
         if let (Test::Distinct(_), Some(own), false) = (&rule.test, nodes.own, track) {
             wanted.insert(own);
@@ -36,7 +36,7 @@ pub fn wanted(work: &Work<'_>, known: &Known<'_>, track: bool) -> BTreeSet<NodeI
 fn positions<'a>(work: &'a Work<'_>, known: &'a Known<'_>) -> impl Iterator<Item = (&'a Plausibility, &'a PositionNodes, &'a str)> {
     let asked = |rule: &Plausibility| rule.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known)) == Ok(false);
     let decided = |nodes: &PositionNodes| {
-        let nodes: BTreeSet<NodeId> = nodes.own.into_iter().chain(nodes.inputs.iter().map(|input| input.node)).collect();
+        let nodes: BTreeSet<NodeId> = nodes.own.into_iter().chain(nodes.inputs.iter().flat_map(InputNode::nodes)).collect();
         needed(work.graph, &nodes, known).is_ok()
     };
     let (plan, graph, recorded) = (work.plan, work.graph, work.recorded);

@@ -350,10 +350,14 @@ impl State<'_> {
         }
         match self.one(id) {
             Ok(value) => self.values[id] = Some(value),
-            Err(reason) if matches!(self.graph.nodes[id].operation, Operation::Step(_) | Operation::Window(_)) => self.fail(id, &reason),
+            Err(reason) if self.asks(id) => self.fail(id, &reason),
             Err(reason) => return Err(format!("{reason} ({})", self.graph.nodes[id].label)),
         }
         Ok(())
+    }
+
+    fn asks(&self, id: NodeId) -> bool {
+        matches!(self.graph.nodes[id].operation, Operation::Step(_) | Operation::Window(_) | Operation::OverAxis(_))
     }
 
     fn samples(&self, id: NodeId) -> Result<Samples, String> {
@@ -418,7 +422,9 @@ impl State<'_> {
                 Reducer::Percentile(percent) => *percent,
                 Reducer::Named(_) => {
                     let samples = self.samples(node.inputs[0])?;
-                    let value = reducer.run(&samples.along.axis, &samples.values, self.method).filter(|value| value.is_finite());
+                    let over = node.inputs.get(1).map(|&over| self.samples(over)).transpose()?;
+                    let axis = over.as_ref().map_or(&samples.along.axis, |over| &over.values);
+                    let value = reducer.run(axis, &samples.values, self.method).filter(|value| value.is_finite());
                     match value {
                         Some(value) => self.found.push((id, Found::Number(value, samples.values.len()))),
                         None => {
@@ -467,6 +473,9 @@ impl State<'_> {
                 apply(&inputs, function.run)
             }
             Operation::Select(conditions) => Ok(input(chosen(conditions, &node.inputs, self.known)?)?.clone()),
+            Operation::OverAxis(operation) => {
+                Ok(Signal::Samples(self.samples(node.inputs[0])?.over_axis(operation, self.known, self.extent)?))
+            }
             Operation::Step(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.stepped(spec)?)),
             Operation::Cut => {
                 let samples = self.samples(node.inputs[0])?;

@@ -16,7 +16,7 @@ use super::table::Row;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Evaluation, Expr, Position, Quantity, Side};
 use crate::data::RecordKind;
-use crate::graph::{NodeId, SignalNodes};
+use crate::graph::{InputNode, NodeId, SignalNodes};
 use crate::problem::Problem;
 use crate::result::{CheckResult, FileHash, Finding};
 
@@ -181,7 +181,7 @@ fn wanted(work: &Work<'_>, known: &Known<'_>, active: &Active, shifts: &Shifts<'
         }
     }
     for check in &work.graph.checks {
-        wanted.extend(check.iter().map(|input| input.node).filter(|&node| !work.graph.nodes[node].track));
+        wanted.extend(check.iter().flat_map(InputNode::nodes).filter(|&node| !work.graph.nodes[node].track));
     }
     wanted.extend(plausibility::wanted(work, known, false));
     if shifts.farthest.is_some() {
@@ -193,7 +193,8 @@ fn wanted(work: &Work<'_>, known: &Known<'_>, active: &Active, shifts: &Shifts<'
 /// Nodes that one position of a quantity needs.
 fn wanted_of(quantity: &Quantity, signal: &SignalNodes, wanted: &mut BTreeSet<NodeId>) {
     match quantity.evaluation.as_ref() {
-        Evaluation::Values { .. } => wanted.extend(signal.values.iter().flat_map(|value| value.inputs.iter().map(|input| input.node))),
+        Evaluation::Values { .. } => wanted.extend(signal.values.iter().flat_map(|value| value.inputs.iter().flat_map(InputNode::nodes))),
+        Evaluation::Combined(_) => wanted.extend(signal.inputs.iter().flat_map(InputNode::nodes)),
         Evaluation::Metric { metric, .. } => {
             let common = metric.on_common_points(quantity.keeps_samples());
             wanted.insert(if common { signal.filtered } else { signal.processed });

@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
+use super::common::{Both, Common};
 use super::facts::Known;
 use super::record::{Found, Work};
-use super::signal::{Extent, Samples};
+use super::signal::{Extent, Rate, Samples};
 use super::table::Row;
 use crate::catalog::{Metric, Pair};
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Center, Evaluation, Expr, InputSide, Kind, Records, Side};
-use crate::graph::{InputNode, NodeId, Operation, SignalNodes, ValueNodes};
-use crate::metrics::{resample, statistics};
+use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
+use crate::metrics::statistics;
 
 /// Values of the wanted nodes of one record.
 pub type Evaluated = Vec<(NodeId, Found)>;
@@ -83,6 +84,16 @@ impl<'a> Sides<'a> {
                 let node = if common { nodes.filtered } else { nodes.processed };
                 let one = |(record, two): (Option<Arc<str>>, Two<'_>)| {
                     let (value, samples) = two.compared(*metric, common, node, nodes.over)?;
+                    Ok(Row { position, which: 0, record, simulated: None, measured: None, value, samples })
+                };
+                self.pairs().map(one).collect()
+            }
+            Evaluation::Combined(of) => {
+                let one = |(record, two): (Option<Arc<str>>, Two<'_>)| {
+                    let found: Vec<_> = nodes.inputs.iter().map(|input| two.counted(input, InputSide::Measured)).collect();
+                    let samples = found.iter().flatten().map(|(_, samples)| *samples).max().unwrap_or(0);
+                    let inputs: Vec<Result<f64, String>> = found.into_iter().map(|found| found.map(|(value, _)| value)).collect();
+                    let value = number(&of.expr, &Known { inputs: &inputs, ..section(self.known) })?;
                     Ok(Row { position, which: 0, record, simulated: None, measured: None, value, samples })
                 };
                 self.pairs().map(one).collect()
@@ -208,22 +219,45 @@ impl Two<'_> {
         let common = if on_common_points {
             Common::of(simulated, measured, self.extent)?
         } else {
-            Common { axis: Vec::new(), simulated: simulated.values.to_vec(), measured: measured.values.to_vec() }
+            Common { simulated: simulated.values.to_vec(), measured: measured.clone() }
         };
         let over = match over {
             None => None,
             Some(node) => Some((samples_of(self.simulated, node)?, samples_of(self.measured, node)?)),
         };
         let over = over.map(|(s, m)| (s.values.as_slice(), m.values.as_slice()));
-        let pair = Pair { axis: &common.axis, simulated: &common.simulated, measured: &common.measured, over };
-        Ok((metric.run(&pair)?, common.measured.len()))
+        let (Rate::PerTime(rate) | Rate::PerLength(rate)) = common.measured.along.rate;
+        let measured = &common.measured.values;
+        let pair = Pair { axis: &common.measured.along.axis, simulated: &common.simulated, measured, rate, band: None, over };
+        Ok((metric.run(&pair)?, measured.len()))
     }
 
     pub fn input(&self, input: &InputNode, side: InputSide) -> Result<f64, String> {
-        if let Some(metric) = input.metric {
-            return self.compared(metric, metric.0.common_points, input.node, None).map(|(value, _)| value);
+        self.counted(input, side).map(|(value, _)| value)
+    }
+
+    /// A number, and of how many samples.
+    fn counted(&self, input: &InputNode, side: InputSide) -> Result<(f64, usize), String> {
+        match &input.joint {
+            None => {
+                let record = self.record(input.side.resolve(side));
+                let samples = record.iter().find_map(|(id, found)| match found {
+                    Found::Number(_, samples) if *id == input.node => Some(*samples),
+                    _ => None,
+                });
+                Ok((number_of(record, input.node)?, samples.unwrap_or(0)))
+            }
+            Some(Joint::Metric { metric, on_common_points, over }) => self.compared(*metric, *on_common_points, input.node, *over),
+            Some(Joint::Samples { reducer, method, signal }) => {
+                let both = Both {
+                    simulated: samples_of(self.simulated, input.node)?,
+                    measured: samples_of(self.measured, input.node)?,
+                    known: self.known,
+                    extent: self.extent,
+                };
+                both.reduced(*reducer, *method, signal)
+            }
         }
-        number_of(self.record(input.side.resolve(side)), input.node)
     }
 
     pub fn record(&self, side: InputSide) -> &Evaluated {
@@ -262,31 +296,4 @@ pub fn samples_of(found: &Evaluated, node: NodeId) -> Result<&Samples, String> {
 /// The same names with nothing yet for inputs and sides.
 pub fn section<'a>(known: &Known<'a>) -> Known<'a> {
     Known { facts: known.facts, columns: known.columns, extent: known.extent, inputs: &[], sides: None }
-}
-
-/// Both signals on the measured samples of the section.
-struct Common {
-    axis: Vec<f64>,
-    simulated: Vec<f64>,
-    measured: Vec<f64>,
-}
-
-impl Common {
-    /// The simulated signal is interpolated unless its samples lie where the measured ones do already.
-    fn of(simulated: &Samples, measured: &Samples, extent: Option<Extent>) -> Result<Self, String> {
-        let cut = |samples: &Samples| match extent {
-            Some(extent) => samples.cut(extent),
-            None => Ok(samples.clone()),
-        };
-        let (s, m) = (cut(simulated)?, cut(measured)?);
-        let same = s.along.axis.len() == m.along.axis.len()
-            && s.along.axis.iter().zip(m.along.axis.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
-        let onto = if same {
-            s.values.to_vec()
-        } else {
-            resample::interpolate(&simulated.along.axis, &simulated.values, &m.along.axis)
-                .map_err(|error| format!("the simulation cannot be brought onto the measured points: {error}"))?
-        };
-        Ok(Self { axis: m.along.axis.to_vec(), simulated: onto, measured: m.values.to_vec() })
-    }
 }

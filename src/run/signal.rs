@@ -3,10 +3,11 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::check::plan::{Operator, StepSpec};
+use crate::check::evaluate::{Values, number};
+use crate::check::plan::{AxisOperation, Operator, StepSpec};
 use crate::metrics::filter::Filter;
 use crate::metrics::window::{Kind, Sliding};
-use crate::metrics::{resample, rounded};
+use crate::metrics::{along, resample, rounded};
 
 /// What samples run along, in SI; axis and time increase strictly.
 #[derive(Debug)]
@@ -175,6 +176,32 @@ impl Samples {
                 Ok(Self { along: Arc::new(along), values: Arc::new(values) })
             }
             _ => Err("this step works on the whole record".into()),
+        }
+    }
+
+    /// Moved, derived or integrated. What is moved needs a record that reaches as far beyond the section.
+    pub fn over_axis(&self, operation: &AxisOperation, known: &dyn Values, extent: Extent) -> Result<Self, String> {
+        let axis = |over_time: bool| if over_time { self.along.time.as_ref().unwrap_or(&self.along.axis) } else { &self.along.axis };
+        let few = || "it takes two samples".to_string();
+        let values = match operation {
+            AxisOperation::Derivative { over_time } => along::derivative(axis(*over_time), &self.values).ok_or_else(few)?,
+            AxisOperation::Integral { over_time } => along::integral(axis(*over_time), &self.values).ok_or_else(few)?,
+            AxisOperation::Shifted(distance) => {
+                let distance = number(distance, known)?;
+                let axis = &self.along.axis;
+                let (first, last) = (axis.first().copied().unwrap_or(f64::NAN), axis.last().copied().unwrap_or(f64::NAN));
+                let (from, to) = (extent.0 - distance, extent.1 - distance);
+                let slack = 1e-9 * (last - first);
+                if !(first <= from + slack && to <= last + slack) {
+                    let (first, last, from, to) = (rounded(first), rounded(last), rounded(from), rounded(to));
+                    return Err(format!("the record reaches from {first} to {last}, and {from} to {to} is needed of it"));
+                }
+                along::moved(axis, &self.values, distance).map_err(|error| error.to_string())?
+            }
+        };
+        match values.iter().position(|value| !value.is_finite()) {
+            None => Ok(self.with(values)),
+            Some(at) => Err(format!("no finite number {}", self.along.place(at))),
         }
     }
 

@@ -69,6 +69,8 @@ pub enum Node {
     PlaceOf(At<String>, Vec<At<String>>),
     /// `Y through LP20`.
     Through(Box<Phrase>, At<String>),
+    /// `slope over cant_angle`: a value taken from a signal over another one in place of the axis.
+    Over(Box<Phrase>, Box<Phrase>),
     /// `upper 95 % of std`: an end of the confidence interval of what is estimated.
     Bound {
         upper: bool,
@@ -184,6 +186,7 @@ impl Phrase {
             }
             Node::Reduced(reducer, signal) => format!("{} of {}", reducer.meaning(), signal.meaning()),
             Node::PlaceOf(signal, words) => format!("{}@{}", signal.node, joined(words, ".", |word| word.node.clone())),
+            Node::Over(value, signal) => format!("{} over {}", value.meaning(), signal.meaning()),
             Node::Through(inner, filter) => format!("{}>{}", inner.meaning(), filter.node),
             Node::Bound { upper, confidence, of, bootstrap } => {
                 let (end, by) = (if *upper { "upper" } else { "lower" }, if *bootstrap { " by bootstrap" } else { "" });

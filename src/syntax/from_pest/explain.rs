@@ -46,9 +46,9 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
             }
         }
     }
-    // Where an operator can follow, `at` and `through` can, and help little.
+    // Where an operator can follow, `at`, `through` and `over` can, and help little.
     if expected.contains(&OPERATOR) {
-        expected.retain(|word| *word != in_words(Rule::kw_at) && *word != in_words(Rule::kw_through));
+        expected.retain(|word| ![Rule::kw_at, Rule::kw_through, Rule::kw_over].map(in_words).contains(word));
     }
     // An error in an exact text is underlined at the word; at its end, the last word is.
     let end = text.text.trim_end().len();
@@ -229,7 +229,8 @@ fn in_words(rule: Rule) -> &'static str {
         Rule::bound_of | Rule::end => "`upper 95 % of ...`",
         Rule::by_bootstrap => "`by bootstrap`",
         Rule::share | Rule::kw_share => "`share where ...`",
-        Rule::kw_over => "`over`",
+        Rule::over | Rule::kw_over => "`over`",
+        Rule::over_what => "a signal",
         Rule::verdict | Rule::every_limit | Rule::at_least_n => "`when every limit holds` or `when at least N quantities hold`",
         Rule::of_quantities | Rule::of_limits => "`quantities` or `limits`",
         Rule::otherwise | Rule::kw_otherwise => "`otherwise`",

@@ -208,10 +208,15 @@ fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
         _ => word(&first)?,
     };
     let mut phrase = At { node, range };
-    for through in inner {
-        let end = bytes(&through).end;
-        let filter = named(&parts(through).next()?);
-        phrase = At { node: Node::Through(Box::new(phrase), filter), range: whole.start..end };
+    for after in inner {
+        let range = whole.start..bytes(&after).end;
+        let rule = after.as_rule();
+        let what = parts(after).next()?;
+        let node = match rule {
+            Rule::over => Node::Over(Box::new(phrase), Box::new(primary(what)?)),
+            _ => Node::Through(Box::new(phrase), named(&what)),
+        };
+        phrase = At { node, range };
     }
     Some(phrase)
 }

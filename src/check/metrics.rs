@@ -1,0 +1,371 @@
+//! Checks the `metric` of a quantity: a wording of the registry, or an expression of metrics and of both sides' signals.
+
+use std::collections::BTreeSet;
+
+use super::Checker;
+use super::names::{Assignment, Written, bare_word, normalised};
+use super::plan::{Axis, Evaluation, Expr, Input, InputSide, Kind, Origin, Position, Signal, SignalKind, Step, Taken, Type};
+use super::quantities::Compared;
+use super::scalar_names::add_input;
+use super::scalars::{Reduce, Scope};
+use super::steps::{after, fits, item_phrase, show_number};
+use crate::catalog::{Asked, METRICS, Metric, MetricEntry, Part, Reducer};
+use crate::problem::{Problem, Problems};
+use crate::source::Span;
+use crate::syntax::document::{Field, Text};
+use crate::syntax::from_pest;
+use crate::syntax::phrase::{At, Item, Node, Phrase, Step as WrittenStep};
+use crate::units::Dimension;
+
+/// Points of a distribution: one has no scatter, and with more than that a record has samples they only cost time.
+const LEAST_POINTS: f64 = 2.0;
+const MOST_POINTS: f64 = 10_000.0;
+
+impl Checker<'_> {
+    pub(super) fn by_metric(
+        &mut self,
+        field: &Field,
+        positions: Option<&[(Position, Assignment)]>,
+        chain: Option<&[Step]>,
+    ) -> Option<Compared> {
+        if self.is_wording(&field.value) { self.by_wording(field, positions, chain) } else { self.by_expression(field, positions, chain) }
+    }
+
+    /// Whether a field is to be read as the wording of a metric, rather than as an expression.
+    fn is_wording(&mut self, text: &Text) -> bool {
+        let mut unheard = Problems::default();
+        let step = from_pest::step_alone(text, &mut unheard);
+        if let Some(step) = &step {
+            let step = self.with_choices(step.node.clone(), text, METRICS.iter().map(|entry| &entry.form));
+            if step.parts.first().is_some_and(|items| METRICS.iter().any(|entry| fits(&entry.form, items))) {
+                return true;
+            }
+        }
+        match from_pest::expression(text, &mut unheard) {
+            // A word that is nothing here is a metric that does not exist.
+            Some(At { node: Node::Path(word), .. }) => {
+                let named = self.names.defines.contains_key(&word) || self.names.parameter_blocks.contains_key(&word);
+                !named && MetricEntry::called(&word).is_none()
+            }
+            Some(_) => step.is_some_and(|step| step.node.when.is_some()),
+            None => !text.text.contains(['+', '*', '/', '|', '(']),
+        }
+    }
+
+    fn by_wording(&mut self, field: &Field, positions: Option<&[(Position, Assignment)]>, chain: Option<&[Step]>) -> Option<Compared> {
+        let (metric, over) = self.metric(&field.value)?;
+        self.by_one(metric, over, field, positions?, chain?)
+    }
+
+    /// One metric by itself.
+    fn by_one(
+        &mut self,
+        metric: Metric,
+        over: Option<Written>,
+        field: &Field,
+        positions: &[(Position, Assignment)],
+        chain: &[Step],
+    ) -> Option<Compared> {
+        let over_name = over.as_ref().and_then(|over| bare_word(&over.phrase)).map(str::to_string);
+        let over = match over {
+            None => Vec::new(),
+            Some(over) => positions
+                .iter()
+                .map(|(_, at)| self.signal_where(&over.phrase, &over.text, at, &over.text.span))
+                .collect::<Option<Vec<_>>>()?,
+        };
+        self.samples_are_kept(Taken::Compared(metric), chain, &field.value.span)?;
+        let over_axis = over_name
+            .zip(over.first())
+            .map(|(name, signal)| Axis { unit: self.own_unit(&name, after(chain, signal.dimension)), column: name });
+        let words = normalised(&field.value.text);
+        let (first, _) = positions.first()?;
+        Some(Compared {
+            evaluation: Evaluation::Metric { metric, over, over_axis },
+            dimension: (metric.0.gives)(
+                after(chain, first.signal.dimension),
+                self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension),
+            ),
+            processing: words.clone(),
+            comparison: words,
+            best: Some((metric.0.best, field.value.span.clone())),
+            from: Some(field.value.span.clone()),
+        })
+    }
+
+    fn samples_are_kept(&mut self, taken: Taken, chain: &[Step], at: &Span) -> Option<()> {
+        let Some(step) = chain.iter().find(|step| !step.kind.keeps_samples()).filter(|_| taken.needs_samples()) else { return Some(()) };
+        self.problems.push(
+            Problem::error("metric-of-window", "this metric compares samples and cannot follow a window or resampling")
+                .at(at)
+                .also(&step.span, "this step"),
+        );
+        None
+    }
+
+    /// An expression; which of its values are good is not known, unless it is one metric.
+    fn by_expression(&mut self, field: &Field, positions: Option<&[(Position, Assignment)]>, chain: Option<&[Step]>) -> Option<Compared> {
+        let phrase = self.metric_expression(&field.value)?;
+        let (positions, chain) = (positions?, chain?);
+        let (valued, dimension) = self.valued(&phrase, field, positions, chain, Scope::comparing)?;
+        let inputs = valued.inputs.first()?;
+        for input in inputs {
+            if let (Taken::Reduced(reducer), InputSide::Own) = (input.taken, input.side) {
+                let words = normalised(input.span.text());
+                let problem = Problem::error("side", format!("`{words}` is not said of which side")).at(&input.span);
+                let simple = reducer.in_words() == words;
+                self.problems.push(if simple {
+                    problem.help(format!("write `{words} of measured` or `{words} of simulated`"))
+                } else {
+                    problem.help(format!("write `measured({words})` or `simulated({words})`"))
+                });
+                return None;
+            }
+            self.samples_are_kept(input.taken, chain, &input.span)?;
+        }
+        if let (Kind::Input(0), [Input { taken: Taken::Compared(metric), over: None, .. }]) = (&valued.expr.kind, inputs.as_slice()) {
+            return self.by_one(*metric, None, field, positions, chain);
+        }
+        let words = normalised(&field.value.text);
+        Some(Compared {
+            evaluation: Evaluation::Combined(valued),
+            dimension,
+            processing: words.clone(),
+            comparison: words,
+            best: None,
+            from: Some(field.value.span.clone()),
+        })
+    }
+
+    /// The expression in a field; where it cannot be read because a metric is written in words, that is said.
+    fn metric_expression(&mut self, text: &Text) -> Option<Phrase> {
+        let mut problems = Problems::default();
+        let found = from_pest::expression(text, &mut problems);
+        let words = normalised(&text.text);
+        let spelt = METRICS.iter().filter(|entry| entry.form.head.len() > 1).find(|entry| words.contains(&leading_words(entry)));
+        for problem in problems.0 {
+            self.problems.push(match spelt {
+                Some(entry) => problem.help(format!("in an expression `{}` is written `{}`", entry.form.in_words(), entry.call_in_words())),
+                None => problem,
+            });
+        }
+        found
+    }
+
+    /// A metric and the signal its wording names, at given positions.
+    fn metric(&mut self, text: &Text) -> Option<(Metric, Option<Written>)> {
+        let step = from_pest::step_alone(text, self.problems)?;
+        let span = text.place(step.range.clone());
+        let step = At { node: self.with_choices(step.node, text, METRICS.iter().map(|entry| &entry.form)), range: step.range };
+        let index = self.find_form(&step.node, &span, "metric", METRICS.iter().map(|entry| &entry.form))?;
+        let entry = &METRICS[index];
+        if let Some(extra) = step.node.parts.get(1).and_then(|part| part.first()).filter(|_| entry.form.numbers.is_empty()) {
+            self.problems.push(Problem::error("unknown-option", "this metric has no options").at(&text.place(extra.range.clone())));
+            return None;
+        }
+        if let Some(condition) = &step.node.when {
+            let problem = Problem::error("unknown-option", "a metric has no condition").at(&text.place(condition.range.clone()));
+            self.problems.push(problem.help("sections are left out of a quantity by its field `where`"));
+            return None;
+        }
+        self.metric_filled(entry, &step.node, text, &span)
+    }
+
+    /// A metric whose slots and options are filled.
+    fn metric_filled(
+        &mut self,
+        entry: &'static MetricEntry,
+        step: &WrittenStep,
+        text: &Text,
+        span: &Span,
+    ) -> Option<(Metric, Option<Written>)> {
+        let slot = entry.form.head.iter().position(|part| matches!(part, Part::Signal(_)));
+        let over = match slot {
+            None => None,
+            Some(slot) => {
+                let item = step.parts.first()?.get(slot)?;
+                let phrase = item_phrase(item);
+                Some(Written { phrase, text: text.clone() })
+            }
+        };
+        let filled = self.fill_form(&entry.form, step, text, span)?;
+        let points = filled.options.first().copied().flatten().map(|(points, _)| points);
+        if let Some(points) = points.filter(|points| points.fract() != 0.0 || !(LEAST_POINTS..=MOST_POINTS).contains(points)) {
+            let says = format!("the points are a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}");
+            self.problems.push(Problem::error("out-of-range", says).at(span));
+            return None;
+        }
+        let mut asked = Asked { points: points.map(|points| points as usize), band: None };
+        if let [(low, of_low, at_low), (high, of_high, at_high)] = filled.numbers.as_slice() {
+            let in_time = self.has_time || self.axis.as_ref().is_some_and(|axis| axis.unit.dimension == Dimension::TIME);
+            let wanted = if in_time { Dimension::FREQUENCY } else { Dimension::ONE / Dimension::LENGTH };
+            for (found, at) in [(of_low, at_low), (of_high, at_high)] {
+                let of = if in_time { "a frequency, in Hz" } else { "a frequency in cycles per length, for want of a time" };
+                self.suits("frequency", *found == wanted, of, *found, at)?;
+            }
+            if low >= high {
+                let (low, high) = (show_number(*low, wanted), show_number(*high, wanted));
+                self.problems.push(Problem::error("out-of-range", format!("no frequency lies from {low} to {high}")).at(at_high));
+                return None;
+            }
+            asked.band = Some((*low, *high));
+        }
+        Some((Metric(entry, asked), over))
+    }
+
+    /// Whether a call is one of a metric.
+    pub(super) fn metric_called(&self, name: &At<String>, scope: &Scope) -> bool {
+        scope.reduce.is_some_and(|reduce| reduce.metrics) && MetricEntry::called(&name.node).is_some()
+    }
+
+    /// `coherence(1 Hz, 3 Hz)`, `matching_probability(50)`: what the wording has between its words, then its options.
+    pub(super) fn metric_call(
+        &mut self,
+        name: &At<String>,
+        given: &[Phrase],
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let entry = MetricEntry::called(&name.node)?;
+        let item = |phrase: &Phrase| At { node: Item::Value(phrase.clone()), range: phrase.range.clone() };
+        let word = |word: &str| At { node: Item::Word(word.into()), range: name.range.clone() };
+        let mut rest = given.iter();
+        let head: Option<Vec<At<Item>>> = entry
+            .form
+            .head
+            .iter()
+            .map(|part| if let Part::Word(fixed) = part { Some(word(fixed)) } else { rest.next().map(item) })
+            .collect();
+        let options = entry.form.numbers.iter().zip(&mut rest).map(|(option, value)| vec![item(value), word(option.name)]);
+        let parts = head.map(|head| std::iter::once(head).chain(options).collect::<Vec<_>>());
+        let (Some(parts), None) = (parts, rest.next()) else {
+            let says = format!("`{}` is called `{}`, there are {}", name.node, entry.call_in_words(), given.len());
+            self.problems.push(Problem::error("arguments", says).at(&text.place(name.range.clone())));
+            return None;
+        };
+        let (metric, over) = self.metric_filled(entry, &WrittenStep { parts, when: None }, text, span)?;
+        let at = scope.at.clone();
+        let over = match over {
+            None => None,
+            Some(over) => Some(self.signal(&over.phrase, text, &at)?),
+        };
+        self.metric_input(metric, over, span, scope)
+    }
+
+    /// A metric that takes nothing.
+    pub(super) fn metric_named(&mut self, entry: &'static MetricEntry, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+        if entry.form.head.iter().any(|part| !matches!(part, Part::Word(_))) {
+            let says = format!("`{}` does not say what it is taken over", entry.function_name());
+            self.problems.push(Problem::error("arguments", says).at(span).help(format!("write `{}`", entry.call_in_words())));
+            return None;
+        }
+        self.metric_input(Metric(entry, Asked::default()), None, span, scope)
+    }
+
+    fn metric_input(&mut self, metric: Metric, over: Option<Signal>, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+        let Some(Reduce { own: Some(dimension), axis, side, .. }) = scope.reduce else { return None };
+        if side != InputSide::Own {
+            let problem = Problem::error("side", format!("`{}` takes both sides", span.words)).at(span);
+            self.problems.push(problem.help("leave `measured(...)` or `simulated(...)` out"));
+            return None;
+        }
+        let taken = Taken::Compared(metric);
+        let input = Input { taken, signal: None, over, side: InputSide::Own, span: span.span.clone() };
+        let ty = Type::Number(taken.gives(dimension, axis));
+        Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
+    }
+
+    /// `slope over cant_angle`: of the own signal.
+    pub(super) fn slope_over(&mut self, value: &Phrase, over: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+        let place = text.place(value.range.clone());
+        let reducer = bare_word(value).and_then(Reducer::named);
+        let Some(reducer) = reducer else {
+            let problem = Problem::error("unknown-reducer", "only a slope is taken over another signal").at(&place);
+            self.problems.push(problem.help("`slope over SIGNAL`, or `slope of SIGNAL over SIGNAL`"));
+            return None;
+        };
+        let at = scope.at.clone();
+        let over = self.slope_axis(reducer, over, &place, text, &at)?;
+        let Some(Reduce { own: Some(dimension), side, .. }) = scope.reduce else {
+            return self.own_reducer(reducer, span.clone(), scope);
+        };
+        let ty = Type::Number(reducer.gives(dimension, over.dimension * scope.factor));
+        let input = Input { taken: Taken::Reduced(reducer), signal: None, over: Some(over), side, span: span.span.clone() };
+        Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
+    }
+
+    /// The signal that a slope is taken over.
+    pub(super) fn slope_axis(&mut self, reducer: Reducer, over: &Phrase, place: &Span, text: &Text, at: &Assignment) -> Option<Signal> {
+        if reducer.in_words() != "slope" {
+            let says = format!("`{}` is not taken over another signal, only a slope is", reducer.in_words());
+            self.problems.push(Problem::error("unknown-reducer", says).at(place).help("`slope over SIGNAL`"));
+            return None;
+        }
+        self.signal(over, text, at)
+    }
+
+    /// Whether an expression names the samples of a side: `simulated - measured`.
+    pub(super) fn names_side(&self, phrase: &Phrase, seen: &mut BTreeSet<String>) -> bool {
+        let mut any = |phrase: &Phrase| self.names_side(phrase, seen);
+        match &phrase.node {
+            Node::Path(path) if matches!(path.as_str(), "simulated" | "measured") => !self.is_signal(path),
+            Node::Path(path) => match self.names.defines.get(path) {
+                Some(define) if seen.insert(path.clone()) => self.names_side(&define.phrase.clone(), seen),
+                _ => false,
+            },
+            Node::Binary(_, left, right) | Node::Over(left, right) => any(left) || any(right),
+            Node::Reduced(_, inner) | Node::Negative(inner) | Node::Magnitude(inner) | Node::Power(inner, _) | Node::Through(inner, _) => {
+                any(inner)
+            }
+            Node::Call(_, arguments) => arguments.iter().any(any),
+            Node::Cases(arms, otherwise) => arms.iter().any(|(value, _)| any(value)) || otherwise.as_deref().is_some_and(any),
+            _ => false,
+        }
+    }
+
+    /// `rms of (simulated - measured)`.
+    pub(super) fn of_both(&mut self, reducer: Reducer, signal: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+        let Some(Reduce { own, axis, metrics, side }) = scope.reduce else { return None };
+        if metrics && side != InputSide::Own {
+            let problem = Problem::error("side", format!("`{}` says its sides itself", span.words)).at(span);
+            self.problems.push(problem.help("leave the outer `measured(...)` or `simulated(...)` out"));
+            return None;
+        }
+        let at = scope.at.clone();
+        let outer = std::mem::replace(&mut self.own_of_both, own.filter(|_| metrics));
+        let found = self.signal(signal, text, &at);
+        self.own_of_both = outer;
+        let signal = found?;
+        if let Some(other) = not_of_both(&signal) {
+            let says = "samples of both sides are combined with numbers alone: other signals and filters have their own samples";
+            let problem = Problem::error("mixed-records", says).at(&other);
+            self.problems
+                .push(problem.help("filters stand in the field `filter`; only `simulated` and `measured` themselves can be `shifted`"));
+            return None;
+        }
+        let ty = Type::Number(reducer.gives(signal.dimension, axis));
+        let input =
+            Input { taken: Taken::OfBoth(reducer), signal: Some(signal), over: None, side: InputSide::Own, span: span.span.clone() };
+        Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
+    }
+}
+
+/// The part of an expression over both sides that has no place in it.
+fn not_of_both(signal: &Signal) -> Option<Span> {
+    use super::plan::AxisOperation;
+    match &signal.kind {
+        SignalKind::Side(_) | SignalKind::Scalar(_) => None,
+        SignalKind::Binary(_, left, right) => not_of_both(left).or_else(|| not_of_both(right)),
+        SignalKind::OverAxis(AxisOperation::Shifted(_), inner) if !matches!(inner.kind, SignalKind::Side(_)) => Some(signal.span.clone()),
+        SignalKind::Negative(inner) | SignalKind::Power(inner, _) | SignalKind::OverAxis(_, inner) => not_of_both(inner),
+        SignalKind::Call(_, arguments) => arguments.iter().find_map(not_of_both),
+        SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => Some(signal.span.clone()),
+    }
+}
+
+/// The words of a wording before its first slot: `theil inequality`, `coherence from`.
+fn leading_words(entry: &MetricEntry) -> String {
+    let words = entry.form.head.iter().map_while(|part| if let Part::Word(word) = part { Some(*word) } else { None });
+    words.collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,97 @@
+//! Both sides of a section on common points, and numbers of expressions over their samples.
+
+use super::facts::Known;
+use super::signal::{Extent, Samples, Signal, apply, arithmetic, each};
+use crate::catalog::Reducer;
+use crate::check::evaluate::number;
+use crate::check::plan::{self, AxisOperation, Side, SignalKind};
+use crate::metrics::percentile::Method;
+use crate::metrics::resample;
+
+/// Both signals on the measured samples of the section.
+pub struct Common {
+    pub simulated: Vec<f64>,
+    pub measured: Samples,
+}
+
+impl Common {
+    /// The simulated signal is interpolated unless its samples lie where the measured ones do already.
+    pub fn of(simulated: &Samples, measured: &Samples, extent: Option<Extent>) -> Result<Self, String> {
+        let cut = |samples: &Samples| match extent {
+            Some(extent) => samples.cut(extent),
+            None => Ok(samples.clone()),
+        };
+        let (s, m) = (cut(simulated)?, cut(measured)?);
+        let same = s.along.axis.len() == m.along.axis.len()
+            && s.along.axis.iter().zip(m.along.axis.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
+        let onto = if same { s.values.to_vec() } else { at(simulated, &m.along.axis)? };
+        Ok(Self { simulated: onto, measured: m })
+    }
+}
+
+/// The simulated signal at points of the measured one.
+fn at(simulated: &Samples, points: &[f64]) -> Result<Vec<f64>, String> {
+    resample::interpolate(&simulated.along.axis, &simulated.values, points)
+        .map_err(|error| format!("the simulation cannot be brought onto the measured points: {error}"))
+}
+
+/// The filtered signals of both records, of which an expression takes samples in the section.
+pub struct Both<'a> {
+    pub simulated: &'a Samples,
+    pub measured: &'a Samples,
+    pub known: &'a Known<'a>,
+    pub extent: Option<Extent>,
+}
+
+impl Both<'_> {
+    /// A number of an expression over both, and of how many samples.
+    pub fn reduced(&self, reducer: Reducer, method: Method, of: &plan::Signal) -> Result<(f64, usize), String> {
+        let common = Common::of(self.simulated, self.measured, self.extent)?;
+        let samples = match self.signal(of, &common)? {
+            Signal::Samples(samples) => samples,
+            Signal::Constant(value) => common.measured.with(vec![value; common.measured.values.len()]),
+        };
+        let value = reducer.run(&samples.along.axis, &samples.values, method).filter(|value| value.is_finite());
+        let undefined = || format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len());
+        Ok((value.ok_or_else(undefined)?, samples.values.len()))
+    }
+
+    fn signal(&self, of: &plan::Signal, common: &Common) -> Result<Signal, String> {
+        let inner = |signal: &plan::Signal| self.signal(signal, common);
+        match &of.kind {
+            SignalKind::Side(Side::Simulated) => Ok(Signal::Samples(common.measured.with(common.simulated.clone()))),
+            SignalKind::Side(Side::Measured) => Ok(Signal::Samples(common.measured.clone())),
+            SignalKind::Scalar(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
+            SignalKind::Binary(operator, left, right) => arithmetic(*operator, &inner(left)?, &inner(right)?),
+            SignalKind::Negative(signal) => each(&inner(signal)?, |value| -value),
+            SignalKind::Power(signal, exponent) => each(&inner(signal)?, |value| value.powi(i32::from(*exponent))),
+            SignalKind::Call(function, arguments) => {
+                let arguments = arguments.iter().map(inner).collect::<Result<Vec<_>, _>>()?;
+                apply(&arguments.iter().collect::<Vec<_>>(), function.run)
+            }
+            SignalKind::OverAxis(AxisOperation::Shifted(distance), signal) => {
+                let of_record = match signal.kind {
+                    SignalKind::Side(Side::Simulated) => self.simulated,
+                    _ => self.measured,
+                };
+                let distance = number(distance, self.known)?;
+                let points: Vec<f64> = common.measured.along.axis.iter().map(|x| x - distance).collect();
+                let moved = resample::interpolate(&of_record.along.axis, &of_record.values, &points)
+                    .map_err(|error| format!("the record does not reach as far beyond the section as the signal is shifted: {error}"))?;
+                Ok(Signal::Samples(common.measured.with(moved)))
+            }
+            SignalKind::OverAxis(operation, signal) => match inner(signal)? {
+                Signal::Samples(samples) => {
+                    let axis = &samples.along.axis;
+                    let extent = (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
+                    Ok(Signal::Samples(samples.over_axis(operation, self.known, extent)?))
+                }
+                Signal::Constant(_) => Err("a number has no course along the axis".into()),
+            },
+            // Never reached: the checker refuses them here.
+            SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => {
+                Err("this signal has samples of its own".into())
+            }
+        }
+    }
+}
