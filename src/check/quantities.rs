@@ -425,8 +425,7 @@ impl Checker<'_> {
         let own = channel.or_else(|| self.names.signals.get(name).and_then(|signal| signal.unit.clone()));
         match own {
             Some(unit) if unit.dimension == dimension => unit,
-            _ if dimension == Dimension::ONE => Unit::one(),
-            _ => Unit { text: dimension.to_string(), factor: 1.0, dimension },
+            _ => Unit::si(dimension),
         }
     }
 

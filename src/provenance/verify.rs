@@ -14,6 +14,7 @@ use crate::data::hash::sha256;
 use crate::problem::{Problem, Problems};
 use crate::report::{attached, figure, json, typst, view};
 use crate::result::Certification;
+use crate::result::Kind;
 use crate::run::replay::replay;
 use crate::run::{Progress, Settings};
 
@@ -164,8 +165,9 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
     let value = |key: &str| carried.value.get(key).unwrap_or(&Value::Null);
     let mut details: Vec<String> = replayed.contradictions;
     let mut numbers = 0;
+    let verdict = Kind::of(&replayed.judged.quantities).verdict_words(replayed.judged.verdict);
     for (key, again) in [
-        ("verdict", serde_json::json!(replayed.judged.verdict)),
+        ("verdict", serde_json::json!(verdict)),
         ("reasons", serde_json::json!(replayed.judged.reasons)),
         ("quantities", json::quantities(&replayed.judged.quantities)),
         ("zones", json::zones(&replayed.judged.zones)),

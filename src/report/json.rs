@@ -20,7 +20,7 @@ pub fn results(found: &Certification) -> String {
             "report": report::tree(&found.campaign.report),
         }),
     );
-    root.insert("verdict".into(), json!(found.verdict));
+    root.insert("verdict".into(), json!(found.verdict_words()));
     root.insert("verdict_note".into(), json!(found.verdict_note));
     root.insert("reasons".into(), json!(found.reasons));
     root.insert("quantities".into(), quantities(&found.quantities));

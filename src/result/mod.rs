@@ -5,6 +5,7 @@
 pub mod blind;
 pub mod diagnosis;
 pub mod finding;
+mod kind;
 pub mod origin;
 pub mod report;
 pub mod study;
@@ -12,6 +13,7 @@ pub mod study;
 use serde::Serialize;
 
 pub use finding::{Consequence, Finding};
+pub use kind::Kind;
 pub use origin::{FittedTo, OriginInfo};
 pub use report::ReportItem;
 
@@ -47,14 +49,6 @@ pub enum Verdict {
     NotValidated,
     #[serde(rename = "not assessable")]
     NotAssessable,
-}
-
-impl Certification {
-    /// `validated, with a simulation fitted to the same measurements`
-    pub fn verdict_in_words(&self) -> String {
-        let note = self.verdict_note.as_ref().map_or(String::new(), |note| format!(", {note}"));
-        format!("{}{note}", self.verdict.in_words())
-    }
 }
 
 impl Verdict {
@@ -228,6 +222,8 @@ pub struct QuantityResult {
     pub has_sides: bool,
     /// The record that is assessed by itself: `measured`; `None` where records are compared.
     pub from: Option<String>,
+    /// The side whose records are each compared with what is central of all of them: `simulated`.
+    pub among: Option<String>,
     pub statistics: Vec<StatisticResult>,
     /// Number of sites of the values.
     pub n: usize,
@@ -267,6 +263,12 @@ pub struct StatisticResult {
     pub limit: Option<f64>,
     /// |value| / limit.
     pub normalised: Option<f64>,
+    /// Mean and standard deviation of the values of the group, in the unit of the quantity.
+    #[serde(skip)]
+    pub sample: Sample,
+    /// Of an estimate that is a regression with one regressor.
+    #[serde(skip)]
+    pub regression: Option<Box<RegressionFigure>>,
     pub holds: Option<bool>,
     /// Factors of the limit that depend on vehicle data.
     pub factors: Vec<LimitFactor>,
@@ -275,6 +277,51 @@ pub struct StatisticResult {
     pub reason: Option<String>,
     /// Place of the limit in the protocol.
     pub rule: RulePlace,
+}
+
+/// What the values of a group are like; `None` where there are too few.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    pub mean: Option<f64>,
+    /// With the divisor n - 1.
+    pub std: Option<f64>,
+}
+
+/// A regression of values over one regressor, ready to draw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegressionFigure {
+    /// The regressor in the words of the protocol.
+    pub regressor: String,
+    pub regressor_unit: String,
+    pub points: Vec<RegressionPoint>,
+    /// In the units of quantity and regressor.
+    pub intercept: f64,
+    pub slope: f64,
+    /// From the smallest regressor or target to the largest.
+    pub curve: Vec<RegressionAt>,
+    /// What the bound is of, in words: `99 % prediction bound`; `None` where the estimate is the fitted value.
+    pub bound: Option<String>,
+    /// Regressor at which the estimate is taken, and the estimate.
+    pub target: f64,
+    pub value: f64,
+}
+
+/// A value over its regressor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegressionPoint {
+    pub section: String,
+    pub zone: Option<String>,
+    pub signal: String,
+    pub x: f64,
+    pub y: f64,
+}
+
+/// The fitted line and its bound at one place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RegressionAt {
+    pub x: f64,
+    pub fitted: f64,
+    pub bound: Option<f64>,
 }
 
 /// A factor of a limit that depends on vehicle data.
@@ -298,8 +345,7 @@ pub struct PairValue {
     pub record: Option<String>,
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
-    /// Whether `values` contain simulated and measured values; false for a metric that gives one number for both signals, and for an
-    /// assessment.
+    /// What estimates are taken of: the difference; of a quantity without sides its metric, or the value that is assessed.
     pub difference: f64,
     /// Number of samples (or windows) of the measured value.
     pub samples: usize,

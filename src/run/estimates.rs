@@ -7,10 +7,12 @@ use super::sections::Unit;
 use super::table::{Member, independent};
 use crate::catalog::Statistic;
 use crate::check::evaluate::{Values, flag, number};
-use crate::check::plan::{DataReducer, Estimate, EstimateKind, Fit, OfGroup, Plan, Scalar, Taking};
+use crate::check::plan::{DataReducer, DatumKind, Estimate, EstimateKind, Fit, Kind, OfGroup, Plan, Scalar, Taking, Type};
 use crate::metrics::cluster::{self, Bounds, Draws, Mean, StandardDeviation};
 use crate::metrics::percentile::{Method, percentile};
 use crate::metrics::regression::{self, Regression, Tails};
+use crate::result::{RegressionAt, RegressionFigure, RegressionPoint};
+use crate::units;
 
 /// The rows of one group.
 #[derive(Clone, Copy, Debug)]
@@ -114,6 +116,14 @@ impl Group<'_> {
     }
 
     fn fit(&self, fit: &Fit, values: &[f64]) -> Result<f64, String> {
+        let Fitted { regression, at, .. } = self.fitted(fit, values)?;
+        match fit.confidence {
+            None => regression.at(&at).map_err(|error| error.to_string()),
+            Some(confidence) => bound_at(&regression, fit, confidence, &at),
+        }
+    }
+
+    fn fitted(&self, fit: &Fit, values: &[f64]) -> Result<Fitted, String> {
         let of_row = |regressor| {
             let of = |member: &Member<'_>| {
                 number(regressor, &member.unit.known(self.facts)).map_err(|reason| format!("section {}: {reason}", member.unit.name))
@@ -123,17 +133,71 @@ impl Group<'_> {
         let regressors = fit.over.iter().map(of_row).collect::<Result<Vec<_>, _>>()?;
         let at = fit.at.iter().map(|target| self.over(target, values)).collect::<Result<Vec<_>, _>>()?;
         let regression = Regression::fit(values, &regressors).map_err(|error| error.to_string())?;
-        let found = match fit.confidence {
-            None => regression.at(&at),
-            Some(confidence) => {
-                let kind = if fit.prediction { regression::Kind::Prediction } else { regression::Kind::Mean };
-                let side = if fit.lower { regression::Side::Lower } else { regression::Side::Upper };
-                let tails = if fit.one_sided { Tails::One } else { Tails::Two };
-                regression.bound(&at, kind, side, tails, confidence)
-            }
-        };
-        found.map_err(|error| error.to_string())
+        Ok(Fitted { regression, regressors, at })
     }
+
+    /// What is drawn of an estimate that is a regression with one regressor, in the unit of the quantity; `None` of other estimates, and
+    /// where there is no number.
+    pub fn figure(&self, of: &OfGroup, unit: &units::Unit) -> Option<RegressionFigure> {
+        let (Kind::Input(0), [Taking::Fit(fit)]) = (&of.expr.kind, of.taken.as_slice()) else { return None };
+        let [over] = fit.over.as_slice() else { return None };
+        let values = self.values();
+        let Fitted { regression, regressors, at } = self.fitted(fit, &values).ok()?;
+        let (xs, target) = (regressors.first()?, *at.first()?);
+        let x_unit = match (&over.kind, &over.ty) {
+            (Kind::Column(index), _) if let DatumKind::Number(unit) = &self.plan.columns[*index].kind => unit.clone(),
+            (_, Type::Number(dimension)) => units::Unit::si(*dimension),
+            _ => units::Unit::one(),
+        };
+        let (low, high) = xs.iter().fold((target, target), |(low, high), x| (low.min(*x), high.max(*x)));
+        let at_place = |step: usize| {
+            let x = low + (high - low) * step as f64 / STEPS as f64;
+            let bound = fit.confidence.and_then(|confidence| bound_at(&regression, fit, confidence, &[x]).ok());
+            Some(RegressionAt { x: x_unit.from_si(x), fitted: unit.from_si(regression.at(&[x]).ok()?), bound: bound.map(|y| unit.from_si(y)) })
+        };
+        let point = |(member, x): (&Member<'_>, &f64)| RegressionPoint {
+            section: member.unit.name.clone(),
+            zone: member.unit.zone.clone(),
+            signal: member.signal.to_string(),
+            x: x_unit.from_si(*x),
+            y: unit.from_si(member.row.value),
+        };
+        let [intercept, slope] = regression.coefficients()[..] else { return None };
+        let kind = if fit.prediction { "prediction bound" } else { "confidence bound of the mean" };
+        Some(RegressionFigure {
+            regressor: over.span.words.to_string(),
+            points: self.members.iter().zip(xs).map(point).collect(),
+            intercept: unit.from_si(intercept),
+            slope: unit.from_si(x_unit.to_si(slope)),
+            curve: (0..=STEPS).map(at_place).collect::<Option<_>>()?,
+            bound: fit.confidence.map(|confidence| format!("{} % {kind}", rounded(100.0 * confidence))),
+            target: x_unit.from_si(target),
+            value: unit.from_si(self.fit(fit, &values).ok()?),
+            regressor_unit: x_unit.text,
+        })
+    }
+}
+
+/// Pieces of the curve of a regression: enough that a hyperbola looks smooth in a diagram of a few centimetres.
+const STEPS: usize = 32;
+
+/// A regression with the numbers it was fitted to and taken at.
+struct Fitted {
+    regression: Regression,
+    regressors: Vec<Vec<f64>>,
+    at: Vec<f64>,
+}
+
+fn bound_at(regression: &Regression, fit: &Fit, confidence: f64, at: &[f64]) -> Result<f64, String> {
+    let kind = if fit.prediction { regression::Kind::Prediction } else { regression::Kind::Mean };
+    let side = if fit.lower { regression::Side::Lower } else { regression::Side::Upper };
+    let tails = if fit.one_sided { Tails::One } else { Tails::Two };
+    regression.bound(at, kind, side, tails, confidence).map_err(|error| error.to_string())
+}
+
+/// A percentage without the rounding of its conversion from a share: 99.9, not 99.90000000000001.
+fn rounded(percent: f64) -> f64 {
+    (percent * 1e9).round() / 1e9
 }
 
 /// # Errors

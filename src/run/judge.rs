@@ -238,6 +238,10 @@ fn quantity_result(
             Evaluation::Values { records: Records::Of(side), .. } => Some(side.in_words().into()),
             _ => None,
         },
+        among: match quantity.evaluation.as_ref() {
+            Evaluation::Values { records: Records::Spread { side, .. }, .. } => Some(side.in_words().into()),
+            _ => None,
+        },
         statistics,
         n: count_independent(plan, &members),
         values: members

@@ -8,7 +8,8 @@ use super::told::factors;
 use crate::catalog::Statistic;
 use crate::check::evaluate::{Values, flag, number};
 use crate::check::plan::{EstimateKind, Limit, Plan, Quantity, Scalar};
-use crate::result::{RulePlace, StatisticResult};
+use crate::metrics::statistics::{Divisor, mean, standard_deviation};
+use crate::result::{RegressionFigure, RulePlace, Sample, StatisticResult};
 use crate::source::Span;
 use crate::units::Unit;
 
@@ -23,6 +24,7 @@ pub struct Estimated<'a> {
     /// In SI; `None` of limits of each value.
     pub value: Result<Option<f64>, String>,
     pub interval: Option<(f64, f64)>,
+    pub regression: Option<RegressionFigure>,
 }
 
 /// An estimate against its limit, and the sentence for the verdict where it does not hold.
@@ -61,24 +63,25 @@ impl<'a> Judging<'a> {
     fn of_part(&self, limit: &Limit, part: Part<'a>) -> Estimated<'a> {
         let members = match part.members(self.facts, self.members) {
             Ok(members) => members,
-            Err(reason) => return Estimated { part, members: Vec::new(), value: Err(reason), interval: None },
+            Err(reason) => return Estimated { part, members: Vec::new(), value: Err(reason), interval: None, regression: None },
         };
         if members.is_empty() {
-            return Estimated { part, members, value: Err("no value is available".into()), interval: None };
+            return Estimated { part, members, value: Err("no value is available".into()), interval: None, regression: None };
         }
         let group = Group { plan: self.plan, facts: self.facts, members: &members };
-        let (value, interval) = match &limit.estimate.kind {
-            EstimateKind::Each => (Ok(None), None),
+        let (value, interval, regression) = match &limit.estimate.kind {
+            EstimateKind::Each => (Ok(None), None, None),
             EstimateKind::Of(of) => {
                 let entry = match limit.estimate.statistic() {
                     Some((Statistic::Named(entry), _)) => Some(entry),
                     _ => None,
                 };
                 let interval = entry.and_then(|entry| entry.interval);
-                (group.number(of).map(Some), interval.and_then(|interval| interval(&group.values(), &group.units())))
+                let interval = interval.and_then(|interval| interval(&group.values(), &group.units()));
+                (group.number(of).map(Some), interval, group.figure(of, &self.quantity.unit))
             }
         };
-        Estimated { part, members, value, interval }
+        Estimated { part, members, value, interval, regression }
     }
 
     /// What was estimated against the limit, group by group.
@@ -107,6 +110,8 @@ impl<'a> Judging<'a> {
             marginal: false,
             limit: None,
             normalised: None,
+            sample: self.sample(members),
+            regression: None,
             holds: None,
             factors: Vec::new(),
             limit_text: limit.words.clone(),
@@ -115,9 +120,15 @@ impl<'a> Judging<'a> {
         }
     }
 
+    fn sample(&self, members: &[Member<'_>]) -> Sample {
+        let values: Vec<f64> = members.iter().map(|member| self.quantity.unit.from_si(member.row.value)).collect();
+        Sample { mean: mean(&values), std: standard_deviation(&values, Divisor::Sample) }
+    }
+
     fn of_group(&self, limit: &'a Limit, group: &Estimated<'a>) -> Compared {
         let mut result = self.empty(limit, group.part.in_words(), group.part.keys(), &group.members);
         result.factors = factors(self.plan, self.facts, limit);
+        result.regression = group.regression.clone().map(Box::new);
         let outcome = match &group.value {
             Err(reason) => Err(reason.clone()),
             Ok(None) => self.each(limit, &group.members, &mut result),

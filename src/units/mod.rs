@@ -35,6 +35,11 @@ impl Unit {
         Self { text: "-".into(), factor: 1.0, dimension: Dimension::ONE }
     }
 
+    /// The SI unit of a dimension.
+    pub fn si(dimension: Dimension) -> Self {
+        if dimension == Dimension::ONE { Self::one() } else { Self { text: dimension.to_string(), factor: 1.0, dimension } }
+    }
+
     pub fn to_si(&self, number: f64) -> f64 {
         number * self.factor
     }

@@ -271,6 +271,8 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         marginal: false,
         limit: Some(limit),
         normalised: Some(value.abs() / limit),
+        sample: Sample::default(),
+        regression: None,
         holds: Some(value.abs() <= limit),
         factors: Vec::new(),
         limit_text: text.into(),
@@ -283,6 +285,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
     ];
     QuantityResult {
         from: None,
+        among: None,
         id: kind.id.into(),
         title: kind.title.into(),
         symbol: kind.symbol.into(),
@@ -357,6 +360,8 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
             marginal: false,
             limit: Some(0.3),
             normalised: Some((0.2 + 0.01 * f64::from(zone)) / 0.3),
+            sample: Sample::default(),
+            regression: None,
             holds: Some(true),
             factors: Vec::new(),
             limit_text: "0.3".into(),
@@ -366,6 +371,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         .collect();
     QuantityResult {
         from: None,
+        among: None,
         id: "sprague_geers_ay".into(),
         title: format!("Sprague-Geers metric {HOSTILE}"),
         symbol: STRANGE.into(),

@@ -3,7 +3,7 @@
 
 use fishplate::result::{
     CampaignInfo, Certification, CheckResult, Curve, DataItem, Deviation, DomainRange, FileHash, FilterInfo, PairValue, ParameterInfo,
-    ProtocolFile, ProtocolInfo, QuantityResult, RulePlace, SectionResult, StatisticResult, Trace, Verdict, ZoneResult,
+    ProtocolFile, ProtocolInfo, QuantityResult, RulePlace, Sample, SectionResult, StatisticResult, Trace, Verdict, ZoneResult,
 };
 
 /// A vehicle's name that would run if it were taken for markup.
@@ -189,6 +189,7 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
     let holds = (!missing).then(|| statistics.iter().all(|statistic| statistic.holds == Some(true)));
     QuantityResult {
         from: None,
+        among: None,
         id: id.into(),
         title: title.into(),
         symbol: symbol.into(),
@@ -227,6 +228,8 @@ fn statistics(values: &[PairValue], unit: &str, limit: f64) -> Vec<StatisticResu
         marginal: false,
         limit: Some(limit),
         normalised: Some(value.abs() / limit),
+        sample: Sample::default(),
+        regression: None,
         holds: Some(value.abs() <= limit),
         factors: Vec::new(),
         limit_text: text.into(),

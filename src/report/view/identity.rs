@@ -79,7 +79,7 @@ pub(super) fn checklist(found: &Certification) -> Vec<IdentityRow> {
         row("7.8.2.1 f)", "Method", &method),
         row("7.8.2.1 n)", "Deviations from the method", &deviations(found)),
         row("7.8.2.1 l)", "Scope of the results", "The results relate only to the test item and to the records listed under Provenance."),
-        row("7.8.3.1 b)", "Statement of conformity", super::sentence(found.verdict)),
+        row("7.8.3.1 b)", "Statement of conformity", super::wording::sentence(found)),
     ]);
     rows
 }

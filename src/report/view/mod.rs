@@ -9,11 +9,12 @@ mod protocol;
 mod quantity;
 mod section;
 mod summary;
+mod wording;
 
 use serde::Serialize;
 
 use crate::report::{findings, number};
-use crate::result::{CampaignInfo, Certification, DataItem, QuantityResult, StatisticResult, Verdict};
+use crate::result::{CampaignInfo, Certification, DataItem, Kind, QuantityResult, StatisticResult, Verdict};
 
 pub use identity::{IdentityRow, ReportHead};
 pub use notation::{ChannelRow, NotationView, SymbolRow, Term};
@@ -21,6 +22,7 @@ pub use protocol::{ProtocolView, SourceFile, view as protocol_view};
 pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair};
 pub use section::{CheckTable, ColumnHead, DomainView, SectionRow, SectionTable, ZoneView};
 pub use summary::{FurtherRow, SummaryRow};
+pub use wording::Wording;
 
 /// Number of reasons on the cover; the summary lists all.
 const REASONS_ON_COVER: usize = 8;
@@ -28,15 +30,18 @@ const REASONS_ON_COVER: usize = 8;
 /// All data of a report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReportData {
-    /// Title of the document: `Validation report: <campaign>`.
+    /// Title of the document: `Validation report: <campaign>`, or of what else the protocol is about.
     pub title: String,
     /// Program and version that wrote the report.
     pub program: String,
+    pub words: Wording,
     pub verdict: Finding,
     /// A note on the verdict.
     pub verdict_note: Option<String>,
     /// The statement for signature by the person responsible for the simulation.
-    pub simulation_statement: String,
+    pub simulation_statement: Option<String>,
+    /// The same of the person responsible for the measurement.
+    pub measurement_statement: Option<&'static str>,
     /// The verdict as a sentence.
     pub verdict_sentence: String,
     /// Why the model is not validated or not assessable.
@@ -186,15 +191,12 @@ pub fn view(found: &Certification) -> ReportData {
     ReportData {
         title: title(found),
         program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned(),
-        verdict: Finding::new(
-            verdict_holds,
-            Verdict::Validated.in_words(),
-            Verdict::NotValidated.in_words(),
-            Verdict::NotAssessable.in_words(),
-        ),
+        words: wording::wording(found),
+        verdict: Finding::new(verdict_holds, found.verdict_words(), found.verdict_words(), found.verdict_words()),
         verdict_note: found.verdict_note.clone(),
-        simulation_statement: simulation_statement(found),
-        verdict_sentence: sentence(found.verdict).to_owned(),
+        simulation_statement: wording::simulation_statement(found),
+        measurement_statement: wording::measurement_statement(found),
+        verdict_sentence: wording::sentence(found).to_owned(),
         cover_reasons: reasons.iter().take(REASONS_ON_COVER).cloned().collect(),
         reasons,
         more_reasons: more_reasons(found.reasons.len()),
@@ -203,7 +205,7 @@ pub fn view(found: &Certification) -> ReportData {
         notation: notation::view(found),
         key_facts: key_facts(found),
         campaign: campaign(&found.campaign),
-        protocol: protocol::view(&found.protocol),
+        protocol: ProtocolView { verdict_rule: wording::rule(found), ..protocol::view(&found.protocol) },
         summary,
         further,
         overview: overview(found),
@@ -214,7 +216,7 @@ pub fn view(found: &Certification) -> ReportData {
         domain: section::domain(found),
         domain_figure: (!found.domain.is_empty()).then(|| FigureView {
             name: "domain".into(),
-            caption: "Validity domain: range of the conditions over the sections used".into(),
+            caption: format!("{}: range of the conditions over the sections used", wording::wording(found).domain),
             alt: format!(
                 "Range of {} conditions over the sections used; the numbers are in the table of this chapter.",
                 found.domain.len()
@@ -226,34 +228,13 @@ pub fn view(found: &Certification) -> ReportData {
 }
 
 fn title(found: &Certification) -> String {
-    format!("Validation report: {}", found.campaign.name)
+    format!("{}: {}", wording::wording(found).report, found.campaign.name)
 }
 
 /// Replaces the id of a quantity at the start of a sentence by its symbol.
 fn in_symbols(reason: &str, found: &Certification) -> String {
     let of = reason.split_once(": ").and_then(|(id, says)| Some((found.quantities.iter().find(|quantity| quantity.id == id)?, says)));
     of.map_or_else(|| reason.to_owned(), |(quantity, says)| format!("{}: {says}", symbol(&quantity.symbol)))
-}
-
-fn sentence(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Validated => {
-            "All acceptance criteria of the protocol are met. The simulation model is validated for the domain stated in this report."
-        }
-        Verdict::NotValidated => "At least one acceptance criterion is not met. The simulation model is not validated.",
-        Verdict::NotAssessable => {
-            "The campaign does not contain the data that the protocol requires. The simulation model cannot be assessed."
-        }
-    }
-}
-
-/// The statement that nothing was changed after the comparison is printed only if the campaign has no origin that contradicts it.
-fn simulation_statement(found: &Certification) -> String {
-    let obtained = "The simulation results named in this report were obtained with the model and the settings described";
-    match &found.campaign.origin {
-        None => format!("{obtained}, and were not changed after the comparison with the measurement."),
-        Some(origin) => format!("{obtained}. {}.", origin.says),
-    }
 }
 
 fn more_reasons(count: usize) -> Option<String> {
@@ -272,12 +253,20 @@ fn key_facts(found: &Certification) -> Vec<Fact> {
     if open > 0 {
         quantities.push_str(&format!(", {open} not assessed"));
     }
-    let pairs: usize = found.quantities.iter().map(|quantity| quantity.values.len()).sum();
-    let mut facts = vec![
-        fact("Criteria by quantity", quantities),
-        fact("Sections", format!("{used} of {} used", found.sections.len())),
-        fact("Compared pairs", number::count(pairs as u64)),
-    ];
+    let rows = |assessed: bool| {
+        let of = found.quantities.iter().filter(|quantity| quantity.from.is_some() == assessed);
+        of.map(|quantity| quantity.values.len()).sum::<usize>()
+    };
+    let mut facts = vec![fact("Criteria by quantity", quantities), fact("Sections", format!("{used} of {} used", found.sections.len()))];
+    match found.kind() {
+        Kind::Validation => facts.push(fact("Compared pairs", number::count(rows(false) as u64))),
+        Kind::Comparison => facts.push(fact("Compared values", number::count(rows(false) as u64))),
+        Kind::Assessment => facts.push(fact("Assessed values", number::count(rows(true) as u64))),
+        Kind::Mixed => {
+            facts.push(fact("Compared pairs", number::count(rows(false) as u64)));
+            facts.push(fact("Assessed values", number::count(rows(true) as u64)));
+        }
+    }
     if !found.zones.is_empty() {
         let filled = found.zones.iter().filter(|zone| zone.holds).count();
         facts.push(fact("Test zones", format!("{filled} of {} with enough sections", found.zones.len())));
