@@ -548,6 +548,11 @@ impl Evaluation {
         }
     }
 
+    /// Whether rows are values of one record, compared with no other.
+    pub fn assesses(&self) -> bool {
+        matches!(self, Self::Values { records: Records::Of(_), .. })
+    }
+
     /// Whether rows have two sides and a difference.
     pub fn has_sides(&self) -> bool {
         matches!(self, Self::Values { records: Records::Compared { .. } | Records::Spread { .. }, .. })

@@ -15,8 +15,8 @@ use crate::problem::{Problem, Problems, plain};
 use crate::provenance::carried::REPORT_PDF;
 use crate::provenance::signature::{self, SecretKey, secret_key};
 use crate::provenance::statement;
-use crate::report::{attached, figure, findings, html, json, number, tables, typst, view};
-use crate::result::{Certification, Verdict};
+use crate::report::{attached, estimates, figure, findings, html, json, number, tables, typst, view};
+use crate::result::{Certification, StatisticResult, Verdict};
 use crate::run::Settings;
 
 /// Default number of distance plots of a report.
@@ -146,39 +146,9 @@ impl Certify {
 /// The table of verdicts for the terminal.
 fn summary(found: &Certification, console: &Console) -> String {
     let paint = |text: String, holds: Option<bool>| holds.map_or(text.clone(), |holds| console.paint(&text, holds));
-    let width = found.quantities.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);
     let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
-    out += &format!(
-        "{:width$}  {:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}\n",
-        "quantity", "unit", "statistic", "pairs", "n", "value", "limit", "|v|/limit"
-    );
-    for quantity in &found.quantities {
-        for (index, statistic) in quantity.statistics.iter().enumerate() {
-            let name = if index == 0 { quantity.id.as_str() } else { "" };
-            let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
-            let show = |value: Option<f64>| value.map_or("-".to_string(), |value| number::significant(value, 4));
-            let verdict = match statistic.holds {
-                Some(true) => "met",
-                Some(false) => "NOT MET",
-                None => "not assessable",
-            };
-            let verdict = format!("{verdict}{}", if statistic.marginal { ", marginal" } else { "" });
-            let unit = if index == 0 { quantity.unit.as_str() } else { "" };
-            let share = statistic.normalised.map_or("-".to_string(), |share| format!("{share:.3}"));
-            out += &format!(
-                "{name:width$}  {unit:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {share:>8}  {}\n",
-                format!("{}{scope}", statistic.title),
-                statistic.count,
-                statistic.n,
-                show(statistic.value),
-                show(statistic.limit),
-                paint(verdict, statistic.holds)
-            );
-        }
-        if let (Some(reason), true) = (&quantity.reason, quantity.statistics.is_empty()) {
-            out += &format!("{:width$}  {reason}\n", quantity.id);
-        }
-    }
+    out += &statistics(found, console);
+    out += &estimated(found, console);
     out.push('\n');
     let used = found.sections.iter().filter(|section| section.used).count();
     out += &format!("{used} of {} sections used\n", found.sections.len());
@@ -195,6 +165,107 @@ fn summary(found: &Certification, console: &Console) -> String {
     out += &format!("\n{}\n", paint(format!("Verdict: {}", found.verdict_in_words()), Some(holds)));
     for reason in &found.reasons {
         out += &format!("  {reason}\n");
+    }
+    out
+}
+
+fn verdict(holds: Option<bool>, marginal: bool, console: &Console) -> String {
+    let word = match holds {
+        Some(true) => "met",
+        Some(false) => "NOT MET",
+        None => "not assessable",
+    };
+    let word = format!("{word}{}", if marginal { ", marginal" } else { "" });
+    holds.map_or(word.clone(), |holds| console.paint(&word, holds))
+}
+
+fn shown(value: Option<f64>) -> String {
+    value.map_or("-".to_string(), |value| number::significant(value, 4))
+}
+
+fn ratio(statistic: &StatisticResult) -> String {
+    statistic.normalised.map_or("-".to_string(), |share| format!("{share:.3}"))
+}
+
+/// Statistics that are told one by one: those of comparisons.
+fn statistics(found: &Certification, console: &Console) -> String {
+    let told: Vec<_> = found.quantities.iter().filter(|quantity| quantity.from.is_none() || quantity.statistics.is_empty()).collect();
+    if told.is_empty() && !found.quantities.is_empty() {
+        return String::new();
+    }
+    let width = told.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);
+    let mut out = format!(
+        "{:width$}  {:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}\n",
+        "quantity", "unit", "statistic", "pairs", "n", "value", "limit", "|v|/limit"
+    );
+    for quantity in told {
+        for (index, statistic) in estimates::single(quantity).into_iter().enumerate() {
+            let name = if index == 0 { quantity.id.as_str() } else { "" };
+            let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
+            let unit = if index == 0 { quantity.unit.as_str() } else { "" };
+            out += &format!(
+                "{name:width$}  {unit:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}  {}\n",
+                format!("{}{scope}", statistic.title),
+                statistic.count,
+                statistic.n,
+                shown(statistic.value),
+                shown(statistic.limit),
+                ratio(statistic),
+                verdict(statistic.holds, statistic.marginal, console)
+            );
+        }
+        if let (Some(reason), true) = (&quantity.reason, quantity.statistics.is_empty()) {
+            out += &format!("{:width$}  {reason}\n", quantity.id);
+        }
+    }
+    out
+}
+
+/// One line for each limit of assessed quantities and each limit by group: how many groups hold, and the largest ratio with its place.
+fn estimated(found: &Certification, console: &Console) -> String {
+    let limits: Vec<_> = found
+        .quantities
+        .iter()
+        .flat_map(|quantity| estimates::condensed(quantity).into_iter().map(move |limit| (quantity, limit)))
+        .collect();
+    if limits.is_empty() {
+        return String::new();
+    }
+    let longest = |texts: &mut dyn Iterator<Item = usize>, least: usize| texts.max().unwrap_or(0).max(least);
+    let ids = longest(&mut limits.iter().map(|(quantity, _)| quantity.id.chars().count()), 8);
+    let titles = longest(&mut limits.iter().map(|(_, limit)| limit.results[0].title.chars().count()), 8);
+    let places = longest(&mut limits.iter().map(|(_, limit)| limit.decisive().scope.chars().count()), 10);
+    let compared = found.quantities.iter().any(|quantity| quantity.from.is_none());
+    let mut out = format!(
+        "{}{:ids$}  {:>8}  {:titles$}  {:>12}  {:>12}  {:>9}  {:places$}  groups met\n",
+        if compared { "\n" } else { "" },
+        "quantity",
+        "unit",
+        "estimate",
+        "largest",
+        "limit",
+        "|v|/limit",
+        "where"
+    );
+    let mut before = "";
+    for (quantity, limit) in &limits {
+        let decisive = limit.decisive();
+        out += &format!(
+            "{:ids$}  {:>8}  {:titles$}  {:>12}  {:>12}  {:>9}  {:places$}  {}, {}\n",
+            if before == quantity.id { "" } else { &quantity.id },
+            decisive.unit,
+            decisive.title,
+            shown(decisive.value),
+            shown(decisive.limit),
+            ratio(decisive),
+            if decisive.value.is_some() { decisive.scope.as_str() } else { "-" },
+            limit.holding(),
+            verdict(limit.holds(), limit.results.iter().any(|one| one.marginal), console)
+        );
+        before = &quantity.id;
+    }
+    if limits.iter().any(|(_, limit)| limit.by_group()) {
+        out += "all groups: report, results.json\n";
     }
     out
 }

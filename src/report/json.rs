@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::attached;
+use super::{attached, estimates};
 use crate::result::{Certification, ProtocolFile, ProtocolInfo, QuantityResult, StatisticResult, ZoneResult, report};
 
 /// The complete result, ending in a line break.
@@ -83,7 +83,10 @@ fn quantity(quantity: &QuantityResult) -> Value {
     } else {
         // The statistic closest to its limit represents the quantity; all statistics follow.
         let worst = quantity.statistics.iter().max_by(|a, b| a.normalised.unwrap_or(-1.0).total_cmp(&b.normalised.unwrap_or(-1.0)));
-        entry.insert("metric".into(), json!(quantity.comparison));
+        match &quantity.from {
+            Some(side) => entry.insert("assessed".into(), json!(side)),
+            None => entry.insert("metric".into(), json!(quantity.comparison)),
+        };
         entry.insert("statistic".into(), json!(worst.map(|statistic| statistic.name.as_str())));
         entry.insert("value".into(), json!(worst.and_then(|statistic| statistic.value)));
         entry.insert("limit".into(), json!(worst.and_then(|statistic| statistic.limit)));
@@ -92,6 +95,9 @@ fn quantity(quantity: &QuantityResult) -> Value {
     entry.insert("reason".into(), json!(quantity.reason));
     entry.insert("rule".into(), json!(quantity.rule));
     entry.insert("statistics".into(), json!(quantity.statistics));
+    if quantity.from.is_some() {
+        entry.insert("groups".into(), Value::Array(quantity.statistics.iter().map(group).collect()));
+    }
     let values = quantity.values.iter().map(|pair| {
         let mut row = Map::new();
         row.insert("section".into(), json!(pair.section));
@@ -114,6 +120,38 @@ fn quantity(quantity: &QuantityResult) -> Value {
         zone_as_number(Value::Object(row))
     });
     entry.insert("values".into(), Value::Array(values.collect()));
+    Value::Object(entry)
+}
+
+/// One estimate of one group of an assessed quantity.
+fn group(one: &StatisticResult) -> Value {
+    let keys: Map<String, Value> = match (one.group.as_slice(), estimates::zones(one).as_slice()) {
+        ([], [zone]) => Map::from_iter([("zone".to_owned(), json!(zone))]),
+        (keys, _) => keys.iter().map(|(key, member)| (key.clone(), json!(member))).collect(),
+    };
+    let regression = one.regression.as_ref().map(|found| {
+        json!({
+            "regressor": found.regressor, "unit": found.regressor_unit, "intercept": found.intercept, "slope": found.slope,
+            "target": found.target,
+        })
+    });
+    let mut entry = Map::new();
+    entry.insert("keys".into(), Value::Object(keys));
+    entry.insert("estimate".into(), json!(one.name));
+    entry.insert("values".into(), json!(one.count));
+    entry.insert("n".into(), json!(one.n));
+    entry.insert("mean".into(), json!(one.sample.mean));
+    entry.insert("std".into(), json!(one.sample.std));
+    entry.insert("value".into(), json!(one.value));
+    entry.insert("low".into(), json!(one.interval.map(|(low, _)| low)));
+    entry.insert("high".into(), json!(one.interval.map(|(_, high)| high)));
+    entry.insert("limit".into(), json!(one.limit));
+    entry.insert("ratio".into(), json!(one.normalised));
+    entry.insert("holds".into(), json!(one.holds));
+    entry.insert("reason".into(), json!(one.reason));
+    if let Some(regression) = regression {
+        entry.insert("regression".into(), regression);
+    }
     Value::Object(entry)
 }
 

@@ -5,6 +5,7 @@
 pub mod attached;
 pub mod blind;
 pub mod diagnosis;
+pub mod estimates;
 pub mod figure;
 pub mod findings;
 pub mod html;

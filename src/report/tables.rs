@@ -66,14 +66,17 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
                 pair.section.clone(),
                 pair.zone.clone().unwrap_or_default(),
                 pair.signal.clone(),
+                pair.record.clone().unwrap_or_default(),
                 number(pair.simulated),
                 number(pair.measured),
-                number(Some(pair.difference)),
+                number(quantity.has_sides.then_some(pair.difference)),
+                number((!quantity.has_sides).then_some(pair.difference)),
                 pair.samples.to_string(),
             ]
         })
     });
-    add("values", &["quantity", "unit", "section", "zone", "signal", "simulated", "measured", "difference", "samples"], pairs.collect())?;
+    let header = ["quantity", "unit", "section", "zone", "signal", "record", "simulated", "measured", "difference", "value", "samples"];
+    add("values", &header, pairs.collect())?;
     add("sections", &section_header(found), section_rows(found))?;
     let checks = found.sections.iter().flat_map(|section| {
         section.checks.iter().map(|check| {

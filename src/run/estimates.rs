@@ -153,7 +153,11 @@ impl Group<'_> {
         let at_place = |step: usize| {
             let x = low + (high - low) * step as f64 / STEPS as f64;
             let bound = fit.confidence.and_then(|confidence| bound_at(&regression, fit, confidence, &[x]).ok());
-            Some(RegressionAt { x: x_unit.from_si(x), fitted: unit.from_si(regression.at(&[x]).ok()?), bound: bound.map(|y| unit.from_si(y)) })
+            Some(RegressionAt {
+                x: x_unit.from_si(x),
+                fitted: unit.from_si(regression.at(&[x]).ok()?),
+                bound: bound.map(|y| unit.from_si(y)),
+            })
         };
         let point = |(member, x): (&Member<'_>, &f64)| RegressionPoint {
             section: member.unit.name.clone(),

@@ -97,7 +97,7 @@ fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Result
         section: unit.name.clone(),
         zone: unit.zone.clone(),
         signal: quantity.positions[signal].name.clone(),
-        why: format!("largest difference of {}", quantity.id),
+        why: format!("largest {} of {}", if quantity.evaluation.assesses() { "value" } else { "difference" }, quantity.id),
         unit: quantity.signal_unit.text.clone(),
         axis: over.name,
         axis_unit: over.unit.text,

@@ -102,8 +102,12 @@ pub fn draw(canvas: &mut Canvas, quantity: &QuantityResult, against: &Against<'_
     let frame = Frame { x, y };
     grounds(canvas, &frame, levels, slots);
     let formula = number::formula(&quantity.comparison);
-    let what = if quantity.has_sides { formula.as_str() } else { "value of the metric" };
-    frame.y_axis(canvas, &y.ticks(TICKS), &axis::title(what, &quantity.unit));
+    let what = match (quantity.has_sides, &quantity.from) {
+        (true, _) => formula.clone(),
+        (false, Some(side)) => format!("{side} value"),
+        (false, None) => "value of the metric".to_owned(),
+    };
+    frame.y_axis(canvas, &y.ticks(TICKS), &axis::title(&what, &quantity.unit));
     names(canvas, &frame, slots);
     zone_heads(canvas, &frame, slots);
     lines(canvas, &frame, levels, slots);

@@ -1,11 +1,15 @@
 //! Reference levels of a diagram of differences: mean, standard deviation and their limits.
 
+use indexmap::IndexMap;
 use plotters::style::RGBColor;
 
 use super::legend::Entry;
 use super::style::{self, BLUE, DASH_DOT, DASHED, DOTTED, Dash, INK, SHADE, SOLID, VERMILION};
-use crate::report::number;
+use crate::report::{estimates, number};
 use crate::result::{QuantityResult, StatisticResult};
+
+/// Most limits that the legend names one by one.
+const NAMED: usize = 4;
 
 /// A horizontal line over some of the sections.
 #[derive(Clone, Debug)]
@@ -39,6 +43,9 @@ impl Levels {
     ///
     /// The limit of a standard deviation is drawn around the mean, for comparison with the band of the standard deviation.
     pub fn of(quantity: &QuantityResult) -> Self {
+        if quantity.from.is_some() {
+            return Self::of_assessed(quantity);
+        }
         let mut levels = Self::default();
         let two_sided = quantity.has_sides || quantity.values.iter().any(|pair| pair.difference < 0.0);
         for statistic in quantity.statistics.iter().filter(|statistic| statistic.unit == quantity.unit) {
@@ -47,6 +54,48 @@ impl Levels {
                 "std" => levels.deviation(statistic, center(quantity, &statistic.scope)),
                 _ => levels.other(statistic, two_sided),
             }
+        }
+        levels
+    }
+
+    /// Limits of an assessed quantity zone by zone, and in each zone the estimate nearest to its limit or farthest beyond.
+    fn of_assessed(quantity: &QuantityResult) -> Self {
+        let mut levels = Self::default();
+        let two_sided = quantity.values.iter().any(|pair| pair.difference < 0.0);
+        let mut decisive: IndexMap<&str, &StatisticResult> = IndexMap::new();
+        for statistic in quantity.statistics.iter().filter(|statistic| statistic.unit == quantity.unit) {
+            let zones = estimates::zones(statistic);
+            for scope in if zones.is_empty() { vec!["all"] } else { zones } {
+                for value in statistic.limit.iter().flat_map(|limit| both(0.0, *limit, two_sided)) {
+                    if !levels.lines.iter().any(|line| line.scope == scope && line.value == value) {
+                        levels.lines.push(Level { value, color: INK, width: 0.9, dash: DASHED, scope: scope.to_owned() });
+                    }
+                }
+                let before = decisive.entry(scope).or_insert(statistic);
+                if statistic.normalised > before.normalised {
+                    *before = statistic;
+                }
+            }
+        }
+        if !levels.lines.is_empty() {
+            let mut all: Vec<f64> = levels.lines.iter().map(|line| line.value.abs()).collect();
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            let decimals = number::decimals(&quantity.unit, all.iter().copied());
+            let texts: Vec<String> = all.iter().map(|limit| number::fixed(*limit, decimals)).collect();
+            let says = match texts.as_slice() {
+                [one] => format!("limit {}{one}", sign(two_sided)),
+                [first, .., last] if texts.len() > NAMED => format!("limits {}{first} to {last}", sign(two_sided)),
+                several => format!("limits {}{}", sign(two_sided), several.join(", ")),
+            };
+            levels.explain(Entry::line(INK, 0.9, DASHED, says));
+        }
+        for (scope, statistic) in decisive {
+            let Some(value) = statistic.value.filter(|_| statistic.name != "each") else { continue };
+            let scope = scope.to_owned();
+            levels.lines.push(Level { value, color: style::color(2), width: 1.1, dash: DASH_DOT, scope: scope.clone() });
+            let by = if scope == "all" { "" } else { " of the zone" };
+            levels.explain(Entry::line(style::color(2), 1.1, DASH_DOT, format!("estimate with the largest ratio{by}")));
         }
         levels
     }

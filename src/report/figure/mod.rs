@@ -10,12 +10,14 @@ mod choices;
 mod differences;
 mod domain;
 pub mod frame;
+mod frequency;
 pub mod legend;
 mod levels;
 mod map;
 mod offsets;
 mod overview;
 mod pairs;
+mod regression;
 mod states;
 pub mod style;
 mod symbol;
@@ -25,14 +27,17 @@ mod zones;
 pub use boxes::boxes;
 pub use choices::choices;
 pub use domain::domain;
+pub use frequency::frequency;
 pub use map::map;
 pub use offsets::{selection, shares};
 pub use overview::overview;
 pub use pairs::pairs;
+pub use regression::{drawn, regression};
 pub use states::{before_after, signals};
 pub use trace::trace;
 pub use zones::Zones;
 
+use crate::report::estimates;
 use crate::result::Certification;
 
 /// All figures of a report by their names in the view ([`super::view::FigureView::name`]).
@@ -46,6 +51,15 @@ pub fn figures(found: &Certification) -> Vec<(String, String)> {
     }
     for (at, quantity) in found.quantities.iter().enumerate().filter(|(_, quantity)| !quantity.values.is_empty()) {
         drawn.push((format!("pairs-{at}"), pairs(quantity, &zones)));
+        if quantity.from.is_some() {
+            drawn.push((format!("frequency-{at}"), frequency(quantity, &zones)));
+        }
+        for (nth, limit) in estimates::limits(quantity).iter().enumerate() {
+            let groups = regression::drawn(limit);
+            if !groups.is_empty() {
+                drawn.push((format!("regression-{at}-{nth}"), regression(quantity, &groups, &zones)));
+            }
+        }
     }
     for (at, one) in found.traces.iter().enumerate() {
         drawn.push((format!("trace-{at}"), trace(one)));

@@ -8,7 +8,7 @@ use super::frame::Frame;
 use super::legend::{Entry, Legend};
 use super::style::{self, BEYOND, GRID, INK, MUTED, Mark, SHADE, TEXT, WIDTH, text_width};
 use super::symbol::symbol_left_of;
-use crate::report::number;
+use crate::report::{estimates, number};
 use crate::result::{QuantityResult, StatisticResult};
 
 /// Maximum number of statistics of a quantity on separate lines; more share one line.
@@ -56,9 +56,9 @@ pub fn overview(quantities: &[QuantityResult]) -> String {
     canvas.finish()
 }
 
-/// Statistics with a limit.
+/// Statistics with a limit; of a limit by group, the decisive one.
 fn shown(quantity: &QuantityResult) -> impl Iterator<Item = &StatisticResult> {
-    quantity.statistics.iter().filter(|statistic| statistic.limit.is_some() || statistic.normalised.is_some())
+    estimates::representatives(quantity).into_iter().filter(|statistic| statistic.limit.is_some() || statistic.normalised.is_some())
 }
 
 fn line_count(quantity: &QuantityResult) -> usize {
@@ -80,20 +80,24 @@ struct Series(IndexSet<(String, String)>);
 
 impl Series {
     fn of(quantities: &[QuantityResult]) -> Self {
-        Self(quantities.iter().flat_map(shown).map(Self::key).collect())
+        let of = |quantity| shown(quantity).map(|statistic| Self::key(quantity, statistic));
+        Self(quantities.iter().flat_map(of).collect())
     }
 
-    fn key(statistic: &StatisticResult) -> (String, String) {
-        (statistic.title.clone(), statistic.scope.clone())
+    /// An estimate of groups is one series, wherever its decisive group is.
+    fn key(quantity: &QuantityResult, statistic: &StatisticResult) -> (String, String) {
+        let grouped = quantity.from.is_some() || !statistic.group.is_empty();
+        (statistic.title.clone(), if grouped { String::new() } else { statistic.scope.clone() })
     }
 
-    fn nth(&self, statistic: &StatisticResult) -> usize {
-        self.0.get_index_of(&Self::key(statistic)).unwrap_or(0)
+    fn nth(&self, quantity: &QuantityResult, statistic: &StatisticResult) -> usize {
+        self.0.get_index_of(&Self::key(quantity, statistic)).unwrap_or(0)
     }
 
     fn legend(&self) -> Vec<Entry> {
         let one_scope = self.0.iter().all(|(_, scope)| scope == "all");
-        let text = |(title, scope): &(String, String)| if one_scope { title.clone() } else { format!("{title}, {scope}") };
+        let bare = |scope: &str| one_scope || scope.is_empty();
+        let text = |(title, scope): &(String, String)| if bare(scope) { title.clone() } else { format!("{title}, {scope}") };
         self.0.iter().enumerate().map(|(n, key)| Entry::mark(Mark::nth(n), style::color(n), text(key))).collect()
     }
 }
@@ -102,7 +106,8 @@ fn scale(quantities: &[QuantityResult], from: f64, to: f64) -> Scale {
     let values: Vec<f64> = quantities.iter().flat_map(shown).filter_map(signed).collect();
     let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let high = if largest <= 1.15 { 1.25 } else { ((largest + 0.15) * 4.0).ceil() / 4.0 }.min(FARTHEST);
-    let has_sign = values.iter().any(|value| *value < 0.0) || quantities.iter().flat_map(shown).any(|one| one.name == "mean");
+    let has_sign = values.iter().any(|value| *value < 0.0)
+        || quantities.iter().filter(|quantity| quantity.from.is_none()).flat_map(shown).any(|one| one.name == "mean");
     Scale { low: if has_sign { -high } else { 0.0 }, high, from, to }
 }
 
@@ -152,7 +157,7 @@ fn row(canvas: &mut Canvas, frame: &Frame, quantity: &QuantityResult, series: &S
             Some(value) => {
                 // On a shared line the numbers would overlap: only the largest is labelled.
                 let named = !shared || value.abs() == farthest;
-                let look = Look { n: series.nth(statistic), stem: !shared, named, size: TEXT.min(line + 0.5) };
+                let look = Look { n: series.nth(quantity, statistic), stem: !shared, named, size: TEXT.min(line + 0.5) };
                 value_mark(canvas, frame, (&quantity.symbol, statistic), (value, y), &look);
             }
             None if !shared => nothing(canvas, frame, y, &format!("{}: not assessable", statistic.title)),

@@ -52,12 +52,13 @@ fn ends(values: &[(&PairValue, f64, f64)]) -> impl Iterator<Item = f64> {
 
 fn scatter(canvas: &mut Canvas, quantity: &QuantityResult, zones: &Zones, values: &[(&PairValue, f64, f64)], (left, bottom): (f64, f64)) {
     let of = |side: &str| axis::title(side, &quantity.unit);
+    let (one, other) = if quantity.among.is_some() { ("record", "all records") } else { ("simulated", "measured") };
     let frame = Frame { x: Scale::over(ends(values), left, left + HEIGHT), y: Scale::over(ends(values), bottom, bottom - HEIGHT) };
     let ticks = frame.x.ticks(TICKS);
-    frame.x_axis(canvas, &ticks, &of("measured"));
-    frame.y_axis(canvas, &ticks, &of("simulated"));
+    frame.x_axis(canvas, &ticks, &of(other));
+    frame.y_axis(canvas, &ticks, &of(one));
     canvas.draw(|layer| layer.line((frame.left(), bottom), (frame.right(), frame.top()), MUTED, 0.8));
-    canvas.draw(|layer| layer.text("simulated = measured", (frame.right(), frame.top() - 5.0), &Font::right(TICK).color(MUTED)));
+    canvas.draw(|layer| layer.text(&format!("{one} = {other}"), (frame.right(), frame.top() - 5.0), &Font::right(TICK).color(MUTED)));
     frame.spine(canvas);
     let decimals = number::decimals(&quantity.unit, ends(values));
     for (pair, simulated, measured) in values {
@@ -85,6 +86,9 @@ pub(super) fn pair_group<'a>(pair: &'a PairValue, title: &'a str) -> Group<'a> {
 pub(super) fn tooltip(pair: &PairValue, unit: &str, decimals: usize) -> String {
     let shown = |value: f64| number::with_unit(&number::fixed(value, decimals), unit);
     let mut text = format!("{}, {}", pair.section, pair.signal);
+    if let Some(record) = &pair.record {
+        text.push_str(&format!(", {record}"));
+    }
     if let Some(zone) = &pair.zone {
         text.push_str(&format!(", zone {zone}"));
     }

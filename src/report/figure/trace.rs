@@ -9,16 +9,20 @@ use crate::result::{Curve, Trace};
 
 const HEIGHT: f64 = 128.0;
 
-/// The measured signal wide and light, the simulated thin and dark on top of it, the evaluated section shaded.
+/// The signals that there are: the measured one wide and light, the simulated thin and dark on top of it, the evaluated section shaded.
 pub fn trace(trace: &Trace) -> String {
-    let legend = Legend::new(
-        vec![
-            Entry::line(MEASURED, 1.8, SOLID, "measured"),
-            Entry::line(BLUE, 0.8, SOLID, "simulated"),
-            Entry::ground(SHADE, "evaluated section"),
-        ],
-        WIDTH - 50.0,
-    );
+    let mut drawn =
+        vec![("curve measured", "measured", &trace.measured, MEASURED, 1.8), ("curve simulated", "simulated", &trace.simulated, BLUE, 0.8)];
+    // An assessment has one side; alone, it is drawn dark.
+    if drawn.iter().any(|(_, _, curve, ..)| !curve.y.is_empty()) {
+        drawn.retain(|(_, _, curve, ..)| !curve.y.is_empty());
+    }
+    if let [(.., color, width)] = drawn.as_mut_slice() {
+        (*color, *width) = (BLUE, 0.8);
+    }
+    let mut entries: Vec<Entry> = drawn.iter().map(|(_, says, _, color, width)| Entry::line(*color, *width, SOLID, *says)).collect();
+    entries.push(Entry::ground(SHADE, "evaluated section"));
+    let legend = Legend::new(entries, WIDTH - 50.0);
     let top = legend.height() + 5.0;
     let bottom = top + HEIGHT;
     let curves = [&trace.measured, &trace.simulated];
@@ -35,11 +39,9 @@ pub fn trace(trace: &Trace) -> String {
     });
     frame.x_axis(&mut canvas, &frame.x.ticks(8), &axis::title(&trace.axis, &trace.axis_unit));
     frame.y_axis(&mut canvas, &ticks, &axis::title(&trace.signal, &trace.unit));
-    for (class, drawn, color, width) in
-        [("curve measured", &trace.measured, MEASURED, 1.8), ("curve simulated", &trace.simulated, BLUE, 0.8)]
-    {
+    for (class, _, curve, color, width) in drawn {
         canvas.group(&Group { class, ..Group::default() }, |layer| {
-            for piece in pieces(drawn, &frame) {
+            for piece in pieces(curve, &frame) {
                 layer.path(&piece, color, width);
             }
         });

@@ -3,6 +3,7 @@
 //! PDF and HTML are filled from the same [`ReportData`]; the templates do not calculate. Names and texts of users are passed on
 //! unchanged: escaping is the task of the template.
 
+mod groups;
 mod identity;
 mod notation;
 mod protocol;
@@ -13,9 +14,10 @@ mod wording;
 
 use serde::Serialize;
 
-use crate::report::{findings, number};
-use crate::result::{CampaignInfo, Certification, DataItem, Kind, QuantityResult, StatisticResult, Verdict};
+use crate::report::{estimates, findings, number};
+use crate::result::{CampaignInfo, Certification, DataItem, Kind, QuantityResult, StatisticResult, Trace, Verdict};
 
+pub use groups::{EstimateRow, GroupRow, GroupTable};
 pub use identity::{IdentityRow, ReportHead};
 pub use notation::{ChannelRow, NotationView, SymbolRow, Term};
 pub use protocol::{ProtocolView, SourceFile, view as protocol_view};
@@ -63,6 +65,8 @@ pub struct ReportData {
     pub summary: Vec<SummaryRow>,
     /// All other statistics, one row each.
     pub further: Vec<FurtherRow>,
+    /// Estimates of assessed quantities and estimates by group, one row for each limit.
+    pub estimates: Vec<EstimateRow>,
     /// Figure of the normalised statistics of all quantities; `None` if there are none.
     pub overview: Option<FigureView>,
     pub quantities: Vec<QuantityView>,
@@ -208,6 +212,7 @@ pub fn view(found: &Certification) -> ReportData {
         protocol: ProtocolView { verdict_rule: wording::rule(found), ..protocol::view(&found.protocol) },
         summary,
         further,
+        estimates: found.quantities.iter().flat_map(groups::rows).collect(),
         overview: overview(found),
         quantities,
         zones: section::zones(found),
@@ -350,18 +355,32 @@ fn data_row(item: &DataItem) -> DataRow {
 }
 
 fn overview(found: &Certification) -> Option<FigureView> {
-    let normalised: Vec<f64> =
-        found.quantities.iter().flat_map(|quantity| &quantity.statistics).filter_map(|statistic| statistic.normalised).collect();
+    let shown = found.quantities.iter().flat_map(estimates::representatives);
+    let normalised: Vec<f64> = shown.filter_map(|statistic| statistic.normalised).collect();
+    let by_group = found.quantities.iter().any(|quantity| estimates::condensed(quantity).iter().any(estimates::OfLimit::by_group));
     let beyond = normalised.iter().filter(|value| **value > 1.0).count();
     (!normalised.is_empty()).then(|| FigureView {
         name: "overview".into(),
-        caption: "Statistics of all quantities divided by their limits; a criterion is met up to 1".into(),
+        caption: if by_group {
+            "Estimates of all quantities divided by their limits, of each the largest of its groups; a criterion is met up to 1".into()
+        } else {
+            "Statistics of all quantities divided by their limits; a criterion is met up to 1".into()
+        },
         alt: format!(
             "Chart of {} normalised statistics of {} quantities against the limit 1: {beyond} beyond the limit. The numbers are in the summary table.",
             normalised.len(),
             found.quantities.len()
         ),
     })
+}
+
+/// The curves of a trace in words.
+fn sides(trace: &Trace) -> &'static str {
+    match (trace.simulated.y.is_empty(), trace.measured.y.is_empty()) {
+        (true, false) => "Measured",
+        (false, true) => "Simulated",
+        _ => "Simulated and measured",
+    }
 }
 
 fn traces(found: &Certification) -> Vec<TraceView> {
@@ -377,7 +396,8 @@ fn traces(found: &Certification) -> Vec<TraceView> {
                     name: format!("trace-{at}"),
                     caption: format!("{} in section {}{zone}: {}", name(&trace.signal), name(&trace.section), trace.why),
                     alt: format!(
-                        "Simulated and measured {} [{}] over {} [{}], section {} from {} to {}.",
+                        "{} {} [{}] over {} [{}], section {} from {} to {}.",
+                        sides(trace),
                         trace.signal,
                         number::unit(&trace.unit),
                         trace.axis,

@@ -1,9 +1,13 @@
 //! One quantity: its statistics and limits, its worst pairs, and all its values.
 
+use std::collections::HashMap;
+
+use indexmap::IndexMap;
 use serde::Serialize;
 
+use super::groups::{self, GroupTable};
 use super::{FigureView, Finding, name, summary};
-use crate::report::number;
+use crate::report::{estimates, figure, number};
 use crate::result::{PairValue, QuantityResult, StatisticResult};
 
 /// Number of worst pairs listed.
@@ -32,7 +36,15 @@ pub struct QuantityView {
     pub reason: Option<String>,
     /// Whether values are simulated and measured, and not a single number of a metric.
     pub has_sides: bool,
+    /// Whether values are those of one record, assessed by themselves.
+    pub assessed: bool,
+    /// Names of the two values of a pair: simulated and measured, or a record and what is central of all.
+    pub sides: [&'static str; 2],
+    /// The same in the narrow heads of tables.
+    pub short_sides: [&'static str; 2],
     pub statistics: Vec<StatisticView>,
+    /// Estimates by group.
+    pub groups: Vec<GroupTable>,
     /// The pairs with the largest difference (or metric value), in decreasing order.
     pub worst: Vec<WorstPair>,
     /// Reference of `ratio` of the worst pairs, e.g. `limit of the standard deviation`.
@@ -42,6 +54,10 @@ pub struct QuantityView {
     pub count: String,
     /// `None` if there are no values.
     pub figure: Option<FigureView>,
+    /// Regressions of its estimates.
+    pub regressions: Vec<FigureView>,
+    /// Cumulative frequency of the values; of an assessed quantity.
+    pub frequency: Option<FigureView>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -114,13 +130,26 @@ pub(super) fn view(at: usize, quantity: &QuantityResult, work: Option<&str>) -> 
         holds: Finding::of_quantity(quantity),
         reason: quantity.reason.clone(),
         has_sides: quantity.has_sides,
-        statistics: quantity.statistics.iter().map(statistic).collect(),
+        assessed: quantity.from.is_some(),
+        sides: if quantity.among.is_some() { ["Record", "All records"] } else { ["Simulated", "Measured"] },
+        short_sides: if quantity.among.is_some() { ["rec.", "all"] } else { ["sim.", "meas."] },
+        statistics: stated(quantity).into_iter().map(statistic).collect(),
+        groups: groups::tables(quantity),
         worst,
         worst_against,
         values: blocks(quantity, decimals),
         count: number::count(quantity.values.len() as u64),
-        figure: (!quantity.values.is_empty()).then(|| figure(at, quantity)),
+        figure: (!quantity.values.is_empty()).then(|| pairs(at, quantity)),
+        regressions: regressions(at, quantity),
+        frequency: (quantity.from.is_some() && !quantity.values.is_empty()).then(|| frequency(at, quantity)),
     }
+}
+
+/// Results that have no table of their own.
+fn stated(quantity: &QuantityResult) -> Vec<&StatisticResult> {
+    let by_group: Vec<_> = estimates::condensed(quantity).into_iter().filter(estimates::OfLimit::by_group).collect();
+    let among = |one: &StatisticResult| by_group.iter().any(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)));
+    quantity.statistics.iter().filter(|one| !among(one)).collect()
 }
 
 fn statistic(found: &StatisticResult) -> StatisticView {
@@ -143,11 +172,12 @@ fn statistic(found: &StatisticResult) -> StatisticView {
 
 /// The pairs with the largest |difference|; equal ones in the order of the campaign.
 fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<String>) {
-    let yardstick = quantity
-        .statistics
+    // The limits of an assessed quantity differ from zone to zone.
+    let stated: &[StatisticResult] = if quantity.from.is_some() { &[] } else { &quantity.statistics };
+    let yardstick = stated
         .iter()
         .find(|statistic| statistic.name == "std")
-        .or_else(|| quantity.statistics.first())
+        .or_else(|| stated.first())
         .filter(|statistic| statistic.unit == quantity.unit)
         .and_then(|statistic| statistic.limit.filter(|limit| *limit > 0.0).map(|limit| (statistic, limit)));
     let mut pairs: Vec<&PairValue> = quantity.values.iter().collect();
@@ -156,7 +186,7 @@ fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<
         .into_iter()
         .take(WORST)
         .map(|pair| WorstPair {
-            section: name(&pair.section),
+            section: of_record(&pair.section, pair.record.as_deref()),
             zone: zone(pair),
             signal: name(&pair.signal),
             simulated: number::optional(pair.simulated, decimals),
@@ -169,32 +199,41 @@ fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<
     (rows, yardstick.map(|(statistic, _)| format!("limit of the {}", statistic.title)))
 }
 
-/// Sections as rows, signals as columns, both in order of first occurrence.
+/// Sections and their records as rows, signals as columns, both in order of first occurrence. A position with several values of one
+/// record, which have a rule each, has several rows.
 fn blocks(quantity: &QuantityResult, decimals: usize) -> Vec<ValueBlock> {
     let signals = first_seen(quantity.values.iter().map(|pair| pair.signal.as_str()));
-    let sections = first_seen(quantity.values.iter().map(|pair| pair.section.as_str()));
     let width = if quantity.has_sides { SIGNALS_WITH_SIDES } else { SIGNALS_WITHOUT_SIDES };
-    let cells: std::collections::HashMap<(&str, &str), &PairValue> =
-        quantity.values.iter().map(|pair| ((pair.section.as_str(), pair.signal.as_str()), pair)).collect();
-    let zones: std::collections::HashMap<&str, String> = quantity.values.iter().map(|pair| (pair.section.as_str(), zone(pair))).collect();
+    let mut rows: IndexMap<(&str, Option<&str>, usize), HashMap<&str, &PairValue>> = IndexMap::new();
+    let mut seen: HashMap<(&str, Option<&str>, &str), usize> = HashMap::new();
+    for pair in &quantity.values {
+        let (section, record) = (pair.section.as_str(), pair.record.as_deref());
+        let nth = seen.entry((section, record, &pair.signal)).or_default();
+        rows.entry((section, record, *nth)).or_default().insert(&pair.signal, pair);
+        *nth += 1;
+    }
+    // Rows of one section stay together.
+    rows.sort_by_cached_key(|(section, ..), _| quantity.values.iter().position(|pair| pair.section == **section));
     signals
         .chunks(width)
         .map(|signals| ValueBlock {
             signals: signals.iter().map(|signal| name(signal)).collect(),
-            rows: sections
+            rows: rows
                 .iter()
-                .filter(|section| signals.iter().any(|signal| cells.contains_key(&(**section, *signal))))
-                .map(|section| ValueRow {
-                    section: name(section),
-                    zone: zones.get(section).cloned().unwrap_or_default(),
-                    cells: signals
-                        .iter()
-                        .map(|signal| cell(cells.get(&(*section, *signal)).copied(), quantity.has_sides, decimals))
-                        .collect(),
+                .filter(|(_, cells)| signals.iter().any(|signal| cells.contains_key(signal)))
+                .map(|((section, record, _), cells)| ValueRow {
+                    section: of_record(section, *record),
+                    zone: cells.values().next().map(|pair| zone(pair)).unwrap_or_default(),
+                    cells: signals.iter().map(|signal| cell(cells.get(signal).copied(), quantity.has_sides, decimals)).collect(),
                 })
                 .collect(),
         })
         .collect()
+}
+
+/// A section and, where there are several, the record.
+fn of_record(section: &str, record: Option<&str>) -> String {
+    record.map_or_else(|| name(section), |record| name(&format!("{section}, {record}")))
 }
 
 fn cell(pair: Option<&PairValue>, has_sides: bool, decimals: usize) -> Vec<String> {
@@ -218,22 +257,76 @@ fn zone(pair: &PairValue) -> String {
     pair.zone.as_deref().map(name).unwrap_or_default()
 }
 
-fn figure(at: usize, quantity: &QuantityResult) -> FigureView {
-    let found: Vec<String> = quantity
-        .statistics
-        .iter()
+fn pairs(at: usize, quantity: &QuantityResult) -> FigureView {
+    let shown = estimates::representatives(quantity);
+    let found: Vec<String> = shown
+        .into_iter()
         .map(|one| format!("{} ({}) {}, limit {}", one.title, one.scope, summary::value(Some(one)), summary::limit(Some(one))))
         .collect();
-    let what = if quantity.has_sides { "simulated against measured values, and their differences" } else { "values of the comparison" };
+    let what = match (quantity.has_sides, &quantity.from) {
+        (true, _) if quantity.among.is_some() => "each record against all records, and the differences".to_owned(),
+        (true, _) => "simulated against measured values, and their differences".to_owned(),
+        (false, Some(side)) => format!("{side} values by section with their limits"),
+        (false, None) => "values of the comparison".to_owned(),
+    };
+    let rows = if quantity.from.is_some() { "values" } else { "pairs" };
     FigureView {
         name: format!("pairs-{at}"),
-        caption: format!("{}: {what}, {} pairs", super::symbol(&quantity.symbol), number::count(quantity.values.len() as u64)),
+        caption: format!("{}: {what}, {} {rows}", super::symbol(&quantity.symbol), number::count(quantity.values.len() as u64)),
         alt: format!(
-            "{}: {what} of {} pairs in {}. {}.",
+            "{}: {what} of {} {rows} in {}. {}.",
             quantity.title,
             quantity.values.len(),
             number::unit(&quantity.unit),
             found.join("; ")
+        ),
+    }
+}
+
+fn regressions(at: usize, quantity: &QuantityResult) -> Vec<FigureView> {
+    let limits = estimates::limits(quantity);
+    let of = |(nth, limit): (usize, &estimates::OfLimit<'_>)| {
+        let drawn = figure::drawn(limit);
+        let (first, regression) = *drawn.first()?;
+        let all = limit.results.len();
+        let missing = limit.results.iter().filter(|one| one.regression.is_none()).count();
+        let mut some = match (drawn.len(), all) {
+            (1, 1) => String::new(),
+            (drawn, all) if drawn == all => format!(", {all} groups"),
+            (drawn, _) => format!(", {drawn} of {all} groups"),
+        };
+        if drawn.len() + missing < all {
+            some.push_str(" with the largest ratios");
+        }
+        if missing > 0 {
+            some.push_str(&format!("; {missing} have no regression"));
+        }
+        let title = number::formula(&first.title);
+        Some(FigureView {
+            name: format!("regression-{at}-{nth}"),
+            caption: format!("{}: {title}, values over {}{some}", super::symbol(&quantity.symbol), regression.regressor),
+            alt: format!(
+                "{}: values, regression{} and limit over {} for {} groups. The numbers are in the table of the estimate.",
+                quantity.title,
+                regression.bound.as_ref().map_or_else(String::new, |bound| format!(", {bound}")),
+                regression.regressor,
+                drawn.len()
+            ),
+        })
+    };
+    limits.iter().enumerate().filter_map(of).collect()
+}
+
+fn frequency(at: usize, quantity: &QuantityResult) -> FigureView {
+    let by = if quantity.values.iter().any(|value| value.record.is_some()) { "record" } else { "zone" };
+    FigureView {
+        name: format!("frequency-{at}"),
+        caption: format!("{}: cumulative frequency of the values by {by}, with the limits", super::symbol(&quantity.symbol)),
+        alt: format!(
+            "{}: cumulative frequency of {} values in {} by {by}. The values are in the table of all values.",
+            quantity.title,
+            quantity.values.len(),
+            number::unit(&quantity.unit)
         ),
     }
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Finding;
-use crate::report::number;
+use crate::report::{estimates, number};
 use crate::result::{QuantityResult, StatisticResult};
 
 /// The scope of a statistic over all pairs of a quantity.
@@ -57,13 +57,18 @@ pub(super) fn tables(quantities: &[QuantityResult]) -> (Vec<SummaryRow>, Vec<Fur
     let mut summary = Vec::new();
     let mut further = Vec::new();
     for quantity in quantities {
+        // An assessed quantity has its estimates in a table of its own.
+        if quantity.from.is_some() && !quantity.statistics.is_empty() {
+            continue;
+        }
         let mean = overall(quantity, "mean");
         let std = overall(quantity, "std");
         // A quantity without statistics is listed with its reason.
         if mean.is_some() || std.is_some() || quantity.statistics.is_empty() {
             summary.push(summary_row(quantity, mean, std));
         }
-        let others = quantity.statistics.iter().filter(|one| !is_overall(one, "mean") && !is_overall(one, "std"));
+        let single = estimates::single(quantity).into_iter();
+        let others = single.filter(|one| !is_overall(one, "mean") && !is_overall(one, "std"));
         further.extend(others.map(|statistic| further_row(quantity, statistic)));
     }
     (summary, further)

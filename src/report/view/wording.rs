@@ -26,7 +26,9 @@ pub struct Wording {
 pub(super) fn wording(found: &Certification) -> Wording {
     let (report, domain, outside, rows) = match found.kind() {
         Kind::Validation => ("Validation report", "Validity domain", NOT_DEMONSTRATED, "Pairs"),
-        Kind::Assessment => ("Assessment report", "Test conditions", "The requirements have not been assessed outside these ranges.", "Values"),
+        Kind::Assessment => {
+            ("Assessment report", "Test conditions", "The requirements have not been assessed outside these ranges.", "Values")
+        }
         Kind::Comparison => ("Comparison report", "Test conditions", "The records have not been compared outside these ranges.", "Values"),
         Kind::Mixed => ("Validation and assessment report", "Validity domain", NOT_DEMONSTRATED, "Values"),
     };

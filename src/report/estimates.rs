@@ -1,0 +1,159 @@
+//! The estimates of a quantity, limit by limit: a limit by group has one result for each group, often hundreds in all.
+
+use crate::result::{QuantityResult, StatisticResult};
+
+/// A limit of a quantity and what was found of it.
+#[derive(Clone, Debug)]
+pub struct OfLimit<'a> {
+    /// One for each group, in order; at least one.
+    pub results: Vec<&'a StatisticResult>,
+}
+
+impl<'a> OfLimit<'a> {
+    /// The result nearest to its limit or farthest beyond: one that fails before one that holds before one that is not assessed.
+    pub fn decisive(&self) -> &'a StatisticResult {
+        let rank = |one: &StatisticResult| match one.holds {
+            Some(false) => (2, one.normalised.unwrap_or(f64::INFINITY)),
+            Some(true) => (1, one.normalised.unwrap_or(0.0)),
+            None => (0, 0.0),
+        };
+        let mut decisive = self.results[0];
+        for one in &self.results[1..] {
+            let (before, now) = (rank(decisive), rank(one));
+            if now.0 > before.0 || now.0 == before.0 && now.1 > before.1 {
+                decisive = one;
+            }
+        }
+        decisive
+    }
+
+    fn count(&self, holds: Option<bool>) -> usize {
+        self.results.iter().filter(|one| one.holds == holds).count()
+    }
+
+    /// Whether all groups hold; `None` where some could not be assessed and no other fails.
+    pub fn holds(&self) -> Option<bool> {
+        if self.count(Some(false)) > 0 {
+            return Some(false);
+        }
+        (self.count(None) == 0).then_some(true)
+    }
+
+    /// `14 of 16`, `12 of 16; 4 not assessed`
+    pub fn holding(&self) -> String {
+        let open = match self.count(None) {
+            0 => String::new(),
+            open => format!("; {open} not assessed"),
+        };
+        format!("{} of {}{open}", self.count(Some(true)), self.results.len())
+    }
+
+    /// Why groups were not assessed: the first reason.
+    pub fn reason(&self) -> Option<&'a str> {
+        self.results.iter().find(|one| one.holds.is_none()).and_then(|one| one.reason.as_deref())
+    }
+
+    /// Whether there are several groups.
+    pub fn by_group(&self) -> bool {
+        self.results.len() > 1
+    }
+}
+
+/// The limits of a quantity, in the order of the protocol.
+pub fn limits(quantity: &QuantityResult) -> Vec<OfLimit<'_>> {
+    let mut limits: Vec<OfLimit<'_>> = Vec::new();
+    for one in &quantity.statistics {
+        let same = |other: &StatisticResult| (&other.name, &other.limit_text, &other.rule) == (&one.name, &one.limit_text, &one.rule);
+        match limits.iter_mut().find(|limit| same(limit.results[0])) {
+            Some(limit) => limit.results.push(one),
+            None => limits.push(OfLimit { results: vec![one] }),
+        }
+    }
+    limits
+}
+
+/// The limits that are printed as one row with their decisive group: all of an assessed quantity; of others those by group of more than
+/// a zone.
+pub fn condensed(quantity: &QuantityResult) -> Vec<OfLimit<'_>> {
+    let mut limits = limits(quantity);
+    limits.retain(|limit| quantity.from.is_some() || limit.by_group() && !limit.results[0].group.is_empty());
+    limits
+}
+
+/// The results that are printed each by itself.
+pub fn single(quantity: &QuantityResult) -> Vec<&StatisticResult> {
+    let condensed = condensed(quantity);
+    let among = |one: &StatisticResult| condensed.iter().any(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)));
+    quantity.statistics.iter().filter(|one| !among(one)).collect()
+}
+
+/// The decisive result of each condensed limit, and all others.
+pub fn representatives(quantity: &QuantityResult) -> Vec<&StatisticResult> {
+    let condensed = condensed(quantity);
+    let of = |one: &StatisticResult| condensed.iter().find(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)));
+    quantity.statistics.iter().filter(|one| of(one).is_none_or(|limit| std::ptr::eq(limit.decisive(), *one))).collect()
+}
+
+/// The zones that a result is of; none where it is of all.
+pub fn zones(one: &StatisticResult) -> Vec<&str> {
+    if let Some((_, zone)) = one.group.iter().find(|(key, _)| key == "zone") {
+        return vec![zone];
+    }
+    let Some(rest) = one.scope.strip_prefix("zones ").or_else(|| one.scope.strip_prefix("zone ")) else { return Vec::new() };
+    let several = one.scope.starts_with("zones ");
+    // After the zones, the scope names keys and conditions, which have more than one word.
+    let zones = rest.split(", ").take_while(|word| !word.contains(' '));
+    zones.take(if several { usize::MAX } else { 1 }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::result::{RulePlace, Sample};
+
+    fn result(scope: &str, holds: Option<bool>, normalised: Option<f64>) -> StatisticResult {
+        StatisticResult {
+            name: "mean".into(),
+            title: "mean".into(),
+            scope: scope.into(),
+            group: Vec::new(),
+            count: 1,
+            n: 1,
+            unit: "kN".into(),
+            value: None,
+            interval: None,
+            marginal: false,
+            limit: None,
+            normalised,
+            sample: Sample::default(),
+            regression: None,
+            holds,
+            factors: Vec::new(),
+            limit_text: "1 kN".into(),
+            reason: None,
+            rule: RulePlace { file: "a.fp".into(), line: 1 },
+        }
+    }
+
+    #[test]
+    fn one_that_fails_decides_before_a_larger_ratio() {
+        let all =
+            [result("a", Some(true), Some(0.9)), result("b", Some(false), Some(0.4)), result("c", None, None), result("d", None, None)];
+        let limit = OfLimit { results: all.iter().collect() };
+        assert_eq!(
+            (limit.decisive().scope.as_str(), limit.holds(), limit.holding().as_str()),
+            ("b", Some(false), "1 of 4; 2 not assessed")
+        );
+        let open = OfLimit { results: vec![&all[2], &all[0]] };
+        assert_eq!((open.decisive().scope.as_str(), open.holds()), ("a", None));
+    }
+
+    #[test]
+    fn zones_are_read_from_the_scope() {
+        let zones_of = |scope: &str| zones(&result(scope, None, None)).join("+");
+        assert_eq!(
+            ["all", "zone 3", "zones 2, 3", "zones 2, 3, wheelset 1", "zone 4, direction is straight"].map(zones_of),
+            ["", "3", "2+3", "2+3", "4"]
+        );
+    }
+}

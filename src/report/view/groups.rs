@@ -1,0 +1,167 @@
+//! Estimates by group: one row for each limit in the summary, one table for each limit with its groups.
+
+use serde::Serialize;
+
+use super::{Finding, name, summary};
+use crate::report::estimates::{self, OfLimit};
+use crate::report::number;
+use crate::result::{QuantityResult, StatisticResult};
+
+/// A limit in the summary, with the group that is nearest to it or farthest beyond.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EstimateRow {
+    pub id: String,
+    pub symbol: String,
+    pub title: String,
+    pub filter: String,
+    pub processing: String,
+    pub estimate: String,
+    pub unit: String,
+    /// Groups that hold: `14 of 16`.
+    pub holding: String,
+    /// The decisive group: where it is, its values and n, its estimate and limit.
+    pub place: String,
+    pub count: String,
+    pub value: String,
+    pub limit: String,
+    pub normalised: String,
+    pub holds: Finding,
+    pub reason: Option<String>,
+}
+
+/// All groups of one limit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GroupTable {
+    pub estimate: String,
+    pub limit_text: String,
+    /// Unit of estimate and limit.
+    pub unit: String,
+    /// Which sections count, where the limit has a condition.
+    pub condition: Option<String>,
+    /// `Zone`, `Wheelset`
+    pub keys: Vec<String>,
+    /// Whether some estimate has a confidence interval.
+    pub intervals: bool,
+    pub rows: Vec<GroupRow>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GroupRow {
+    /// The member of each key.
+    pub of: Vec<String>,
+    pub count: String,
+    /// Of the values, in the unit of the quantity.
+    pub mean: String,
+    pub std: String,
+    pub value: String,
+    pub low: String,
+    pub high: String,
+    pub limit: String,
+    pub normalised: String,
+    pub holds: Finding,
+    pub reason: Option<String>,
+}
+
+/// The condensed limits of a quantity for the summary.
+pub(super) fn rows(quantity: &QuantityResult) -> Vec<EstimateRow> {
+    estimates::condensed(quantity).iter().map(|limit| row(quantity, limit)).collect()
+}
+
+fn row(quantity: &QuantityResult, limit: &OfLimit<'_>) -> EstimateRow {
+    let decisive = limit.decisive();
+    let one = Some(decisive);
+    EstimateRow {
+        id: quantity.id.clone(),
+        symbol: super::symbol(&quantity.symbol),
+        title: quantity.title.clone(),
+        filter: quantity.filter.clone(),
+        processing: quantity.processing.clone(),
+        estimate: number::formula(&decisive.title),
+        unit: number::unit(&decisive.unit),
+        holding: limit.holding(),
+        place: if decisive.value.is_some() { decisive.scope.clone() } else { number::NONE.to_owned() },
+        count: summary::pairs_and_n(decisive.count, decisive.n),
+        value: summary::value(one),
+        limit: summary::limit(one),
+        normalised: summary::normalised(one),
+        holds: Finding::of(limit.holds()).marginal(limit.holds().is_some() && limit.results.iter().any(|one| one.marginal)),
+        reason: limit.reason().map(str::to_owned),
+    }
+}
+
+/// A table for each condensed limit that has several groups.
+pub(super) fn tables(quantity: &QuantityResult) -> Vec<GroupTable> {
+    estimates::condensed(quantity).iter().filter(|limit| limit.by_group()).map(|limit| table(quantity, limit)).collect()
+}
+
+fn table(quantity: &QuantityResult, limit: &OfLimit<'_>) -> GroupTable {
+    let first = limit.results[0];
+    let (keys, condition) = heads(limit);
+    let decimals = number::decimals(&quantity.unit, limit.results.iter().filter_map(|one| one.sample.mean));
+    let row = |one: &&StatisticResult| {
+        let own = summary::decimals(one);
+        GroupRow {
+            of: members(one, &keys),
+            count: summary::pairs_and_n(one.count, one.n),
+            mean: number::optional(one.sample.mean, decimals),
+            std: number::optional(one.sample.std, decimals),
+            value: summary::value(Some(one)),
+            low: number::optional(one.interval.map(|(low, _)| low), own),
+            high: number::optional(one.interval.map(|(_, high)| high), own),
+            limit: summary::limit(Some(one)),
+            normalised: summary::normalised(Some(one)),
+            holds: Finding::of_statistic(Some(one)),
+            reason: one.reason.clone(),
+        }
+    };
+    GroupTable {
+        estimate: number::formula(&first.title),
+        limit_text: number::formula(&first.limit_text),
+        unit: number::unit(&first.unit),
+        condition,
+        intervals: limit.results.iter().any(|one| one.interval.is_some()),
+        rows: limit.results.iter().map(row).collect(),
+        keys: keys.iter().map(|key| capital(key)).collect(),
+    }
+}
+
+/// Head of a column with the whole scope.
+const GROUP: &str = "group";
+
+/// What tells the groups of a limit apart, and the condition that all share.
+fn heads(limit: &OfLimit<'_>) -> (Vec<String>, Option<String>) {
+    let parts: Vec<Option<(Vec<(String, String)>, String)>> = limit.results.iter().map(|one| parts(one)).collect();
+    let keys = |part: &Option<(Vec<(String, String)>, String)>| {
+        part.as_ref().map(|(group, rest)| (group.iter().map(|(key, _)| key.clone()).collect::<Vec<_>>(), rest.clone()))
+    };
+    match keys(&parts[0]) {
+        Some((heads, rest)) if parts.iter().all(|part| keys(part).as_ref() == Some(&(heads.clone(), rest.clone()))) => {
+            (heads, (!rest.is_empty()).then_some(rest))
+        }
+        _ => (vec![GROUP.into()], None),
+    }
+}
+
+/// A scope as keys with their members, and the condition after them.
+fn parts(one: &StatisticResult) -> Option<(Vec<(String, String)>, String)> {
+    let group = match (one.group.is_empty(), estimates::zones(one).as_slice()) {
+        (false, _) => one.group.clone(),
+        (true, [zone]) => vec![("zone".to_owned(), (*zone).to_owned())],
+        _ => return None,
+    };
+    let words = group.iter().map(|(key, member)| format!("{key} {member}")).collect::<Vec<_>>().join(", ");
+    let rest = one.scope.strip_prefix(&words)?;
+    Some((group, rest.trim_start_matches(", ").to_owned()))
+}
+
+fn members(one: &StatisticResult, keys: &[String]) -> Vec<String> {
+    if keys == [GROUP] {
+        return vec![name(&one.scope)];
+    }
+    parts(one).map_or_else(Vec::new, |(group, _)| group.iter().map(|(_, member)| name(member)).collect())
+}
+
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
