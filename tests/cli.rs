@@ -49,6 +49,38 @@ fn exit_codes_follow_the_verdict() {
     assert_eq!(code, 3, "{said}");
 }
 
+/// An assessment: one line for each estimate, all groups in results.json, values not under `difference`.
+#[test]
+fn an_assessment_is_told_by_its_estimates() {
+    let out = folder();
+    let arguments = ["--protocol", "tests/cases/values/assessment.fp", "--only", "results"];
+    let (code, printed, _) = certify("examples/coach-good", out.path(), &arguments);
+    assert_eq!(code, 1);
+    assert!(printed.contains("Verdict: not assessable") && !printed.contains("pairs"), "{printed}");
+    let line = printed.lines().find(|line| line.contains("One-dimensional estimate, running safety")).expect("a line");
+    assert!(line.contains("16 of 16, met") && line.contains("zone ") && line.contains(", wheelset "), "{line}");
+    assert_eq!(printed.matches("One-dimensional estimate, running safety").count(), 2, "one for each quantity: {printed}");
+
+    let text = fs::read_to_string(out.path().join("results.json")).expect("results");
+    let results: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let quantity = &results["quantities"][0];
+    assert_eq!((quantity["assessed"].as_str(), quantity.get("metric")), (Some("measured"), None));
+    assert!(quantity["values"][0].get("value").is_some() && quantity["values"][0].get("difference").is_none());
+    let groups = quantity["groups"].as_array().expect("groups");
+    assert_eq!(groups.len(), quantity["statistics"].as_array().expect("statistics").len());
+    for key in ["estimate", "n", "value", "low", "high", "limit", "ratio", "holds", "mean", "std"] {
+        assert!(groups[0].get(key).is_some(), "{key}");
+    }
+    assert_eq!(groups[0]["keys"], serde_json::json!({"zone": "1", "wheelset": "1"}));
+    let fitted = groups.iter().find_map(|group| group.get("regression")).expect("a regression");
+    assert_eq!(fitted["unit"], "mm");
+
+    let table = fs::read_to_string(out.path().join("tables/values.csv")).expect("a table");
+    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    assert_eq!(rows.next().expect("a head")[5..], ["record", "simulated", "measured", "difference", "value", "samples"]);
+    assert!(rows.all(|row| row[8].is_empty() && row[9].parse::<f64>().is_ok()));
+}
+
 #[test]
 fn the_same_input_gives_the_same_files() {
     let out = folder();

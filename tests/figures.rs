@@ -3,13 +3,14 @@
 // Each test file uses a part of what they share.
 #[allow(dead_code)]
 mod common {
+    pub mod assessment;
     pub mod certification;
     pub mod coach;
     pub mod xml;
 }
 
 use common::xml::{Tag, balanced, tags};
-use common::{certification as odd, coach};
+use common::{assessment, certification as odd, coach};
 use fishplate::report::{figure, typst, view};
 use fishplate::result::{Certification, Curve, QuantityResult, StatisticResult};
 
@@ -133,6 +134,65 @@ fn traces_have_both_curves_over_the_shaded_section() {
 }
 
 #[test]
+fn a_trace_of_one_side_has_one_curve() {
+    let svg = named(&assessment::certification(), "trace-0");
+    assert_eq!((svg.matches("<g class=\"curve").count(), svg.matches(">simulated</text>").count()), (1, 0));
+    assert!(svg.contains(">measured</text>"));
+}
+
+#[test]
+fn an_assessed_quantity_has_its_values_by_section_with_limits() {
+    let found = assessment::certification();
+    let svg = named(&found, "pairs-0");
+    assert_eq!(marks(&svg), found.quantities[0].values.len());
+    assert!(svg.contains(">measured value [kN]</text>") && svg.contains(">limit 46.00</text>"), "{svg}");
+    assert!(!svg.contains("simulated"));
+    // A limit in each zone, and that of every value.
+    assert_eq!(svg.matches("<g class=\"level\"").count(), 4 + 1);
+}
+
+#[test]
+fn the_overview_has_one_mark_for_each_estimate() {
+    let svg = named(&assessment::certification(), "overview");
+    assert_eq!(marks(&svg), 3);
+    assert!(svg.contains(&format!("safety of a further section ({})", assessment::FAILS)), "{svg}");
+}
+
+#[test]
+fn the_frequency_has_a_curve_for_each_record_that_ends_at_all() {
+    let found = assessment::certification();
+    let svg = named(&found, "frequency-0");
+    assert_eq!(svg.matches("<g class=\"curve\"").count(), 2);
+    assert_eq!(marks(&svg), found.quantities[0].values.len());
+    let half = found.quantities[0].values.len() / 2;
+    assert!(svg.contains(&format!(">first run ({half})</text>")) && svg.contains(">limit 46.00</text>"), "{svg}");
+    let all = tags(&svg);
+    let tops: Vec<f64> = all
+        .windows(2)
+        .filter(|pair| pair[0].get("class") == Some("curve"))
+        .map(|pair| pair[1].get("points").unwrap().split(' ').next_back().unwrap().split_once(',').unwrap().1.parse().unwrap())
+        .collect();
+    // The line of the limit starts at the upper end of the diagram.
+    let limit = all.windows(2).find(|pair| pair[0].get("class") == Some("limit")).unwrap();
+    let top = limit[1].number("y1").min(limit[1].number("y2"));
+    assert_eq!(tops, [top, top], "both end at 100 %");
+}
+
+#[test]
+fn regressions_show_points_line_bound_target_and_limit() {
+    let found = assessment::certification();
+    let svg = named(&found, "regression-0-1");
+    // One group has no regression.
+    for (class, count) in [("fit", 15), ("bound", 15), ("target", 15), ("limit", 15)] {
+        assert_eq!(svg.matches(&format!("<g class=\"{class}\"")).count(), count, "{class}");
+    }
+    let points: usize = found.quantities[0].statistics.iter().filter_map(|one| one.regression.as_ref()).map(|one| one.points.len()).sum();
+    assert_eq!(svg.matches("<g class=\"mark point\"").count(), points);
+    assert!(svg.contains(">99 % prediction bound</text>") && svg.contains(">cant deficiency [mm]</text>"));
+    assert!(svg.contains(&format!(">{}</text>", assessment::FAILS)) && !svg.contains(assessment::OPEN));
+}
+
+#[test]
 fn domain_shows_every_range_and_section() {
     let found = coach::certification();
     let svg = named(&found, "domain");
@@ -144,7 +204,7 @@ fn domain_shows_every_range_and_section() {
 
 #[test]
 fn figures_are_well_formed_and_the_same_each_time() {
-    for found in [coach::certification(), odd::certification(), coach::empty(), coach::unassessed()] {
+    for found in [coach::certification(), odd::certification(), assessment::certification(), coach::empty(), coach::unassessed()] {
         let figures = figure::figures(&found);
         assert_eq!(figures, figure::figures(&found));
         for (name, svg) in &figures {

@@ -2,6 +2,7 @@
 // Each test file uses a part of what they share.
 #[allow(dead_code)]
 mod common {
+    pub mod assessment;
     pub mod certification;
     pub mod coach;
     pub mod xml;
@@ -10,7 +11,7 @@ mod common {
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use common::{certification as odd, coach, xml};
+use common::{assessment, certification as odd, coach, xml};
 use fishplate::report::{figure, html, view};
 use fishplate::result::Certification;
 
@@ -90,7 +91,7 @@ fn nothing_outside_the_page_is_named() {
 
 #[test]
 fn elements_are_closed_and_ids_are_one_of_a_kind() {
-    for found in [coach::certification(), odd::certification(), coach::empty(), coach::unassessed()] {
+    for found in [coach::certification(), odd::certification(), assessment::certification(), coach::empty(), coach::unassessed()] {
         let page = page(&found);
         let body = page.replace(between(&page, "<style>", "</style>"), "").replace(between(&page, "<script>", "</script>"), "");
         xml::balanced(&body, &["meta", "img", "br"]);
@@ -123,6 +124,28 @@ fn results_with_nothing_in_them_still_make_a_report() {
         }
     }
     assert!(page(&coach::empty()).contains("not assessable"));
+}
+
+/// An assessment says so, has one row for each estimate in the summary, and a table and a figure of all groups.
+#[test]
+fn an_assessment_is_no_validation() {
+    let page = page(&assessment::certification());
+    assert!(page.contains("<title>Assessment report: ") && page.contains("Assessment of a vehicle by measured records"));
+    assert!(page.contains("<p class=\"word\">requirements not met</p>") && page.contains("<dt>Assessed values</dt>"));
+    for (from, to) in [("<body>", "id=\"identity\""), ("id=\"quantities\"", "id=\"domain\""), ("id=\"statements\"", "</main>")] {
+        let part = between(&page, from, to);
+        for word in ["alidat", "imulat", "Pair", " pairs"] {
+            assert!(!part.contains(word), "`{word}` in {}", &part[part.find(word).unwrap_or(0).saturating_sub(80)..][..160]);
+        }
+    }
+    let summary = between(&page, "<caption>Estimates and their limits", "</table>");
+    assert_eq!(summary.matches("<tr class=\"row-").count(), 3);
+    assert!(summary.contains(assessment::FAILS) && summary.contains("15 of 16; 1 not assessed"), "{summary}");
+    let groups = between(&page, ", limit 10 kN + 2&#x2f;3 · Q0", "</table>");
+    assert_eq!(groups.matches("<tr class=\"row-").count(), 16);
+    for figure in ["frequency-0", "regression-0-1", "pairs-0", "trace-0"] {
+        assert!(page.contains(&format!("id=\"figure-{figure}\"")), "{figure}");
+    }
 }
 
 /// What the browser finds is written into the page's title by a probe that clicks, filters and counts. The policy would stop the

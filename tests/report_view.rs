@@ -1,8 +1,14 @@
 //! What both reports print: sorted, rounded, worded; the templates get no number to calculate with.
 
-#[path = "common/certification.rs"]
-mod certification;
+// Each test file uses a part of what they share.
+#[allow(dead_code)]
+mod common {
+    pub mod assessment;
+    pub mod certification;
+    pub mod coach;
+}
 
+use common::{assessment, certification};
 use fishplate::report::view::{ReportData, view};
 
 fn data() -> ReportData {
@@ -22,6 +28,7 @@ fn numbers_reach_the_templates_as_text() {
         }
     }
     walk("", &serde_json::to_value(data()).expect("the view is plain data"));
+    walk("", &serde_json::to_value(view(&assessment::certification())).expect("the view is plain data"));
     walk("", &serde_json::to_value(view(&certification::empty())).expect("the view is plain data"));
 }
 
@@ -93,4 +100,59 @@ fn many_reasons_are_listed_in_the_summary_only() {
     let data = view(&found);
     assert_eq!((data.cover_reasons.len(), data.reasons.len()), (8, 20));
     assert_eq!(data.more_reasons.as_deref(), Some("All 20 reasons are listed in the summary."));
+}
+
+#[test]
+fn an_assessment_has_a_row_for_each_limit_and_a_table_for_each_with_groups() {
+    let data = view(&assessment::certification());
+    assert!(data.summary.is_empty() && data.further.is_empty());
+    let rows: Vec<(&str, &str, &str, &str)> = data
+        .estimates
+        .iter()
+        .map(|row| (row.holding.as_str(), row.place.as_str(), row.normalised.as_str(), row.holds.word.as_str()))
+        .collect();
+    let expected = [
+        ("15 of 16", assessment::FAILS, "1.09", "not met"),
+        ("15 of 16; 1 not assessed", "zone 1, wheelset 1", "0.65", "not assessed"),
+        ("1 of 1", "all", "0.58", "met"),
+    ];
+    assert_eq!(rows, expected);
+    let quantity = &data.quantities[0];
+    assert_eq!(quantity.statistics.len(), 1, "the limit of every value");
+    assert_eq!(quantity.groups.iter().map(|table| table.rows.len()).collect::<Vec<_>>(), [16, 16]);
+    let table = &quantity.groups[0];
+    assert_eq!((table.keys.join(", "), table.rows[8].of.join(", ")), ("Zone, Wheelset".into(), "3, 1".into()));
+    assert_eq!((table.rows[8].mean.as_str(), table.rows[8].std.as_str(), table.rows[8].value.as_str()), ("23.25", "2.00", "50.00"));
+    assert_eq!(data.title.split_once(':').map(|(report, _)| report), Some("Assessment report"));
+    assert_eq!((data.verdict.word.as_str(), data.simulation_statement), ("requirements not met", None));
+}
+
+#[test]
+fn values_of_several_records_have_a_row_each() {
+    let found = assessment::certification();
+    let data = view(&found);
+    let blocks = &data.quantities[0].values;
+    let cells: usize = blocks.iter().flat_map(|block| &block.rows).map(|row| row.cells.len()).sum();
+    assert_eq!(cells, found.quantities[0].values.len());
+    assert_eq!([0, 1].map(|at| blocks[0].rows[at].section.as_str()), ["S01, first run", "S01, second run"]);
+}
+
+/// The kind follows from the quantities: several of different kinds are mixed; records among themselves are no validation.
+#[test]
+fn words_follow_what_the_quantities_are() {
+    let mut found = certification::certification();
+    let word = |found: &fishplate::result::Certification| {
+        let data = view(found);
+        (data.words.report, data.verdict.word, data.key_facts.iter().map(|fact| fact.name.clone()).collect::<Vec<_>>().join(", "))
+    };
+    let facts = |rows: &str| format!("Criteria by quantity, Sections, {rows}, Test zones");
+    assert_eq!(word(&found), ("Validation report", "not validated".into(), facts("Compared pairs")));
+    found.quantities.extend(assessment::certification().quantities);
+    assert_eq!(word(&found), ("Validation and assessment report", "requirements not met".into(), facts("Compared pairs, Assessed values")));
+    found.quantities.truncate(2);
+    found.quantities.iter_mut().for_each(|quantity| quantity.among = Some("simulated".into()));
+    assert_eq!(word(&found), ("Comparison report", "requirements not met".into(), facts("Compared values")));
+    let data = view(&found);
+    assert_eq!((data.words.over.as_str(), data.quantities[0].sides), ("Comparison of simulation codes", ["Record", "All records"]));
+    assert_eq!(data.measurement_statement, None);
 }

@@ -1,6 +1,5 @@
 //! Reference levels of a diagram of differences: mean, standard deviation and their limits.
 
-use indexmap::IndexMap;
 use plotters::style::RGBColor;
 
 use super::legend::Entry;
@@ -58,11 +57,10 @@ impl Levels {
         levels
     }
 
-    /// Limits of an assessed quantity zone by zone, and in each zone the estimate nearest to its limit or farthest beyond.
+    /// Limits of an assessed quantity zone by zone. Its estimates are not drawn: one for a further value may lie far beyond all values.
     fn of_assessed(quantity: &QuantityResult) -> Self {
         let mut levels = Self::default();
         let two_sided = quantity.values.iter().any(|pair| pair.difference < 0.0);
-        let mut decisive: IndexMap<&str, &StatisticResult> = IndexMap::new();
         for statistic in quantity.statistics.iter().filter(|statistic| statistic.unit == quantity.unit) {
             let zones = estimates::zones(statistic);
             for scope in if zones.is_empty() { vec!["all"] } else { zones } {
@@ -70,10 +68,6 @@ impl Levels {
                     if !levels.lines.iter().any(|line| line.scope == scope && line.value == value) {
                         levels.lines.push(Level { value, color: INK, width: 0.9, dash: DASHED, scope: scope.to_owned() });
                     }
-                }
-                let before = decisive.entry(scope).or_insert(statistic);
-                if statistic.normalised > before.normalised {
-                    *before = statistic;
                 }
             }
         }
@@ -89,13 +83,6 @@ impl Levels {
                 several => format!("limits {}{}", sign(two_sided), several.join(", ")),
             };
             levels.explain(Entry::line(INK, 0.9, DASHED, says));
-        }
-        for (scope, statistic) in decisive {
-            let Some(value) = statistic.value.filter(|_| statistic.name != "each") else { continue };
-            let scope = scope.to_owned();
-            levels.lines.push(Level { value, color: style::color(2), width: 1.1, dash: DASH_DOT, scope: scope.clone() });
-            let by = if scope == "all" { "" } else { " of the zone" };
-            levels.explain(Entry::line(style::color(2), 1.1, DASH_DOT, format!("estimate with the largest ratio{by}")));
         }
         levels
     }

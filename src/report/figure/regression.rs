@@ -1,4 +1,4 @@
-//! Regressions of the values of groups: one small diagram for each group, all on the same scales.
+//! Regressions of the values of groups: one small diagram for each group, in a row on the same scale.
 
 use super::axis::{self, Scale};
 use super::canvas::{Canvas, Font, Group};
@@ -20,7 +20,7 @@ const LOW: f64 = 88.0;
 const HEAD: f64 = 12.0;
 const FOOT: f64 = 13.0;
 const GUTTER: f64 = 9.0;
-const TICKS: (usize, usize) = (4, 5);
+const TICKS: (usize, usize) = (5, 5);
 
 /// The groups of a limit that have a regression to draw, in order; of many those with the largest ratio.
 pub fn drawn<'a>(limit: &OfLimit<'a>) -> Vec<(&'a StatisticResult, &'a RegressionFigure)> {
@@ -49,17 +49,17 @@ pub fn regression(quantity: &QuantityResult, groups: &[(&StatisticResult, &Regre
         entries.push(Entry::line(INK, 0.9, DASHED, "limit"));
     }
     let legend = Legend::new(entries, WIDTH - 40.0);
-    let ys = points().map(|point| point.y).chain(curves().flat_map(|at| [Some(at.fitted), at.bound]).flatten());
-    let ys: Vec<f64> = ys.chain(groups.iter().flat_map(|(one, figure)| [one.limit, Some(figure.value)]).flatten()).collect();
     let xs: Vec<f64> = curves().map(|at| at.x).collect();
     let tall = if groups.len() == 1 { TALL } else { LOW };
     let abreast = groups.len().clamp(1, ABREAST);
     let rows = groups.len().div_ceil(abreast);
     let top = legend.height() + 6.0;
     let row = HEAD + tall + FOOT;
-    let of_row = |at: usize| Scale::over(ys.iter().copied(), top + at as f64 * row + HEAD + tall, top + at as f64 * row + HEAD);
-    let ticks = of_row(0).ticks(TICKS.1);
-    let left = Frame::axis_room(&ticks);
+    let of_row = |at: usize| {
+        let ys = groups.iter().skip(at * abreast).take(abreast).flat_map(|(one, figure)| heights(one, figure));
+        Scale::over(ys, top + at as f64 * row + HEAD + tall, top + at as f64 * row + HEAD)
+    };
+    let left = (0..rows).map(|at| Frame::axis_room(&of_row(at).ticks(TICKS.1))).fold(0.0, f64::max);
     let wide = (WIDTH - 4.0 - left - GUTTER * (abreast as f64 - 1.0)) / abreast as f64;
     let mut canvas = Canvas::new(WIDTH, top + rows as f64 * row + 13.0);
     legend.draw(&mut canvas, (left, 0.0));
@@ -76,6 +76,13 @@ pub fn regression(quantity: &QuantityResult, groups: &[(&StatisticResult, &Regre
     let title = groups.first().map_or_else(String::new, |(_, one)| axis::title(&one.regressor, &one.regressor_unit));
     canvas.draw(|layer| layer.text(&title, (f64::midpoint(left, WIDTH - 4.0), top + rows as f64 * row + 6.0), &Font::middle(TEXT)));
     canvas.finish()
+}
+
+/// All that a diagram shows, for its scale.
+fn heights(statistic: &StatisticResult, figure: &RegressionFigure) -> Vec<f64> {
+    let points = figure.points.iter().map(|point| point.y);
+    let curves = figure.curve.iter().flat_map(|at| [Some(at.fitted), at.bound]).flatten();
+    points.chain(curves).chain(statistic.limit).chain([figure.value]).collect()
 }
 
 /// Axes whose x numbers stand without a title, since all diagrams have the same; y numbers only at the first of a row.

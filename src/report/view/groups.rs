@@ -36,8 +36,6 @@ pub struct GroupTable {
     pub limit_text: String,
     /// Unit of estimate and limit.
     pub unit: String,
-    /// Which sections count, where the limit has a condition.
-    pub condition: Option<String>,
     /// `Zone`, `Wheelset`
     pub keys: Vec<String>,
     /// Whether some estimate has a confidence interval.
@@ -96,7 +94,7 @@ pub(super) fn tables(quantity: &QuantityResult) -> Vec<GroupTable> {
 
 fn table(quantity: &QuantityResult, limit: &OfLimit<'_>) -> GroupTable {
     let first = limit.results[0];
-    let (keys, condition) = heads(limit);
+    let keys = heads(limit);
     let decimals = number::decimals(&quantity.unit, limit.results.iter().filter_map(|one| one.sample.mean));
     let row = |one: &&StatisticResult| {
         let own = summary::decimals(one);
@@ -118,7 +116,6 @@ fn table(quantity: &QuantityResult, limit: &OfLimit<'_>) -> GroupTable {
         estimate: number::formula(&first.title),
         limit_text: number::formula(&first.limit_text),
         unit: number::unit(&first.unit),
-        condition,
         intervals: limit.results.iter().any(|one| one.interval.is_some()),
         rows: limit.results.iter().map(row).collect(),
         keys: keys.iter().map(|key| capital(key)).collect(),
@@ -128,37 +125,28 @@ fn table(quantity: &QuantityResult, limit: &OfLimit<'_>) -> GroupTable {
 /// Head of a column with the whole scope.
 const GROUP: &str = "group";
 
-/// What tells the groups of a limit apart, and the condition that all share.
-fn heads(limit: &OfLimit<'_>) -> (Vec<String>, Option<String>) {
-    let parts: Vec<Option<(Vec<(String, String)>, String)>> = limit.results.iter().map(|one| parts(one)).collect();
-    let keys = |part: &Option<(Vec<(String, String)>, String)>| {
-        part.as_ref().map(|(group, rest)| (group.iter().map(|(key, _)| key.clone()).collect::<Vec<_>>(), rest.clone()))
-    };
-    match keys(&parts[0]) {
-        Some((heads, rest)) if parts.iter().all(|part| keys(part).as_ref() == Some(&(heads.clone(), rest.clone()))) => {
-            (heads, (!rest.is_empty()).then_some(rest))
-        }
-        _ => (vec![GROUP.into()], None),
-    }
+/// What tells the groups of a limit apart.
+fn heads(limit: &OfLimit<'_>) -> Vec<String> {
+    let heads = |one: &StatisticResult| keys(one).into_iter().map(|(key, _)| key).collect::<Vec<_>>();
+    let first = heads(limit.results[0]);
+    let alike = !first.is_empty() && limit.results.iter().all(|one| heads(one) == first);
+    if alike { first } else { vec![GROUP.into()] }
 }
 
-/// A scope as keys with their members, and the condition after them.
-fn parts(one: &StatisticResult) -> Option<(Vec<(String, String)>, String)> {
-    let group = match (one.group.is_empty(), estimates::zones(one).as_slice()) {
+/// Each key with its member; a group of one zone alone has no others.
+fn keys(one: &StatisticResult) -> Vec<(String, String)> {
+    match (one.group.is_empty(), estimates::zones(one).as_slice()) {
         (false, _) => one.group.clone(),
         (true, [zone]) => vec![("zone".to_owned(), (*zone).to_owned())],
-        _ => return None,
-    };
-    let words = group.iter().map(|(key, member)| format!("{key} {member}")).collect::<Vec<_>>().join(", ");
-    let rest = one.scope.strip_prefix(&words)?;
-    Some((group, rest.trim_start_matches(", ").to_owned()))
+        _ => Vec::new(),
+    }
 }
 
-fn members(one: &StatisticResult, keys: &[String]) -> Vec<String> {
-    if keys == [GROUP] {
+fn members(one: &StatisticResult, heads: &[String]) -> Vec<String> {
+    if heads == [GROUP] {
         return vec![name(&one.scope)];
     }
-    parts(one).map_or_else(Vec::new, |(group, _)| group.iter().map(|(_, member)| name(member)).collect())
+    keys(one).iter().map(|(_, member)| name(member)).collect()
 }
 
 fn capital(word: &str) -> String {
