@@ -67,7 +67,8 @@ impl Checker<'_> {
     fn with_statistic(&mut self, mut limit: Written, text: &Text) -> Written {
         let At { node: word, range } = &limit.statistic;
         let named = Statistic::named(word).is_some() || self.names.estimates.contains_key(word);
-        if let (false, Node::Path(_)) = (named, &limit.estimate.node)
+        let parameter = self.names.parameter_blocks.contains_key(word);
+        if let (false, true, Node::Path(_)) = (named, parameter, &limit.estimate.node)
             && let Some(choice) = self.choice_word(&word.clone(), &text.place(range.clone()))
         {
             limit.estimate.node = if let Some(Statistic::Percentile(percent)) = Statistic::named(&choice) {

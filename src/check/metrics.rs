@@ -326,7 +326,7 @@ impl Checker<'_> {
 
     /// `rms of (simulated - measured)`.
     pub(super) fn of_both(&mut self, reducer: Reducer, signal: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
-        let Some(Reduce { own, axis, metrics, side }) = scope.reduce else { return None };
+        let Reduce { own, axis, metrics, side } = scope.reduce?;
         if metrics && side != InputSide::Own {
             let problem = Problem::error("side", format!("`{}` says its sides itself", span.words)).at(span);
             self.problems.push(problem.help("leave the outer `measured(...)` or `simulated(...)` out"));

@@ -12,12 +12,11 @@ use crate::check::plan::{
     AxisOperation, Evaluation, Expr, Input, Key, Kind, Limit, Operator, Plan, Plausibility, Position, Quantity, Scope, Signal, SignalKind,
     Step, StepSpec, Taken, Test, Valued,
 };
-use crate::metrics::percentile::Method;
 use crate::source::Span;
 use crate::units::Dimension;
 
 pub fn from_plan(plan: &Plan) -> Graph {
-    let mut builder = Builder { axis: plan.axis.unit.dimension, method: plan.sections.percentiles, ..Builder::default() };
+    let mut builder = Builder { axis: plan.axis.unit.dimension, ..Builder::default() };
     let checks = plan.checks.iter().map(|check| check.inputs.iter().map(|input| builder.input(input, None)).collect()).collect();
     let plausibility = plan.plausibility.iter().map(|rule| builder.plausibility(rule)).collect();
     let quantities: Vec<QuantityNodes> =
@@ -30,8 +29,6 @@ pub fn from_plan(plan: &Plan) -> Graph {
 
 struct Builder {
     axis: Dimension,
-    /// How percentiles are read between samples.
-    method: Method,
     nodes: Vec<Node>,
     /// What was built before: operation and inputs in words.
     known: IndexMap<String, NodeId>,
@@ -40,7 +37,7 @@ struct Builder {
 
 impl Default for Builder {
     fn default() -> Self {
-        Self { axis: Dimension::LENGTH, method: Method::Linear, nodes: Vec::new(), known: IndexMap::new(), classes: IndexMap::new() }
+        Self { axis: Dimension::LENGTH, nodes: Vec::new(), known: IndexMap::new(), classes: IndexMap::new() }
     }
 }
 
@@ -234,9 +231,7 @@ impl Builder {
                 let node = if on_common_points { own.filtered } else { own.processed };
                 (node, Some(Joint::Metric { metric, on_common_points, over }))
             }
-            (Taken::OfBoth(reducer), Some(signal)) => {
-                (own.filtered, Some(Joint::Samples { reducer, method: self.method, signal: Arc::new(signal.clone()) }))
-            }
+            (Taken::OfBoth(reducer), Some(signal)) => (own.filtered, Some(Joint::Samples { reducer, signal: Arc::new(signal.clone()) })),
             (Taken::Reduced(reducer) | Taken::OfBoth(reducer), _) => {
                 let axis = over.map_or(self.axis, |over| self.nodes[over].dimension);
                 let dimension = reducer.gives(self.nodes[own.processed].dimension, axis);

@@ -16,7 +16,6 @@ use std::sync::Arc;
 
 use crate::catalog::{Function, Metric, Reducer};
 use crate::check::plan::{AxisOperation, Evaluation, Expr, InputSide, Limit, Operator, Rule, Signal, StepSpec};
-use crate::metrics::percentile::Method;
 use crate::source::Span;
 use crate::units::Dimension;
 
@@ -214,5 +213,5 @@ pub enum Joint {
         over: Option<NodeId>,
     },
     /// From an expression over the samples of both.
-    Samples { reducer: Reducer, method: Method, signal: Arc<Signal> },
+    Samples { reducer: Reducer, signal: Arc<Signal> },
 }

@@ -98,7 +98,13 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
         let mut values = common.clone();
         match measured {
             Ok(measured) => {
-                let sides = Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent };
+                let sides = Sides {
+                    simulated: &simulated,
+                    measured: &measured,
+                    known: &known,
+                    extent: unit.extent,
+                    method: work.plan.sections.percentiles,
+                };
                 quantities(work, &sides, &active, &mut values);
                 record_checks(work, &sides.first(), &mut values);
                 plausibility::look(work, unit, &sides.first(), &track, &mut values);
@@ -227,7 +233,8 @@ pub fn single(work: &Work<'_>, unit: &Unit, index: usize, signal: usize) -> Resu
         all.map(|(_, found, _)| RecordOfSide { name: None, found: found.clone() }).collect()
     };
     let (simulated, measured) = (of(Side::Simulated), of(Side::Measured));
-    let sides = Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent };
+    let sides =
+        Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent, method: work.plan.sections.percentiles };
     let rows = sides.rows(work, signal, nodes).map_err(Fault::new)?;
     Ok(Computed { rows, records })
 }

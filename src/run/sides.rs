@@ -11,6 +11,7 @@ use crate::catalog::{Metric, Pair};
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Center, Evaluation, Expr, InputSide, Kind, Records, Side};
 use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
+use crate::metrics::percentile::Method;
 use crate::metrics::statistics;
 
 /// Values of the wanted nodes of one record.
@@ -31,6 +32,8 @@ pub struct Sides<'a> {
     pub measured: &'a [RecordOfSide],
     pub known: &'a Known<'a>,
     pub extent: Option<Extent>,
+    /// How percentiles are read between samples.
+    pub method: Method,
 }
 
 /// One record of each side; a side that is not read has none.
@@ -40,6 +43,8 @@ pub struct Two<'a> {
     pub measured: &'a Evaluated,
     pub known: &'a Known<'a>,
     pub extent: Option<Extent>,
+    /// How percentiles are read between samples.
+    pub method: Method,
 }
 
 /// What a side comes to that is not read.
@@ -56,7 +61,13 @@ impl<'a> Sides<'a> {
     /// The first record of each side.
     pub fn first(&self) -> Two<'a> {
         let first = |records: &'a [RecordOfSide]| records.first().map_or(&NOT_READ, |record| &record.found);
-        Two { simulated: first(self.simulated), measured: first(self.measured), known: self.known, extent: self.extent }
+        Two {
+            simulated: first(self.simulated),
+            measured: first(self.measured),
+            known: self.known,
+            extent: self.extent,
+            method: self.method,
+        }
     }
 
     /// Every record of one side with every record of the other, and the name of those of which there are several.
@@ -67,7 +78,13 @@ impl<'a> Sides<'a> {
                     (Some(s), Some(m)) => Some(format!("{s}, {m}").into()),
                     (one, other) => one.clone().or_else(|| other.clone()),
                 };
-                let two = Two { simulated: &simulated.found, measured: &measured.found, known: self.known, extent: self.extent };
+                let two = Two {
+                    simulated: &simulated.found,
+                    measured: &measured.found,
+                    known: self.known,
+                    extent: self.extent,
+                    method: self.method,
+                };
                 (name, two)
             })
         })
@@ -125,7 +142,8 @@ impl<'a> Sides<'a> {
         let samples = |two: &Two<'_>, side| two.samples(work, nodes, value, side);
         let alone = |side: Side| {
             self.of(side).iter().map(move |record| {
-                let two = Two { simulated: &record.found, measured: &record.found, known: self.known, extent: self.extent };
+                let two =
+                    Two { simulated: &record.found, measured: &record.found, known: self.known, extent: self.extent, method: self.method };
                 Ok::<_, String>((record.name.clone(), two, two.value(work, value, own(side))?))
             })
         };
@@ -248,14 +266,14 @@ impl Two<'_> {
                 Ok((number_of(record, input.node)?, samples.unwrap_or(0)))
             }
             Some(Joint::Metric { metric, on_common_points, over }) => self.compared(*metric, *on_common_points, input.node, *over),
-            Some(Joint::Samples { reducer, method, signal }) => {
+            Some(Joint::Samples { reducer, signal }) => {
                 let both = Both {
                     simulated: samples_of(self.simulated, input.node)?,
                     measured: samples_of(self.measured, input.node)?,
                     known: self.known,
                     extent: self.extent,
                 };
-                both.reduced(*reducer, *method, signal)
+                both.reduced(*reducer, self.method, signal)
             }
         }
     }

@@ -60,6 +60,7 @@ for row in csv.DictReader(open(os.path.join(campaign, "sections.csv"))):
         measured = m[wheel][cut["measurement"]]
         one = lambda quantity, value: out.append({"quantity": quantity, "section": section, "signal": wheel, "value": float(value)})
         one("mean_difference", np.mean(np.abs(at(0.0) - measured)))
+        one("apart", rms(at(0.0) - measured))
         one("difference_moved", rms(at(2.0) - measured))
         one("difference_of_slopes", np.percentile(np.abs(np.gradient(at(0.0), x) - np.gradient(measured, x)), 90))
 with open(os.path.join(here, "both_sides.json"), "w") as file:
