@@ -344,9 +344,12 @@ fn a_family_is_its_blocks_written_out() {
 const PAIRS: &str = "protocol p \"P\"\n  axis  distance in m\n\nchannel {s}\n  for each  s in a, b\n  in        m\n\n\
     quantity {s}_{v}\n  for each    s in a, b and v in mean, rms\n  of          {s}\n  value       {v}\n  difference  signed\n  limit       std 1 m\n  limit       each 2 m\n";
 
+/// Rule, before and after.
+type Difference = (String, Option<String>, Option<String>);
+
 /// The variant of a protocol with a family, and what differs.
 #[track_caller]
-fn of_pairs(text: &str) -> (Vec<String>, Vec<(String, Option<String>, Option<String>)>) {
+fn of_pairs(text: &str) -> (Vec<String>, Vec<Difference>) {
     let variant = Source::new("variant.fp", format!("protocol variant \"A variant\"\n  extends  \"pairs.fp\"\n\n{text}"));
     let mut problems = Problems::default();
     let family = family::read(&variant, &|_, _| Ok(Source::new("pairs.fp", PAIRS)), &mut problems);

@@ -237,7 +237,7 @@ fn order_and_units_change_nothing() {
     let campaign = root().join("examples/coach-good");
     let found = |unit: &str, keys: &str| {
         let found = certified(&of(unit, keys), &campaign);
-        let mut all: Vec<(String, Vec<(String, String)>, f64, f64, Option<bool>)> = Vec::new();
+        let mut all = Vec::new();
         for one in statistics(&found) {
             let mut group = one.group.clone();
             group.sort();

@@ -184,7 +184,7 @@ fn coverage() {
             }
         }
         let shares = held.map(|held| held as f64 / TRIALS as f64);
-        println!("correlation {correlation}: {shares:.3?}");
+        eprintln!("correlation {correlation}: {shares:.3?}");
         for (share, stated) in shares.iter().zip(stated) {
             assert!((share - stated).abs() < 0.02, "{correlation}: {share}, stated {stated}");
         }

@@ -61,7 +61,7 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     if rule == Rule::expression && joins_places(before) {
         return problem.help("in an expression places follow one another without `and`: `Y at wheelset 1 side R`");
     }
-    if rule == Rule::limit && ["+", "-", "*", "/"].contains(&found) && before.trim_start().split_whitespace().count() == 1 {
+    if rule == Rule::limit && ["+", "-", "*", "/"].contains(&found) && before.split_whitespace().count() == 1 {
         return problem.help("an estimate of several statistics stands in parentheses: `limit (mean + 3 * std) 60 kN`");
     }
     match expected.as_slice() {
