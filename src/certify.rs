@@ -68,9 +68,11 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
     Ok(Certification {
         protocol: protocol_info(compiled),
         verdict: outcome.verdict,
+        own_word: outcome.own_word,
         verdict_note: campaign.origin.as_ref().and_then(OriginInfo::note),
         campaign,
         reasons: outcome.reasons,
+        verdicts: outcome.verdicts,
         quantities: outcome.quantities,
         sections: outcome.sections,
         zones: outcome.zones,
@@ -160,7 +162,10 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
         channels: family.merged.blocks.iter().filter(|block| block.kind.text == "channel").map(channel_info).collect(),
         graph_nodes: graph.nodes.len(),
         graph_svg: graph::svg(graph),
-        verdict_rule: plan.verdict.words.clone(),
+        verdict_rule: match &plan.overall().name {
+            Some(_) => format!("{}: {}", plan.overall().title, plan.overall().criterion),
+            None => plan.overall().criterion.clone(),
+        },
     }
 }
 

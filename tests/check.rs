@@ -208,7 +208,10 @@ fn good_protocols_are_accepted_as_meant() {
 
 /// What was understood, in a form that shows a change of meaning.
 fn described(plan: &Plan) -> String {
-    let mut out = format!("{}: {} zones, {}\n", plan.name, plan.zones.len(), plan.verdict.words);
+    let mut out = format!("{}: {} zones, {}\n", plan.name, plan.zones.len(), plan.overall().criterion);
+    for verdict in plan.verdicts.iter().filter(|verdict| verdict.name.is_some()) {
+        out += &format!("verdict {}: {:?}, {} | {}\n", verdict.title, verdict.decision, verdict.criterion, verdict.words.join(" | "));
+    }
     for quantity in &plan.quantities {
         let signals: Vec<&str> = quantity.positions.iter().map(|position| position.name.as_str()).collect();
         out += &format!("quantity {} [{}] of {}\n", quantity.id, quantity.unit, signals.join(", "));

@@ -56,7 +56,7 @@ fn inputs_come_before_nodes_and_stages_never_go_back() {
 fn every_node_is_used() {
     for (name, graph) in all() {
         let mut used: BTreeSet<usize> = graph.nodes.iter().flat_map(|node| node.inputs.iter().copied()).collect();
-        used.insert(graph.verdict);
+        used.extend(graph.verdicts.iter().copied());
         // Checks on sections end by themselves; so does a signal before its cut where a metric cuts for itself.
         used.extend(graph.checks.iter().flatten().map(|input| input.node));
         let positions = || graph.plausibility.iter().flat_map(|rule| &rule.positions);

@@ -96,7 +96,7 @@ fn peer(name: &str) -> (Case, serde_json::Value) {
         zones: zones(&[3, 3, 3, 3]),
         minimum: 12,
         quantities: quantities.collect(),
-        rule: Rule::EveryLimit,
+        rule: Some(Rule::EveryLimit),
     };
     (Case::of(&pool, None).expect("a case"), expected)
 }
@@ -162,7 +162,7 @@ proptest! {
         quantities[4].limits[0].at_least = true;
         quantities[6].limits[0].at_least = seed % 2 == 0;
         let rule = [Rule::EveryLimit, Rule::AtLeastQuantities(6), Rule::AtLeastLimits(7)][rule];
-        let pool = Pool { sections: sections(&counts), zones: zones(&takes), minimum: 1, quantities, rule };
+        let pool = Pool { sections: sections(&counts), zones: zones(&takes), minimum: 1, quantities, rule: Some(rule) };
         let case = Case::of(&pool, None).expect("a case");
         prop_assume!(case.combinations() <= 3000.0);
         agree(&case);
@@ -177,7 +177,7 @@ fn all_values_equal_are_one_value() {
         zones: zones(&[3, 3, 3, 3]),
         minimum: 12,
         quantities: vec![quantity("q", values, vec![limit("mean", 0.3, 1, 16), limit("std", 1.0, 1, 16)])],
-        rule: Rule::EveryLimit,
+        rule: Some(Rule::EveryLimit),
     };
     let found = enumerate::all(&Case::of(&pool, None).expect("a case"));
     // A value equal to its limit passes.
@@ -195,7 +195,7 @@ fn scatter_of_equal_values_is_zero_but_for_rounding() {
         zones: zones(&[1]),
         minimum: 1,
         quantities: vec![quantity("q", values, vec![limit("std", 0.9, 0, 4)])],
-        rule: Rule::EveryLimit,
+        rule: Some(Rule::EveryLimit),
     };
     let case = Case::of(&pool, None).expect("a case");
     let spread = enumerate::all(&case).quantities[0].statistics[0].spread.expect("values");
@@ -247,7 +247,7 @@ fn one_bad_section_is_the_one_to_remove() {
         zones: zones(&[3, 3, 3, 3]),
         minimum: 12,
         quantities: vec![quantity("q", values, vec![limit("std", 1.0, 1, 16)])],
-        rule: Rule::EveryLimit,
+        rule: Some(Rule::EveryLimit),
     };
     let case = Case::of(&pool, None).expect("a case");
     let found = selections(&case, &Settings::default());
@@ -267,7 +267,7 @@ fn one_bad_section_is_the_one_to_remove() {
 
 #[test]
 fn too_few_sections_are_told() {
-    let pool = Pool { sections: sections(&[2]), zones: zones(&[3]), minimum: 3, quantities: Vec::new(), rule: Rule::EveryLimit };
+    let pool = Pool { sections: sections(&[2]), zones: zones(&[3]), minimum: 3, quantities: Vec::new(), rule: Some(Rule::EveryLimit) };
     let says = Case::of(&pool, None).expect_err("too few");
     assert_eq!(says, "zone 1 has 2 usable sections, and a selection takes 3");
     assert!(Case::of(&pool, Some(2)).is_ok());

@@ -44,7 +44,7 @@ fn case(seed: u64, rule: Rule, unused: &[usize]) -> Case {
             .collect(),
         zones: (1..=4).map(|zone| Zone { name: zone.to_string(), title: String::new(), needed: 3 }).collect(),
         minimum: 12,
-        rule,
+        rule: Some(rule),
     };
     Case::of(&pool, None).expect("a case")
 }

@@ -26,7 +26,7 @@ fn case(
         let of_sections = (0..all).map(|section| values(section, number)).collect();
         quantity(&format!("q{number}"), of_sections, vec![limit(name, *bound, 1, all)])
     });
-    let pool = Pool { quantities: quantities.collect(), sections: sections(counts), zones: zones(takes), minimum: 1, rule };
+    let pool = Pool { quantities: quantities.collect(), sections: sections(counts), zones: zones(takes), minimum: 1, rule: Some(rule) };
     Case::of(&pool, None).expect("a case")
 }
 

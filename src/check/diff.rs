@@ -29,7 +29,8 @@ pub fn diff(before: &Document, after: &Document) -> Vec<Deviation> {
 }
 
 fn same(a: &Block, b: &Block) -> bool {
-    a.kind.text == b.kind.text && (a.name_text() == b.name_text() || keys::kind(&a.kind.text).is_some_and(|kind| kind.single))
+    let single = |block: &Block| keys::of_block(block).is_some_and(|kind| kind.single);
+    a.kind.text == b.kind.text && (a.name_text() == b.name_text() || single(a) && single(b))
 }
 
 fn head(block: &Block) -> String {
@@ -52,7 +53,7 @@ fn fields(old: &Block, new: &Block, found: &mut Vec<Deviation>) {
     if title(old) != title(new) {
         found.push(Deviation { rule: format!("{}, title", head(new)), before: title(old), after: title(new) });
     }
-    for key in keys::kind(&new.kind.text).map_or(&[][..], |kind| kind.keys) {
+    for key in keys::of_block(new).map_or(&[][..], |kind| kind.keys) {
         let olds: Vec<&Field> = old.fields_named(key.word).collect();
         let news: Vec<&Field> = new.fields_named(key.word).collect();
         if key.many {
@@ -119,7 +120,8 @@ fn equal(kind: &str, a: &Field, b: &Field) -> bool {
 
 /// What a field says apart from the way it is written; `None` for prose and for what cannot be read.
 fn meaning(kind: &str, field: &Field) -> Option<String> {
-    let key = keys::kind(kind)?.key(&field.key.text)?;
+    let kind_of = keys::kind(kind)?;
+    let key = [true, false].into_iter().find_map(|named| kind_of.with_name(named).key(&field.key.text))?;
     if key.sort != Sort::Phrase {
         return None;
     }
@@ -130,6 +132,10 @@ fn meaning(kind: &str, field: &Field) -> Option<String> {
         "filter" | "step" | "metric" => {
             from_pest::chain(text, quiet).map(|chain| chain.iter().map(|step| step.node.meaning()).collect::<Vec<_>>().join("; "))
         }
+        "of" if kind == "verdict" => {
+            from_pest::list(text, quiet).map(|list| list.into_iter().map(|item| item.node).collect::<Vec<_>>().join(", "))
+        }
+        "validated" | "holds" => from_pest::verdict(text, quiet).map(|verdict| verdict.meaning()),
         "of" => from_pest::of_places(text, quiet).map(|of| {
             let when = of.when.as_ref().map_or(String::new(), |when| format!(" when {}", when.meaning()));
             format!("{} {}{when}", of.signal.node, picks(&of.picks))

@@ -108,8 +108,11 @@ fn without_removed(parent: &Document, variant: &Document, families: &[Known], pr
 fn merge(parent: Document, variant: &Document) -> Document {
     let mut blocks = parent.blocks;
     for block in variant.blocks.iter().filter(|block| block.kind.text != "remove") {
-        let single = keys::kind(&block.kind.text).is_some_and(|kind| kind.single);
-        let same = |other: &&mut Block| other.kind.text == block.kind.text && (single || other.name_text() == block.name_text());
+        let single = keys::of_block(block).is_some_and(|kind| kind.single);
+        let same = |other: &&mut Block| {
+            let both = other.kind.text == block.kind.text && keys::of_block(other).is_some_and(|kind| kind.single) == single;
+            both && (single || other.name_text() == block.name_text())
+        };
         match blocks.iter_mut().find(same) {
             None => blocks.push(block.clone()),
             Some(old) if block.kind.text == "protocol" => *old = succeed(old, block),
@@ -143,6 +146,9 @@ fn overlay(parent: &mut Block, variant: &Block) {
         "metric" => says("value") || says("difference"),
         "in" => says("one of"),
         "one of" => says("in"),
+        // So do a rule and a person's judgement.
+        "holds" | "of" => says("judged by"),
+        "judged by" => says("holds"),
         _ => false,
     };
     let mut new: IndexMap<String, Vec<Field>> = IndexMap::new();
@@ -186,11 +192,13 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: 
     let family = families.iter().find(|family| family.kind == kind && family.name == name);
     let meant = |block: &Block| {
         let named = || block.name_text() == name || family.is_some_and(|family| family.members.iter().any(|one| one == block.name_text()));
-        block.kind.text == kind && (name == EVERY || named())
+        // The verdict without a name is no block that can be removed.
+        block.kind.text == kind && block.name.is_some() && (name == EVERY || named())
     };
     if !blocks.iter().any(meant) {
         let says = if name == EVERY { format!("the parent has no {kind}") } else { format!("the parent has no {kind} `{name}`") };
-        let mut known: Vec<&str> = blocks.iter().filter(|block| block.kind.text == kind).map(Block::name_text).collect();
+        let mut known: Vec<&str> =
+            blocks.iter().filter(|block| block.kind.text == kind && block.name.is_some()).map(Block::name_text).collect();
         let here = families.iter().filter(|family| family.kind == kind && family.members.iter().any(|one| known.contains(&one.as_str())));
         let here: Vec<&str> = here.map(|family| family.name.as_str()).collect();
         known.extend(here);

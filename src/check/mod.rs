@@ -26,6 +26,7 @@ mod scalars;
 mod signals;
 mod steps;
 mod transfer;
+mod verdicts;
 
 pub use names::normalised;
 
@@ -156,6 +157,7 @@ fn written_rules(block: &Block) -> usize {
         "zone" | "check" | "filter" => 1,
         "plausibility" => block.fields_named("of").count().max(1),
         "quantity" => 1 + block.fields_named("limit").count(),
+        "verdict" => usize::from(block.name.is_some()),
         _ => 0,
     }
 }
@@ -170,6 +172,7 @@ fn rule_count(plan: &Plan) -> usize {
         + plan.checks.len()
         + plan.plausibility.len()
         + plan.filters.len()
+        + plan.verdicts.iter().filter(|verdict| verdict.name.is_some()).count()
         + plan.quantities.iter().map(|quantity| 1 + limits(quantity)).sum::<usize>()
 }
 
@@ -211,6 +214,7 @@ impl Checker<'_> {
                 "parameter" => "parameter-loop",
                 "signal" => "signal-loop",
                 "filter" => "filter-loop",
+                "verdict" => "verdict-loop",
                 _ => "define-loop",
             };
             let says = if round.len() > 2 {
@@ -257,7 +261,7 @@ impl Checker<'_> {
         self.unknown_overrides(head);
         let sections = self.section_rules(of("sections").next());
         self.zones_match(&sections);
-        let verdict_block = of("verdict").next();
+        let verdict_block = of("verdict").find(|block| block.name.is_none());
         self.ddof = self.divisor(verdict_block);
         if let Some(block) = verdict_block {
             self.minimum_signals = self.count(block, "minimum signals", 1).unwrap_or(1);
@@ -272,7 +276,7 @@ impl Checker<'_> {
             self.problems.push(Problem::error("no-quantity", "the protocol has no quantity: nothing would be compared").at(head.span()));
         }
         self.unused_parts();
-        let verdict = self.verdict_rule(verdict_block, head, &quantities);
+        let verdicts = self.verdicts(verdict_block, head, &quantities);
         let independent = self.independent(verdict_block);
         let names = &self.names;
         let parameters = names
@@ -308,7 +312,7 @@ impl Checker<'_> {
             sections,
             quantities,
             independent,
-            verdict,
+            verdicts,
         })
     }
 

@@ -30,13 +30,19 @@ pub struct Plan {
     pub sections: SectionRules,
     pub quantities: Vec<Quantity>,
     pub independent: Independent,
-    pub verdict: VerdictRule,
+    /// The overall one first, the others as they are written.
+    pub verdicts: Vec<VerdictRule>,
 }
 
 impl Plan {
     /// Whether some quantity needs records of this side.
     pub fn reads(&self, side: Side) -> bool {
         self.quantities.iter().any(|quantity| quantity.evaluation.reads(side))
+    }
+
+    /// The verdict of the protocol as a whole: the one without a name, or the first.
+    pub fn overall(&self) -> &VerdictRule {
+        &self.verdicts[0]
     }
 
     /// The same rules, with findings that are told and change nothing: for who asks what is wrong, and not whether it may be used.
@@ -703,11 +709,65 @@ pub enum Independent {
     Column(usize),
 }
 
+/// A verdict: what decides it, and in which words.
 #[derive(Clone, Debug)]
 pub struct VerdictRule {
-    pub rule: Rule,
-    pub words: String,
+    /// `None` for the verdict without a name, which is then the overall one.
+    pub name: Option<String>,
+    pub title: String,
+    pub decision: Decision,
+    /// If it holds, and if it does not.
+    pub words: [String; 2],
+    /// Whether the protocol states the words.
+    pub own_words: bool,
+    /// `validated when every limit holds`
+    pub criterion: String,
+    pub clause: Option<String>,
+    pub source: Option<String>,
+    pub notes: Vec<String>,
     pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub enum Decision {
+    /// By the limits of some quantities, by index.
+    Limits { rule: Rule, quantities: Vec<usize> },
+    /// By other verdicts.
+    Verdicts(Over),
+    /// By a person, named here.
+    Person(String),
+}
+
+/// A condition on other verdicts, by their index in [`Plan::verdicts`].
+#[derive(Clone, Debug)]
+pub enum Over {
+    Holds(usize),
+    /// Both hold, or neither does.
+    Same(usize, usize),
+    AtLeast(usize, Vec<usize>),
+    Not(Box<Over>),
+    All(Vec<Over>),
+    Any(Vec<Over>),
+}
+
+impl Over {
+    /// The verdicts that it is about, each once.
+    pub fn verdicts(&self) -> Vec<usize> {
+        let all = match self {
+            Self::Holds(one) => vec![*one],
+            Self::Same(one, other) => vec![*one, *other],
+            Self::AtLeast(_, of) => of.clone(),
+            Self::Not(inner) => inner.verdicts(),
+            Self::All(parts) | Self::Any(parts) => parts.iter().flat_map(Self::verdicts).collect(),
+        };
+        let mut once = Vec::new();
+        for one in all {
+            if !once.contains(&one) {
+                once.push(one);
+            }
+        }
+        once
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,16 +1,13 @@
-//! Checks what stands beside quantities: axis, zones, section checks, treatment of sections, verdict.
+//! Checks what stands beside quantities: axis, zones, section checks, treatment of sections, what is independent.
 
 use super::Checker;
 use super::names::normalised;
-use super::plan::{
-    Axis, Check, DatumKind, Expr, Independent, Input, Kind, OnFault, Origin, Quantity, Rule, SectionRules, Type, VerdictRule, Zone,
-};
+use super::plan::{Axis, Check, DatumKind, Expr, Independent, Input, Kind, OnFault, Origin, SectionRules, Type, Zone};
 use super::scalars::Scope;
 use crate::metrics::percentile::Method;
 use crate::problem::Problem;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
-use crate::syntax::phrase::Verdict as WrittenVerdict;
 use crate::units::Dimension;
 
 impl Checker<'_> {
@@ -215,36 +212,6 @@ impl Checker<'_> {
                 Independent::Site
             }
         }
-    }
-
-    pub(super) fn verdict_rule(&mut self, block: Option<&Block>, head: &Block, quantities: &[Quantity]) -> VerdictRule {
-        let span = block.map_or_else(|| head.span().clone(), |block| block.span().clone());
-        let every = VerdictRule { rule: Rule::EveryLimit, words: "validated when every limit holds".into(), span: span.clone() };
-        let Some(field) = block.and_then(|block| block.field("validated")) else { return every };
-        let words = format!("validated {}", normalised(&field.value.text));
-        let Some(WrittenVerdict::AtLeast { count, of_limits }) = from_pest::verdict(&field.value, self.problems) else {
-            return VerdictRule { words, ..every };
-        };
-        let place = field.value.place(count.range.clone());
-        let (wanted, dimension) = match self.constant_phrase(&count, &field.value) {
-            Some(found) => found,
-            None => return every,
-        };
-        if dimension != Dimension::ONE || wanted < 1.0 || wanted.fract() != 0.0 {
-            self.problems.push(Problem::error("not-a-count", "a whole number above zero is needed").at(&place));
-            return every;
-        }
-        let wanted = wanted as usize;
-        let (there, what) = if of_limits {
-            (quantities.iter().map(|quantity| quantity.limits.len()).sum::<usize>(), "limits")
-        } else {
-            (self.blocks.iter().filter(|block| block.kind.text == "quantity").count(), "quantities")
-        };
-        if wanted > there && !self.problems.any_error() {
-            self.problems.push(Problem::error("out-of-range", format!("{wanted} {what} are asked for, there are {there}")).at(&place));
-        }
-        let rule = if of_limits { Rule::AtLeastLimits(wanted) } else { Rule::AtLeastQuantities(wanted) };
-        VerdictRule { rule, words, span }
     }
 
     /// The zones of the protocol and the words of the zone column must be the same, or sections would fall between them.

@@ -162,9 +162,16 @@ fn summary(found: &Certification, console: &Console) -> String {
         out += &format!("note: {note}\n");
     }
     let holds = found.verdict == Verdict::Validated;
-    out += &format!("\n{}\n", paint(format!("Verdict: {}", found.verdict_in_words()), Some(holds)));
+    let title = found.verdicts.iter().find(|verdict| verdict.overall).map_or(String::new(), |verdict| format!(", {}", verdict.title));
+    out += &format!("\n{}\n", paint(format!("Verdict{title}: {}", found.verdict_in_words()), Some(holds)));
     for reason in &found.reasons {
         out += &format!("  {reason}\n");
+    }
+    for verdict in found.verdicts.iter().filter(|verdict| !verdict.overall) {
+        out += &format!("{}: {}\n", verdict.title, paint(verdict.word.clone(), verdict.outcome.holds()));
+        for reason in &verdict.reasons {
+            out += &format!("  {reason}\n");
+        }
     }
     out
 }

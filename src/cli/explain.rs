@@ -157,7 +157,20 @@ fn plan_text(plan: &Plan) -> String {
             }
         }
     }
-    let _ = writeln!(out, "{}", plan.verdict.words);
+    for verdict in &plan.verdicts {
+        let _ = match &verdict.name {
+            None => writeln!(out, "{}", verdict.criterion),
+            Some(name) => {
+                let overall = if verdict.name == plan.overall().name { " (the overall verdict)" } else { "" };
+                let [good, bad] = &verdict.words;
+                writeln!(
+                    out,
+                    "verdict {name}{overall}: {}\n  rule        {}\n  words       {good}, {bad}",
+                    verdict.title, verdict.criterion
+                )
+            }
+        };
+    }
     out
 }
 
@@ -183,7 +196,18 @@ fn plan_json(plan: &Plan) -> Value {
         .collect();
     let parameters: Vec<Value> =
         plan.parameters.iter().map(|parameter| json!({"name": parameter.name, "value": parameter.value})).collect();
-    json!({"name": plan.name, "title": plan.title, "parameters": parameters, "zones": zones, "quantities": quantities, "verdict": plan.verdict.words})
+    let mut json = json!({"name": plan.name, "title": plan.title, "parameters": parameters, "zones": zones, "quantities": quantities, "verdict": plan.overall().criterion});
+    let verdicts: Vec<Value> = plan
+        .verdicts
+        .iter()
+        .filter_map(|verdict| {
+            Some(json!({"name": verdict.name.as_ref()?, "title": verdict.title, "rule": verdict.criterion, "words": verdict.words}))
+        })
+        .collect();
+    if !verdicts.is_empty() {
+        json["verdicts"] = json!(verdicts);
+    }
+    json
 }
 
 fn registry(as_json: bool) -> String {

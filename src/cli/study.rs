@@ -158,6 +158,7 @@ enum Asked {
 impl Asked {
     fn found(self, common: &Common, prepared: &Prepared, console: &Console) -> Result<found::Study, Problems> {
         let Prepared { compiled, campaign, overrides } = prepared;
+        robustness::countable(compiled)?;
         let settings = common.settings();
         let vary = match &self {
             Self::Parameters(vary) if vary.is_empty() => robustness::all_choices(&compiled.plan),

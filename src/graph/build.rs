@@ -9,8 +9,8 @@ use super::{
 };
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
-    AxisOperation, Evaluation, Expr, Input, Key, Kind, Limit, Operator, Plan, Plausibility, Position, Quantity, Scope, Signal, SignalKind,
-    Step, StepSpec, Taken, Test, Valued,
+    AxisOperation, Decision, Evaluation, Expr, Input, Key, Kind, Limit, Operator, Plan, Plausibility, Position, Quantity, Scope, Signal,
+    SignalKind, Step, StepSpec, Taken, Test, Valued,
 };
 use crate::source::Span;
 use crate::units::Dimension;
@@ -21,10 +21,9 @@ pub fn from_plan(plan: &Plan) -> Graph {
     let plausibility = plan.plausibility.iter().map(|rule| builder.plausibility(rule)).collect();
     let quantities: Vec<QuantityNodes> =
         plan.quantities.iter().enumerate().map(|(index, quantity)| builder.quantity(index, quantity)).collect();
-    let limits = quantities.iter().flat_map(|quantity: &QuantityNodes| quantity.limits.iter().map(|nodes| nodes.limit)).collect();
-    let verdict = Operation::Verdict(plan.verdict.rule);
-    let verdict = builder.add(verdict, limits, Dimension::ONE, &plan.verdict.span, plan.verdict.words.clone(), "verdict".into());
-    Graph { nodes: builder.nodes, quantities, checks, plausibility, verdict }
+    let mut verdicts = vec![None; plan.verdicts.len()];
+    (0..plan.verdicts.len()).for_each(|at| builder.verdict(plan, &quantities, at, &mut verdicts));
+    Graph { nodes: builder.nodes, quantities, checks, plausibility, verdicts: verdicts.into_iter().flatten().collect() }
 }
 
 struct Builder {
@@ -272,6 +271,31 @@ impl Builder {
             PositionNodes { own: own.map(|own| own.processed), inputs }
         };
         PlausibilityNodes { positions: own.into_iter().map(|own| position(self, own)).collect() }
+    }
+
+    /// A verdict, after those that it is over. The checker has refused those that rest on themselves.
+    fn verdict(&mut self, plan: &Plan, quantities: &[QuantityNodes], at: usize, nodes: &mut Vec<Option<NodeId>>) {
+        if nodes[at].is_some() {
+            return;
+        }
+        let verdict = &plan.verdicts[at];
+        let inputs = match &verdict.decision {
+            Decision::Limits { quantities: about, .. } => {
+                about.iter().flat_map(|&at| quantities[at].limits.iter().map(|nodes| nodes.limit)).collect()
+            }
+            Decision::Verdicts(over) => {
+                let inputs = over.verdicts();
+                inputs.iter().for_each(|&input| self.verdict(plan, quantities, input, nodes));
+                inputs.into_iter().filter_map(|input| nodes[input]).collect()
+            }
+            Decision::Person(_) => Vec::new(),
+        };
+        let (label, kind) = match &verdict.name {
+            Some(name) => (format!("{name}: {}", verdict.criterion), format!("verdict {name}")),
+            None => (verdict.criterion.clone(), "verdict".to_string()),
+        };
+        let operation = Operation::Verdict(Arc::new(verdict.decision.clone()));
+        nodes[at] = Some(self.add(operation, inputs, Dimension::ONE, &verdict.span, label, kind));
     }
 
     fn quantity(&mut self, index: usize, quantity: &Quantity) -> QuantityNodes {

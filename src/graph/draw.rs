@@ -39,11 +39,11 @@ pub fn svg(graph: &Graph) -> String {
     draw(&cards, &stages, width, height)
 }
 
-/// What the verdict and the section checks are made from. Plausibility rules look at every channel in many ways: with them, nothing
+/// What the verdicts and the section checks are made from. Plausibility rules look at every channel in many ways: with them, nothing
 /// could be made out.
 fn drawn(graph: &Graph) -> Vec<bool> {
     let mut drawn = vec![false; graph.nodes.len()];
-    let mut open: Vec<NodeId> = graph.checks.iter().flatten().map(|input| input.node).chain([graph.verdict]).collect();
+    let mut open: Vec<NodeId> = graph.checks.iter().flatten().map(|input| input.node).chain(graph.verdicts.iter().copied()).collect();
     while let Some(id) = open.pop() {
         if !std::mem::replace(&mut drawn[id], true) {
             open.extend(&graph.nodes[id].inputs);

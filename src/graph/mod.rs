@@ -1,4 +1,4 @@
-//! The processing graph: typed operations from channels to the verdict, common parts once, each knowing the line it came from.
+//! The processing graph: typed operations from channels to the verdicts, common parts once, each knowing the line it came from.
 //!
 //! Nodes up to [`Operation::Value`] work on one record and run once for each; [`Operation::Compare`] makes the rows of the table of
 //! values, of one record or of several; what follows works on groups of rows. Inputs always have a smaller number than the node, so the
@@ -15,7 +15,7 @@ pub use print::{dot, json, text};
 use std::sync::Arc;
 
 use crate::catalog::{Function, Metric, Reducer};
-use crate::check::plan::{AxisOperation, Evaluation, Expr, InputSide, Limit, Operator, Rule, Signal, StepSpec};
+use crate::check::plan::{AxisOperation, Decision, Evaluation, Expr, InputSide, Limit, Operator, Signal, StepSpec};
 use crate::source::Span;
 use crate::units::Dimension;
 
@@ -29,7 +29,8 @@ pub struct Graph {
     pub checks: Vec<Vec<InputNode>>,
     /// One per plausibility rule of the plan.
     pub plausibility: Vec<PlausibilityNodes>,
-    pub verdict: NodeId,
+    /// One per verdict of the plan, the overall one first.
+    pub verdicts: Vec<NodeId>,
 }
 
 #[derive(Clone, Debug)]
@@ -78,7 +79,8 @@ pub enum Operation {
     Estimate(Arc<Limit>),
     /// What was estimated against the limit, group by group.
     Limit(Arc<Limit>),
-    Verdict(Rule),
+    /// From limits, from other verdicts, or by a person.
+    Verdict(Arc<Decision>),
 }
 
 impl Operation {

@@ -59,7 +59,11 @@ pub fn json(graph: &Graph) -> serde_json::Value {
             })
         })
         .collect();
-    serde_json::json!({ "nodes": nodes, "verdict": graph.verdict })
+    let mut json = serde_json::json!({ "nodes": nodes, "verdict": graph.verdicts[0] });
+    if graph.verdicts.len() > 1 {
+        json["verdicts"] = serde_json::json!(graph.verdicts);
+    }
+    json
 }
 
 fn place(node: &Node) -> String {

@@ -14,6 +14,9 @@ pub struct Results {
     pub protocol: Protocol,
     pub campaign: Campaign,
     pub verdict: String,
+    /// The verdict in the protocol's own words, if it has some.
+    #[serde(default)]
+    pub verdict_word: Option<String>,
     pub quantities: Vec<Quantity>,
     pub sections: Vec<Section>,
     #[serde(default)]
@@ -143,6 +146,11 @@ fn word<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> 
 }
 
 impl Results {
+    /// The verdict as the report says it.
+    pub fn verdict_in_words(&self) -> &str {
+        self.verdict_word.as_deref().unwrap_or(&self.verdict)
+    }
+
     /// # Errors
     /// A key is missing or has another type; a message.
     pub fn of(value: &Value) -> Result<Self, String> {

@@ -240,5 +240,5 @@ fn statistics(out: &mut String, carried: &Carried, quantity: &Quantity, pair: &P
             let _ = writeln!(out, "    {reason}");
         }
     }
-    let _ = writeln!(out, "verdict of the report: {}", carried.results.verdict);
+    let _ = writeln!(out, "verdict of the report: {}", carried.results.verdict_in_words());
 }

@@ -166,9 +166,16 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
     let mut details: Vec<String> = replayed.contradictions;
     let mut numbers = 0;
     let verdict = Kind::of(&replayed.judged.quantities).verdict_words(replayed.judged.verdict);
+    // A protocol that names no verdict has no such key.
+    let verdicts = match replayed.judged.verdicts.as_slice() {
+        [] => Value::Null,
+        verdicts => serde_json::json!(verdicts),
+    };
     for (key, again) in [
         ("verdict", serde_json::json!(verdict)),
+        ("verdict_word", serde_json::json!(replayed.judged.own_word)),
         ("reasons", serde_json::json!(replayed.judged.reasons)),
+        ("verdicts", verdicts),
         ("quantities", json::quantities(&replayed.judged.quantities)),
         ("zones", json::zones(&replayed.judged.zones)),
     ] {

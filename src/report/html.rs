@@ -21,7 +21,7 @@ use crate::report::visible::visible;
 const CSS: &str = include_str!("../../templates/html/report.css");
 const SCRIPT: &str = include_str!("../../templates/html/report.js");
 
-const TEMPLATES: [(&str, &str); 19] = [
+const TEMPLATES: [(&str, &str); 21] = [
     ("chapters.html", include_str!("../../templates/chapters.html")),
     ("html/chapters.html", include_str!("../../templates/html/chapters.html")),
     ("report.html", include_str!("../../templates/report.html")),
@@ -30,6 +30,8 @@ const TEMPLATES: [(&str, &str); 19] = [
     ("html/macros.html", include_str!("../../templates/html/macros.html")),
     ("html/navigation.html", include_str!("../../templates/html/navigation.html")),
     ("html/cover.html", include_str!("../../templates/html/cover.html")),
+    ("html/verdicts.html", include_str!("../../templates/html/verdicts.html")),
+    ("html/judgements.html", include_str!("../../templates/html/judgements.html")),
     ("html/identity.html", include_str!("../../templates/html/identity.html")),
     ("html/notation.html", include_str!("../../templates/html/notation.html")),
     ("html/summary.html", include_str!("../../templates/html/summary.html")),

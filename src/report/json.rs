@@ -21,8 +21,14 @@ pub fn results(found: &Certification) -> String {
         }),
     );
     root.insert("verdict".into(), json!(found.verdict_words()));
+    if let Some(word) = &found.own_word {
+        root.insert("verdict_word".into(), json!(word));
+    }
     root.insert("verdict_note".into(), json!(found.verdict_note));
     root.insert("reasons".into(), json!(found.reasons));
+    if !found.verdicts.is_empty() {
+        root.insert("verdicts".into(), json!(found.verdicts));
+    }
     root.insert("quantities".into(), quantities(&found.quantities));
     root.insert("sections".into(), Value::Array(found.sections.iter().map(|section| zone_as_number(json!(section))).collect()));
     root.insert("zones".into(), zones(&found.zones));

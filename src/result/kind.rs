@@ -50,10 +50,15 @@ impl Certification {
         self.kind().verdict_words(self.verdict)
     }
 
+    /// The verdict in the protocol's own words, or in those of the report.
+    pub fn verdict_word(&self) -> &str {
+        self.own_word.as_deref().unwrap_or(self.verdict_words())
+    }
+
     /// The same with its note: `validated, with a simulation fitted to the same measurements`
     pub fn verdict_in_words(&self) -> String {
         let note = self.verdict_note.as_ref().map_or(String::new(), |note| format!(", {note}"));
-        format!("{}{note}", self.verdict_words())
+        format!("{}{note}", self.verdict_word())
     }
 
     /// Sides of which records are in the quantities: simulated, measured.

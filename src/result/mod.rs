@@ -9,6 +9,7 @@ mod kind;
 pub mod origin;
 pub mod report;
 pub mod study;
+pub mod verdict;
 
 use serde::Serialize;
 
@@ -16,17 +17,23 @@ pub use finding::{Consequence, Finding};
 pub use kind::Kind;
 pub use origin::{FittedTo, OriginInfo};
 pub use report::ReportItem;
+pub use verdict::{Outcome, Verdict, VerdictResult};
 
 /// All results of a certification, in the order of the protocol and of the campaign.
 #[derive(Clone, Debug, Serialize)]
 pub struct Certification {
     pub protocol: ProtocolInfo,
     pub campaign: CampaignInfo,
+    /// The overall verdict.
     pub verdict: Verdict,
+    /// The same in the protocol's own words, if it has some: `accepted`.
+    pub own_word: Option<String>,
     /// Note on the verdict if the simulation was changed after the comparison.
     pub verdict_note: Option<String>,
     /// Why the verdict is not "validated"; empty if it is.
     pub reasons: Vec<String>,
+    /// The verdicts with a name.
+    pub verdicts: Vec<VerdictResult>,
     pub quantities: Vec<QuantityResult>,
     pub sections: Vec<SectionResult>,
     /// Empty if the protocol has no zones.
@@ -39,26 +46,6 @@ pub struct Certification {
     pub findings: Vec<Finding>,
     /// Remarks that do not change the verdict (a short filter margin, a converted unit).
     pub notes: Vec<String>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Verdict {
-    #[serde(rename = "validated")]
-    Validated,
-    #[serde(rename = "not validated")]
-    NotValidated,
-    #[serde(rename = "not assessable")]
-    NotAssessable,
-}
-
-impl Verdict {
-    pub fn in_words(self) -> &'static str {
-        match self {
-            Self::Validated => "validated",
-            Self::NotValidated => "not validated",
-            Self::NotAssessable => "not assessable",
-        }
-    }
 }
 
 /// The rules that were applied.
@@ -84,7 +71,7 @@ pub struct ProtocolInfo {
     pub graph_nodes: usize,
     /// The processing graph drawn, one SVG text.
     pub graph_svg: String,
-    /// Criterion of the verdict "validated", in a sentence.
+    /// Criterion of the overall verdict, in a sentence.
     pub verdict_rule: String,
 }
 

@@ -8,7 +8,7 @@ mod scale;
 mod synchronisation;
 
 use crate::certify::{Compiled, campaign_info, protocol_info};
-use crate::check::plan::Plan;
+use crate::check::plan::{Decision, Plan};
 use crate::data::Campaign;
 use crate::problem::{Problem, Problems};
 use crate::result::study::{Found, Reduction, SelectionStudy, Study};
@@ -38,6 +38,23 @@ pub fn sections(compiled: &Compiled, campaign: &Campaign, settings: &Settings, p
     let (case, reduction) = case_of(&evaluated, &compiled.plan, settings).map_err(too_few)?;
     let found = SelectionStudy { reduction, ..selections(&case, &settings.selections) };
     Ok(joined(compiled, campaign, &evaluated, Found::Sections(found)))
+}
+
+/// A study counts limits of selections: the overall verdict must rest on limits alone.
+///
+/// # Errors
+/// `study-verdict`: it is over other verdicts, or a person decides it.
+pub fn countable(compiled: &Compiled) -> Result<(), Problems> {
+    let overall = compiled.plan.overall();
+    let why = match &overall.decision {
+        Decision::Limits { .. } => return Ok(()),
+        Decision::Verdicts(_) => "is over other verdicts",
+        Decision::Person(_) => "is judged by a person",
+    };
+    let name = overall.name.as_ref().map_or_else(String::new, |name| format!(" `{name}`"));
+    let problem = Problem::error("study-verdict", format!("the overall verdict{name} {why}: a study can only count limits"));
+    let problem = problem.at(&overall.span);
+    Err(Problems(vec![problem.help("write a variant of the protocol whose overall verdict is one by limits, and study that")]))
 }
 
 fn too_few(says: String) -> Problems {

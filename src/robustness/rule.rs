@@ -34,10 +34,14 @@ impl Rule {
             let problem = wrong(format!("`--vary {address}`: a protocol has no block `{kind}`")).suggest(kind, kinds);
             return Err(Box::new(problem.help("write a parameter's name, or a block, its name and a key: `quantity <name> limit std`")));
         };
+        let named =
+            words.get(1).is_some_and(|name| document.blocks.iter().any(|block| block.kind.text == kind && block.name_text() == *name));
+        let known = known.with_name(known.named || named);
         let (name, rest) = if known.named { (words.get(1).copied().unwrap_or(""), words.get(2..)) } else { ("", words.get(1..)) };
         let rest = rest.unwrap_or(&[]);
         let block_words = if known.named { format!("{kind} {name}") } else { kind.to_owned() };
-        let same = |block: &&Block| block.kind.text == kind && (!known.named || block.name_text() == name);
+        let same =
+            |block: &&Block| block.kind.text == kind && block.name.is_some() == known.named && (!known.named || block.name_text() == name);
         let Some((at, block)) = document.blocks.iter().enumerate().find(|(_, block)| same(block)) else {
             let names: Vec<&str> = document.blocks.iter().filter(|block| block.kind.text == kind).map(Block::name_text).collect();
             return Err(Box::new(wrong(format!("`--vary {address}`: the protocol has no {kind} `{name}`")).suggest(name, names)));

@@ -7,14 +7,19 @@ use super::limits::{self, Compared, Judging};
 use super::section::SectionValues;
 use super::sections::Unit;
 use super::table::{Member, count_independent, independent};
-use crate::check::plan::{Evaluation, Plan, Quantity, Records, Rule, Zone};
+use super::verdicts;
+use crate::check::plan::{Evaluation, Plan, Quantity, Records, Zone};
 use crate::graph::{Graph, Operation, QuantityNodes};
-use crate::result::{Consequence, Finding, PairValue, QuantityResult, Verdict, ZoneResult};
+use crate::result::{Consequence, Finding, PairValue, QuantityResult, Verdict, VerdictResult, ZoneResult};
 
 #[derive(Debug)]
 pub struct Judged {
     pub verdict: Verdict,
+    /// The overall verdict in the protocol's own words, if it has some.
+    pub own_word: Option<String>,
     pub reasons: Vec<String>,
+    /// Those with a name.
+    pub verdicts: Vec<VerdictResult>,
     pub quantities: Vec<QuantityResult>,
     pub zones: Vec<ZoneResult>,
 }
@@ -31,57 +36,17 @@ pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: 
         missing.push(format!("{}; at least {} required", usable(used.len(), sites), plan.sections.minimum));
     }
     missing.extend(not_plausible(plan, findings, missing.is_empty()));
-    let mut quantities = Vec::new();
-    let mut reasons = Vec::new();
-    for (index, quantity) in plan.quantities.iter().enumerate() {
-        let (result, fails) = quantity_result(plan, graph, facts, quantity, index, &used);
-        // A quantity without limits is reported and decides nothing.
-        if let (Some(reason), false) = (&result.reason, result.statistics.is_empty()) {
-            missing.push(format!("{}: {reason}", quantity.id));
-        }
-        quantities.push(result);
-        reasons.extend(fails);
-    }
-    if quantities.iter().all(|quantity| quantity.statistics.is_empty()) {
-        missing.push(without_criterion(plan).into());
-    }
-    if !missing.is_empty() {
-        return Judged { verdict: Verdict::NotAssessable, reasons: missing, quantities, zones };
-    }
-    let holding = quantities.iter().filter(|quantity| quantity.holds == Some(true) && !quantity.statistics.is_empty()).count();
-    // A limit of groups holds where all of them do: as many groups are no further limits.
-    let of_limits = |quantity: &QuantityResult| {
-        let mut limits: Vec<(&str, &str, usize, bool)> = Vec::new();
-        for one in &quantity.statistics {
-            let zone = one.scope.split(", ").next().filter(|first| first.starts_with("zone ")).unwrap_or("");
-            let holds = one.holds == Some(true);
-            match limits.iter_mut().find(|(name, of, line, _)| (*name, *of, *line) == (&one.name, zone, one.rule.line)) {
-                Some((.., all)) => *all &= holds,
-                None => limits.push((&one.name, zone, one.rule.line, holds)),
-            }
-        }
-        limits.into_iter().filter(|(.., holds)| *holds).count()
-    };
-    let limits_holding: usize = quantities.iter().map(of_limits).sum();
-    let Operation::Verdict(rule) = graph.nodes[graph.verdict].operation else {
-        let reasons = vec!["the graph ends without a verdict; this is a fault of the program".into()];
-        return Judged { verdict: Verdict::NotAssessable, reasons, quantities, zones };
-    };
-    let validated = match rule {
-        Rule::EveryLimit => reasons.is_empty(),
-        Rule::AtLeastQuantities(count) => holding >= count,
-        Rule::AtLeastLimits(count) => limits_holding >= count,
-    };
-    if validated {
-        return Judged { verdict: Verdict::Validated, reasons: Vec::new(), quantities, zones };
-    }
-    match rule {
-        Rule::EveryLimit => {}
-        Rule::AtLeastQuantities(needed) => reasons
-            .insert(0, format!("{} of {} meet their criteria; at least {needed} required", holding, count(quantities.len(), "quantity"))),
-        Rule::AtLeastLimits(needed) => reasons.insert(0, format!("{} met; at least {needed} required", count(limits_holding, "limit"))),
-    }
-    Judged { verdict: Verdict::NotValidated, reasons, quantities, zones }
+    let (quantities, fails): (Vec<QuantityResult>, Vec<Vec<String>>) =
+        plan.quantities.iter().enumerate().map(|(index, quantity)| quantity_result(plan, graph, facts, quantity, index, &used)).unzip();
+    let decided = verdicts::decide(plan, graph, &verdicts::Given { barred: missing, quantities: &quantities, fails });
+    let named = verdicts::named(plan, &decided);
+    let (rule, overall) = (plan.overall(), decided.into_iter().next().unwrap_or_default());
+    let verdict = overall.outcome.overall();
+    let own = (rule.name.is_some() || rule.own_words).then(|| match verdict {
+        Verdict::NotAssessable => verdict.in_words().to_string(),
+        _ => overall.outcome.word(&rule.words).to_string(),
+    });
+    Judged { verdict, own_word: own, reasons: overall.reasons, verdicts: named, quantities, zones }
 }
 
 /// How many different sites sections are of.
@@ -138,15 +103,6 @@ fn impossible(index: usize, used: &[(&Unit, &SectionValues)]) -> Option<String> 
         more => format!("; so are {more} other sections"),
     };
     Some(format!("it cannot be evaluated in section {name}, {says}{more}"))
-}
-
-/// Why nothing decides: a verdict needs at least one limit that applies.
-fn without_criterion(plan: &Plan) -> &'static str {
-    if plan.quantities.iter().all(|quantity| quantity.limits.is_empty()) {
-        "the protocol states no acceptance criterion"
-    } else {
-        "no acceptance criterion of the protocol applies to this vehicle and its sections"
-    }
 }
 
 fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
@@ -266,7 +222,7 @@ fn quantity_result(
 }
 
 /// `1 section`, `2 sections`, `no quantities`
-fn count(number: usize, noun: &str) -> String {
+pub fn count(number: usize, noun: &str) -> String {
     let plural = noun.strip_suffix('y').map_or_else(|| format!("{noun}s"), |stem| format!("{stem}ies"));
     match number {
         0 => format!("no {plural}"),

@@ -26,6 +26,7 @@ mod synchronisation;
 mod table;
 mod told;
 mod traces;
+mod verdicts;
 
 use indexmap::IndexMap;
 use rayon::prelude::*;
@@ -34,7 +35,7 @@ use crate::check::plan::{OnFault, Plan};
 use crate::data::Campaign;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
-use crate::result::{Consequence, DataItem, FileHash, Finding, QuantityResult, SectionResult, Trace, Verdict, ZoneResult};
+use crate::result::{Consequence, DataItem, FileHash, Finding, QuantityResult, SectionResult, Trace, Verdict, VerdictResult, ZoneResult};
 
 pub use facts::{Facts, scalar};
 pub use judge::Judged;
@@ -48,7 +49,11 @@ pub use synchronisation::{Offset, Shifts};
 #[derive(Debug)]
 pub struct Outcome {
     pub verdict: Verdict,
+    /// The overall verdict in the protocol's own words, if it has some.
+    pub own_word: Option<String>,
     pub reasons: Vec<String>,
+    /// Those with a name.
+    pub verdicts: Vec<VerdictResult>,
     pub quantities: Vec<QuantityResult>,
     pub sections: Vec<SectionResult>,
     pub zones: Vec<ZoneResult>,
@@ -106,7 +111,9 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
     let domain = domain::domain(plan, units);
     Ok(Outcome {
         verdict: judged.verdict,
+        own_word: judged.own_word,
         reasons: judged.reasons,
+        verdicts: judged.verdicts,
         quantities: judged.quantities,
         zones: judged.zones,
         domain,

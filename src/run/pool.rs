@@ -12,7 +12,7 @@ use super::section::SectionValues;
 use super::sections::Unit;
 use super::table::{Member, Row};
 use crate::catalog::Statistic;
-use crate::check::plan::{EstimateKind, Limit, Plan, Quantity};
+use crate::check::plan::{Decision, EstimateKind, Limit, Plan, Quantity};
 
 pub use crate::check::plan::Rule;
 
@@ -24,7 +24,8 @@ pub struct Pool {
     /// Usable sections needed in all.
     pub minimum: usize,
     pub quantities: Vec<PooledQuantity>,
-    pub rule: Rule,
+    /// The rule of the overall verdict; `None` where other verdicts or a person decide it.
+    pub rule: Option<Rule>,
 }
 
 #[derive(Clone, Debug)]
@@ -141,6 +142,10 @@ pub struct PooledLimit {
 /// # Errors
 /// None: a limit whose bound has no value is left out with its quantity told as not assessable by the run itself.
 pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]) -> Pool {
+    let (rule, about) = match &plan.overall().decision {
+        Decision::Limits { rule, quantities } => (Some(*rule), quantities.as_slice()),
+        Decision::Verdicts(_) | Decision::Person(_) => (None, &[][..]),
+    };
     let rules = Arc::new((plan.clone(), facts.clone()));
     Pool {
         sections: units
@@ -159,8 +164,8 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
             .map(|zone| Zone { name: zone.name.clone(), title: zone.title.clone(), needed: zone.minimum_sections })
             .collect(),
         minimum: plan.sections.minimum,
-        quantities: plan.quantities.iter().enumerate().map(|(index, quantity)| pooled(&rules, quantity, index, units, values)).collect(),
-        rule: plan.verdict.rule,
+        quantities: about.iter().map(|&index| pooled(&rules, &plan.quantities[index], index, units, values)).collect(),
+        rule,
     }
 }
 

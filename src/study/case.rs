@@ -91,6 +91,9 @@ impl Case {
     /// # Errors
     /// A zone has fewer usable sections than a selection takes, or the protocol has no criterion.
     pub fn of(pool: &Pool, take: Option<usize>) -> Result<Self, Refusal> {
+        let Some(rule) = pool.rule else {
+            return Err("the overall verdict is over other verdicts or judged by a person, so no selection of sections decides it".into());
+        };
         if !pool.quantities.is_empty() && pool.quantities.iter().all(|quantity| quantity.limits.is_empty()) {
             return Err("no acceptance criterion applies, so no verdict depends on the sections".into());
         }
@@ -135,7 +138,7 @@ impl Case {
             strata,
             sections: pool.sections.iter().map(|section| section.name.clone()).collect(),
             quantities: pool.quantities.iter().map(quantity).collect(),
-            rule: pool.rule,
+            rule,
         };
         for (first, repeat) in repeats(pool) {
             case.take_together(first, repeat);

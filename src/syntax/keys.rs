@@ -1,5 +1,7 @@
 //! Which blocks and fields a protocol may hold: one table for both surfaces, the JSON Schema and the language reference.
 
+use super::document::Block;
+
 /// How the value of a field is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sort {
@@ -62,6 +64,7 @@ const FOR_EACH: Key = many(phrase(
 ));
 const CLAUSE: Key = text("clause", "Clause of the standard the rule follows.", "Annex T, T.3");
 const SOURCE: Key = text("source", "Where the rule or number is published.", "Goetz & Polach, Table 1");
+const WORDS: Key = phrase("words", "The two words of the verdict: if it holds, and if it does not.", "accepted, not accepted");
 const NOTE: Key = many(text("note", "A remark printed with the rule.", "Absolute values of simulation and measurement."));
 
 /// Every kind of block, in the order of the canonical text.
@@ -98,6 +101,7 @@ pub const KINDS: &[Kind] = &[
             many(phrase("zone", "A zone of the parent, a family, or `every` one.", "4")),
             many(phrase("check", "A section check of the parent, a family, or `every` one.", "full_curve")),
             many(phrase("plausibility", "A plausibility rule of the parent, a family, or `every` one.", "wheel_load")),
+            many(phrase("verdict", "A named verdict of the parent, a family, or `every` one.", "inspection")),
             many(phrase(
                 "limit",
                 "Limits of a quantity of the parent, of a family or of `every` one: the quantity, then the statistic unless all are meant.",
@@ -376,9 +380,14 @@ pub const KINDS: &[Kind] = &[
         group: "verdict",
         named: false,
         single: true,
-        about: "When a model is validated.",
+        about: "When a model is validated, and how quantities are counted.",
         keys: &[
-            phrase("validated", "`when every limit holds`, or `when at least N quantities hold`.", "when every limit holds"),
+            phrase(
+                "validated",
+                "`when every limit holds` (the default), `when at least N quantities hold`, or a rule over named verdicts.",
+                "when every limit holds",
+            ),
+            WORDS,
             phrase("minimum signals", "How many signals a quantity needs unless it says so itself.", "2"),
             phrase("minimum pairs", "How many section x signal pairs a quantity needs unless it says so itself.", "24"),
             phrase("standard deviation", "Divisor of the variance: `n-1` or `n`.", "n-1"),
@@ -390,11 +399,45 @@ pub const KINDS: &[Kind] = &[
             NOTE,
         ],
     },
+    Kind {
+        word: "verdict",
+        group: "verdicts",
+        named: true,
+        single: false,
+        about: "A verdict with a name: on some quantities, over other verdicts, or left to a person.",
+        keys: &[
+            FOR_EACH,
+            phrase(
+                "of",
+                "The quantities whose limits count: names, or `measured`, `simulated` or `compared` for all of that kind. All without it.",
+                "SigmaY, YQ, Q",
+            ),
+            phrase(
+                "holds",
+                "`when every limit holds`, `when at least N quantities hold`, or a rule over other verdicts.",
+                "when virtual_test is measured_test",
+            ),
+            text(
+                "judged by",
+                "In place of `holds`: who decides. The program never does; the report has lines for the judgement.",
+                "the responsible test engineer",
+            ),
+            WORDS,
+            CLAUSE,
+            SOURCE,
+            NOTE,
+        ],
+    },
 ];
 
-/// The kind of block a word of the text form names.
+/// The kind of block a word of the text form names; of two with the same word, the one without a name.
 pub fn kind(word: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.word == word)
+}
+
+/// The kind of a block: a `verdict` with a name has other fields than the one without.
+pub fn of_block(block: &Block) -> Option<&'static Kind> {
+    kind(&block.kind.text).map(|kind| kind.with_name(block.name.is_some()))
 }
 
 /// The kind of block a top-level key of the YAML form names.
@@ -406,6 +449,11 @@ impl Kind {
     /// Whether one block of this kind can stand for a family of them.
     pub fn has_families(&self) -> bool {
         self.key(EACH).is_some()
+    }
+
+    /// The kind of the same word that has a name or has none; this one if there is only one of the word.
+    pub fn with_name(&'static self, named: bool) -> &'static Self {
+        KINDS.iter().find(|kind| kind.word == self.word && kind.named == named).unwrap_or(self)
     }
 
     pub fn key(&self, word: &str) -> Option<&'static Key> {

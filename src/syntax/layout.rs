@@ -10,9 +10,10 @@ pub const WIDTH: usize = 110;
 /// that stays as it was.
 pub fn in_order(document: &Document) -> Document {
     let mut document = document.clone();
-    document.blocks.sort_by_key(|block| rank(KINDS.iter().map(|kind| kind.word), &block.kind.text));
+    let place = |kind: &Kind| KINDS.iter().position(|known| known.group == kind.group);
+    document.blocks.sort_by_key(|block| keys::of_block(block).and_then(place).unwrap_or(usize::MAX));
     for block in &mut document.blocks {
-        if let Some(kind) = keys::kind(&block.kind.text) {
+        if let Some(kind) = keys::of_block(block) {
             block.fields.sort_by_key(|field| rank(kind.keys.iter().map(|key| key.word), &field.key.text));
         }
     }

@@ -166,6 +166,22 @@ pub struct Scope {
 pub enum Verdict {
     EveryLimit,
     AtLeast { count: Phrase, of_limits: bool },
+    Over(OverVerdicts),
+}
+
+/// A rule over other verdicts.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OverVerdicts {
+    Holds(At<String>),
+    /// `a is b`: both have the same outcome.
+    Same(At<String>, At<String>),
+    AtLeast {
+        count: Phrase,
+        of: Vec<At<String>>,
+    },
+    Not(Box<OverVerdicts>),
+    All(Vec<OverVerdicts>),
+    Any(Vec<OverVerdicts>),
 }
 
 impl Phrase {
@@ -217,6 +233,32 @@ impl Limit {
     /// What it is a limit of: `std`, `p95 at least`.
     pub fn bounds(&self) -> String {
         format!("{}{}", self.estimate.meaning(), if self.at_least { " at least" } else { "" })
+    }
+}
+
+impl Verdict {
+    /// As [`Phrase::meaning`].
+    pub fn meaning(&self) -> String {
+        match self {
+            Self::EveryLimit => "every limit".into(),
+            Self::AtLeast { count, of_limits } => {
+                format!("at least {} {}", count.meaning(), if *of_limits { "limits" } else { "quantities" })
+            }
+            Self::Over(over) => over.meaning(),
+        }
+    }
+}
+
+impl OverVerdicts {
+    fn meaning(&self) -> String {
+        match self {
+            Self::Holds(name) => name.node.clone(),
+            Self::Same(a, b) => format!("({} is {})", a.node, b.node),
+            Self::AtLeast { count, of } => format!("(at least {} of {})", count.meaning(), joined(of, ", ", |name| name.node.clone())),
+            Self::Not(inner) => format!("(not {})", inner.meaning()),
+            Self::All(all) => format!("({})", joined(all, " and ", Self::meaning)),
+            Self::Any(any) => format!("({})", joined(any, " or ", Self::meaning)),
+        }
     }
 }
 

@@ -63,7 +63,7 @@ fn print_field(block: &Block, field: &Field, column: usize, out: &mut String) {
         line(out, INDENT, &comment(text), None);
     }
     let room = WIDTH.saturating_sub(2 * INDENT.len() + column);
-    let lines: Vec<String> = match layout::sort(keys::kind(&block.kind.text), field) {
+    let lines: Vec<String> = match layout::sort(keys::of_block(block), field) {
         Sort::Phrase => layout::wrap_phrase(&layout::phrase(&field.value.text), room),
         // Quotes take two columns; escapes are rare enough to be let over the edge.
         Sort::Text => layout::wrap_prose(&field.value.text, room.saturating_sub(2)).iter().map(|piece| quoted(piece)).collect(),

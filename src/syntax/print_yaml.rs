@@ -1,7 +1,7 @@
 //! The canonical YAML form.
 
 use super::document::{Block, Document, Field};
-use super::keys::{KINDS, Kind, Sort};
+use super::keys::{self, KINDS, Kind, Sort};
 use super::layout::{self, WIDTH, columns, comment};
 
 /// Writes the canonical YAML. Reading it gives the same document in canonical order, and printing that the same YAML.
@@ -13,7 +13,8 @@ pub fn print_yaml(document: &Document) -> String {
         out.blank();
     }
     for kind in KINDS {
-        let blocks: Vec<&Block> = document.blocks.iter().filter(|block| block.kind.text == kind.word).collect();
+        let blocks: Vec<&Block> =
+            document.blocks.iter().filter(|block| keys::of_block(block).is_some_and(|of| of.group == kind.group)).collect();
         if blocks.is_empty() {
             continue;
         }

@@ -53,6 +53,7 @@ fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
         }
         None => {}
     }
+    let kind = kind.with_name(header.name.is_some());
     let title = header.title.map(|range| unquote(&[range], &text, &raw.header, source, reader));
     let mut comments = raw.header.comments.clone();
     comments.after = raw.after;

@@ -72,7 +72,11 @@ impl<'a> Reader<'a> {
             (None, false) => {
                 problem.help(format!("`{word}` is a field of {}; fields stand below the name of their block, indented", listed(&owners)))
             }
-            (None, true) => problem.help(format!("known here: {}", KINDS.iter().map(spelt).collect::<Vec<_>>().join(", "))),
+            (None, true) => {
+                let mut known: Vec<&str> = KINDS.iter().map(spelt).collect();
+                known.dedup();
+                problem.help(format!("known here: {}", known.join(", ")))
+            }
         });
         near
     }
@@ -89,8 +93,26 @@ impl<'a> Reader<'a> {
         let begins = |key: &Key| words.len() > 1 && key.word.split(' ').count() > 1 && key.word.split(' ').next() == words.first().copied();
         let other = other.filter(|(_, count)| *count > 1 || !kind.keys.iter().any(begins)).map(|(owners, _)| owners).unwrap_or_default();
         let count = near.map_or(1, |(_, count)| count);
+        // A field of the same block with a name, or without one.
+        let twin = kind.with_name(!kind.named);
+        let of_twin = (1..=words.len().min(LONGEST)).rev().find(|&count| twin.key(&words[..count].join(" ")).is_some());
+        let count = of_twin.unwrap_or(count);
         let written = if self.form == Form::Yaml { words.join(" ") } else { words[..count.min(words.len())].join(" ") };
-        let problem = Problem::error("unknown-field", format!("a `{}` has no field `{written}`", kind.word)).at(at);
+        let block = match (of_twin, kind.named) {
+            (None, _) => format!("`{}`", kind.word),
+            (Some(_), true) => format!("`{}` with a name", kind.word),
+            (Some(_), false) => format!("`{}` without a name", kind.word),
+        };
+        let problem = Problem::error("unknown-field", format!("a {block} has no field `{written}`")).at(at);
+        if of_twin.is_some() {
+            self.problems.push(problem.help(match (kind.named, self.form) {
+                (true, Form::Lines) => format!("it is a field of the `{}` without a name", kind.word),
+                (true, Form::Yaml) => format!("it is a field of `{}`", twin.group),
+                (false, Form::Lines) => format!("it is a field of a `{0}` with a name: `{0} some_name`", kind.word),
+                (false, Form::Yaml) => format!("it is a field of `{}`, below a name", twin.group),
+            }));
+            return None;
+        }
         self.problems.push(if written == "title" {
             problem.help("a title stands in quotes on the first line of its block")
         } else if let Some((near, _)) = near {
@@ -208,7 +230,9 @@ fn near<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a
 /// The kinds that have a field of these words.
 fn owners(words: &[&str]) -> Vec<&'static str> {
     let word = words.join(" ");
-    KINDS.iter().filter(|kind| kind.key(&word).is_some()).map(|kind| kind.word).collect()
+    let mut owners: Vec<&str> = KINDS.iter().filter(|kind| kind.key(&word).is_some()).map(|kind| kind.word).collect();
+    owners.dedup();
+    owners
 }
 
 /// `a`, `b` and `c`

@@ -193,7 +193,8 @@ impl Splitter<'_> {
 impl RawBlock {
     /// Whether a field of the block can begin with a word.
     fn may_hold(&self, word: &str) -> bool {
-        self.kind.is_some_and(|kind| kind.keys.iter().any(|key| key.word.split(' ').next() == Some(word)))
+        let holds = |kind: &Kind| kind.keys.iter().any(|key| key.word.split(' ').next() == Some(word));
+        self.kind.is_some_and(|kind| [true, false].into_iter().any(|named| holds(kind.with_name(named))))
     }
 }
 

@@ -61,7 +61,9 @@ pub fn certification() -> Certification {
         protocol: protocol(),
         campaign: campaign(),
         verdict: Verdict::NotValidated,
+        own_word: None,
         verdict_note: None,
+        verdicts: Vec::new(),
         reasons: vec![
             "ÿ*_max: standard deviation above its limit".into(),
             "z̈*_max: not assessable, channel `az_I` is missing in 33 records".into(),

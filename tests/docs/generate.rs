@@ -19,7 +19,7 @@ use serde_json::Value;
 /// The part of a name such as `block quantity` or `registry step`.
 pub fn part(name: &str) -> String {
     match name.split_once(' ').unwrap_or((name, "")) {
-        ("block", word) => block(KINDS.iter().find(|kind| kind.word == word).unwrap_or_else(|| panic!("no block `{word}`"))),
+        ("block", word) => block(KINDS.iter().find(|kind| part_of(kind) == word).unwrap_or_else(|| panic!("no block `{word}`"))),
         ("blocks", "") => blocks(),
         ("registry", "step") => steps(),
         ("registry", kind) => registry(kind),
@@ -35,7 +35,7 @@ pub fn part(name: &str) -> String {
 
 /// Parts that some page must have, so that nothing new in the tables stays undescribed.
 pub fn wanted() -> Vec<String> {
-    let mut all: Vec<String> = KINDS.iter().map(|kind| format!("block {}", kind.word)).collect();
+    let mut all: Vec<String> = KINDS.iter().map(|kind| format!("block {}", part_of(kind))).collect();
     for entry in catalog::entries() {
         let name = format!("registry {}", entry.kind);
         if !all.contains(&name) {
@@ -45,6 +45,12 @@ pub fn wanted() -> Vec<String> {
     all.extend(["blocks", "units", "percentile rules", "protocols", "commands", "results.json"].map(str::to_string));
     all.extend(Acts::ALL.map(|acts| format!("effects {}", acts.in_words())));
     all
+}
+
+/// A block is called by its word; the second kind of a word by what it is in YAML.
+fn part_of(kind: &Kind) -> &'static str {
+    let first = KINDS.iter().find(|known| known.word == kind.word).is_some_and(|known| known.group == kind.group);
+    if first { kind.word } else { kind.group }
 }
 
 fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {

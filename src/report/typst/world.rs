@@ -23,6 +23,7 @@ const TEMPLATES: &[(&str, &str)] = &[
     ("/theme.typ", include_str!("../../../templates/theme.typ")),
     ("/data.typ", "#let data = json(\"/data.json\")\n"),
     ("/parts/cover.typ", include_str!("../../../templates/parts/cover.typ")),
+    ("/parts/verdicts.typ", include_str!("../../../templates/parts/verdicts.typ")),
     ("/parts/identity.typ", include_str!("../../../templates/parts/identity.typ")),
     ("/parts/notation.typ", include_str!("../../../templates/parts/notation.typ")),
     ("/parts/summary.typ", include_str!("../../../templates/parts/summary.typ")),

@@ -10,6 +10,7 @@ mod protocol;
 mod quantity;
 mod section;
 mod summary;
+mod verdicts;
 mod wording;
 
 use serde::Serialize;
@@ -24,6 +25,7 @@ pub use protocol::{ProtocolView, SourceFile, view as protocol_view};
 pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair};
 pub use section::{CheckTable, ColumnHead, DomainView, SectionRow, SectionTable, ZoneView};
 pub use summary::{FurtherRow, SummaryRow};
+pub use verdicts::VerdictRow;
 pub use wording::Wording;
 
 /// Number of reasons on the cover; the summary lists all.
@@ -38,6 +40,10 @@ pub struct ReportData {
     pub program: String,
     pub words: Wording,
     pub verdict: Finding,
+    /// Title of the overall verdict, if it has a name.
+    pub verdict_title: Option<String>,
+    /// The verdicts with a name.
+    pub verdicts: Vec<VerdictRow>,
     /// A note on the verdict.
     pub verdict_note: Option<String>,
     /// The statement for signature by the person responsible for the simulation.
@@ -196,7 +202,9 @@ pub fn view(found: &Certification) -> ReportData {
         title: title(found),
         program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned(),
         words: wording::wording(found),
-        verdict: Finding::new(verdict_holds, found.verdict_words(), found.verdict_words(), found.verdict_words()),
+        verdict: Finding::new(verdict_holds, found.verdict_word(), found.verdict_word(), found.verdict_word()),
+        verdict_title: verdicts::title(found),
+        verdicts: verdicts::rows(found),
         verdict_note: found.verdict_note.clone(),
         simulation_statement: wording::simulation_statement(found),
         measurement_statement: wording::measurement_statement(found),

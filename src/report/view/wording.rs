@@ -61,6 +61,9 @@ fn over(found: &Certification) -> String {
 
 /// The verdict as a sentence.
 pub(super) fn sentence(found: &Certification) -> &'static str {
+    if found.own_word.is_some() {
+        return super::verdicts::sentence(found.verdict);
+    }
     if found.kind() == Kind::Validation {
         return match found.verdict {
             Verdict::Validated => {

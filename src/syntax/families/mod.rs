@@ -85,7 +85,7 @@ struct Writer<'a> {
 
 impl Writer<'_> {
     fn block(&mut self, block: &Block) {
-        let Some(kind) = keys::kind(&block.kind.text).filter(|kind| kind.has_families()) else {
+        let Some(kind) = keys::of_block(block).filter(|kind| kind.has_families()) else {
             self.blocks.push(block.clone());
             return;
         };

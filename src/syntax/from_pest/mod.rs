@@ -10,7 +10,7 @@ use pest::Parser;
 use pest::iterators::Pair;
 
 use super::document::Text;
-use super::phrase::{Alias, At, Limit, Node, OfPlaces, Phrase, Pick, Scope, Step, Verdict};
+use super::phrase::{Alias, At, Limit, Node, OfPlaces, OverVerdicts, Phrase, Pick, Scope, Step, Verdict};
 use crate::problem::Problems;
 use tree::{cases, either, estimate, pick, step, sum};
 
@@ -127,12 +127,53 @@ fn scope(pair: Pair<'_, Rule>) -> Option<Scope> {
 
 pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {
     let inner = parts(parse(Rule::verdict, text, problems)?).next()?;
-    if inner.as_rule() == Rule::every_limit {
-        return Some(Verdict::EveryLimit);
+    match inner.as_rule() {
+        Rule::every_limit => return Some(Verdict::EveryLimit),
+        Rule::some_verdict => return Some(Verdict::Over(over_verdicts(inner)?)),
+        _ => {}
     }
     let mut inner = parts(inner).filter(|pair| pair.as_rule() != Rule::at_least);
     let count = sum(inner.next()?)?;
     Some(Verdict::AtLeast { count, of_limits: inner.next()?.as_rule() == Rule::of_limits })
+}
+
+fn over_verdicts(pair: Pair<'_, Rule>) -> Option<OverVerdicts> {
+    let rule = pair.as_rule();
+    let mut inner = parts(pair).peekable();
+    match rule {
+        Rule::some_verdict | Rule::all_verdicts => {
+            let mut all = inner.map(over_verdicts).collect::<Option<Vec<_>>>()?;
+            match (all.len(), rule) {
+                (1, _) => all.pop(),
+                (_, Rule::some_verdict) => Some(OverVerdicts::Any(all)),
+                _ => Some(OverVerdicts::All(all)),
+            }
+        }
+        Rule::one_verdict => {
+            let not = inner.next_if(|pair| pair.as_rule() == Rule::not).is_some();
+            let over = over_verdicts(inner.next()?)?;
+            Some(if not { OverVerdicts::Not(Box::new(over)) } else { over })
+        }
+        Rule::enough_verdicts => {
+            let mut inner = inner.filter(|pair| !matches!(pair.as_rule(), Rule::at_least | Rule::of));
+            let count = inner.next()?;
+            let range = bytes(&count);
+            let node = match count.as_rule() {
+                Rule::number => Node::Number { value: count.as_str().trim().parse().ok()?, unit: None },
+                _ => Node::Path(count.as_str().trim().to_string()),
+            };
+            Some(OverVerdicts::AtLeast { count: At { node, range }, of: inner.map(|name| named(&name)).collect() })
+        }
+        _ => {
+            let name = named(&inner.next()?);
+            let Some(next) = inner.next() else { return Some(OverVerdicts::Holds(name)) };
+            let over = match inner.next() {
+                Some(other) => OverVerdicts::Same(name, named(&other)),
+                None => OverVerdicts::Holds(name),
+            };
+            Some(if next.as_rule() == Rule::is { over } else { OverVerdicts::Not(Box::new(over)) })
+        }
+    }
 }
 
 /// Runs one rule over a field; a syntax error becomes a problem at the word where it stands.

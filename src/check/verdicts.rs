@@ -1,0 +1,292 @@
+//! Checks verdicts: what each is about, what decides it, and in which words.
+
+use std::collections::BTreeSet;
+
+use super::Checker;
+use super::names::normalised;
+use super::plan::{Decision, Evaluation, Over, Quantity, Records, Rule, Side, VerdictRule};
+use crate::problem::Problem;
+use crate::source::Span;
+use crate::syntax::document::{Block, Field};
+use crate::syntax::from_pest;
+use crate::syntax::phrase::{At, OverVerdicts, Phrase, Verdict as Written};
+use crate::units::Dimension;
+
+/// Words of the verdict without a name.
+const VALIDATED: [&str; 2] = ["validated", "not validated"];
+/// Words of a verdict with a name.
+const HOLDS: [&str; 2] = ["holds", "does not hold"];
+/// What a report says of a verdict that is neither, which no verdict may have as its word.
+const NEITHER: [&str; 2] = ["not assessable", "open"];
+/// What stands in `of` for all quantities of a kind.
+const KINDS: [&str; 3] = ["measured", "simulated", "compared"];
+
+/// The verdicts that a rule may be over, and the place of the first of them in the plan.
+struct Names {
+    names: Vec<String>,
+    first: usize,
+}
+
+impl Checker<'_> {
+    /// All verdicts of the protocol, the overall one first.
+    pub(super) fn verdicts(&mut self, unnamed: Option<&Block>, head: &Block, quantities: &[Quantity]) -> Vec<VerdictRule> {
+        let blocks: Vec<Block> = self.blocks.iter().filter(|block| block.kind.text == "verdict" && block.name.is_some()).cloned().collect();
+        let first = usize::from(unnamed.is_some() || blocks.is_empty());
+        let names = Names { names: blocks.iter().map(|block| block.name_text().to_string()).collect(), first };
+        let mut verdicts = Vec::new();
+        if first == 1 {
+            verdicts.push(self.without_name(unnamed, head, quantities, &names));
+        }
+        verdicts.extend(blocks.iter().map(|block| self.with_name(block, quantities, &names)));
+        let mut done = BTreeSet::new();
+        for at in 0..blocks.len() {
+            self.follow(first + at, &verdicts, &blocks[at].span().clone(), &mut done);
+        }
+        self.without_verdict(quantities, &verdicts);
+        verdicts
+    }
+
+    fn without_name(&mut self, block: Option<&Block>, head: &Block, quantities: &[Quantity], names: &Names) -> VerdictRule {
+        let all: Vec<usize> = (0..quantities.len()).collect();
+        let (words, own_words) = block.map_or_else(|| (VALIDATED.map(String::from), false), |block| self.verdict_words(block, VALIDATED));
+        let field = block.and_then(|block| block.field("validated"));
+        let rule = field.map_or_else(|| "when every limit holds".to_string(), |field| normalised(&field.value.text));
+        let decision = match field {
+            Some(field) => self.decision(field, all, None, quantities, names),
+            None => Decision::Limits { rule: Rule::EveryLimit, quantities: all },
+        };
+        VerdictRule {
+            name: None,
+            title: block.and_then(title).unwrap_or_else(|| "Verdict".into()),
+            criterion: format!("{} {rule}", words[0]),
+            decision,
+            words,
+            own_words,
+            clause: None,
+            source: None,
+            notes: block.map_or_else(Vec::new, notes),
+            span: block.map_or_else(|| head.span().clone(), |block| block.span().clone()),
+        }
+    }
+
+    fn with_name(&mut self, block: &Block, quantities: &[Quantity], names: &Names) -> VerdictRule {
+        let (words, own_words) = self.verdict_words(block, HOLDS);
+        let (holds, person, of) = (block.field("holds"), block.field("judged by"), block.field("of"));
+        let about = self.about(of, quantities);
+        let mut criterion = holds.map_or_else(String::new, |field| format!("{} {}", words[0], normalised(&field.value.text)));
+        if let Some(of) = of {
+            criterion = format!("{criterion} (of {})", normalised(&of.value.text));
+        }
+        let decision = match (holds, person) {
+            (Some(field), None) => self.decision(field, about, of, quantities, names),
+            (None, Some(field)) => {
+                self.needs_limits(of, "a person decides this verdict");
+                let person = normalised(&field.value.text);
+                criterion = format!("judged by {person}");
+                Decision::Person(person)
+            }
+            (holds, _) => {
+                let says = match holds {
+                    None => format!("verdict `{}` has neither a rule nor a person who decides it", block.name_text()),
+                    Some(_) => format!("verdict `{}` has a rule, and a person who decides it", block.name_text()),
+                };
+                let problem = Problem::error("verdict-rule", says).at(block.span());
+                self.problems.push(problem.help("write either `holds` or `judged by`"));
+                Decision::Limits { rule: Rule::EveryLimit, quantities: about }
+            }
+        };
+        let text = |key: &str| block.field(key).map(|field| field.value.text.clone());
+        VerdictRule {
+            name: Some(block.name_text().to_string()),
+            title: title(block).unwrap_or_else(|| block.name_text().replace('_', " ")),
+            decision,
+            words,
+            own_words,
+            criterion,
+            clause: text("clause"),
+            source: text("source"),
+            notes: notes(block),
+            span: block.span().clone(),
+        }
+    }
+
+    /// The two words of a verdict, and whether it states them.
+    fn verdict_words(&mut self, block: &Block, default: [&str; 2]) -> ([String; 2], bool) {
+        let Some(field) = block.field("words") else { return (default.map(String::from), false) };
+        let parts: Vec<String> = field.value.text.split(',').map(|word| normalised(word.trim().trim_matches('"'))).collect();
+        let wrong = match parts.as_slice() {
+            [good, bad] if good == bad => Some("the two words of a verdict are the same".to_string()),
+            [good, bad] if good.is_empty() || bad.is_empty() => Some("a word of the verdict is missing".to_string()),
+            [good, bad] => [good, bad]
+                .into_iter()
+                .find(|word| NEITHER.contains(&word.as_str()))
+                .map(|word| format!("`{word}` is what a report says of a verdict that cannot be given or is not given yet")),
+            _ => Some(format!("a verdict has two words, here {} {}", if parts.len() == 1 { "is" } else { "are" }, parts.len())),
+        };
+        if let Some(says) = wrong {
+            let problem = Problem::error("verdict-words", says).at(&field.value.span);
+            self.problems.push(problem.help("one if it holds and one if it does not, with a comma between: `accepted, not accepted`"));
+            return (default.map(String::from), false);
+        }
+        let mut words = parts.into_iter();
+        (std::array::from_fn(|_| words.next().unwrap_or_default()), true)
+    }
+
+    /// The quantities that a verdict is about, each once, in their order; all where it does not say.
+    fn about(&mut self, of: Option<&Field>, quantities: &[Quantity]) -> Vec<usize> {
+        let all = || (0..quantities.len()).collect();
+        let Some(field) = of else { return all() };
+        let Some(items) = from_pest::list(&field.value, self.problems) else { return all() };
+        let known: Vec<String> =
+            self.blocks.iter().filter(|block| block.kind.text == "quantity").map(|block| block.name_text().to_string()).collect();
+        let mut found = BTreeSet::new();
+        for item in &items {
+            let name = item.node.as_str();
+            let at = field.value.place(item.range.clone());
+            if known.iter().any(|known| known == name) {
+                // One that is not among those of the plan has a fault of its own.
+                found.extend(quantities.iter().position(|quantity| quantity.id == name));
+            } else if KINDS.contains(&name) {
+                let before = found.len();
+                found.extend((0..quantities.len()).filter(|&at| kind(&quantities[at]) == name));
+                if found.len() == before && !self.problems.any_error() {
+                    self.problems.push(Problem::error("unknown-quantity", format!("no quantity is {}", of_kind(name))).at(&at));
+                }
+            } else {
+                let problem = Problem::error("unknown-quantity", format!("there is no quantity `{name}`")).at(&at);
+                self.problems.push(problem.suggest(name, known.iter().map(String::as_str).chain(KINDS)));
+            }
+        }
+        found.into_iter().collect()
+    }
+
+    /// `of` says which limits count: it has no meaning where none do.
+    fn needs_limits(&mut self, of: Option<&Field>, why: &str) {
+        if let Some(field) = of {
+            let problem = Problem::error("verdict-of", format!("`of` names quantities whose limits count, and {why}")).at(&field.key.span);
+            self.problems.push(problem.help("leave `of` out"));
+        }
+    }
+
+    fn decision(&mut self, field: &Field, about: Vec<usize>, of: Option<&Field>, quantities: &[Quantity], names: &Names) -> Decision {
+        let every = |quantities| Decision::Limits { rule: Rule::EveryLimit, quantities };
+        let (count, of_limits) = match from_pest::verdict(&field.value, self.problems) {
+            None | Some(Written::EveryLimit) => return every(about),
+            Some(Written::AtLeast { count, of_limits }) => (count, of_limits),
+            Some(Written::Over(over)) => {
+                self.needs_limits(of, "this rule is over other verdicts");
+                return self.over(&over, field, names).map_or_else(|| every(about), Decision::Verdicts);
+            }
+        };
+        let (there, what) = match (of_limits, of) {
+            (true, _) => (about.iter().map(|&at| quantities[at].limits.len()).sum::<usize>(), "limits"),
+            (false, Some(_)) => (about.len(), "quantities"),
+            (false, None) => (self.blocks.iter().filter(|block| block.kind.text == "quantity").count(), "quantities"),
+        };
+        match self.how_many(&count, field, there, what) {
+            Some(wanted) if of_limits => Decision::Limits { rule: Rule::AtLeastLimits(wanted), quantities: about },
+            Some(wanted) => Decision::Limits { rule: Rule::AtLeastQuantities(wanted), quantities: about },
+            None => every(about),
+        }
+    }
+
+    /// A whole number of things, of which there are enough.
+    fn how_many(&mut self, count: &Phrase, field: &Field, there: usize, what: &str) -> Option<usize> {
+        let place = field.value.place(count.range.clone());
+        let (wanted, dimension) = self.constant_phrase(count, &field.value)?;
+        if dimension != Dimension::ONE || wanted < 1.0 || wanted.fract() != 0.0 {
+            self.problems.push(Problem::error("not-a-count", "a whole number above zero is needed").at(&place));
+            return None;
+        }
+        let wanted = wanted as usize;
+        if wanted > there && !self.problems.any_error() {
+            self.problems.push(Problem::error("out-of-range", format!("{wanted} {what} are asked for, there are {there}")).at(&place));
+        }
+        Some(wanted)
+    }
+
+    fn over(&mut self, over: &OverVerdicts, field: &Field, names: &Names) -> Option<Over> {
+        // Every name is looked at, so that all that are unknown are told.
+        let all = |checker: &mut Self, parts: &[OverVerdicts]| {
+            let found: Vec<Option<Over>> = parts.iter().map(|part| checker.over(part, field, names)).collect();
+            found.into_iter().collect::<Option<Vec<_>>>()
+        };
+        Some(match over {
+            OverVerdicts::Holds(name) => Over::Holds(self.verdict_named(name, field, names)?),
+            OverVerdicts::Same(one, other) => {
+                let (one, other) = (self.verdict_named(one, field, names), self.verdict_named(other, field, names));
+                Over::Same(one?, other?)
+            }
+            OverVerdicts::AtLeast { count, of } => {
+                let found: Vec<Option<usize>> = of.iter().map(|name| self.verdict_named(name, field, names)).collect();
+                let mut found = found.into_iter().collect::<Option<Vec<usize>>>()?;
+                found.sort_unstable();
+                found.dedup();
+                Over::AtLeast(self.how_many(count, field, found.len(), "verdicts")?, found)
+            }
+            OverVerdicts::Not(inner) => Over::Not(Box::new(self.over(inner, field, names)?)),
+            OverVerdicts::All(parts) => Over::All(all(self, parts)?),
+            OverVerdicts::Any(parts) => Over::Any(all(self, parts)?),
+        })
+    }
+
+    fn verdict_named(&mut self, name: &At<String>, field: &Field, names: &Names) -> Option<usize> {
+        let found = names.names.iter().position(|known| *known == name.node);
+        if found.is_none() {
+            let at = field.value.place(name.range.clone());
+            let problem = Problem::error("unknown-verdict", format!("there is no verdict `{}`", name.node)).at(&at);
+            self.problems.push(problem.suggest(&name.node, names.names.iter().map(String::as_str)));
+        }
+        Some(found? + names.first)
+    }
+
+    /// Looks for verdicts that rest on themselves.
+    fn follow(&mut self, at: usize, verdicts: &[VerdictRule], from: &Span, done: &mut BTreeSet<usize>) {
+        let verdict = &verdicts[at];
+        let (Some(name), Decision::Verdicts(over)) = (&verdict.name, &verdict.decision) else { return };
+        if done.contains(&at) {
+            return;
+        }
+        self.deeper(from, |checker| {
+            checker.inside("verdict", name, from, |checker| {
+                over.verdicts().into_iter().for_each(|next| checker.follow(next, verdicts, &verdict.span, done));
+                Some(())
+            })
+        });
+        done.insert(at);
+    }
+
+    /// A limit that no verdict is about decides nothing: its author should know.
+    fn without_verdict(&mut self, quantities: &[Quantity], verdicts: &[VerdictRule]) {
+        let about = |at: usize| {
+            verdicts.iter().any(|verdict| matches!(&verdict.decision, Decision::Limits { quantities, .. } if quantities.contains(&at)))
+        };
+        for (at, quantity) in quantities.iter().enumerate().filter(|(_, quantity)| !quantity.limits.is_empty()) {
+            if !about(at) {
+                let says = format!("no verdict is about quantity `{}`: its limits decide nothing", quantity.id);
+                self.problems.push(Problem::warning("quantity-without-verdict", says).at(&quantity.span));
+            }
+        }
+    }
+}
+
+fn title(block: &Block) -> Option<String> {
+    block.title.as_ref().map(|title| title.text.clone())
+}
+
+fn notes(block: &Block) -> Vec<String> {
+    block.fields_named("note").map(|note| note.value.text.clone()).collect()
+}
+
+/// What stands for a quantity among [`KINDS`].
+fn kind(quantity: &Quantity) -> &'static str {
+    match quantity.evaluation.as_ref() {
+        Evaluation::Values { records: Records::Of(Side::Measured), .. } => "measured",
+        Evaluation::Values { records: Records::Of(_), .. } => "simulated",
+        _ => "compared",
+    }
+}
+
+fn of_kind(word: &str) -> String {
+    if word == "compared" { "a comparison".into() } else { format!("`from {word}`") }
+}
