@@ -61,7 +61,7 @@ fn pool(counts: &[usize]) -> Pool {
             .collect(),
         zones: (1..=counts.len()).map(|zone| Zone { name: zone.to_string(), title: String::new(), needed: 3 }).collect(),
         minimum: 12,
-        rule: Rule::EveryLimit,
+        rule: Some(Rule::EveryLimit),
     }
 }
 

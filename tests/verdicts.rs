@@ -207,7 +207,7 @@ fn reports_have_the_verdicts_and_lines_for_the_judgement() {
     let pdf = typst::typeset(&data, &[], &[]).unwrap_or_else(|problems| panic!("{}", problems.render(false)));
     assert!(pdf.warnings.0.is_empty(), "{}", pdf.warnings.render(false));
     let results: serde_json::Value = serde_json::from_str(&json::results(&found)).expect("JSON");
-    assert_eq!((results["verdict"].as_str(), results["verdict_word"].as_str()), (Some("validated"), Some("accepted")));
+    assert_eq!((results["verdict"].as_str(), results["verdict_word"].as_str()), (Some("requirements met"), Some("accepted")));
     assert_eq!(results["verdicts"][4]["judged_by"], "the responsible test engineer");
     assert_eq!(results["verdicts"][4]["outcome"], "open");
 }

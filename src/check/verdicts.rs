@@ -39,8 +39,8 @@ impl Checker<'_> {
         }
         verdicts.extend(blocks.iter().map(|block| self.with_name(block, quantities, &names)));
         let mut done = BTreeSet::new();
-        for at in 0..blocks.len() {
-            self.follow(first + at, &verdicts, &blocks[at].span().clone(), &mut done);
+        for (at, block) in blocks.iter().enumerate() {
+            self.follow(first + at, &verdicts, &block.span().clone(), &mut done);
         }
         self.without_verdict(quantities, &verdicts);
         verdicts
