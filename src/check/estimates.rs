@@ -7,7 +7,7 @@ use super::scalars::{Scope, in_words};
 use crate::catalog::{STATISTICS, Statistic};
 use crate::problem::Problem;
 use crate::source::Span;
-use crate::syntax::document::Text;
+use crate::syntax::document::{Block, Text};
 use crate::syntax::phrase::{At, Fit as WrittenFit, Limit as Written, Node, Phrase};
 use crate::units::Dimension;
 
@@ -32,6 +32,15 @@ impl Group {
     fn take(&mut self, taking: Taking) -> Kind {
         self.taken.push(taking);
         Kind::Input(self.taken.len() - 1)
+    }
+}
+
+/// `p95`, `mean`
+fn reducer_name(reducer: &Phrase) -> String {
+    match &reducer.node {
+        Node::Percentile(percent) => format!("p{percent}"),
+        Node::Path(path) => path.clone(),
+        _ => String::new(),
     }
 }
 
@@ -159,11 +168,7 @@ impl Checker<'_> {
 
     /// `mean of radius`, `total of length`: over the sections of a group.
     pub(super) fn group_data(&mut self, reducer: &Phrase, of: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
-        let name = match &reducer.node {
-            Node::Percentile(percent) => format!("p{percent}"),
-            Node::Path(path) => path.clone(),
-            _ => String::new(),
-        };
+        let name = reducer_name(reducer);
         let found = match (name.as_str(), Statistic::named(&name)) {
             ("total", _) => Some(DataReducer::Total),
             (_, Some(Statistic::Each) | None) => None,
@@ -186,6 +191,76 @@ impl Checker<'_> {
         let of = self.expr(of, text, &mut Scope { zone: scope.zone.clone(), ..Scope::section() })?;
         let dimension = self.number_type(&of)?;
         let kind = scope.group.as_mut()?.take(Taking::Data { reducer: reducer_found, of });
+        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+    }
+
+    /// The quantity that `NAME` in `p80 of NAME` is, where the rows of a group are at hand: its number and its block. Data of sections go
+    /// before it.
+    pub(super) fn other_quantity(&self, of: &Phrase, scope: &Scope) -> Option<(usize, usize)> {
+        let Node::Path(name) = &of.node else { return None };
+        if scope.group.is_none() && scope.value.is_none() || self.names.defines.contains_key(name) {
+            return None;
+        }
+        let data = [&self.names.columns, &self.names.vehicle];
+        if data.iter().any(|data| data.iter().any(|datum| datum.name == *name)) || self.names.parameter_blocks.contains_key(name) {
+            return None;
+        }
+        let quantities = self.blocks.iter().enumerate().filter(|(_, block)| block.kind.text == "quantity");
+        let mut named = quantities.enumerate().filter(|(_, (_, block))| block.name_text() == name);
+        named.next().map(|(number, (at, _))| (number, at))
+    }
+
+    /// Whether a limit or an estimate takes a number from the quantity: then it decides something without a limit of its own.
+    pub(super) fn is_referred_to(&self, quantity: &str) -> bool {
+        let refers = |text: &Text| {
+            let words: Vec<&str> =
+                text.text.split(|c: char| c.is_whitespace() || "()".contains(c)).filter(|word| !word.is_empty()).collect();
+            words.windows(2).any(|pair| pair == ["of", quantity])
+        };
+        let of_block = |block: &Block| {
+            let fields = block.fields_named("limit").chain(block.fields_named("is").filter(|_| block.kind.text == "estimate"));
+            fields.into_iter().any(|field| refers(&field.value))
+        };
+        self.blocks.iter().any(|block| of_block(block))
+    }
+
+    /// In a condition on one value, `p80 of ...` can only be of another quantity.
+    pub(super) fn no_such_quantity(&mut self, of: &Phrase, text: &Text, span: &Span) -> Option<Expr> {
+        let name = text.text.get(of.range.clone()).unwrap_or_default().trim().to_string();
+        let problem = Problem::error("no-such-quantity", format!("`{name}` is no quantity of which something could be taken here"));
+        let quantities: Vec<String> =
+            self.blocks.iter().filter(|block| block.kind.text == "quantity").map(|block| block.name_text().to_string()).collect();
+        self.problems.push(problem.at(span).suggest(&name, quantities.iter().map(String::as_str)));
+        None
+    }
+
+    /// `p80 of misfit_of_repeats`: a statistic of all rows of another quantity. It needs no estimate of that quantity, so that no two can
+    /// need each other.
+    pub(super) fn of_other(&mut self, reducer: &Phrase, of: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+        let (quantity, block) = self.other_quantity(of, scope)?;
+        let (name, range) = (reducer_name(reducer), reducer.range.clone());
+        if self.names.estimates.contains_key(&name) {
+            let says = format!("`{name}` is an estimate of this quantity's own values");
+            let help = "of another quantity a statistic can be taken: `p80 of ...`, `mean of ...`";
+            self.problems.push(Problem::error("unknown-statistic", says).at(&text.place(range)).help(help));
+            return None;
+        }
+        let statistic = self.statistic(&At { node: name, range }, text)?;
+        if statistic == Statistic::Each {
+            self.problems.push(Problem::error("each-value", "`each` is every value by itself and no number of a quantity").at(span));
+            return None;
+        }
+        let block = self.blocks.get(block)?.clone();
+        let dimension = self.dimension_of(&block)?;
+        let taking = Taking::Other { quantity, id: block.name_text().to_string(), statistic, ddof: self.ddof };
+        let kind = match scope.group.as_mut() {
+            Some(group) => group.take(taking),
+            None => {
+                scope.others.push(taking);
+                // The value itself is input 0.
+                Kind::Input(scope.others.len())
+            }
+        };
         Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
     }
 
@@ -256,9 +331,10 @@ impl Checker<'_> {
         if value.is_none() && !of_sections {
             return self.no_values(span);
         }
-        let condition = self.expr(condition, text, &mut Scope { value, zone: scope.zone.clone(), ..Scope::section() })?;
+        let mut of_row = Scope { value, zone: scope.zone.clone(), ..Scope::section() };
+        let condition = self.expr(condition, text, &mut of_row)?;
         self.flag_type(&condition)?;
-        let kind = scope.group.as_mut()?.take(Taking::Share { condition, of_sections });
+        let kind = scope.group.as_mut()?.take(Taking::Share { condition, of_sections, others: of_row.others });
         Some(Expr { kind, ty: Type::Number(Dimension::ONE), span: span.clone() })
     }
 

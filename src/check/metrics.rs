@@ -25,10 +25,25 @@ impl Checker<'_> {
     pub(super) fn by_metric(
         &mut self,
         field: &Field,
+        compare: Option<&Field>,
         positions: Option<&[(Position, Assignment)]>,
         chain: Option<&[Step]>,
     ) -> Option<Compared> {
-        if self.is_wording(&field.value) { self.by_wording(field, positions, chain) } else { self.by_expression(field, positions, chain) }
+        let of_repeats = compare.map_or(Some(false), |compare| self.of_metric(compare, &field.key.span));
+        let compared = if self.is_wording(&field.value) {
+            self.by_wording(field, positions, chain)
+        } else {
+            self.by_expression(field, positions, chain)
+        };
+        let (of_repeats, mut compared) = (of_repeats?, compared?);
+        if of_repeats {
+            if let Evaluation::Metric { repeats, .. } | Evaluation::Combined { repeats, .. } = &mut compared.evaluation {
+                *repeats = true;
+            }
+            let words = compared.comparison.replace("measured", "original").replace("simulated", "repeat");
+            compared.comparison = if words == compared.comparison { format!("{words} of repeat and original") } else { words };
+        }
+        Some(compared)
     }
 
     /// Whether a field is to be read as the wording of a metric, rather than as an expression.
@@ -81,7 +96,7 @@ impl Checker<'_> {
         let words = normalised(&field.value.text);
         let (first, _) = positions.first()?;
         Some(Compared {
-            evaluation: Evaluation::Metric { metric, over, over_axis },
+            evaluation: Evaluation::Metric { metric, over, over_axis, repeats: false },
             dimension: (metric.0.gives)(
                 after(chain, first.signal.dimension),
                 self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension),
@@ -128,7 +143,7 @@ impl Checker<'_> {
         }
         let words = normalised(&field.value.text);
         Some(Compared {
-            evaluation: Evaluation::Combined(valued),
+            evaluation: Evaluation::Combined { of: valued, repeats: false },
             dimension,
             processing: words.clone(),
             comparison: words,

@@ -486,9 +486,10 @@ pub enum Evaluation {
     /// Numbers of each record, by themselves or compared.
     Values { values: Vec<Valued>, records: Records },
     /// One number of the two signals; `over` is the other signal its wording names, one for each position, with its name and unit.
-    Metric { metric: Metric, over: Vec<Signal>, over_axis: Option<Axis> },
-    /// One number of metrics, of numbers of one side, and of numbers of both sides' samples.
-    Combined(Valued),
+    /// With `repeats`, of a repeated section and its original.
+    Metric { metric: Metric, over: Vec<Signal>, over_axis: Option<Axis>, repeats: bool },
+    /// One number of metrics, of numbers of one side, and of numbers of both sides' samples; `repeats` as of a metric.
+    Combined { of: Valued, repeats: bool },
 }
 
 /// A number of one record.
@@ -508,6 +509,9 @@ pub enum Records {
     Compared { difference: Expr },
     /// One row for each record of this side, compared with what is central of all of them.
     Spread { side: Side, center: Center, difference: Expr },
+    /// One row for each measured record of a section that repeats another, compared with that of its original, which stands in the place of
+    /// the measurement.
+    Repeats { difference: Expr },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -538,7 +542,9 @@ impl Evaluation {
     pub fn reads(&self, side: Side) -> bool {
         match self {
             Self::Values { records: Records::Of(of) | Records::Spread { side: of, .. }, .. } => *of == side,
-            Self::Values { records: Records::Compared { .. }, .. } | Self::Metric { .. } | Self::Combined(_) => true,
+            Self::Values { records: Records::Compared { .. }, .. } => true,
+            Self::Values { records: Records::Repeats { .. }, .. } => side == Side::Measured,
+            Self::Metric { repeats, .. } | Self::Combined { repeats, .. } => !repeats || side == Side::Measured,
         }
     }
 
@@ -561,7 +567,17 @@ impl Evaluation {
 
     /// Whether rows have two sides and a difference.
     pub fn has_sides(&self) -> bool {
-        matches!(self, Self::Values { records: Records::Compared { .. } | Records::Spread { .. }, .. })
+        matches!(self, Self::Values { records: Records::Compared { .. } | Records::Spread { .. } | Records::Repeats { .. }, .. })
+    }
+
+    /// Whether repeats of sections are compared with their originals.
+    pub fn of_repeats(&self) -> bool {
+        matches!(
+            self,
+            Self::Values { records: Records::Repeats { .. }, .. }
+                | Self::Metric { repeats: true, .. }
+                | Self::Combined { repeats: true, .. }
+        )
     }
 }
 
@@ -601,6 +617,11 @@ pub enum EstimateKind {
 }
 
 impl Estimate {
+    /// As [`OfGroup::others`].
+    pub fn others(&self) -> Vec<usize> {
+        if let EstimateKind::Of(of) = &self.kind { of.others() } else { Vec::new() }
+    }
+
     /// The statistic that it is and nothing more, with the divisor's n - `ddof`.
     pub fn statistic(&self) -> Option<(Statistic, usize)> {
         match &self.kind {
@@ -620,6 +641,22 @@ pub struct OfGroup {
     pub taken: Vec<Taking>,
 }
 
+impl OfGroup {
+    /// The quantities whose rows it needs beside those of the group.
+    pub fn others(&self) -> Vec<usize> {
+        fn of(taking: &Taking) -> Vec<usize> {
+            match taking {
+                Taking::Other { quantity, .. } => vec![*quantity],
+                Taking::Share { others, .. } => others.iter().flat_map(of).collect(),
+                Taking::Bound { of, .. } => of.others(),
+                Taking::Fit(fit) => fit.at.iter().flat_map(OfGroup::others).collect(),
+                Taking::Statistic(..) | Taking::Count | Taking::Data { .. } => Vec::new(),
+            }
+        }
+        self.taken.iter().flat_map(of).collect()
+    }
+}
+
 /// A number taken from the rows of a group.
 #[derive(Clone, Debug)]
 pub enum Taking {
@@ -635,9 +672,18 @@ pub enum Taking {
         bootstrap: bool,
     },
     /// Part of the rows, or of the sections, that satisfy a condition; [`Kind::Input`] 0 is the value of a row.
+    /// Beside it `others`, inputs from 1 on: estimates of other quantities.
     Share {
         condition: Expr,
         of_sections: bool,
+        others: Vec<Taking>,
+    },
+    /// A statistic of all rows of another quantity, an index into [`Plan::quantities`].
+    Other {
+        quantity: usize,
+        id: String,
+        statistic: Statistic,
+        ddof: usize,
     },
     /// Of data of the group's sections, each section once.
     Data {

@@ -31,6 +31,16 @@ pub(super) struct Compared {
     pub from: Option<Span>,
 }
 
+/// Which records are compared.
+#[derive(Clone, Copy, Debug)]
+enum Compare {
+    Sides,
+    /// Each record of a side with what is central of all.
+    With(Side, Center),
+    /// Sections measured again with what they repeat.
+    Repeats,
+}
+
 impl Checker<'_> {
     pub(super) fn quantity(&mut self, block: &Block) -> Option<Quantity> {
         self.in_quantity = true;
@@ -40,6 +50,28 @@ impl Checker<'_> {
         self.assumed.clear();
         self.in_quantity = false;
         found
+    }
+
+    /// Of its values, for who refers to them. What is wrong is told where the quantity itself is looked at.
+    pub(super) fn dimension_of(&mut self, block: &Block) -> Option<Dimension> {
+        let problems = self.problems.0.len();
+        let (assumed, partial) = (std::mem::take(&mut self.assumed), self.partial);
+        if let Some(Some(only)) = block.field("where").map(|field| self.section_condition(field)) {
+            self.assumed.push(only);
+        }
+        let chain = block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
+        let positions = self.positions_of_quantity(block);
+        let compared = self.compared_of(block, positions.as_deref(), chain.as_deref());
+        (self.assumed, self.partial) = (assumed, partial);
+        self.problems.0.truncate(problems);
+        compared.map(|compared| compared.dimension)
+    }
+
+    fn compared_of(&mut self, block: &Block, positions: Option<&[(Position, Assignment)]>, chain: Option<&[Step]>) -> Option<Compared> {
+        match block.field("metric") {
+            Some(field) => self.by_metric(field, block.field("compare"), positions, chain),
+            None => self.by_values(block, positions, chain.unwrap_or_default()),
+        }
     }
 
     /// Everything is looked at, whatever fails: an author wants all faults in one go.
@@ -72,17 +104,14 @@ impl Checker<'_> {
         let of = block.field("of").map(|field| field.value.clone());
         let dimension = positions.as_ref().and_then(|positions| positions.first()).map(|(position, _)| position.signal.dimension);
         let dimension = dimension.map(|dimension| after(chain.as_deref().unwrap_or_default(), dimension));
-        let compared = match metric {
-            Some(field) => self.by_metric(field, positions.as_deref(), chain.as_deref()),
-            None => self.by_values(block, positions.as_deref(), chain.as_deref().unwrap_or_default()),
-        };
+        let compared = self.compared_of(block, positions.as_deref(), chain.as_deref());
         let result = compared.as_ref().map(|compared| compared.dimension);
         let unit = result.zip(of.as_ref()).and_then(|(result, of)| self.quantity_unit(block, of, result));
         let from = compared.as_ref().and_then(|compared| compared.from.as_ref()).or_else(|| of.as_ref().map(|of| &of.span));
         let best = compared.as_ref().and_then(|compared| compared.best.as_ref());
         let places: Vec<String> = positions.iter().flatten().next().map_or_else(Vec::new, |(_, at)| at.keys().cloned().collect());
         let limits = self.limits(block, unit.as_ref().zip(from), best, &places);
-        if block.field("limit").is_none() {
+        if block.field("limit").is_none() && !self.is_referred_to(block.name_text()) {
             self.problems.push(
                 Problem::warning("no-limit", format!("quantity `{}` has no limit: it is reported, and decides nothing", block.name_text()))
                     .at(block.span()),
@@ -228,7 +257,7 @@ impl Checker<'_> {
             }
         }
         let from = block.field("from").map(|field| self.side(field));
-        let compare = block.field("compare").map(|field| self.spread(field));
+        let compare = block.field("compare").map(|field| self.compare(field));
         let difference = match from {
             Some(_) => None,
             None => Some(block.field("difference").and_then(|field| self.difference(field, result))),
@@ -252,17 +281,20 @@ impl Checker<'_> {
             return Some(Compared { evaluation, dimension: result, processing, comparison, best: None, from });
         };
         let (difference, compared) = difference?;
-        let spread = match compare {
+        let compare = match compare {
             Some(compare) => compare?,
-            None => None,
+            None => Compare::Sides,
         };
         let comparison = words(&difference);
         let key = if compared != result { "difference" } else { "value" };
         let from = field_of(key).filter(|_| Some(compared) != dimension);
         let best = of_equal_sides(&difference).map(Best::Near).zip(field_of("difference"));
-        let (records, comparison) = match spread {
-            None => (Records::Compared { difference }, comparison),
-            Some((side, center)) => {
+        let (records, comparison) = match compare {
+            Compare::Sides => (Records::Compared { difference }, comparison),
+            Compare::Repeats => {
+                (Records::Repeats { difference }, comparison.replace("measured", "original").replace("simulated", "repeat"))
+            }
+            Compare::With(side, center) => {
                 let name = if center == Center::Mean { "mean" } else { "median" };
                 let words = comparison.replace("measured", &format!("{name} of all"));
                 (Records::Spread { side, center, difference }, words)
@@ -283,23 +315,39 @@ impl Checker<'_> {
         found
     }
 
-    /// `simulated with mean of simulated`; `None` inside for `simulated with measured`.
-    fn spread(&mut self, field: &Field) -> Option<Option<(Side, Center)>> {
+    /// Which records a metric takes its two signals of: whether a repeat and its original.
+    pub(super) fn of_metric(&mut self, field: &Field, metric: &Span) -> Option<bool> {
+        match self.compare(field)? {
+            Compare::Sides => Some(false),
+            Compare::Repeats => Some(true),
+            Compare::With(..) => {
+                let problem = Problem::error("metric-and-spread", "a metric compares two signals, and there is no mean of signals");
+                let help = "take a `value` and a `difference`, or compare `simulated with measured` or `repeats with originals`";
+                self.problems.push(problem.at(&field.value.span).also(metric, "the metric").help(help));
+                None
+            }
+        }
+    }
+
+    /// `simulated with measured`, `simulated with mean of simulated`, `repeats with originals`.
+    fn compare(&mut self, field: &Field) -> Option<Compare> {
         let words = normalised(&field.value.text);
         let all: Vec<&str> = words.split(' ').collect();
         let side = |word: &str| Side::ALL.into_iter().find(|side| side.in_words() == word);
         match all.as_slice() {
-            ["simulated", "with", "measured"] => return Some(None),
+            ["simulated", "with", "measured"] => return Some(Compare::Sides),
+            ["repeats", "with", "originals"] => return Some(Compare::Repeats),
             [of, "with", center @ ("mean" | "median"), "of", other] if of == other => {
                 if let Some(side) = side(of) {
-                    return Some(Some((side, if *center == "mean" { Center::Mean } else { Center::Median })));
+                    return Some(Compare::With(side, if *center == "mean" { Center::Mean } else { Center::Median }));
                 }
             }
             _ => {}
         }
         let problem =
             Problem::error("unknown-comparison", format!("`{words}` does not say which records are compared")).at(&field.value.span);
-        self.problems.push(problem.help("`simulated with measured`, or `simulated with mean of simulated` where there are several"));
+        let help = "`simulated with measured`; `simulated with mean of simulated` where there are several; `repeats with originals`";
+        self.problems.push(problem.help(help));
         None
     }
 

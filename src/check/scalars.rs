@@ -5,7 +5,7 @@ use super::conditions::impossible;
 use super::estimates::Group;
 use super::evaluate::{Nothing, evaluate, words};
 use super::names::Assignment;
-use super::plan::{Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Type};
+use super::plan::{Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Taking, Type};
 use super::signals::is_signal_function;
 use crate::catalog::{FUNCTIONS, Function, MetricEntry, Reducer, SIGNAL_FUNCTIONS, Signature};
 use crate::problem::Problem;
@@ -31,6 +31,8 @@ pub(super) struct Scope {
     pub group: Option<Group>,
     /// `value`: that of one row, of this dimension.
     pub value: Option<Dimension>,
+    /// Beside a value, what is taken from other quantities.
+    pub others: Vec<Taking>,
     /// The position that named signals are taken at.
     pub at: Assignment,
     /// Of the own signal after its filter over before.
@@ -59,6 +61,7 @@ impl Scope {
             zone: None,
             group: None,
             value: None,
+            others: Vec::new(),
             at: Assignment::new(),
             factor: Dimension::ONE,
             inputs: Vec::new(),
@@ -175,6 +178,10 @@ impl Checker<'_> {
                 let ty = self.binary_type(Operator::Multiply, &left, &right)?;
                 (Kind::Binary(Operator::Multiply, Box::new(left), Box::new(right)), ty)
             }
+            Node::Reduced(reducer, of) if self.other_quantity(of, scope).is_some() => {
+                return self.of_other(reducer, of, text, &span, scope);
+            }
+            Node::Reduced(_, of) if scope.value.is_some() => return self.no_such_quantity(of, text, &span),
             Node::Reduced(reducer, of) if scope.group.is_some() => return self.group_data(reducer, of, text, &span, scope),
             Node::Bound { upper, confidence, of, bootstrap } => {
                 return self.group_bound((*upper, *confidence, *bootstrap), of, text, &span, scope);

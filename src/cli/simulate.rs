@@ -10,9 +10,9 @@ use super::inputs::{progress_bar, start_jobs};
 use super::output::{Console, Exit};
 use super::places::{CAMPAIGN, check_file, check_folder};
 use super::simulator::{Chosen, SimulatorChoice};
-use crate::data::Campaign;
 use crate::data::text::read_text;
 use crate::data::write::{Outputs, write_whole};
+use crate::data::{Campaign, RecordKind};
 use crate::disk::SetKind;
 use crate::effects::{self, Applied, Catalogue};
 use crate::library;
@@ -104,6 +104,9 @@ impl Simulate {
             problems.push(problem);
         }
         let prepared = campaign.as_ref().and_then(|campaign| {
+            if self.increment || self.baseline {
+                campaign.only_one(RecordKind::Simulation).map_err(|problem| problems.push(problem)).ok()?;
+            }
             let sections = sections(campaign, &mut problems)?;
             let chosen = self.simulator.open(campaign, &mut problems)?;
             for problem in unusable(catalogue, effects, &sections, &chosen) {

@@ -159,6 +159,10 @@ impl Asked {
     fn found(self, common: &Common, prepared: &Prepared, console: &Console) -> Result<found::Study, Problems> {
         let Prepared { compiled, campaign, overrides } = prepared;
         robustness::countable(compiled)?;
+        // A selection takes one value of each section and signal.
+        if let (Self::Sections | Self::Sync(_), Err(problem)) = (&self, campaign.one_of_each()) {
+            return Err(Problems(vec![problem]));
+        }
         let settings = common.settings();
         let vary = match &self {
             Self::Parameters(vary) if vary.is_empty() => robustness::all_choices(&compiled.plan),

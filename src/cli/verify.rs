@@ -162,6 +162,9 @@ pub struct Trace {
     section: String,
     /// Name of the signal.
     signal: String,
+    /// Which record, where the campaign has several: `simpack`, or `simpack, run1` where it has several of both.
+    #[arg(long)]
+    record: Option<String>,
     /// Folder of the campaign: rows and values are read and computed again.
     #[arg(long, value_name = "DIR")]
     campaign: Option<PathBuf>,
@@ -190,7 +193,7 @@ impl Trace {
         if problems.any_error() {
             return wrong(problems);
         }
-        let asked = Asked { quantity: &self.quantity, section: &self.section, signal: &self.signal };
+        let asked = Asked { quantity: &self.quantity, section: &self.section, signal: &self.signal, record: self.record.as_deref() };
         match trace(&carried, compiled.as_ref(), asked, self.campaign.as_deref()) {
             Ok(found) => {
                 let text: Vec<String> = found.text.split('\n').map(visible).collect();

@@ -8,7 +8,7 @@ mod opening;
 mod records;
 
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 pub use facts::Fact;
 pub use files::{Inputs, ReadFile};
@@ -16,6 +16,7 @@ pub use records::RecordKind;
 
 use super::folder::{Folder, Place, check_file_name};
 use super::identification::{self, Stated};
+use super::members::{self, RecordFolder};
 use super::origin::Origin;
 use super::table::{Cell, Table};
 use crate::disk;
@@ -57,9 +58,7 @@ pub struct Campaign {
     /// `campaign.yaml`, the vehicle file and the section table, if present.
     pub files: Vec<ReadFile>,
     folder: Folder,
-    record_folders: Vec<(RecordKind, Spanned<String>)>,
-    /// Files in a folder of records that belong to no section, by kind; listed if a record is missing.
-    strangers: [OnceLock<Vec<String>>; RecordKind::ALL.len()],
+    record_folders: Vec<RecordFolder>,
 }
 
 impl Campaign {
@@ -100,7 +99,8 @@ impl Campaign {
         opening.misspelt(&tree);
         let vehicle = opening.vehicle(&tree);
         let sections = opening.sections(&tree);
-        let record_folders = RecordKind::ALL.into_iter().filter_map(|kind| Some((kind, opening.text(&tree, kind.key())?))).collect();
+        let record_folders =
+            RecordKind::ALL.into_iter().flat_map(|kind| members::read(&tree, kind, &opening.folder, opening.problems)).collect();
         let protocol = opening.text(&tree, "protocol");
         let parameters = opening.parameters(&tree);
         let origin = opening.origin(&tree);
@@ -126,7 +126,6 @@ impl Campaign {
             files,
             folder,
             record_folders,
-            strangers: Default::default(),
         };
         if problems.errors() == before {
             campaign.find_names(problems);

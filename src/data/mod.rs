@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `campaign` | a campaign folder: `campaign.yaml`, the vehicle, the sections, where the records are |
 //! | `identification` | identification of the report |
+//! | `members` | the folders of records, one or several of a kind |
 //! | `record` | one sampled record; optimised for speed |
 //! | `table` | a small table such as `sections.csv` |
 //! | `crate::yaml` | YAML with places of all values |
@@ -22,6 +23,7 @@ pub mod fingerprint;
 mod folder;
 pub mod hash;
 pub mod identification;
+mod members;
 pub mod origin;
 pub mod record;
 pub mod sites;
@@ -33,5 +35,6 @@ pub use campaign::{Campaign, RecordKind};
 pub use cells::Heading;
 pub use checks::{Axis, check_axis};
 pub use folder::Place;
+pub use members::WhichRecord;
 pub use record::{Column, Record, Wanted, read_record};
 pub use table::Table;

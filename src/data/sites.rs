@@ -49,6 +49,13 @@ pub fn sites(table: &Table, problems: &mut Problems) -> Vec<usize> {
     (0..rows).map(|row| sets.first(row)).collect()
 }
 
+/// For each row, the row that it repeats; none where `repeat of` is empty or names no other row.
+pub fn originals(table: &Table) -> Vec<Option<usize>> {
+    let repeat = Column::of(table, REPEAT_OF);
+    let of = |row| table.row_named(&repeat.cell(row)?.value).filter(|other| *other != row);
+    (0..table.rows.len()).map(of).collect()
+}
+
 fn no_repeat(table: &Table, row: usize, cell: &Cell) -> Problem {
     let says = format!("`{REPEAT_OF}` names `{}`, which is not another section", cell.value);
     let others = table.names().enumerate().filter(|(other, _)| *other != row).map(|(_, name)| name.value.as_str());

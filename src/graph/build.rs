@@ -20,7 +20,7 @@ pub fn from_plan(plan: &Plan) -> Graph {
     let checks = plan.checks.iter().map(|check| check.inputs.iter().map(|input| builder.input(input, None)).collect()).collect();
     let plausibility = plan.plausibility.iter().map(|rule| builder.plausibility(rule)).collect();
     let quantities: Vec<QuantityNodes> =
-        plan.quantities.iter().enumerate().map(|(index, quantity)| builder.quantity(index, quantity)).collect();
+        plan.quantities.iter().enumerate().map(|(index, quantity)| builder.quantity(plan, index, quantity)).collect();
     let mut verdicts = vec![None; plan.verdicts.len()];
     (0..plan.verdicts.len()).for_each(|at| builder.verdict(plan, &quantities, at, &mut verdicts));
     Graph { nodes: builder.nodes, quantities, checks, plausibility, verdicts: verdicts.into_iter().flatten().collect() }
@@ -298,7 +298,7 @@ impl Builder {
         nodes[at] = Some(self.add(operation, inputs, Dimension::ONE, &verdict.span, label, kind));
     }
 
-    fn quantity(&mut self, index: usize, quantity: &Quantity) -> QuantityNodes {
+    fn quantity(&mut self, plan: &Plan, index: usize, quantity: &Quantity) -> QuantityNodes {
         let signals: Vec<SignalNodes> = (0..quantity.positions.len()).map(|number| self.position(index, quantity, number)).collect();
         let rows: Vec<NodeId> = signals.iter().map(|signal| signal.compare).collect();
         let limit = |limit: &Arc<Limit>| {
@@ -306,7 +306,8 @@ impl Builder {
             let label = format!("{}: {title}{}", quantity.id, of_rows(&limit.scope));
             let kind = format!("estimate {index}");
             let estimate = Operation::Estimate(Arc::clone(limit));
-            let estimate = self.add(estimate, rows.clone(), quantity.unit.dimension, &limit.span, label, kind);
+            let rows = rows.iter().copied().chain(self.rows_of_others(plan, limit)).collect();
+            let estimate = self.add(estimate, rows, quantity.unit.dimension, &limit.span, label, kind);
             let label = format!("{}: {name} {}", quantity.id, limit.words);
             let operation = Operation::Limit(Arc::clone(limit));
             let limit = self.add(operation, vec![estimate], Dimension::ONE, &limit.span, label, format!("limit {index}"));
@@ -314,6 +315,16 @@ impl Builder {
         };
         let limits = quantity.limits.iter().map(limit).collect();
         QuantityNodes { signals, limits }
+    }
+
+    /// The rows of other quantities that a limit or what it is of takes a number from.
+    fn rows_of_others(&mut self, plan: &Plan, limit: &Limit) -> Vec<NodeId> {
+        let mut rows = Vec::new();
+        for other in limit.estimate.others().into_iter().chain(limit.bound.others()) {
+            let Some(quantity) = plan.quantities.get(other) else { continue };
+            rows.extend((0..quantity.positions.len()).map(|number| self.position(other, quantity, number).compare));
+        }
+        rows
     }
 
     fn position(&mut self, index: usize, quantity: &Quantity, number: usize) -> SignalNodes {
@@ -331,7 +342,7 @@ impl Builder {
                 let over = over.get(number).map(|signal| self.processed(signal, &quantity.chain, &quantity.span).1);
                 (Vec::new(), over, [processed].into_iter().chain(over).collect())
             }
-            Evaluation::Combined(of) => {
+            Evaluation::Combined { of, .. } => {
                 inputs = of.inputs[number].iter().map(|input| self.input(input, Some(own))).collect();
                 let mut before: Vec<NodeId> = inputs.iter().flat_map(InputNode::nodes).collect();
                 before.dedup();

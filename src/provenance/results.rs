@@ -64,6 +64,9 @@ pub struct File {
 pub struct Record {
     pub kind: String,
     pub section: String,
+    /// Where the campaign has several of the kind.
+    #[serde(default)]
+    pub name: Option<String>,
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -10,6 +10,7 @@ use crate::data::Campaign;
 use crate::graph::{Node, Operation};
 use crate::problem::{Problem, Problems};
 use crate::report::number::significant;
+use crate::result::took_part;
 use crate::run::single::{Side, Single, single};
 use crate::source::Span;
 use crate::units::Unit;
@@ -20,6 +21,8 @@ pub struct Asked<'a> {
     pub quantity: &'a str,
     pub section: &'a str,
     pub signal: &'a str,
+    /// Where the campaign has several: `simpack`, `simpack, run1`.
+    pub record: Option<&'a str>,
 }
 
 /// The result as text, and whether the campaign still gives the values of the report.
@@ -43,7 +46,7 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
         Some((index, signal))
     });
     let again = match (compiled, index, campaign) {
-        (Some(compiled), Some(index), Some(folder)) => Some(compute(compiled, index, folder, asked.section)?),
+        (Some(compiled), Some(index), Some(folder)) => Some(compute(compiled, index, folder, (asked.section, pair.record.as_deref()))?),
         _ => None,
     };
     let mut out = head(quantity, pair);
@@ -55,7 +58,8 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
         let _ = writeln!(out, "\nThe protocol is not available: give report.pdf, which contains it, or name it with `--protocol`.");
     }
     let mut agrees = true;
-    let files: Vec<&File> = records(carried, asked.section).collect();
+    let read = |file: &File| again.as_ref().is_some_and(|again| again.records.iter().any(|side| side.file.path == file.path));
+    let files: Vec<&File> = records(carried, pair, &read).collect();
     for file in &files {
         let side = again.as_ref().and_then(|again| again.records.iter().find(|side| side.file.path == file.path));
         agrees &= record(&mut out, file, pair, side, compiled.zip(index));
@@ -89,14 +93,29 @@ fn find<'a>(carried: &'a Carried, asked: Asked<'_>) -> Result<(&'a Quantity, &'a
         return Err(Problem::error("not-evaluated", format!("section {} is not used: {reason}", section.section)));
     }
     let here: Vec<&Pair> = quantity.values.iter().filter(|pair| pair.section == asked.section).collect();
-    let found = here.iter().find(|pair| pair.signal == asked.signal).copied();
-    found.map(|pair| (quantity, pair)).ok_or_else(|| {
+    let of_signal: Vec<&Pair> = here.iter().filter(|pair| pair.signal == asked.signal).copied().collect();
+    if of_signal.is_empty() {
         let says = format!("{} has no value of `{}` in section {}", quantity.id, asked.signal, asked.section);
-        Problem::error("no-such-signal", says).suggest(asked.signal, here.iter().map(|pair| pair.signal.as_str()))
+        return Err(Problem::error("no-such-signal", says).suggest(asked.signal, here.iter().map(|pair| pair.signal.as_str())));
+    }
+    let names: Vec<&str> = of_signal.iter().filter_map(|pair| pair.record.as_deref()).collect();
+    let found = match asked.record {
+        Some(record) => of_signal.iter().find(|pair| pair.record.as_deref() == Some(record)),
+        None if names.len() > 1 => {
+            let says = format!("{} has {} records of this section", quantity.id, names.len());
+            let help = format!("name one with `--record`: {}", names.join("; "));
+            return Err(Problem::error("several-records", says).help(help));
+        }
+        None => of_signal.first(),
+    };
+    found.map(|pair| (quantity, *pair)).ok_or_else(|| {
+        let record = asked.record.unwrap_or_default();
+        let says = format!("{} has no record `{record}` in section {}", quantity.id, asked.section);
+        Problem::error("no-such-record", says).suggest(record, names)
     })
 }
 
-fn compute(compiled: &Compiled, index: (usize, usize), folder: &Path, section: &str) -> Result<Single, Problems> {
+fn compute(compiled: &Compiled, index: (usize, usize), folder: &Path, section: (&str, Option<&str>)) -> Result<Single, Problems> {
     let mut problems = Problems::default();
     let campaign = Campaign::open(folder, &mut problems).filter(|_| !problems.any_error());
     let Some(campaign) = campaign else { return Err(problems) };
@@ -110,7 +129,8 @@ fn suffix(unit: &str) -> String {
 fn head(quantity: &Quantity, pair: &Pair) -> String {
     let unit = suffix(&quantity.unit);
     let zone = pair.zone.as_ref().map_or_else(String::new, |zone| format!(" (zone {zone})"));
-    let mut out = format!("{}: {}\nsection {}{zone}, signal {}\n\n", quantity.id, quantity.title, pair.section, pair.signal);
+    let record = pair.record.as_ref().map_or_else(String::new, |record| format!(", record {record}"));
+    let mut out = format!("{}: {}\nsection {}{zone}, signal {}{record}\n\n", quantity.id, quantity.title, pair.section, pair.signal);
     for (name, value) in [("simulated", pair.simulated), ("measured", pair.measured)] {
         if let Some(value) = value {
             let _ = writeln!(out, "  {name:<11}{value}{unit}");
@@ -168,9 +188,14 @@ fn operations(out: &mut String, carried: &Carried, compiled: &Compiled, index: (
     Ok(())
 }
 
-/// The records of a section, the simulated one first.
-fn records<'a>(carried: &'a Carried, section: &'a str) -> impl Iterator<Item = &'a File> {
-    let of = move |file: &&File, kind: &str| file.record.as_ref().is_some_and(|record| record.section == section && record.kind == kind);
+/// The records that a value was taken from, the simulated one first, and those that were read to compute it again.
+fn records<'a>(carried: &'a Carried, pair: &'a Pair, read: &'a dyn Fn(&File) -> bool) -> impl Iterator<Item = &'a File> {
+    let of = move |file: &&File, kind: &str| {
+        file.record.as_ref().is_some_and(|record| {
+            let own = record.section == pair.section && took_part(pair.record.as_deref(), kind == "simulation", record.name.as_deref());
+            record.kind == kind && (own || read(file))
+        })
+    };
     let all = &carried.results.campaign.files;
     ["simulation", "measurement"].into_iter().flat_map(move |kind| all.iter().filter(move |file| of(file, kind)))
 }
@@ -192,7 +217,11 @@ fn record(out: &mut String, file: &File, pair: &Pair, side: Option<&Side>, compi
         let shown = in_unit(*value, node, [&plan.unit, &plan.signal_unit]);
         let _ = writeln!(out, "  {:<10} {shown}, of {samples} values", node.label);
     }
-    let before = if file.record.as_ref().is_some_and(|record| record.kind == "simulation") { pair.simulated } else { pair.measured };
+    let before = match side.column {
+        Some(crate::check::plan::Side::Simulated) => pair.simulated,
+        Some(crate::check::plan::Side::Measured) => pair.measured,
+        None => None,
+    };
     if let (Some(value), Some(before)) = (side.value, before) {
         let same = near(value, before);
         agrees &= same;

@@ -161,6 +161,18 @@ pub struct RecordOf {
     /// `measurement`, `simulation` or `track`.
     pub kind: String,
     pub section: String,
+    /// Where the campaign has several of the kind.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+/// Whether a record took part in a value: by the record that the value names, `simpack` or `simpack, run1`, and the name of the record.
+pub fn took_part(value: Option<&str>, simulated: bool, name: Option<&str>) -> bool {
+    let (Some(value), Some(name)) = (value, name) else { return true };
+    match value.split_once(", ") {
+        Some((first, second)) => name == if simulated { first } else { second },
+        None => name == value,
+    }
 }
 
 /// Place of a rule in the protocol.

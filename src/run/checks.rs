@@ -1,13 +1,14 @@
 //! The protocol's own checks of a section, on its track record or on the measurement.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use super::facts::Known;
 use super::plausibility;
 use super::record::{Fault, Work};
 use super::section::{SectionValues, one_record};
 use super::sections::Unit;
-use super::sides::{Evaluated, Two, number_of, section};
+use super::sides::{Evaluated, Sides, Two, number_of, section};
 use crate::check::evaluate::flag;
 use crate::check::plan::{Check, Input, InputSide, Side};
 use crate::data::RecordKind;
@@ -27,7 +28,7 @@ pub fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mu
         Err(_) => Ok(false),
     };
     let found = if !wanted.is_empty() && work.campaign.has(RecordKind::Track) && there()? {
-        one_record(work, unit, RecordKind::Track, &wanted, known, values)?.0
+        one_record(work, unit, RecordKind::Track.into(), &wanted, known, values)?.0
     } else {
         Vec::new()
     };
@@ -45,14 +46,23 @@ pub fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mu
     Ok(found)
 }
 
-pub fn record_checks(work: &Work<'_>, two: &Two<'_>, values: &mut SectionValues) {
+/// Of several records the first that does not meet a check decides.
+pub fn record_checks(work: &Work<'_>, sides: &Sides<'_>, values: &mut SectionValues) {
     let side = if work.reads(Side::Measured) { InputSide::Measured } else { InputSide::Simulated };
     for (index, (check, inputs)) in work.plan.checks.iter().zip(&work.graph.checks).enumerate() {
         if inputs.is_empty() || inputs.iter().all(|input| work.graph.nodes[input.node].track) {
             continue;
         }
-        let inputs: Vec<Result<f64, String>> = inputs.iter().map(|input| two.input(input, side)).collect();
-        values.checks[index] = checked(work, check, two.known, &inputs);
+        let of_pair = |(record, two): (Option<Arc<str>>, Two<'_>)| {
+            let inputs: Vec<Result<f64, String>> = inputs.iter().map(|input| two.input(input, side)).collect();
+            let found = checked(work, check, two.known, &inputs);
+            CheckResult { says: record.map_or_else(|| found.says.clone(), |name| format!("{name}: {}", found.says)), ..found }
+        };
+        let mut found: Vec<CheckResult> = sides.pairs().map(of_pair).collect();
+        found.sort_by_key(|one| one.holds.map_or(1, |holds| if holds { 2 } else { 0 }));
+        if let Some(worst) = found.into_iter().next() {
+            values.checks[index] = worst;
+        }
     }
 }
 

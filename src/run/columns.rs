@@ -7,25 +7,25 @@ use super::record::needed;
 use super::sections::Unit;
 use crate::check::plan::{Plan, Side};
 use crate::data::record::read_headings;
-use crate::data::{Campaign, RecordKind};
+use crate::data::{Campaign, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
 
-/// Columns that some record of each kind has.
-pub type Seen = Vec<(RecordKind, BTreeSet<String>)>;
+/// Columns that some section has, for each record of a section.
+pub type Seen = Vec<(WhichRecord, BTreeSet<String>)>;
 
 /// Reads the headings of every record.
 pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[Unit]) -> Seen {
     let mut seen = Seen::new();
     let sides = Side::ALL.into_iter().filter(|side| plan.reads(*side)).map(Side::kind);
     let kinds = sides.chain(Some(RecordKind::Track).filter(|kind| campaign.has(*kind)));
-    for kind in kinds {
+    for which in kinds.flat_map(|kind| campaign.records(kind)) {
         let mut columns = BTreeSet::new();
         for unit in units {
             // A record that cannot be read is a fault of its section, told when it is opened.
-            let headings = campaign.record_place(kind, &unit.cell).ok().and_then(|place| read_headings(&place.path, &place.shown).ok());
+            let headings = campaign.place_of(which, &unit.cell).ok().and_then(|place| read_headings(&place.path, &place.shown).ok());
             columns.extend(headings.into_iter().flatten().map(|heading| heading.name));
         }
-        seen.push((kind, columns));
+        seen.push((which, columns));
     }
     seen
 }
@@ -34,7 +34,7 @@ pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[Unit]) -> Seen {
 pub fn recorded_positions(graph: &Graph, seen: &Seen, facts: &Facts, units: &[Unit]) -> Vec<Vec<bool>> {
     let there = |node: NodeId| {
         let track = graph.nodes[node].track;
-        let of_kind = || seen.iter().filter(|(kind, _)| (*kind == RecordKind::Track) == track);
+        let of_kind = || seen.iter().filter(|(which, _)| (which.kind == RecordKind::Track) == track);
         reads(graph, node, facts, units).iter().all(|column| of_kind().all(|(_, columns)| columns.contains(column)))
     };
     graph
@@ -50,22 +50,30 @@ pub fn recorded_positions(graph: &Graph, seen: &Seen, facts: &Facts, units: &[Un
 }
 
 /// Which signals of which quantities were recorded at all: a position missing from every record is left out, not a fault of each section.
-pub fn present_columns(plan: &Plan, graph: &Graph, seen: &Seen, facts: &Facts, units: &[Unit], notes: &mut Vec<String>) -> Vec<Vec<bool>> {
+pub fn present_columns(
+    plan: &Plan,
+    graph: &Graph,
+    campaign: &Campaign,
+    seen: &Seen,
+    facts: &Facts,
+    units: &[Unit],
+    notes: &mut Vec<String>,
+) -> Vec<Vec<bool>> {
     graph
         .quantities
         .iter()
         .zip(&plan.quantities)
         .map(|(quantity, rule)| {
             let read = |kind: RecordKind| Side::ALL.into_iter().any(|side| side.kind() == kind && rule.evaluation.reads(side));
-            let all: Vec<Vec<(String, RecordKind)>> = quantity
+            let all: Vec<Vec<(String, WhichRecord)>> = quantity
                 .signals
                 .iter()
                 .map(|signal| {
-                    let mut missing: Vec<(String, RecordKind)> = Vec::new();
+                    let mut missing: Vec<(String, WhichRecord)> = Vec::new();
                     for column in reads(graph, signal.compare, facts, units) {
-                        for (kind, columns) in seen.iter().filter(|(kind, _)| read(*kind)) {
+                        for (which, columns) in seen.iter().filter(|(which, _)| read(which.kind)) {
                             if !columns.contains(&column) {
-                                missing.push((column.clone(), *kind));
+                                missing.push((column.clone(), *which));
                             }
                         }
                     }
@@ -77,8 +85,9 @@ pub fn present_columns(plan: &Plan, graph: &Graph, seen: &Seen, facts: &Facts, u
             all.iter()
                 .map(|missing| {
                     if !none {
-                        for (column, kind) in missing {
-                            let note = format!("`{column}` is in no record of the {}: its position is left out", kind.key());
+                        for (column, which) in missing {
+                            let note =
+                                format!("`{column}` is in no record of the {}: its position is left out", campaign.record_in_words(*which));
                             if !notes.contains(&note) {
                                 notes.push(note);
                             }

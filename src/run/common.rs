@@ -15,24 +15,35 @@ pub struct Common {
 }
 
 impl Common {
-    /// The simulated signal is interpolated unless its samples lie where the measured ones do already.
-    pub fn of(simulated: &Samples, measured: &Samples, extent: Option<Extent>) -> Result<Self, String> {
+    /// The simulated signal, moved along the axis by `shift`, is interpolated unless its samples lie where the measured ones do already.
+    pub fn of(simulated: &Samples, measured: &Samples, extent: Option<Extent>, shift: f64) -> Result<Self, String> {
         let cut = |samples: &Samples| match extent {
             Some(extent) => samples.cut(extent),
             None => Ok(samples.clone()),
         };
+        if shift != 0.0 {
+            let measured = cut(measured)?;
+            return Ok(Self { simulated: at(simulated, &measured.along.axis, shift)?, measured });
+        }
         let (s, m) = (cut(simulated)?, cut(measured)?);
         let same = s.along.axis.len() == m.along.axis.len()
             && s.along.axis.iter().zip(m.along.axis.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
-        let onto = if same { s.values.to_vec() } else { at(simulated, &m.along.axis)? };
+        let onto = if same { s.values.to_vec() } else { at(simulated, &m.along.axis, shift)? };
         Ok(Self { simulated: onto, measured: m })
     }
 }
 
-/// The simulated signal at points of the measured one.
-fn at(simulated: &Samples, points: &[f64]) -> Result<Vec<f64>, String> {
-    resample::interpolate(&simulated.along.axis, &simulated.values, points)
-        .map_err(|error| format!("the simulation cannot be brought onto the measured points: {error}"))
+/// The simulated signal, moved along the axis, at points of the measured one.
+fn at(simulated: &Samples, points: &[f64], shift: f64) -> Result<Vec<f64>, String> {
+    let own = &simulated.along.axis;
+    let interpolated = match shift {
+        0.0 => resample::interpolate(own, &simulated.values, points),
+        _ => resample::interpolate(&own.iter().map(|at| at + shift).collect::<Vec<_>>(), &simulated.values, points),
+    };
+    interpolated.map_err(|error| match shift {
+        0.0 => format!("the simulation cannot be brought onto the measured points: {error}"),
+        _ => format!("the repeat cannot be brought onto the points of its original: {error}"),
+    })
 }
 
 /// The filtered signals of both records, of which an expression takes samples in the section.
@@ -41,12 +52,14 @@ pub struct Both<'a> {
     pub measured: &'a Samples,
     pub known: &'a Known<'a>,
     pub extent: Option<Extent>,
+    /// What is added to the axis of the simulated one.
+    pub shift: f64,
 }
 
 impl Both<'_> {
     /// A number of an expression over both, and of how many samples.
     pub fn reduced(&self, reducer: Reducer, method: Method, of: &plan::Signal) -> Result<(f64, usize), String> {
-        let common = Common::of(self.simulated, self.measured, self.extent)?;
+        let common = Common::of(self.simulated, self.measured, self.extent, self.shift)?;
         let samples = match self.signal(of, &common)? {
             Signal::Samples(samples) => samples,
             Signal::Constant(value) => common.measured.with(vec![value; common.measured.values.len()]),
@@ -70,12 +83,12 @@ impl Both<'_> {
                 apply(&arguments.iter().collect::<Vec<_>>(), function.run)
             }
             SignalKind::OverAxis(AxisOperation::Shifted(distance), signal) => {
-                let of_record = match signal.kind {
-                    SignalKind::Side(Side::Simulated) => self.simulated,
-                    _ => self.measured,
+                let (of_record, moved) = match signal.kind {
+                    SignalKind::Side(Side::Simulated) => (self.simulated, self.shift),
+                    _ => (self.measured, 0.0),
                 };
                 let distance = number(distance, self.known)?;
-                let points: Vec<f64> = common.measured.along.axis.iter().map(|x| x - distance).collect();
+                let points: Vec<f64> = common.measured.along.axis.iter().map(|x| x - distance - moved).collect();
                 let moved = resample::interpolate(&of_record.along.axis, &of_record.values, &points)
                     .map_err(|error| format!("the record does not reach as far beyond the section as the signal is shifted: {error}"))?;
                 Ok(Signal::Samples(common.measured.with(moved)))

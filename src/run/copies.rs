@@ -8,7 +8,7 @@ use super::plausibility::consequence;
 use super::section::SectionValues;
 use super::sections::Unit;
 use crate::check::plan::{Distinct, Plan, Plausibility, Test};
-use crate::data::RecordKind;
+use crate::data::{Campaign, RecordKind, WhichRecord};
 use crate::result::Finding;
 
 /// Samples in a row that make one mark. Two live signals, written to a thousandth of their range, agree in eight samples in a row
@@ -28,17 +28,17 @@ const NAMED: usize = 4;
 pub struct Print {
     rule: String,
     channel: String,
-    kind: RecordKind,
+    which: WhichRecord,
     /// Sorted, each once.
     marks: Vec<u64>,
 }
 
 impl Print {
-    pub fn of(rule: &str, channel: &str, kind: RecordKind, samples: &[f64]) -> Self {
+    pub fn of(rule: &str, channel: &str, which: WhichRecord, samples: &[f64]) -> Self {
         let mut marks = marks(samples);
         marks.sort_unstable();
         marks.dedup();
-        Self { rule: rule.to_string(), channel: channel.to_string(), kind, marks }
+        Self { rule: rule.to_string(), channel: channel.to_string(), which, marks }
     }
 }
 
@@ -78,10 +78,10 @@ fn mixed(mut bits: u64) -> u64 {
 type Place = (usize, usize);
 
 /// Two records that share signals: the later one, the earlier one, and the channels of both.
-type Shared<'a> = BTreeMap<(usize, RecordKind, usize, RecordKind), Vec<(&'a str, &'a str)>>;
+type Shared<'a> = BTreeMap<(usize, WhichRecord, usize, WhichRecord), Vec<(&'a str, &'a str)>>;
 
 /// Copies among the signals of every rule that asks signals to differ.
-pub fn find(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Vec<Finding> {
+pub fn find(plan: &Plan, campaign: &Campaign, units: &[Unit], values: &[SectionValues]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut done: Vec<&str> = Vec::new();
     for rule in &plan.plausibility {
@@ -90,13 +90,15 @@ pub fn find(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Vec<Findin
             continue;
         }
         done.push(&rule.name);
-        for ((later, kind, earlier, of), channels) in shared(&rule.name, distinct, values) {
+        for ((later, which, earlier, of), channels) in shared(&rule.name, distinct, values) {
             // A section measured again may be compared with the simulation there is.
             let again = later != earlier && units[later].site == units[earlier].site;
-            if again && (kind, of) == (RecordKind::Simulation, RecordKind::Simulation) {
+            if again && (which.kind, of.kind) == (RecordKind::Simulation, RecordKind::Simulation) {
                 continue;
             }
-            findings.push(finding(rule, (&units[later].name, kind), (&units[earlier].name, of), &channels));
+            let words = |which| campaign.record_in_words(which);
+            let (later, earlier) = ((units[later].name.as_str(), words(which)), (units[earlier].name.as_str(), words(of)));
+            findings.push(finding(rule, later, earlier, &channels));
         }
     }
     findings
@@ -127,7 +129,7 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
         if count < LEAST || (count as f64) < SHARED * shorter as f64 {
             continue;
         }
-        let asked = match (earlier.0 == later.0, a.kind == b.kind, a.channel == b.channel) {
+        let asked = match (earlier.0 == later.0, a.which == b.which, a.channel == b.channel) {
             (true, true, _) => distinct.channels,
             (true, false, _) => distinct.sides,
             (false, true, true) => distinct.sections,
@@ -135,7 +137,7 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
             (false, ..) => distinct.sections && (distinct.channels || distinct.sides),
         };
         if asked {
-            found.entry((later.0, b.kind, earlier.0, a.kind)).or_default().push((&b.channel, &a.channel));
+            found.entry((later.0, b.which, earlier.0, a.which)).or_default().push((&b.channel, &a.channel));
         }
     }
     found
@@ -143,22 +145,22 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
 
 fn finding(
     rule: &Plausibility,
-    (section, kind): (&str, RecordKind),
-    (of_section, of_kind): (&str, RecordKind),
+    (section, record): (&str, String),
+    (of_section, of_record): (&str, String),
     channels: &[(&str, &str)],
 ) -> Finding {
     let (own, other): (Vec<&str>, Vec<&str>) = channels.iter().copied().unzip();
-    let place = match (section == of_section, kind == of_kind) {
+    let place = match (section == of_section, record == of_record) {
         (true, true) => String::new(),
-        (true, false) => format!(" of the {}", of_kind.key()),
+        (true, false) => format!(" of the {of_record}"),
         (false, true) => format!(" of section {of_section}"),
-        (false, false) => format!(" of the {} of section {of_section}", of_kind.key()),
+        (false, false) => format!(" of the {of_record} of section {of_section}"),
     };
     let what = if own == other && own.len() > 1 { "the same channels".to_string() } else { named(&other) };
     Finding {
         channel: Some(named(&own)),
         section: Some(section.to_string()),
-        record: Some(kind.key().to_string()),
+        record: Some(record),
         cause: rule.cause.clone(),
         consequence: consequence(rule.otherwise),
         ..Finding::note(&rule.name, format!("{}: {} repeats the samples of {what}{place}", rule.title, named(&own)))
@@ -200,7 +202,7 @@ mod tests {
 
     #[test]
     fn copies_are_found_where_they_stand_and_live_signals_are_not() {
-        let print = |channel: &str, kind, samples: &[f64]| Print::of("copies", channel, kind, samples);
+        let print = |channel: &str, kind: RecordKind, samples: &[f64]| Print::of("copies", channel, kind.into(), samples);
         let (a, b, c) = (signal(1, 1500), signal(2, 1500), signal(3, 1500));
         let first = values(vec![
             print("Y", RecordKind::Simulation, &a),
@@ -219,7 +221,7 @@ mod tests {
         ]);
         let sections = [first, second];
         let found = shared("copies", ALL, &sections);
-        let simulated = RecordKind::Simulation;
+        let simulated: WhichRecord = RecordKind::Simulation.into();
         assert_eq!(
             found.into_iter().collect::<Vec<_>>(),
             [((1, simulated, 0, simulated), vec![("Y", "Y")]), ((1, simulated, 1, simulated), vec![("Z", "Q")])]
@@ -229,7 +231,7 @@ mod tests {
     #[test]
     fn only_what_was_asked_for_is_told() {
         let a = signal(1, 900);
-        let print = |channel: &str, kind| Print::of("copies", channel, kind, &a);
+        let print = |channel: &str, kind: RecordKind| Print::of("copies", channel, kind.into(), &a);
         let sections =
             [values(vec![print("Y", RecordKind::Simulation), print("Y", RecordKind::Measurement), print("Z", RecordKind::Simulation)])];
         let sides = Distinct { channels: false, sections: false, sides: true };

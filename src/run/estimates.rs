@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashSet};
 
 use super::facts::{Facts, Known};
 use super::sections::Unit;
-use super::table::{Member, independent};
+use super::table::{Member, Table, independent};
 use crate::catalog::Statistic;
 use crate::check::evaluate::{Values, flag, number};
 use crate::check::plan::{DataReducer, DatumKind, Estimate, EstimateKind, Fit, Kind, OfGroup, Plan, Scalar, Taking, Type};
@@ -20,6 +20,7 @@ pub struct Group<'a> {
     pub plan: &'a Plan,
     pub facts: &'a Facts,
     pub members: &'a [Member<'a>],
+    pub table: &'a Table<'a>,
 }
 
 impl Group<'_> {
@@ -62,15 +63,25 @@ impl Group<'_> {
         match taking {
             Taking::Statistic(statistic, ddof) => statistic_of(*statistic, *ddof, values),
             Taking::Count => Ok(self.units().into_iter().collect::<BTreeSet<_>>().len() as f64),
-            Taking::Share { condition, of_sections: true } => {
+            Taking::Share { condition, of_sections: true, .. } => {
                 let sections = self.sections();
                 share(sections.iter().map(|unit| flag(condition, &unit.known(self.facts))))
             }
-            Taking::Share { condition, of_sections: false } => {
+            Taking::Share { condition, of_sections: false, others } => {
+                let others: Vec<Result<f64, String>> = others.iter().map(|other| self.take(other, values)).collect();
                 let of_row = |(member, value): (&Member<'_>, &f64)| {
-                    flag(condition, &Known { inputs: &[Ok(*value)], ..member.unit.known(self.facts) })
+                    let inputs: Vec<Result<f64, String>> = [Ok(*value)].into_iter().chain(others.iter().cloned()).collect();
+                    flag(condition, &Known { inputs: &inputs, ..member.unit.known(self.facts) })
                 };
                 share(self.members.iter().zip(values).map(of_row))
+            }
+            Taking::Other { quantity, id, statistic, ddof } => {
+                let rows = self.table.get(*quantity).ok_or_else(|| format!("there are no rows of {id}"))?;
+                let found = rows.clone().and_then(|rows| {
+                    let values: Vec<f64> = rows.iter().map(|member| member.row.value).collect();
+                    statistic_of(*statistic, *ddof, &values)
+                });
+                found.map_err(|reason| format!("{} of {id}: {reason}", statistic.name()))
             }
             Taking::Data { reducer, of } => {
                 let of_section =

@@ -23,11 +23,11 @@ pub struct Part<'a> {
 }
 
 /// The groups of a limit. Its zones that need no section and have none are left out; so are zones that the quantity leaves out by its own
-/// condition, unless it leaves out all, and groups of which a condition leaves no row, unless it leaves none at all. A group of a place is
-/// there wherever the place was recorded.
+/// condition or for want of repeats, unless it leaves out all, and groups of which a condition leaves no row, unless it leaves none at all.
+/// A group of a place is there wherever the place was recorded.
 pub fn parts<'a>(plan: &Plan, quantity: &Quantity, limit: &'a Limit, members: &[Member<'_>], facts: &Facts) -> Vec<Part<'a>> {
     let scope = &limit.scope;
-    let selective = quantity.only.is_some() && !members.is_empty();
+    let selective = (quantity.only.is_some() || quantity.evaluation.of_repeats()) && !members.is_empty();
     let needed = |name: &str| !selective && plan.zones.iter().any(|zone| zone.name == name && zone.minimum_sections > 0);
     let filled = |zone: &str| members.iter().any(|member| member.unit.zone.as_deref() == Some(zone));
     if !scope.zones.is_empty() && !scope.zones.iter().any(|zone| needed(zone) || filled(zone)) {

@@ -36,8 +36,13 @@ pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: 
         missing.push(format!("{}; at least {} required", usable(used.len(), sites), plan.sections.minimum));
     }
     missing.extend(not_plausible(plan, findings, missing.is_empty()));
-    let (quantities, fails): (Vec<QuantityResult>, Vec<Vec<String>>) =
-        plan.quantities.iter().enumerate().map(|(index, quantity)| quantity_result(plan, graph, facts, quantity, index, &used)).unzip();
+    let rows: Vec<Rows<'_>> = plan.quantities.iter().enumerate().map(|(index, quantity)| rows(plan, quantity, index, &used)).collect();
+    let table: Vec<_> = rows.iter().map(Rows::usable).collect();
+    let of_quantity = |(index, quantity): (usize, &Quantity)| {
+        let judging = Judging { plan, facts, quantity, members: &rows[index].members, table: &table };
+        quantity_result(graph, index, &judging, rows[index].reason.clone())
+    };
+    let (quantities, fails): (Vec<QuantityResult>, Vec<Vec<String>>) = plan.quantities.iter().enumerate().map(of_quantity).unzip();
     let decided = verdicts::decide(plan, graph, &verdicts::Given { barred: missing, quantities: &quantities, fails });
     let named = verdicts::named(plan, &decided);
     let (rule, overall) = (plan.overall(), decided.into_iter().next().unwrap_or_default());
@@ -144,21 +149,28 @@ fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Vec<
     nodes.limits.iter().flat_map(of_limit).collect()
 }
 
-/// The result, and a sentence for each limit that does not hold.
-fn quantity_result(
-    plan: &Plan,
-    graph: &Graph,
-    facts: &Facts,
-    quantity: &Quantity,
-    index: usize,
-    used: &[(&Unit, &SectionValues)],
-) -> (QuantityResult, Vec<String>) {
+/// The rows of a quantity, and why they do not suffice.
+pub struct Rows<'a> {
+    members: Vec<Member<'a>>,
+    reason: Option<String>,
+}
+
+impl<'a> Rows<'a> {
+    /// For who takes a number of another quantity.
+    pub fn usable(&'a self) -> Result<&'a [Member<'a>], String> {
+        self.reason.clone().map_or(Ok(&self.members), Err)
+    }
+}
+
+pub fn rows<'a>(plan: &Plan, quantity: &'a Quantity, index: usize, used: &[(&'a Unit, &'a SectionValues)]) -> Rows<'a> {
     let members = members(quantity, index, used);
     let recorded = members.iter().map(|member| member.signal).collect::<BTreeSet<_>>().len();
     let pairs = independent(plan, &members).into_iter().zip(members.iter().map(|member| member.signal)).collect::<BTreeSet<_>>().len();
     let impossible = impossible(index, used);
     let reason = if impossible.is_some() {
         impossible
+    } else if members.is_empty() && quantity.evaluation.of_repeats() {
+        Some("no section with values repeats another one (column `repeat of` of the section table)".into())
     } else if recorded < quantity.minimum_signals {
         Some(format!("{} recorded; at least {} required", count(recorded, "signal"), quantity.minimum_signals))
     } else if pairs < quantity.minimum_pairs {
@@ -167,9 +179,14 @@ fn quantity_result(
     } else {
         None
     };
-    let judging = Judging { plan, facts, quantity, members: &members };
+    Rows { members, reason }
+}
+
+/// The result, and a sentence for each limit that does not hold.
+fn quantity_result(graph: &Graph, index: usize, judging: &Judging<'_>, reason: Option<String>) -> (QuantityResult, Vec<String>) {
+    let Judging { plan, quantity, members, .. } = *judging;
     let (statistics, fails): (Vec<_>, Vec<_>) =
-        compared(graph, &graph.quantities[index], &judging).into_iter().map(|compared| (compared.result, compared.fails)).unzip();
+        compared(graph, &graph.quantities[index], judging).into_iter().map(|compared| (compared.result, compared.fails)).unzip();
     let undefined = statistics.iter().find(|statistic| statistic.holds.is_none()).map(|statistic| {
         let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
         format!("{}{scope}: {}", statistic.title, statistic.reason.as_deref().unwrap_or_default())
@@ -199,7 +216,7 @@ fn quantity_result(
             _ => None,
         },
         statistics,
-        n: count_independent(plan, &members),
+        n: count_independent(plan, members),
         values: members
             .iter()
             .map(|member| PairValue {

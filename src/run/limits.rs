@@ -3,7 +3,7 @@
 use super::estimates::{Group, Taken};
 use super::facts::{Facts, Known};
 use super::groups::{Closeness, Part, parts};
-use super::table::{Member, count_independent};
+use super::table::{Member, Table, count_independent};
 use super::told::factors;
 use crate::catalog::Statistic;
 use crate::check::evaluate::{Values, flag, number};
@@ -41,6 +41,7 @@ pub struct Judging<'a> {
     pub facts: &'a Facts,
     pub quantity: &'a Quantity,
     pub members: &'a [Member<'a>],
+    pub table: &'a Table<'a>,
 }
 
 pub fn applies(limit: &Limit, facts: &Facts) -> Result<bool, String> {
@@ -68,7 +69,7 @@ impl<'a> Judging<'a> {
         if members.is_empty() {
             return Estimated { part, members, value: Err("no value is available".into()), interval: None, regression: None };
         }
-        let group = Group { plan: self.plan, facts: self.facts, members: &members };
+        let group = Group { plan: self.plan, facts: self.facts, members: &members, table: self.table };
         let (value, interval, regression) = match &limit.estimate.kind {
             EstimateKind::Each => (Ok(None), None, None),
             EstimateKind::Of(of) => {
@@ -192,7 +193,7 @@ impl<'a> Judging<'a> {
 
     /// The limit of one group, SI.
     pub fn bound(&self, limit: &Limit, part: &Part<'_>, members: &[Member<'_>], known: &Known<'_>) -> Result<f64, String> {
-        let group = Group { plan: self.plan, facts: self.facts, members };
+        let group = Group { plan: self.plan, facts: self.facts, members, table: self.table };
         Bounds { quantity: self.quantity, part, group, known }.of(limit, 0)
     }
 }

@@ -137,6 +137,16 @@ pub fn evaluate(
     shifts: &Shifts<'_>,
     progress: Progress<'_>,
 ) -> Result<Vec<Evaluated>, Problems> {
+    if !shifts.plain() {
+        let one = campaign.one_of_each().err();
+        let repeats = plan.quantities.iter().find(|quantity| quantity.evaluation.of_repeats()).map(|quantity| {
+            let says = format!("`{}` compares repeats, whose records cannot be moved along the track against the simulation", quantity.id);
+            Problem::error("repeats-shifted", says).at(&quantity.span).help("leave it out: `remove quantity ...` in a protocol of its own")
+        });
+        if let Some(problem) = one.or(repeats) {
+            return Err(Problems(vec![problem]));
+        }
+    }
     Prepared::new(plan, graph, campaign)?.evaluate(shifts, progress)
 }
 
@@ -189,7 +199,7 @@ impl<'a> Prepared<'a> {
         }
         let mut notes = Vec::new();
         let seen = columns::seen_columns(plan, campaign, &units);
-        let present = columns::present_columns(plan, graph, &seen, &facts, &units, &mut notes);
+        let present = columns::present_columns(plan, graph, campaign, &seen, &facts, &units, &mut notes);
         let recorded = columns::recorded_positions(graph, &seen, &facts, &units);
         requirements::check_data(plan, &facts, &mut units);
         stop_on_fault(plan, &units, &[])?;
@@ -202,6 +212,7 @@ impl<'a> Prepared<'a> {
             graph: self.graph,
             campaign: self.campaign,
             facts: &self.facts,
+            units: &self.units,
             present: &self.present,
             recorded: &self.recorded,
         }
@@ -228,12 +239,23 @@ impl<'a> Prepared<'a> {
         shifts.offsets.iter().enumerate().map(of_shift).collect()
     }
 
+    /// A repeat of a section that is not used has nothing to be compared with.
+    fn without_unused_originals(&self, units: &[Unit], mut values: Vec<SectionValues>) -> Vec<SectionValues> {
+        let unused = |unit: &Unit| unit.original.is_some_and(|original| units[original].fault.is_some());
+        for (_, values) in units.iter().zip(&mut values).filter(|(unit, _)| unused(unit)) {
+            let of_quantities = self.plan.quantities.iter().zip(&mut values.rows);
+            of_quantities.filter(|(quantity, _)| quantity.evaluation.of_repeats()).for_each(|(_, rows)| rows.clear());
+        }
+        values
+    }
+
     /// All sections at one shift; without one, some section must be usable.
     fn at(&self, values: Vec<SectionValues>, needed: bool) -> Result<Evaluated, Problems> {
         let (mut units, mut notes) = (self.units.clone(), self.notes.clone());
-        let copies = copies::find(self.plan, &units, &values);
+        let copies = copies::find(self.plan, self.campaign, &units, &values);
         requirements::take_over(self.plan, &self.facts, &mut units, &values, &copies, &mut notes)?;
         stop_on_fault(self.plan, &units, &values)?;
+        let values = self.without_unused_originals(&units, values);
         let findings: Vec<Finding> = values.iter().flat_map(|values| values.findings.iter().cloned()).chain(copies).collect();
         // Sections that are not plausible say why in the findings of a report.
         let refused_by_finding = findings.iter().any(|finding| finding.consequence == Consequence::NotUsed);

@@ -8,10 +8,9 @@ use super::facts::{Known, trimmed};
 use super::record::{Work, needed};
 use super::section::SectionValues;
 use super::sections::Unit;
-use super::sides::{Evaluated, Two, number_of, samples_of, section};
+use super::sides::{Evaluated, RecordOfSide, Sides, number_of, samples_of, section};
 use crate::check::evaluate::{flag, number, words};
 use crate::check::plan::{InputSide, Looks, OnFault, Plausibility, Requirement, Test};
-use crate::data::RecordKind;
 use crate::graph::{InputNode, NodeId, PositionNodes};
 use crate::result::{Consequence, Finding};
 
@@ -51,17 +50,17 @@ fn positions<'a>(work: &'a Work<'_>, known: &'a Known<'_>) -> impl Iterator<Item
 }
 
 /// Looks at one section; what is found goes into its values.
-pub fn look(work: &Work<'_>, unit: &Unit, sides: &Two<'_>, track: &Evaluated, values: &mut SectionValues) {
+pub fn look(work: &Work<'_>, unit: &Unit, sides: &Sides<'_>, track: &Evaluated, values: &mut SectionValues) {
     for (rule, nodes, name) in positions(work, sides.known) {
         match &rule.test {
             Test::Require(requirement) => {
-                let at = Position { rule, requirement, unit, name };
+                let at = Position { work, rule, requirement, unit, name };
                 at.look(sides, nodes, track, &mut values.findings);
             }
             Test::Distinct(_) => {
-                for (kind, record) in [(RecordKind::Simulation, sides.simulated), (RecordKind::Measurement, sides.measured)] {
-                    if let Some(samples) = nodes.own.and_then(|own| samples_of(record, own).ok()) {
-                        values.prints.push(Print::of(&rule.name, name, kind, &samples.values));
+                for record in sides.simulated.iter().chain(sides.measured) {
+                    if let Some(samples) = nodes.own.and_then(|own| samples_of(&record.found, own).ok()) {
+                        values.prints.push(Print::of(&rule.name, name, record.which, &samples.values));
                     }
                 }
             }
@@ -71,6 +70,7 @@ pub fn look(work: &Work<'_>, unit: &Unit, sides: &Two<'_>, track: &Evaluated, va
 
 /// A requirement at one position of one section.
 struct Position<'a> {
+    work: &'a Work<'a>,
     rule: &'a Plausibility,
     requirement: &'a Requirement,
     unit: &'a Unit,
@@ -78,25 +78,36 @@ struct Position<'a> {
 }
 
 impl Position<'_> {
-    fn look(&self, sides: &Two<'_>, nodes: &PositionNodes, track: &Evaluated, findings: &mut Vec<Finding>) {
-        let of_side = |side: InputSide| -> Vec<Result<f64, String>> { nodes.inputs.iter().map(|input| sides.input(input, side)).collect() };
+    fn look(&self, sides: &Sides<'_>, nodes: &PositionNodes, track: &Evaluated, findings: &mut Vec<Finding>) {
         match self.requirement.of {
             Looks::Data => findings.extend(self.finding(sides.known, &[], None)),
             Looks::Track => {
                 let inputs: Vec<_> = nodes.inputs.iter().map(|input: &InputNode| number_of(track, input.node)).collect();
-                findings.extend(self.finding(sides.known, &inputs, Some(RecordKind::Track)));
+                findings.extend(self.finding(sides.known, &inputs, Some("track".into())));
             }
-            Looks::BothSides => findings.extend(self.finding(sides.known, &of_side(InputSide::Measured), None)),
+            Looks::BothSides => {
+                for (name, two) in sides.pairs() {
+                    let inputs: Vec<_> = nodes.inputs.iter().map(|input| two.input(input, InputSide::Measured)).collect();
+                    findings.extend(self.finding(sides.known, &inputs, name.as_deref().map(str::to_string)));
+                }
+            }
             Looks::EachSide => {
-                for (side, kind) in [(InputSide::Simulated, RecordKind::Simulation), (InputSide::Measured, RecordKind::Measurement)] {
-                    findings.extend(self.finding(sides.known, &of_side(side), Some(kind)));
+                for (records, side) in [(sides.simulated, InputSide::Simulated), (sides.measured, InputSide::Measured)] {
+                    for record in records {
+                        let inputs: Vec<_> = nodes.inputs.iter().map(|input| sides.alone(record).input(input, side)).collect();
+                        findings.extend(self.finding(sides.known, &inputs, Some(self.of(record))));
+                    }
                 }
             }
         }
     }
 
+    fn of(&self, record: &RecordOfSide) -> String {
+        self.work.campaign.record_in_words(record.which)
+    }
+
     /// `None` where the requirement is met, or cannot be told for want of a datum.
-    fn finding(&self, known: &Known<'_>, inputs: &[Result<f64, String>], record: Option<RecordKind>) -> Option<Finding> {
+    fn finding(&self, known: &Known<'_>, inputs: &[Result<f64, String>], record: Option<String>) -> Option<Finding> {
         let known = Known { inputs, ..section(known) };
         if flag(&self.requirement.holds, &known) != Ok(false) {
             return None;
@@ -119,7 +130,7 @@ impl Position<'_> {
             code: self.rule.name.clone(),
             channel: (!self.name.is_empty()).then(|| self.name.to_string()),
             section: Some(self.unit.name.clone()),
-            record: record.map(|kind| kind.key().to_string()),
+            record,
             value: numbers.as_ref().map(|(value, ..)| *value),
             expected: numbers.as_ref().map(|(_, expected, ..)| *expected),
             unit: numbers.as_ref().map(|(_, _, unit, _)| unit.text.clone()),

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use super::estimates::Group;
 use super::facts::{Facts, Known};
 use super::groups::{Part, parts};
-use super::judge::members;
+use super::judge::{Rows, members, rows};
 use super::limits::{Judging, applies};
 use super::section::SectionValues;
 use super::sections::Unit;
-use super::table::{Member, Row};
+use super::table::{Member, Row, Table};
 use crate::catalog::Statistic;
 use crate::check::plan::{Decision, EstimateKind, Limit, Plan, Quantity};
 
@@ -66,38 +66,50 @@ pub enum Pooled {
     Estimate(Estimator),
 }
 
+/// A row with the number of its section and the section.
+type Numbered = (usize, Unit, Row);
+
 /// An estimate of a group of rows and its limit, for any choice of sections.
 #[derive(Clone)]
 pub struct Estimator {
     rules: Arc<(Plan, Facts)>,
     quantity: usize,
     limit: usize,
-    /// The rows of the group, each with the number of its section and the section.
-    rows: Arc<Vec<(usize, Unit, Row)>>,
+    /// The rows of the group.
+    rows: Arc<Vec<Numbered>>,
+    /// The rows of every quantity, where it takes numbers of others.
+    others: Arc<Vec<Result<Vec<Numbered>, String>>>,
     bound: f64,
 }
 
 impl Estimator {
     fn new(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Self {
-        let Judging { plan, facts, quantity, members } = *judging;
+        let Judging { plan, facts, quantity, members, table } = *judging;
         let inside = part.members(facts, members).unwrap_or_default();
         let number = |unit: &Unit| units.iter().position(|known| known.name == unit.name).unwrap_or_default();
-        let rows = inside.iter().map(|member| (number(member.unit), member.unit.clone(), member.row.clone())).collect();
+        let numbered = |member: &Member<'_>| (number(member.unit), member.unit.clone(), member.row.clone());
+        let rows = inside.iter().map(numbered).collect();
+        let others = match limit.estimate.others().is_empty() {
+            true => Vec::new(),
+            false => table.iter().map(|rows| rows.clone().map(|rows| rows.iter().map(numbered).collect())).collect(),
+        };
         let bound = judging.bound(limit, part, &inside, &Known::vehicle(facts)).unwrap_or(f64::NAN);
         Self {
             rules: Arc::clone(rules),
             quantity: plan.quantities.iter().position(|known| known.id == quantity.id).unwrap_or_default(),
             limit: quantity.limits.iter().position(|known| known.span == limit.span && known.scope.same(&limit.scope)).unwrap_or_default(),
             rows: Arc::new(rows),
+            others: Arc::new(others),
             bound,
         }
     }
 
     /// Rows of a repeat go with those of the section that it repeats.
     pub fn take_together(&mut self, first: usize, repeat: usize) {
-        let moved =
-            |(section, unit, row): &(usize, Unit, Row)| (if *section == repeat { first } else { *section }, unit.clone(), row.clone());
-        self.rows = Arc::new(self.rows.iter().map(moved).collect());
+        let moved = |(section, unit, row): &Numbered| (if *section == repeat { first } else { *section }, unit.clone(), row.clone());
+        let all = |rows: &Vec<Numbered>| rows.iter().map(moved).collect();
+        self.rows = Arc::new(all(&self.rows));
+        self.others = Arc::new(self.others.iter().map(|rows| rows.as_ref().map(all).map_err(Clone::clone)).collect());
     }
 
     /// The estimate over the rows of some sections, by number, divided by the limit of all; `None` where it is not defined.
@@ -105,16 +117,25 @@ impl Estimator {
         let (plan, facts) = self.rules.as_ref();
         let quantity = &plan.quantities[self.quantity];
         let limit = &quantity.limits[self.limit];
-        let members: Vec<Member<'_>> = self
-            .rows
+        let members = among(&self.rows, quantity, sections);
+        let others: Vec<Result<Vec<Member<'_>>, String>> = self
+            .others
             .iter()
-            .filter(|(section, ..)| sections.contains(section))
-            .map(|(_, unit, row)| Member { unit, signal: &quantity.positions[row.position].name, row })
+            .zip(&plan.quantities)
+            .map(|(rows, quantity)| rows.as_ref().map(|rows| among(rows, quantity, sections)).map_err(Clone::clone))
             .collect();
+        let table: Vec<Result<&[Member<'_>], String>> =
+            others.iter().map(|rows| rows.as_ref().map(Vec::as_slice).map_err(Clone::clone)).collect();
         let EstimateKind::Of(of) = &limit.estimate.kind else { return None };
-        let group = Group { plan, facts, members: &members };
+        let group = Group { plan, facts, members: &members, table: &table };
         group.number(of).ok().map(|value| value / self.bound).filter(|value| value.is_finite())
     }
+}
+
+/// The rows of some sections, by number.
+fn among<'a>(rows: &'a [Numbered], quantity: &'a Quantity, sections: &[usize]) -> Vec<Member<'a>> {
+    let inside = rows.iter().filter(|(section, ..)| sections.contains(section));
+    inside.map(|(_, unit, row)| Member { unit, signal: &quantity.positions[row.position].name, row }).collect()
 }
 
 impl std::fmt::Debug for Estimator {
@@ -147,6 +168,9 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
         Decision::Verdicts(_) | Decision::Person(_) => (None, &[][..]),
     };
     let rules = Arc::new((plan.clone(), facts.clone()));
+    let used: Vec<(&Unit, &SectionValues)> = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
+    let rows: Vec<Rows<'_>> = plan.quantities.iter().enumerate().map(|(index, quantity)| rows(plan, quantity, index, &used)).collect();
+    let table: Vec<_> = rows.iter().map(Rows::usable).collect();
     Pool {
         sections: units
             .iter()
@@ -164,13 +188,14 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
             .map(|zone| Zone { name: zone.name.clone(), title: zone.title.clone(), needed: zone.minimum_sections })
             .collect(),
         minimum: plan.sections.minimum,
-        quantities: about.iter().map(|&index| pooled(&rules, &plan.quantities[index], index, units, values)).collect(),
+        quantities: about.iter().map(|&index| pooled(&rules, index, units, values, &table)).collect(),
         rule,
     }
 }
 
-fn pooled(rules: &Arc<(Plan, Facts)>, quantity: &Quantity, index: usize, units: &[Unit], values: &[SectionValues]) -> PooledQuantity {
+fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &[Unit], values: &[SectionValues], table: &Table<'_>) -> PooledQuantity {
     let (plan, facts) = rules.as_ref();
+    let quantity = &plan.quantities[index];
     let used: Vec<(&Unit, &SectionValues)> = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
     let members = members(quantity, index, &used);
     let of_section = |(unit, values): (&Unit, &SectionValues)| {
@@ -178,7 +203,7 @@ fn pooled(rules: &Arc<(Plan, Facts)>, quantity: &Quantity, index: usize, units: 
         rows.map(|row| (row.position, quantity.unit.from_si(row.value))).collect::<Vec<_>>()
     };
     let impossible = used.iter().any(|(_, values)| values.impossible.iter().any(|(at, _)| *at == index));
-    let judging = Judging { plan, facts, quantity, members: &members };
+    let judging = Judging { plan, facts, quantity, members: &members, table };
     let mut limits = Vec::new();
     for limit in quantity.limits.iter().filter(|limit| applies(limit, facts) == Ok(true)) {
         for part in parts(plan, quantity, limit, &members, facts) {
@@ -199,7 +224,7 @@ fn pooled(rules: &Arc<(Plan, Facts)>, quantity: &Quantity, index: usize, units: 
 }
 
 fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Option<PooledLimit> {
-    let Judging { plan, facts, quantity, members } = *judging;
+    let Judging { plan, facts, quantity, members, .. } = *judging;
     let inside = units.iter().map(|unit| part.has_section(unit, facts)).collect::<Result<Vec<_>, _>>().ok()?;
     let positions = part.positions(quantity);
     let shown = |known: &Known<'_>, part: &Part<'_>, members: &[Member<'_>]| {

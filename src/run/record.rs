@@ -15,7 +15,7 @@ use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Plan, Side, StepSpec};
 use crate::data::checks::{Section, check_axis};
 use crate::data::record::Wanted;
-use crate::data::{Campaign, RecordKind};
+use crate::data::{Campaign, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::{Method, percentiles};
 use crate::problem::Problem;
@@ -29,6 +29,8 @@ pub struct Work<'a> {
     pub graph: &'a Graph,
     pub campaign: &'a Campaign,
     pub facts: &'a Facts,
+    /// All sections: a repeat looks for its original.
+    pub units: &'a [Unit],
     /// For each position of each quantity, whether its channels were recorded at all.
     pub present: &'a [Vec<bool>],
     /// The same for each position of each plausibility rule.
@@ -117,11 +119,11 @@ fn chosen(conditions: &[crate::check::plan::Expr], inputs: &[NodeId], known: &Kn
     ))
 }
 
-/// Reads and checks a record of one kind for one section.
-pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<NodeId>) -> Result<Opened, Fault> {
+/// Reads and checks a record of one section.
+pub fn open(work: &Work<'_>, unit: &Unit, which: WhichRecord, needed: &BTreeSet<NodeId>) -> Result<Opened, Fault> {
     let axis = &work.plan.axis;
     let mut wanted = vec![Wanted::new(axis.column.as_str(), axis.unit.dimension)];
-    let time = work.plan.time.as_ref().filter(|time| kind != RecordKind::Track && time.column != axis.column);
+    let time = work.plan.time.as_ref().filter(|time| which.kind != RecordKind::Track && time.column != axis.column);
     if let Some(time) = time {
         wanted.push(Wanted::new(time.column.as_str(), time.unit.dimension));
     }
@@ -133,11 +135,12 @@ pub fn open(work: &Work<'_>, unit: &Unit, kind: RecordKind, needed: &BTreeSet<No
         }
     }
     let fault = |problems: Vec<Problem>| Fault { says: said(work.campaign, &problems), problems };
-    let (record, read) = work.campaign.read(kind, &unit.cell, &wanted).map_err(fault)?;
+    let (record, read) = work.campaign.read(which, &unit.cell, &wanted).map_err(fault)?;
     let clock = time.map_or(axis.column.as_str(), |time| time.column.as_str());
     let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
     let checked = check_axis(&record, clock, &axis.column, section.as_ref()).map_err(fault)?;
-    let of = RecordOf { kind: kind.key().into(), section: unit.name.clone() };
+    let name = work.campaign.record_name(which).map(ToString::to_string);
+    let of = RecordOf { kind: which.kind.key().into(), section: unit.name.clone(), name };
     let file = FileHash { path: read.path, sha256: read.sha256, bytes: read.bytes, record: Some(of) };
     let columns: Vec<_> = record.columns.into_iter().map(|column| (column.name, Arc::new(column.values))).collect();
     let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));

@@ -152,6 +152,7 @@ fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
             zone: section.zone.clone(),
             site: place(&section.site).or_else(|| place(&section.name)).unwrap_or_default(),
             site_name: section.site.clone(),
+            original: None,
             extent: (!plan.sections.whole_records).then(|| (axis.to_si(section.start), axis.to_si(section.end))),
             covered: None,
             columns: plan.columns.iter().zip(&section.columns).map(column).collect(),
@@ -166,8 +167,10 @@ fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
 
 /// Why a recorded difference does not follow from its two sides.
 fn difference(plan: &Plan, facts: &Facts, unit: &Unit, index: usize, row: &Row) -> Option<String> {
-    let Evaluation::Values { records: Records::Compared { difference } | Records::Spread { difference, .. }, .. } =
-        plan.quantities[index].evaluation.as_ref()
+    let Evaluation::Values {
+        records: Records::Compared { difference } | Records::Spread { difference, .. } | Records::Repeats { difference },
+        ..
+    } = plan.quantities[index].evaluation.as_ref()
     else {
         return None;
     };

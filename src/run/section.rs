@@ -1,6 +1,7 @@
 //! One section: its records through the graph, then rows of the table of values, checks and plausibility.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use super::checks::{record_checks, track_checks};
 use super::copies::Print;
@@ -9,13 +10,13 @@ use super::margins::note_margins;
 use super::plausibility;
 use super::record::{Fault, Found, Opened, Work, needed, open};
 use super::sections::Unit;
-use super::sides::{Evaluated, RecordOfSide, Sides};
+use super::sides::{Evaluated, Original, RecordOfSide, Sides};
 use super::signal::Extent;
 use super::synchronisation::{self, Offset, Shifts};
 use super::table::Row;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Evaluation, Expr, Position, Quantity, Side};
-use crate::data::RecordKind;
+use crate::data::{RecordKind, WhichRecord};
 use crate::graph::{InputNode, NodeId, SignalNodes};
 use crate::problem::Problem;
 use crate::result::{CheckResult, FileHash, Finding};
@@ -65,13 +66,13 @@ pub fn of_section(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>) -> Vec<Sect
     }
 }
 
-/// Which positions of which quantities are evaluated in a section.
+/// Which positions of which quantities are evaluated in a section; those of repeats only in one that repeats another.
 type Active = Vec<Vec<bool>>;
 
-fn active(work: &Work<'_>, known: &Known<'_>) -> Result<Active, Fault> {
+fn active(work: &Work<'_>, repeats: bool, known: &Known<'_>) -> Result<Active, Fault> {
     let holds = |only: Option<&Expr>| only.map_or(Ok(true), |only| flag(only, known));
     let of_quantity = |(quantity, present): (&Quantity, &Vec<bool>)| {
-        let all = holds(quantity.only.as_ref())?;
+        let all = holds(quantity.only.as_ref())? && (repeats || !quantity.evaluation.of_repeats());
         let of_position = |(position, present): (&Position, &bool)| Ok(all && *present && holds(position.only.as_ref())?);
         quantity.positions.iter().zip(present).map(of_position).collect::<Result<Vec<bool>, String>>()
     };
@@ -81,7 +82,7 @@ fn active(work: &Work<'_>, known: &Known<'_>) -> Result<Active, Fault> {
 fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionValues) -> Result<Vec<SectionValues>, Fault> {
     let known = unit.known(work.facts);
     let track = track_checks(work, unit, &known, common)?;
-    let active = active(work, &known)?;
+    let active = active(work, unit.original.is_some(), &known)?;
     // A record is reduced to numbers before the next one is opened: one record in memory at a time.
     let simulated = records(work, unit, Side::Simulated, &wanted(work, &known, &active, shifts, Side::Simulated), &known, common);
     let wanted = wanted(work, &known, &active, shifts, Side::Measured);
@@ -94,6 +95,7 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
         (Err(first), Err(second)) => return Err(first.and(second)),
         (Err(fault), _) | (_, Err(fault)) => return Err(fault),
     };
+    let original = original(work, unit, &active);
     let one = |measured: Result<Vec<RecordOfSide>, String>| {
         let mut values = common.clone();
         match measured {
@@ -101,13 +103,14 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
                 let sides = Sides {
                     simulated: &simulated,
                     measured: &measured,
+                    original: original.as_ref(),
                     known: &known,
                     extent: unit.extent,
                     method: work.plan.sections.percentiles,
                 };
                 quantities(work, &sides, &active, &mut values);
-                record_checks(work, &sides.first(), &mut values);
-                plausibility::look(work, unit, &sides.first(), &track, &mut values);
+                record_checks(work, &sides, &mut values);
+                plausibility::look(work, unit, &sides, &track, &mut values);
             }
             Err(says) => values.fault = Some(says),
         }
@@ -128,12 +131,50 @@ fn records(
     if !work.reads(side) {
         return Ok(Vec::new());
     }
-    let (found, opened) = one_record(work, unit, side.kind(), wanted, known, common)?;
-    // The measurement says what a whole record covers, and where there is none, the simulation.
-    if side == Side::Measured || common.extent.is_none() {
-        common.extent = Some(opened.extent);
+    let mut records: Result<Vec<RecordOfSide>, Fault> = Ok(Vec::new());
+    for which in work.campaign.records(side.kind()) {
+        let one = one_record(work, unit, which, wanted, known, common).map(|(found, opened)| {
+            // The first measurement says what a whole record covers, and where there is none, the simulation.
+            if side == Side::Measured && which.number == 0 || common.extent.is_none() {
+                common.extent = Some(opened.extent);
+            }
+            of_side(work, which, found)
+        });
+        records = match (records, one) {
+            (Ok(mut all), Ok(one)) => {
+                all.push(one);
+                Ok(all)
+            }
+            (Err(first), Err(second)) => Err(first.and(second)),
+            (Err(fault), _) | (_, Err(fault)) => Err(fault),
+        };
     }
-    Ok(vec![RecordOfSide { name: None, found }])
+    records
+}
+
+fn of_side(work: &Work<'_>, which: WhichRecord, found: Evaluated) -> RecordOfSide {
+    RecordOfSide { name: work.campaign.record_name(which).cloned(), which, found }
+}
+
+/// The section that this one repeats, with what quantities of repeats need of it. Where it cannot be had, it is not used itself, and says
+/// why.
+fn original<'a>(work: &Work<'a>, unit: &Unit, active: &Active) -> Option<Original<'a>> {
+    let original = work.units.get(unit.original?)?;
+    let mut wanted = BTreeSet::new();
+    for (index, quantity) in work.graph.quantities.iter().enumerate() {
+        let rule = &work.plan.quantities[index];
+        if rule.evaluation.of_repeats() {
+            let signals = quantity.signals.iter().zip(&active[index]).filter(|(_, active)| **active);
+            signals.for_each(|(signal, _)| wanted_of(rule, signal, &mut wanted));
+        }
+    }
+    if wanted.is_empty() || original.fault.is_some() {
+        return None;
+    }
+    let known = original.known(work.facts);
+    // Its files and margins are told by itself.
+    let records = records(work, original, Side::Measured, &wanted, &known, &mut SectionValues::default()).ok()?;
+    Some(Original { unit: original, known, records })
 }
 
 /// The measured record cut at every shift; its filters run once.
@@ -147,7 +188,8 @@ fn shifted(
     common: &mut SectionValues,
 ) -> Result<Vec<Result<Vec<RecordOfSide>, String>>, Fault> {
     let needed = needed(work.graph, wanted, known).map_err(Fault::new)?;
-    let opened = open(work, unit, RecordKind::Measurement, &needed)?;
+    let which = RecordKind::Measurement.into();
+    let opened = open(work, unit, which, &needed)?;
     common.files.push(opened.file.clone());
     common.extent = Some(opened.extent);
     note_margins(work, unit, &needed, &opened, common);
@@ -158,7 +200,7 @@ fn shifted(
         .zip(simulated.first())
         .and_then(|(farthest, simulated)| synchronisation::estimate(work.graph, unit, farthest, &simulated.found, &held));
     let own = if shifts.correct { common.offset.as_ref().map_or(0.0, |offset| offset.shift) } else { 0.0 };
-    let at = |offset: &f64| held.at(own + offset).map(|found| vec![RecordOfSide { name: None, found }]).map_err(placed);
+    let at = |offset: &f64| held.at(own + offset).map(|found| vec![of_side(work, which, found)]).map_err(placed);
     Ok(shifts.offsets.iter().map(at).collect())
 }
 
@@ -200,7 +242,7 @@ fn wanted(work: &Work<'_>, known: &Known<'_>, active: &Active, shifts: &Shifts<'
 fn wanted_of(quantity: &Quantity, signal: &SignalNodes, wanted: &mut BTreeSet<NodeId>) {
     match quantity.evaluation.as_ref() {
         Evaluation::Values { .. } => wanted.extend(signal.values.iter().flat_map(|value| value.inputs.iter().flat_map(InputNode::nodes))),
-        Evaluation::Combined(_) => wanted.extend(signal.inputs.iter().flat_map(InputNode::nodes)),
+        Evaluation::Combined { .. } => wanted.extend(signal.inputs.iter().flat_map(InputNode::nodes)),
         Evaluation::Metric { metric, .. } => {
             let common = metric.on_common_points(quantity.keeps_samples());
             wanted.insert(if common { signal.filtered } else { signal.processed });
@@ -212,7 +254,16 @@ fn wanted_of(quantity: &Quantity, signal: &SignalNodes, wanted: &mut BTreeSet<No
 /// The rows of one position and what each record gave.
 pub struct Computed {
     pub rows: Vec<Row>,
-    pub records: Vec<(Side, Evaluated, Opened)>,
+    pub records: Vec<OneRecord>,
+}
+
+/// A record of one position by itself.
+pub struct OneRecord {
+    /// Where its value stands in a row: a repeat in the place of the simulation.
+    pub place: Side,
+    pub name: Option<Arc<str>>,
+    pub found: Evaluated,
+    pub opened: Opened,
 }
 
 /// One position of one quantity in one section, by itself.
@@ -222,34 +273,55 @@ pub fn single(work: &Work<'_>, unit: &Unit, index: usize, signal: usize) -> Resu
     let quantity = &work.plan.quantities[index];
     let mut wanted = BTreeSet::new();
     wanted_of(quantity, nodes, &mut wanted);
-    let mut values = SectionValues::default();
-    let mut records = Vec::new();
-    for side in Side::ALL.into_iter().filter(|side| quantity.evaluation.reads(*side)) {
-        let (found, opened) = one_record(work, unit, side.kind(), &wanted, &known, &mut values)?;
-        records.push((side, found, opened));
-    }
-    let of = |side: Side| -> Vec<RecordOfSide> {
-        let all = records.iter().filter(|(of, ..)| *of == side);
-        all.map(|(_, found, _)| RecordOfSide { name: None, found: found.clone() }).collect()
+    let mut all: Vec<OneRecord> = Vec::new();
+    let mut read = |unit: &Unit, known: &Known<'_>, side: Side, place: Side| {
+        let mut records = Vec::new();
+        for which in work.campaign.records(side.kind()) {
+            let (found, opened) = one_record(work, unit, which, &wanted, known, &mut SectionValues::default())?;
+            let record = of_side(work, which, found.clone());
+            all.push(OneRecord { place, name: record.name.clone(), found, opened });
+            records.push(record);
+        }
+        Ok::<_, Fault>(records)
     };
-    let (simulated, measured) = (of(Side::Simulated), of(Side::Measured));
-    let sides =
-        Sides { simulated: &simulated, measured: &measured, known: &known, extent: unit.extent, method: work.plan.sections.percentiles };
+    let repeats = quantity.evaluation.of_repeats();
+    let mut of = |side: Side| {
+        let place = if repeats { Side::Simulated } else { side };
+        if quantity.evaluation.reads(side) { read(unit, &known, side, place) } else { Ok(Vec::new()) }
+    };
+    let (simulated, measured) = (of(Side::Simulated)?, of(Side::Measured)?);
+    let first = unit.original.and_then(|original| work.units.get(original)).filter(|_| repeats);
+    let original = match first {
+        Some(first) => {
+            let known = first.known(work.facts);
+            let records = read(first, &known, Side::Measured, Side::Measured)?;
+            Some(Original { unit: first, known, records })
+        }
+        None => None,
+    };
+    let sides = Sides {
+        simulated: &simulated,
+        measured: &measured,
+        original: original.as_ref(),
+        known: &known,
+        extent: unit.extent,
+        method: work.plan.sections.percentiles,
+    };
     let rows = sides.rows(work, signal, nodes).map_err(Fault::new)?;
-    Ok(Computed { rows, records })
+    Ok(Computed { rows, records: all })
 }
 
 /// One record of a section through the graph.
 pub fn one_record(
     work: &Work<'_>,
     unit: &Unit,
-    kind: RecordKind,
+    which: WhichRecord,
     wanted: &BTreeSet<NodeId>,
     known: &Known<'_>,
     values: &mut SectionValues,
 ) -> Result<(Vec<(NodeId, Found)>, Opened), Fault> {
     let needed = needed(work.graph, wanted, known).map_err(Fault::new)?;
-    let opened = open(work, unit, kind, &needed)?;
+    let opened = open(work, unit, which, &needed)?;
     values.files.push(opened.file.clone());
     let found = opened
         .evaluate(work.graph, &needed, wanted, known, work.plan.sections.percentiles)

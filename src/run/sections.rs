@@ -4,7 +4,7 @@ use super::facts::{Facts, Known, item, scalar};
 use super::signal::Extent;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
 use crate::data::Campaign;
-use crate::data::sites::sites;
+use crate::data::sites::{originals, sites};
 use crate::data::table::{Cell, Table};
 use crate::problem::{Problem, Problems};
 use crate::result::{CheckResult, SectionResult};
@@ -22,6 +22,8 @@ pub struct Unit {
     pub site: usize,
     /// Name of the first section of the site.
     pub site_name: String,
+    /// Number of the section that it repeats.
+    pub original: Option<usize>,
     /// `None` for a whole record.
     pub extent: Option<Extent>,
     /// What a report says it covers: the section, or the measured record.
@@ -83,7 +85,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
     if missing {
         return Vec::new();
     }
-    let sites = sites(table, problems);
+    let (sites, originals) = (sites(table, problems), originals(table));
     let mut units = Vec::new();
     for row in 0..table.rows.len() {
         let row = Row { table, row, file: campaign.inside(&table.columns[0].span.source.name) };
@@ -101,6 +103,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
             }),
             site: sites[row.row],
             site_name: campaign.names[sites[row.row]].value.clone(),
+            original: originals[row.row],
             extent: None,
             covered: None,
             columns,
@@ -134,6 +137,7 @@ fn whole_record(plan: &Plan, name: &Cell, site: usize) -> Unit {
         zone: None,
         site,
         site_name: name.value.clone(),
+        original: None,
         extent: None,
         covered: None,
         columns,

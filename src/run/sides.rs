@@ -5,11 +5,13 @@ use std::sync::Arc;
 use super::common::{Both, Common};
 use super::facts::Known;
 use super::record::{Found, Work};
+use super::sections::Unit;
 use super::signal::{Extent, Rate, Samples};
 use super::table::Row;
 use crate::catalog::{Metric, Pair};
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Center, Evaluation, Expr, InputSide, Kind, Records, Side};
+use crate::data::WhichRecord;
 use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
 use crate::metrics::percentile::Method;
 use crate::metrics::statistics;
@@ -22,6 +24,7 @@ pub type Evaluated = Vec<(NodeId, Found)>;
 pub struct RecordOfSide {
     /// Its name, where the campaign has several of the side.
     pub name: Option<Arc<str>>,
+    pub which: WhichRecord,
     pub found: Evaluated,
 }
 
@@ -30,10 +33,20 @@ pub struct RecordOfSide {
 pub struct Sides<'a> {
     pub simulated: &'a [RecordOfSide],
     pub measured: &'a [RecordOfSide],
+    /// The section that this one repeats.
+    pub original: Option<&'a Original<'a>>,
     pub known: &'a Known<'a>,
     pub extent: Option<Extent>,
     /// How percentiles are read between samples.
     pub method: Method,
+}
+
+/// A section that was measured again, and its measured records.
+#[derive(Debug)]
+pub struct Original<'a> {
+    pub unit: &'a Unit,
+    pub known: Known<'a>,
+    pub records: Vec<RecordOfSide>,
 }
 
 /// One record of each side; a side that is not read has none.
@@ -45,6 +58,8 @@ pub struct Two<'a> {
     pub extent: Option<Extent>,
     /// How percentiles are read between samples.
     pub method: Method,
+    /// What is added to the axis of the simulated one: a repeat lies elsewhere than its original.
+    pub shift: f64,
 }
 
 /// What a side comes to that is not read.
@@ -58,34 +73,43 @@ impl<'a> Sides<'a> {
         }
     }
 
-    /// The first record of each side.
-    pub fn first(&self) -> Two<'a> {
-        let first = |records: &'a [RecordOfSide]| records.first().map_or(&NOT_READ, |record| &record.found);
-        Two {
-            simulated: first(self.simulated),
-            measured: first(self.measured),
-            known: self.known,
-            extent: self.extent,
-            method: self.method,
-        }
+    /// One record by itself, in the place of both sides.
+    pub fn alone(&self, record: &'a RecordOfSide) -> Two<'a> {
+        Two { simulated: &record.found, measured: &record.found, known: self.known, extent: self.extent, method: self.method, shift: 0.0 }
     }
 
     /// Every record of one side with every record of the other, and the name of those of which there are several.
-    fn pairs(&self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>)> + '_ {
-        self.simulated.iter().flat_map(move |simulated| {
-            self.measured.iter().map(move |measured| {
-                let name = match (&simulated.name, &measured.name) {
+    pub fn pairs(&self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>)> {
+        let (known, extent, method) = (self.known, self.extent, self.method);
+        let of = |records: &'a [RecordOfSide]| -> Vec<(Option<Arc<str>>, &'a Evaluated)> {
+            if records.is_empty() {
+                return vec![(None, &NOT_READ)];
+            }
+            records.iter().map(|record| (record.name.clone(), &record.found)).collect()
+        };
+        let (simulated, measured) = (of(self.simulated), of(self.measured));
+        simulated.into_iter().flat_map(move |(s, simulated)| {
+            let one = |(m, measured): &(Option<Arc<str>>, &'a Evaluated)| {
+                let name = match (&s, m) {
                     (Some(s), Some(m)) => Some(format!("{s}, {m}").into()),
                     (one, other) => one.clone().or_else(|| other.clone()),
                 };
-                let two = Two {
-                    simulated: &simulated.found,
-                    measured: &measured.found,
-                    known: self.known,
-                    extent: self.extent,
-                    method: self.method,
-                };
-                (name, two)
+                (name, Two { simulated, measured: *measured, known, extent, method, shift: 0.0 })
+            };
+            measured.iter().map(one).collect::<Vec<_>>()
+        })
+    }
+
+    /// Every measured record of a repeat with that of its original, which stands in the place of the measurement. Distances count from the
+    /// start of each section.
+    fn repeats(&self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>, &'a RecordOfSide, &'a RecordOfSide)> {
+        let (known, own, method) = (self.known, self.extent, self.method);
+        self.original.into_iter().flat_map(move |original| {
+            let extent = original.unit.extent;
+            let shift = extent.zip(own).map_or(0.0, |((first, _), (again, _))| first - again);
+            self.measured.iter().zip(&original.records).map(move |(repeat, first)| {
+                let two = Two { simulated: &repeat.found, measured: &first.found, known, extent, method, shift };
+                (repeat.name.clone(), two, repeat, first)
             })
         })
     }
@@ -96,16 +120,19 @@ impl<'a> Sides<'a> {
             return Err("this node makes no rows".into());
         };
         match evaluation.as_ref() {
-            Evaluation::Metric { metric, .. } => {
+            Evaluation::Metric { metric, repeats, .. } => {
                 let common = metric.on_common_points(keeps_samples(work, nodes));
                 let node = if common { nodes.filtered } else { nodes.processed };
                 let one = |(record, two): (Option<Arc<str>>, Two<'_>)| {
                     let (value, samples) = two.compared(*metric, common, node, nodes.over)?;
                     Ok(Row { position, which: 0, record, simulated: None, measured: None, value, samples })
                 };
+                if *repeats {
+                    return self.repeats().map(|(record, two, ..)| one((record, two))).collect();
+                }
                 self.pairs().map(one).collect()
             }
-            Evaluation::Combined(of) => {
+            Evaluation::Combined { of, repeats } => {
                 let one = |(record, two): (Option<Arc<str>>, Two<'_>)| {
                     let found: Vec<_> = nodes.inputs.iter().map(|input| two.counted(input, InputSide::Measured)).collect();
                     let samples = found.iter().flatten().map(|(_, samples)| *samples).max().unwrap_or(0);
@@ -113,6 +140,9 @@ impl<'a> Sides<'a> {
                     let value = number(&of.expr, &Known { inputs: &inputs, ..section(self.known) })?;
                     Ok(Row { position, which: 0, record, simulated: None, measured: None, value, samples })
                 };
+                if *repeats {
+                    return self.repeats().map(|(record, two, ..)| one((record, two))).collect();
+                }
                 self.pairs().map(one).collect()
             }
             Evaluation::Values { values, records } => {
@@ -142,8 +172,7 @@ impl<'a> Sides<'a> {
         let samples = |two: &Two<'_>, side| two.samples(work, nodes, value, side);
         let alone = |side: Side| {
             self.of(side).iter().map(move |record| {
-                let two =
-                    Two { simulated: &record.found, measured: &record.found, known: self.known, extent: self.extent, method: self.method };
+                let two = self.alone(record);
                 Ok::<_, String>((record.name.clone(), two, two.value(work, value, own(side))?))
             })
         };
@@ -172,6 +201,18 @@ impl<'a> Sides<'a> {
                     })
                 };
                 self.pairs().map(one).collect()
+            }
+            Records::Repeats { difference } => {
+                let one = |(record, _, repeat, first): (Option<Arc<str>>, Two<'_>, &RecordOfSide, &RecordOfSide)| {
+                    let again = self.alone(repeat);
+                    let known = self.original.map_or(self.known, |original| &original.known);
+                    let s = again.value(work, value, InputSide::Measured)?;
+                    let m = Two { known, ..self.alone(first) }.value(work, value, InputSide::Measured)?;
+                    let samples = samples(&again, InputSide::Measured);
+                    let value = difference_of(difference, s, m)?;
+                    Ok(Row { position, which, record, simulated: Some(s), measured: Some(m), value, samples })
+                };
+                self.repeats().map(one).collect()
             }
             Records::Spread { side, center, difference } => {
                 let all = alone(*side).collect::<Result<Vec<_>, _>>()?;
@@ -235,7 +276,7 @@ impl Two<'_> {
     fn compared(&self, metric: Metric, on_common_points: bool, node: NodeId, over: Option<NodeId>) -> Result<(f64, usize), String> {
         let (simulated, measured) = (samples_of(self.simulated, node)?, samples_of(self.measured, node)?);
         let common = if on_common_points {
-            Common::of(simulated, measured, self.extent)?
+            Common::of(simulated, measured, self.extent, self.shift)?
         } else {
             Common { simulated: simulated.values.to_vec(), measured: measured.clone() }
         };
@@ -272,6 +313,7 @@ impl Two<'_> {
                     measured: samples_of(self.measured, input.node)?,
                     known: self.known,
                     extent: self.extent,
+                    shift: self.shift,
                 };
                 both.reduced(*reducer, self.method, signal)
             }

@@ -1,14 +1,12 @@
 //! One value by itself, with what it was made of: for who asks where a number of a result comes from.
 
-use super::record::Opened;
-use super::section;
-use super::sides::Evaluated;
+use super::section::{self, OneRecord};
 use super::{Found, Prepared};
-use crate::check::plan::{self, Plan};
+use crate::check::plan::{self, Evaluation, Plan, Records};
 use crate::data::Campaign;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
-use crate::result::FileHash;
+use crate::result::{FileHash, took_part};
 
 /// One section and signal of a quantity, computed anew.
 #[derive(Debug)]
@@ -24,8 +22,8 @@ pub struct Single {
 /// What one record gave.
 #[derive(Debug)]
 pub struct Side {
-    /// `simulated`
-    pub side: &'static str,
+    /// The column of the value in a result, in which a repeat stands in the place of the simulation; `None` of an assessment.
+    pub column: Option<plan::Side>,
     pub file: FileHash,
     /// First and last row of the file that lie in the section, the header being row 1.
     pub inside: (usize, usize),
@@ -46,7 +44,7 @@ pub fn single(
     graph: &Graph,
     campaign: &Campaign,
     (quantity, signal): (usize, usize),
-    section: &str,
+    (section, record): (&str, Option<&str>),
 ) -> Result<Single, Problems> {
     let prepared = Prepared::new(plan, graph, campaign)?;
     let unit = prepared.units.iter().find(|unit| unit.name == section).ok_or_else(|| {
@@ -61,25 +59,35 @@ pub fn single(
         problems.push(Problem::error("not-evaluated", format!("section {section} cannot be evaluated: {}", fault.says)));
         problems
     })?;
-    let row = found.rows.first().ok_or_else(|| one(Problem::error("not-evaluated", format!("section {section} has no such value"))))?;
+    let row = found
+        .rows
+        .iter()
+        .find(|row| row.record.as_deref() == record)
+        .ok_or_else(|| one(Problem::error("not-evaluated", format!("section {section} has no such value"))))?;
     let of = &plan.quantities[quantity].unit;
-    let assessed = found.records.len() == 1;
-    let side = |(side, found, opened): (plan::Side, Evaluated, Opened)| {
-        let reduced = found.iter().filter_map(|(node, found)| match found {
+    let evaluation = plan.quantities[quantity].evaluation.as_ref();
+    let assessed = matches!(evaluation, Evaluation::Values { records: Records::Of(_), .. });
+    // What is central of several records is made of all of them.
+    let of_all = matches!(evaluation, Evaluation::Values { records: Records::Spread { .. }, .. });
+    let own = |one: &OneRecord| of_all || took_part(record, one.place == plan::Side::Simulated, one.name.as_deref());
+    let side = |one: OneRecord| {
+        let reduced = one.found.iter().filter_map(|(node, found)| match found {
             Found::Number(value, samples) => Some((*node, *value, *samples)),
             Found::Samples(_) | Found::Failed(_) => None,
         });
-        let value = match side {
+        let value = match one.place {
             _ if assessed => Some(row.value),
+            _ if of_all => row.simulated.filter(|_| one.name.as_deref() == record),
             plan::Side::Simulated => row.simulated,
             plan::Side::Measured => row.measured,
         };
-        let (inside, last) = opened.rows();
+        let column = if of_all { plan::Side::Simulated } else { one.place };
+        let (inside, last) = one.opened.rows();
         let value = value.map(|value| of.from_si(value));
-        Side { side: side.in_words(), reduced: reduced.collect(), inside, last, value, file: opened.file }
+        Side { column: (!assessed).then_some(column), reduced: reduced.collect(), inside, last, value, file: one.opened.file }
     };
     let (difference, samples) = (of.from_si(row.value), row.samples);
-    Ok(Single { records: found.records.into_iter().map(side).collect(), difference, samples })
+    Ok(Single { records: found.records.into_iter().filter(own).map(side).collect(), difference, samples })
 }
 
 fn one(problem: Problem) -> Problems {

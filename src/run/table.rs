@@ -33,6 +33,9 @@ pub struct Member<'a> {
     pub row: &'a Row,
 }
 
+/// The rows of every quantity, or why there is no number of them.
+pub type Table<'a> = [Result<&'a [Member<'a>], String>];
+
 /// Numbers the units that are independent of each other, one for each member.
 pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
     let mut names: Vec<String> = Vec::new();

@@ -8,9 +8,8 @@ use super::record::{Found, Work, needed, open};
 use super::sections::Unit as Section;
 use super::signal::Samples;
 use crate::check::plan::{Evaluation, Side};
-use crate::data::RecordKind;
 use crate::graph::NodeId;
-use crate::result::{Curve, QuantityResult, Trace};
+use crate::result::{Curve, QuantityResult, Trace, took_part};
 use crate::units::Unit;
 
 /// Points of a curve in a plot: each of so many stretches keeps its smallest and largest sample, so that no peak is lost.
@@ -19,7 +18,7 @@ const STRETCHES: usize = 700;
 /// The pair with the largest difference of each quantity, measured by its limits; the worst first, each signal of a section once.
 /// For a plot that cannot be made, a note says why.
 pub fn traces(work: &Work<'_>, units: &[Section], quantities: &[QuantityResult], most: usize) -> Vec<Result<Trace, String>> {
-    let mut picks: Vec<(f64, usize, usize, usize)> = Vec::new();
+    let mut picks: Vec<(f64, Pick<'_>)> = Vec::new();
     for (index, quantity) in quantities.iter().enumerate() {
         let limit = quantity.statistics.iter().filter_map(|statistic| statistic.limit).fold(f64::NAN, f64::max);
         let scale = if limit > 0.0 { limit } else { 1.0 };
@@ -28,21 +27,32 @@ pub fn traces(work: &Work<'_>, units: &[Section], quantities: &[QuantityResult],
         let unit = units.iter().position(|unit| unit.name == worst.section);
         let signal = work.plan.quantities[index].positions.iter().position(|position| position.name == worst.signal);
         if let (Some(unit), Some(signal)) = (unit, signal) {
-            picks.push((worst.difference.abs() / scale, index, unit, signal));
+            let pick = Pick { quantity: index, unit, signal, record: worst.record.as_deref() };
+            picks.push((worst.difference.abs() / scale, pick));
         }
     }
-    picks.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    picks.sort_by(|(a, first), (b, second)| b.total_cmp(a).then(first.quantity.cmp(&second.quantity)));
     let mut shown = BTreeSet::new();
-    picks.retain(|(_, index, unit, signal)| shown.insert((work.graph.quantities[*index].signals[*signal].filtered, *unit)));
+    picks.retain(|(_, pick)| shown.insert((work.graph.quantities[pick.quantity].signals[pick.signal].filtered, pick.unit, pick.record)));
     picks.truncate(most);
-    let one = |(_, index, unit, signal): &(f64, usize, usize, usize)| {
-        let unit = &units[*unit];
-        trace(work, unit, *index, *signal).map_err(|why| {
-            let id = &quantities[*index].id;
+    let one = |(_, pick): &(f64, Pick<'_>)| {
+        let unit = &units[pick.unit];
+        trace(work, unit, *pick).map_err(|why| {
+            let id = &quantities[pick.quantity].id;
             format!("there is no plot of {id} in section {}: {why}", unit.name)
         })
     };
     picks.par_iter().map(one).collect()
+}
+
+/// What is plotted.
+#[derive(Clone, Copy)]
+struct Pick<'a> {
+    quantity: usize,
+    unit: usize,
+    signal: usize,
+    /// Of several records the ones that were compared.
+    record: Option<&'a str>,
 }
 
 /// What a plot runs over: the axis of the records, or the signal that the quantity's metric runs over.
@@ -52,7 +62,7 @@ struct Over {
     unit: Unit,
 }
 
-fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Result<Trace, String> {
+fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record, .. }: Pick<'_>) -> Result<Trace, String> {
     let quantity = &work.plan.quantities[index];
     let nodes = &work.graph.quantities[index].signals[signal];
     let axis = &work.plan.axis;
@@ -66,9 +76,13 @@ fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Result
     let node = if over.node.is_some() { nodes.processed } else { nodes.filtered };
     let wanted: BTreeSet<NodeId> = [node].into_iter().chain(over.node).collect();
     let known = unit.known(work.facts);
-    let curve = |kind: RecordKind| {
+    let curve = |side: Side| {
+        let name = |which| work.campaign.record_name(which).map(|name| name.as_ref());
+        let all = work.campaign.records(side.kind());
+        let which = all.into_iter().find(|&which| took_part(record, side == Side::Simulated, name(which)));
+        let which = which.ok_or_else(|| format!("there is no {} record of it", side.in_words()))?;
         let needed = needed(work.graph, &wanted, &known)?;
-        let opened = open(work, unit, kind, &needed).map_err(|fault| fault.says)?;
+        let opened = open(work, unit, which, &needed).map_err(|fault| fault.says)?;
         let found = opened.evaluate(work.graph, &needed, &wanted, &known, work.plan.sections.percentiles)?;
         let of = |node: NodeId| {
             found
@@ -83,7 +97,7 @@ fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Result
         };
         Ok::<_, String>((thinned(samples, x, &quantity.signal_unit, &over.unit), opened.extent))
     };
-    let of = |side: Side| -> Result<_, String> { if quantity.evaluation.reads(side) { curve(side.kind()).map(Some) } else { Ok(None) } };
+    let of = |side: Side| -> Result<_, String> { if quantity.evaluation.reads(side) { curve(side).map(Some) } else { Ok(None) } };
     let (measured, simulated) = (of(Side::Measured)?, of(Side::Simulated)?);
     let extent = measured.as_ref().or(simulated.as_ref()).map_or((0.0, 0.0), |(_, extent)| *extent);
     let of_curve = |curve: Option<(Curve, _)>| curve.map(|(curve, _)| curve).unwrap_or_default();
@@ -97,7 +111,12 @@ fn trace(work: &Work<'_>, unit: &Section, index: usize, signal: usize) -> Result
         section: unit.name.clone(),
         zone: unit.zone.clone(),
         signal: quantity.positions[signal].name.clone(),
-        why: format!("largest {} of {}", if quantity.evaluation.assesses() { "value" } else { "difference" }, quantity.id),
+        why: format!(
+            "largest {} of {}{}",
+            if quantity.evaluation.assesses() { "value" } else { "difference" },
+            quantity.id,
+            record.map_or_else(String::new, |name| format!(" ({name})"))
+        ),
         unit: quantity.signal_unit.text.clone(),
         axis: over.name,
         axis_unit: over.unit.text,

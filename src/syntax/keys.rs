@@ -352,7 +352,7 @@ pub const KINDS: &[Kind] = &[
             )),
             phrase(
                 "compare",
-                "Which records are compared: `simulated with measured` (the default), or each with the mean or median of all.",
+                "Which records are compared: `simulated with measured` (the default), each with the mean or median of all (`simulated with mean of simulated`), or `repeats with originals`.",
                 "simulated with mean of simulated",
             ),
             phrase("difference", "How the two numbers are compared.", "|simulated| - |measured|"),

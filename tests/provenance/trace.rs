@@ -93,7 +93,7 @@ fn every_value_can_be_traced() {
         let compiled = carried.compiled(&sources, &mut problems).expect("the protocol compiles");
         for quantity in &carried.results.quantities {
             for (at, pair) in quantity.values.iter().enumerate() {
-                let asked = Asked { quantity: &quantity.id, section: &pair.section, signal: &pair.signal };
+                let asked = Asked { quantity: &quantity.id, section: &pair.section, signal: &pair.signal, record: None };
                 let campaign = (at % every == 0).then_some(campaign);
                 let found =
                     trace(&carried, Some(&compiled), asked, campaign).unwrap_or_else(|problems| panic!("{}", problems.render(false)));

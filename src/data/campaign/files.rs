@@ -31,7 +31,8 @@ impl Campaign {
     /// Folders and files that the campaign is read from, as far as they are named, without symbolic links.
     pub fn inputs(&self) -> Inputs {
         let real = |place: &Place| disk::real(&place.path).ok().flatten().unwrap_or_else(|| place.path.clone());
-        let folders = RecordKind::ALL.into_iter().filter_map(|kind| Some(real(&self.record_folder(kind).ok()?.0)));
+        let all = RecordKind::ALL.into_iter().flat_map(|kind| self.records(kind));
+        let folders = all.filter_map(|which| Some(real(&self.record_folder(which).ok()?.0)));
         let named = self.files.iter().filter_map(|file| self.folder.place(&file.path, &self.tree.span.part(0..0)).ok());
         let files = named.chain(self.vehicle_files().unwrap_or_default());
         Inputs { folder: self.folder.real().to_path_buf(), folders: folders.collect(), files: files.map(|place| real(&place)).collect() }
@@ -44,9 +45,10 @@ impl Campaign {
     /// A file cannot be read, or lies outside.
     pub fn other_files(&self, but: RecordKind) -> Result<Vec<(String, Vec<u8>)>, Problem> {
         let mut inside: Vec<String> = self.files.iter().map(|file| file.path.clone()).filter(|path| path != CAMPAIGN_FILE).collect();
-        for kind in RecordKind::ALL.into_iter().filter(|kind| *kind != but && self.has(*kind)) {
+        let others = RecordKind::ALL.into_iter().filter(|kind| *kind != but && self.has(*kind));
+        for which in others.flat_map(|kind| self.records(kind)) {
             for name in &self.names {
-                inside.push(self.record_place(kind, name)?.inside);
+                inside.push(self.place_of(which, name)?.inside);
             }
         }
         for place in self.vehicle_files()? {

@@ -1,10 +1,12 @@
-//! Where the records of a campaign are: a folder of each kind, a file for each section.
+//! Where the records of a campaign are: one folder or several of each kind, a file for each section.
 
 use std::collections::HashSet;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::{Campaign, ReadFile};
 use crate::data::folder::{Place, check_file_name};
+use crate::data::members::{self, RecordFolder, WhichRecord};
 use crate::data::record::{Record, Wanted, read_record};
 use crate::data::table::Cell;
 use crate::data::text::other_format;
@@ -39,8 +41,7 @@ const MOST_COMPARISONS: usize = 1_000_000;
 impl Campaign {
     /// The names of the measured records.
     pub(super) fn measured(&self) -> Result<Vec<Cell>, Problem> {
-        let kind = RecordKind::Measurement;
-        let (place, span) = self.record_folder(kind)?;
+        let (place, span) = self.record_folder(RecordKind::Measurement.into())?;
         let entries = disk::names(&place.path).map_err(|error| no_folder(&error, &place.shown).at(span))?;
         let mut names: Vec<String> = entries
             .iter()
@@ -58,26 +59,74 @@ impl Campaign {
         Ok(names.into_iter().map(|name| Spanned::new(name, span.clone())).collect())
     }
 
-    pub(super) fn record_folder(&self, kind: RecordKind) -> Result<(Place, &Span), Problem> {
-        let Some((_, written)) = self.record_folders.iter().find(|(known, _)| *known == kind) else {
-            return Err(Problem::error("key-missing", format!("the campaign has no `{}`: the folder of its records", kind.key()))
-                .at(&self.tree.span.part(0..0)));
-        };
+    pub(super) fn record_folder(&self, which: WhichRecord) -> Result<(Place, &Span), Problem> {
+        let written = &self.found(which)?.folder;
         Ok((self.folder.place(&written.value, &written.span)?, &written.span))
+    }
+
+    fn found(&self, which: WhichRecord) -> Result<&RecordFolder, Problem> {
+        let key = which.kind.key();
+        self.folders_of(which.kind).nth(which.number).ok_or_else(|| {
+            let says = format!("the campaign has no `{key}`: the folder of its records");
+            Problem::error("key-missing", says).at(&self.tree.span.part(0..0))
+        })
+    }
+
+    fn folders_of(&self, kind: RecordKind) -> impl Iterator<Item = &RecordFolder> {
+        self.record_folders.iter().filter(move |folder| folder.kind == kind)
+    }
+
+    /// Every record of a section of one kind, one at least: that there is none is told when it is read.
+    pub fn records(&self, kind: RecordKind) -> Vec<WhichRecord> {
+        (0..self.folders_of(kind).count().max(1)).map(|number| WhichRecord { kind, number }).collect()
+    }
+
+    /// The name of a record, where there are several of its kind.
+    pub fn record_name(&self, which: WhichRecord) -> Option<&Arc<str>> {
+        self.folders_of(which.kind).nth(which.number)?.name.as_ref()
+    }
+
+    /// `simulation`, and of several `simulation simpack`.
+    pub fn record_in_words(&self, which: WhichRecord) -> String {
+        let key = which.kind.key();
+        self.record_name(which).map_or_else(|| key.to_string(), |name| format!("{key} {name}"))
+    }
+
+    /// As [`Self::only_one`], of simulation and measurement.
+    pub fn one_of_each(&self) -> Result<(), Problem> {
+        self.only_one(RecordKind::Simulation)?;
+        self.only_one(RecordKind::Measurement)
+    }
+
+    /// # Errors
+    /// `several-records`: who asks needs one record of a kind, and there are several.
+    pub fn only_one(&self, kind: RecordKind) -> Result<(), Problem> {
+        let folders: Vec<&RecordFolder> = self.folders_of(kind).collect();
+        let at = self.tree.get(kind.key()).map_or_else(|| self.tree.span.part(0..0), |node| node.span.clone());
+        if folders.len() > 1 { Err(members::several(kind, &folders, &at)) } else { Ok(()) }
     }
 
     /// Whether the campaign names a folder for records of a kind.
     pub fn has(&self, kind: RecordKind) -> bool {
-        self.record_folders.iter().any(|(known, _)| *known == kind)
+        self.folders_of(kind).next().is_some()
     }
 
-    /// Where the record of a section is, which must exist.
+    /// Where the record of a section is, the only one of its kind, which must exist.
+    ///
+    /// # Errors
+    /// `several-records`; as [`Campaign::place_of`].
+    pub fn record_place(&self, kind: RecordKind, section: &Cell) -> Result<Place, Problem> {
+        self.only_one(kind)?;
+        self.place_of(kind.into(), section)
+    }
+
+    /// Where a record of a section is, which must exist.
     ///
     /// # Errors
     /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in that folder).
-    pub fn record_place(&self, kind: RecordKind, section: &Cell) -> Result<Place, Problem> {
+    pub fn place_of(&self, which: WhichRecord, section: &Cell) -> Result<Place, Problem> {
         check_file_name(&section.value, &section.span)?;
-        let (folder, span) = self.record_folder(kind)?;
+        let (folder, span) = self.record_folder(which)?;
         let place = self.folder.place(&format!("{}/{}.csv", folder.inside, section.value), &section.span)?;
         let unreadable = |error| Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.inside)).at(&section.span);
         if disk::is_file(&place.path).map_err(unreadable)? {
@@ -86,7 +135,7 @@ impl Campaign {
         if !disk::is_folder(&folder.path).map_err(unreadable)? {
             return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside)).at(span));
         }
-        let others = self.strangers[kind as usize].get_or_init(|| self.strangers(&folder.path));
+        let others = self.found(which)?.strangers.get_or_init(|| self.strangers(&folder.path));
         let in_other_format = |name: &String| {
             let same = Path::new(name).file_stem().and_then(|stem| stem.to_str()) == Some(&section.value);
             other_format(Path::new(name), &format!("{}/{name}", folder.inside)).filter(|_| same)
@@ -112,9 +161,9 @@ impl Campaign {
     /// they name the record by its path inside the campaign.
     ///
     /// # Errors
-    /// As [`Campaign::record_place`] and [`read_record`].
-    pub fn read(&self, kind: RecordKind, section: &Cell, wanted: &[Wanted]) -> Result<(Record, ReadFile), Vec<Problem>> {
-        let place = self.record_place(kind, section).map_err(|problem| vec![problem])?;
+    /// As [`Campaign::place_of`] and [`read_record`].
+    pub fn read(&self, which: WhichRecord, section: &Cell, wanted: &[Wanted]) -> Result<(Record, ReadFile), Vec<Problem>> {
+        let place = self.place_of(which, section).map_err(|problem| vec![problem])?;
         let record = read_record(&place.path, &place.inside, wanted)?;
         let file = ReadFile { path: place.inside, sha256: record.sha256.clone(), bytes: record.bytes as u64 };
         Ok((record, file))

@@ -1,0 +1,177 @@
+//! The folders of records of a campaign: one of each kind, or several simulations or runs with a name each.
+
+use std::sync::{Arc, OnceLock};
+
+use super::campaign::RecordKind;
+use super::folder::Folder;
+use crate::problem::{Problem, Problems};
+use crate::source::{Span, Spanned};
+use crate::yaml::{Node, Value};
+
+/// A folder of records.
+#[derive(Clone, Debug)]
+pub(super) struct RecordFolder {
+    pub kind: RecordKind,
+    /// Where there are several of the kind.
+    pub name: Option<Arc<str>>,
+    pub folder: Spanned<String>,
+    /// Files that belong to no section; listed if a record is missing.
+    pub strangers: OnceLock<Vec<String>>,
+}
+
+/// One of the records of a section: its kind, and which of several of that kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct WhichRecord {
+    pub kind: RecordKind,
+    pub number: usize,
+}
+
+impl From<RecordKind> for WhichRecord {
+    /// The first of the kind.
+    fn from(kind: RecordKind) -> Self {
+        Self { kind, number: 0 }
+    }
+}
+
+/// Longest name of a record [bytes]: a file name of any system.
+const LONGEST: usize = 200;
+
+/// Reads the folders of one kind: a folder, a list of folders, or a map of names and folders.
+///
+/// Problems: `wrong-kind`, `no-records` for an empty list, `name-invalid`, `duplicate-name`, and those of [`Folder::place`].
+pub(super) fn read(tree: &Node, kind: RecordKind, folder: &Folder, problems: &mut Problems) -> Vec<RecordFolder> {
+    let Some(node) = tree.get(kind.key()) else { return Vec::new() };
+    let several = matches!(node.value, Value::List(_) | Value::Map(_)) && kind != RecordKind::Track;
+    if !several {
+        return text(node, kind.key(), problems).map(|folder| of(kind, None, folder)).into_iter().collect();
+    }
+    let mut found: Vec<(Spanned<String>, Spanned<String>)> = Vec::new();
+    for item in node.items() {
+        let Some(written) = text(item, kind.key(), problems) else { continue };
+        match folder.place(&written.value, &written.span) {
+            Ok(place) => {
+                let name = place.inside.rsplit('/').next().unwrap_or_default().to_string();
+                found.push((Spanned::new(name, written.span.clone()), written));
+            }
+            Err(problem) => problems.push(problem),
+        }
+    }
+    for (key, item) in node.entries() {
+        let Some(written) = text(item, &key.text, problems) else { continue };
+        match folder.place(&written.value, &written.span) {
+            Ok(_) => found.push((Spanned::new(key.text.trim().to_string(), key.span.clone()), written)),
+            Err(problem) => problems.push(problem),
+        }
+    }
+    if node.items().is_empty() && node.entries().is_empty() {
+        let says = format!("`{}` names no folder", kind.key());
+        let help = format!("`{}: {}`, or a list of folders", kind.key(), kind.key());
+        problems.push(Problem::error("no-records", says).at(&node.span).help(help));
+    }
+    for (at, (name, written)) in found.iter().enumerate() {
+        if let Err(problem) = check_name(name) {
+            problems.push(problem);
+        }
+        let before = &found[..at];
+        if let Some((first, _)) = before.iter().find(|(known, _)| known.value == name.value) {
+            let says = format!("two records are named `{}`", name.value);
+            let help = format!("give each its own name: `{}: {{name: folder, other: folder}}`", kind.key());
+            problems.push(Problem::error("duplicate-name", says).at(&name.span).also(&first.span, "the first").help(help));
+        } else if let Some((_, first)) = before.iter().find(|(_, known)| same_folder(folder, known, written)) {
+            let says = format!("the folder `{}` is given twice", written.value);
+            problems.push(Problem::error("duplicate-name", says).at(&written.span).also(&first.span, "the first"));
+        }
+    }
+    let one = found.len() == 1;
+    found.into_iter().map(|(name, folder)| of(kind, (!one).then(|| name.value.into()), folder)).collect()
+}
+
+fn of(kind: RecordKind, name: Option<Arc<str>>, folder: Spanned<String>) -> RecordFolder {
+    RecordFolder { kind, name, folder, strangers: OnceLock::new() }
+}
+
+fn text(node: &Node, key: &str, problems: &mut Problems) -> Option<Spanned<String>> {
+    match node.scalar_text() {
+        Some(text) if !text.trim().is_empty() => Some(Spanned::new(text.to_string(), node.span.clone())),
+        _ => {
+            let says = format!("`{key}` must be text; this is {}", node.kind_in_words());
+            problems.push(Problem::error("wrong-kind", says).at(&node.span));
+            None
+        }
+    }
+}
+
+/// Names are joined by commas where records are compared: `simpack, run1`.
+fn check_name(name: &Spanned<String>) -> Result<(), Problem> {
+    let fine = |name: &str| !name.is_empty() && name.len() <= LONGEST && !name.contains(',') && !name.contains(char::is_control);
+    if fine(&name.value) {
+        return Ok(());
+    }
+    let says = format!("`{}` cannot be the name of a record", name.value);
+    let help = format!("a name has 1 to {LONGEST} bytes, without commas and control characters");
+    Err(Problem::error("name-invalid", says).at(&name.span).help(help))
+}
+
+fn same_folder(folder: &Folder, a: &Spanned<String>, b: &Spanned<String>) -> bool {
+    let inside = |written: &Spanned<String>| folder.place(&written.value, &written.span).map(|place| place.inside).ok();
+    inside(a).is_some_and(|a| inside(b) == Some(a))
+}
+
+/// What needs one record of a kind, and finds several.
+pub(super) fn several(kind: RecordKind, folders: &[&RecordFolder], at: &Span) -> Problem {
+    let names: Vec<&str> = folders.iter().filter_map(|folder| folder.name.as_deref()).collect();
+    let says = format!("the campaign has {} records of the {}, and one is needed here", names.len(), kind.key());
+    let help = format!("name one folder: `{}: {}`; there are {}", kind.key(), folders[0].folder.value, names.join(", "));
+    Problem::error("several-records", says).at(at).help(help)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+    use crate::yaml;
+
+    fn of_text(text: &str) -> (Vec<(Option<String>, String)>, Vec<&'static str>) {
+        let temp = tempfile::tempdir().expect("a folder");
+        let folder = Folder::open(temp.path()).expect("there");
+        let mut problems = Problems::default();
+        let tree = yaml::load(&Source::new("campaign.yaml", text), &mut problems).expect("YAML");
+        let found = read(&tree, RecordKind::Simulation, &folder, &mut problems);
+        assert!(problems.0.iter().all(|problem| problem.at.is_some()), "{}", problems.render(false));
+        let found = found.into_iter().map(|one| (one.name.map(|name| name.to_string()), one.folder.value)).collect();
+        (found, problems.0.iter().map(|problem| problem.code).collect())
+    }
+
+    fn named(name: &str, folder: &str) -> (Option<String>, String) {
+        (Some(name.to_string()), folder.to_string())
+    }
+
+    #[test]
+    fn one_folder_has_no_name_and_several_have() {
+        let one = (vec![(None, "a".to_string())], vec![]);
+        for text in ["simulation: a\n", "simulation: [a]\n", "simulation: {x: a}\n"] {
+            assert_eq!(of_text(text), one, "{text}");
+        }
+        assert_eq!(of_text("simulation: [s/a, ./b/]\n"), (vec![named("a", "s/a"), named("b", "./b/")], vec![]));
+        assert_eq!(of_text("simulation:\n  x: s/a\n  y: t/a\n"), (vec![named("x", "s/a"), named("y", "t/a")], vec![]));
+        assert_eq!(of_text("measurement: a\n"), (vec![], vec![]));
+    }
+
+    #[test]
+    fn what_names_no_records_is_told() {
+        for (text, code) in [
+            ("simulation: []\n", "no-records"),
+            ("simulation: {}\n", "no-records"),
+            ("simulation: [a, a]\n", "duplicate-name"),
+            ("simulation: [s/a, t/a]\n", "duplicate-name"),
+            ("simulation: {x: a, y: ./a}\n", "duplicate-name"),
+            ("simulation: [a, [b]]\n", "wrong-kind"),
+            ("simulation: {x: }\n", "wrong-kind"),
+            ("simulation: [a, ../b]\n", "path-outside"),
+            ("simulation: {'x, y': a, z: b}\n", "name-invalid"),
+            ("simulation: [., b]\n", "name-invalid"),
+        ] {
+            assert_eq!(of_text(text).1, [code], "{text}");
+        }
+    }
+}

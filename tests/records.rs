@@ -1,0 +1,370 @@
+//! Campaigns with several records of a side, and sections measured twice.
+
+mod common {
+    pub mod campaign;
+    pub mod program;
+}
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use common::campaign::{copy, replace, tiny};
+use common::program::{Certified, certify, fishplate};
+use fishplate::metrics::percentile::{Method, percentile};
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+const HEAD: &str = "protocol small \"Small\"\n  axis  distance in m\n  time  time in s\n\nplace wheelset\n  members  1, 3\n\nplace side\n  \
+     members  R, L\n\nplace gear\n  members  I, II\n\nchannel Q \"Wheel force\"\n  in      kN\n  at      each wheelset and side\n  \
+     column  \"Q_{wheelset}{side}\"\n\nchannel az \"Vertical acceleration\"\n  in      m/s^2\n  at      each gear\n  column  \"az_{gear}\"\n\n";
+const TAIL: &str = "\nverdict\n  validated  when every limit holds\n";
+
+fn protocol(folder: &Path, quantities: &str) -> String {
+    let path = folder.join("small.fp");
+    fs::write(&path, format!("{HEAD}{quantities}{TAIL}")).expect("written");
+    path.display().to_string()
+}
+
+/// Each code has the measured wheel forces and a known offset [kN]: mean 3, median 2.
+const CODES: [(&str, f64); 3] = [("alpha", 1.0), ("beta", 2.0), ("gamma", 6.0)];
+
+/// Three simulations of [`tiny`], in folders of `simulation`.
+fn three_codes() -> TempDir {
+    let folder = tiny();
+    let measured = folder.path().join("measurement");
+    for (name, offset) in CODES {
+        let to = folder.path().join("simulation").join(name);
+        fs::create_dir_all(&to).expect("a folder");
+        for entry in fs::read_dir(&measured).expect("records") {
+            let path = entry.expect("an entry").path();
+            let text = fs::read_to_string(&path).expect("a record");
+            let heads: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
+            let line = |line: &str| -> String {
+                let cell = |(cell, head): (&str, &&str)| match cell.parse::<f64>() {
+                    Ok(value) if head.starts_with("Q_") => format!("{:.3}", value + offset),
+                    _ => cell.to_string(),
+                };
+                line.split(',').zip(&heads).map(cell).collect::<Vec<_>>().join(",") + "\n"
+            };
+            fs::write(to.join(path.file_name().expect("a name")), text.lines().map(line).collect::<String>()).expect("written");
+        }
+    }
+    let list = "simulation: [simulation/alpha, simulation/beta, simulation/gamma]";
+    replace(&folder.path().join("campaign.yaml"), "simulation: simulation", list);
+    folder
+}
+
+fn run(folder: &Path, quantities: &str) -> Certified {
+    let protocol = protocol(folder, quantities);
+    certify(folder, &["--protocol", &protocol, "--only", "results"])
+}
+
+fn quantity<'a>(results: &'a Value, id: &str) -> &'a Value {
+    let all = results["quantities"].as_array().expect("a list");
+    all.iter().find(|quantity| quantity["id"] == id).unwrap_or_else(|| panic!("no quantity {id}"))
+}
+
+/// Value, pairs and sites of each group of a statistic, by the record of the group.
+fn by_record(quantity: &Value, name: &str) -> Vec<(String, f64, u64, u64)> {
+    let all = quantity["statistics"].as_array().expect("a list");
+    let of = |one: &Value| {
+        let number = |key: &str| one[key].as_u64().expect("a number");
+        let record = one["group"]["record"].as_str().unwrap_or("all").to_string();
+        (record, one["value"].as_f64().expect("a number"), number("count"), number("n"))
+    };
+    all.iter().filter(|one| one["name"] == name).map(of).collect()
+}
+
+#[track_caller]
+fn assert_records(found: &[(String, f64, u64, u64)], expected: &[(&str, f64, u64, u64)]) {
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (found, (name, value, count, n)) in found.iter().zip(expected) {
+        assert_eq!((found.0.as_str(), found.2, found.3), (*name, *count, *n));
+        assert!((found.1 - value).abs() < 1e-9, "{name}: {} in place of {value}", found.1);
+    }
+}
+
+/// Twelve sections, two signals each. The codes raise the count and not n, whose units are sites.
+#[test]
+fn several_codes_are_compared_with_each_other_and_with_the_measurement() {
+    let folder = three_codes();
+    let of = |id: &str, how: &str| {
+        format!(
+            "quantity {id} \"{id}\"\n  of  Q at wheelset 1\n  value  mean\n{how}  limit  mean 100 kN for each record\n  \
+             limit  std 100 kN for each record\n  limit  p50 100 kN\n\n"
+        )
+    };
+    let compared = |with: &str| format!("  compare  {with}\n  difference  simulated - measured\n");
+    let text = [
+        of("mean", &compared("simulated with mean of simulated")),
+        of("median", &compared("simulated with median of simulated")),
+        of("plain", &compared("simulated with measured")),
+        of("alone", "  from  simulated\n"),
+        of("tested", "  from  measured\n").replace(" for each record", ""),
+    ];
+    let found = run(folder.path(), &text.concat());
+    assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
+    let results = found.results();
+    for (id, expected) in [("mean", [-2.0, -1.0, 3.0]), ("median", [-1.0, 0.0, 4.0]), ("plain", [1.0, 2.0, 6.0])] {
+        let quantity = quantity(&results, id);
+        let group = |at: usize| (CODES[at].0, expected[at], 24, 12);
+        assert_records(&by_record(quantity, "mean"), &[group(0), group(1), group(2)]);
+        assert!(by_record(quantity, "std").iter().all(|(_, value, ..)| value.abs() < 1e-9), "{id}");
+        assert_records(&by_record(quantity, "p50"), &[("all", expected[1], 72, 12)]);
+    }
+    // The measured values and the offset of each code.
+    let tested = by_record(quantity(&results, "tested"), "mean")[0].1;
+    let group = |at: usize| (CODES[at].0, tested + CODES[at].1, 24, 12);
+    assert_records(&by_record(quantity(&results, "alone"), "mean"), &[group(0), group(1), group(2)]);
+    let files = results["campaign"]["files"].as_array().expect("a list");
+    let named = files.iter().filter(|file| file["record"]["name"] == "beta" && file["record"]["kind"] == "simulation").count();
+    let measured = files.iter().filter(|file| file["record"]["kind"] == "measurement");
+    assert_eq!((named, measured.filter(|file| file["record"].get("name").is_none()).count()), (12, 12));
+}
+
+/// Pairs of site and signal count once, however many codes give them.
+#[test]
+fn several_codes_are_no_further_pairs() {
+    let folder = three_codes();
+    let of = |pairs: u32| {
+        format!(
+            "quantity Q \"Q\"\n  of  Q at wheelset 1\n  value  mean\n  difference  simulated - measured\n  limit  mean 100 kN\n  \
+             minimum pairs  {pairs}\n"
+        )
+    };
+    assert_eq!(run(folder.path(), &of(24)).ran.code, 0);
+    let found = run(folder.path(), &of(25));
+    assert_eq!(found.results()["reasons"][0], "Q: 24 pairs of site and signal (a repeat is no further section); at least 25 required");
+}
+
+/// Runs and codes: every pair has a name, and reports of them can be verified and traced.
+#[test]
+fn runs_and_codes_are_paired_verified_and_traced() {
+    let folder = three_codes();
+    let path = folder.path();
+    fs::rename(path.join("measurement"), path.join("first")).expect("renamed");
+    fs::rename(path.join("simulation/gamma"), path.join("second")).expect("renamed");
+    let campaign = path.join("campaign.yaml");
+    replace(&campaign, "measurement: measurement", "measurement: {monday: first, tuesday: second}");
+    replace(&campaign, "[simulation/alpha, simulation/beta, simulation/gamma]", "{alpha: simulation/alpha, beta: simulation/beta}");
+    let found = run(
+        path,
+        "quantity Q \"Q\"\n  of  Q at wheelset 1\n  value  mean\n  difference  simulated - measured\n  limit  mean 100 kN for each record\n\n\
+         quantity spread \"Spread\"\n  of  Q at wheelset 1\n  value  mean\n  compare  measured with mean of measured\n  \
+         difference  simulated - measured\n  limit  std 100 kN\n\n\
+         quantity misfit \"Misfit\"\n  of  Q at wheelset 1\n  metric  misfit\n  limit  p80 1\n",
+    );
+    assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
+    let results = found.results();
+    let expected =
+        [("alpha, monday", 1.0, 24, 12), ("alpha, tuesday", -5.0, 24, 12), ("beta, monday", 2.0, 24, 12), ("beta, tuesday", -4.0, 24, 12)];
+    assert_records(&by_record(quantity(&results, "Q"), "mean"), &expected);
+    assert_eq!(quantity(&results, "misfit")["values"].as_array().map(Vec::len), Some(96));
+    let report = found.folder().join("results.json").display().to_string();
+    let (here, small) = (path.display().to_string(), path.join("small.fp").display().to_string());
+    let verified = fishplate(&["verify", &report, &here, "--protocol", &small]);
+    assert_eq!(verified.code, 0, "{}{}", verified.stdout, verified.stderr);
+    let trace = |quantity: &str, more: &[&str]| {
+        let mut all = vec!["trace", &report, quantity, "S05", "Q_1R", "--campaign", &here, "--protocol", &small];
+        all.extend(more);
+        fishplate(&all)
+    };
+    let several = trace("Q", &[]);
+    assert!(several.code == 2 && several.stderr.contains("alpha, monday; alpha, tuesday"), "{}", several.stderr);
+    let unknown = trace("Q", &["--record", "alfa, monday"]);
+    assert!(unknown.code == 2 && unknown.stderr.contains("did you mean `alpha, monday`?"), "{}", unknown.stderr);
+    let one = trace("Q", &["--record", "beta, tuesday"]);
+    assert_eq!(one.code, 0, "{}{}", one.stdout, one.stderr);
+    for (file, there) in [("simulation/beta/S05.csv", true), ("second/S05.csv", true), ("first/S05.csv", false), ("alpha/S05.csv", false)] {
+        assert_eq!(one.stdout.contains(file), there, "{file}: {}", one.stdout);
+    }
+    assert_eq!(one.stdout.matches("as in the report").count(), 3, "{}", one.stdout);
+    let spread = trace("spread", &["--record", "monday"]);
+    assert!(spread.code == 0 && spread.stdout.contains("second/S05.csv"), "{}{}", spread.stdout, spread.stderr);
+}
+
+/// A sound campaign stays so where one code is given as a list, to the last byte of its results.
+#[test]
+fn a_list_of_one_is_one_record() {
+    let (plain, listed) = (tiny(), tiny());
+    let quantities =
+        "quantity Q \"Q\"\n  of  Q at wheelset 1\n  value  rms\n  difference  simulated - measured\n  limit  std 100 kN for each record\n";
+    replace(&listed.path().join("campaign.yaml"), "simulation: simulation", "simulation: [simulation]");
+    let quantities = |folder: &TempDir| run(folder.path(), quantities).results()["quantities"].clone();
+    assert_eq!(quantities(&plain), quantities(&listed));
+}
+
+/// The plausibility of every record is looked at, and a finding names it; a fault of one record is one of the section.
+#[test]
+fn every_record_is_looked_at() {
+    let folder = three_codes();
+    let text = "plausibility level \"Level of the wheel force\"\n  of  Q at wheelset 1 and side R\n  require  maximum < 1000 kN\n  otherwise  note\n\n\
+                quantity Q \"Q\"\n  of  Q at wheelset 1\n  value  mean\n  difference  simulated - measured\n  limit  mean 100 kN\n";
+    replace(&folder.path().join("simulation/beta/S03.csv"), "0.50,", "0.50,");
+    let path = folder.path().join("simulation/beta/S03.csv");
+    common::campaign::cell(&path, 300, "Q_1R [kN]", "5000");
+    let found = run(folder.path(), text);
+    let results = found.results();
+    let finding = &results["findings"][0];
+    assert_eq!((finding["section"].as_str(), finding["record"].as_str()), (Some("S03"), Some("simulation beta")), "{finding}");
+    fs::remove_file(&path).expect("removed");
+    let results = run(folder.path(), text).results();
+    let section = results["sections"].as_array().and_then(|all| all.iter().find(|section| section["section"] == "S03")).expect("S03");
+    assert_eq!(section["used"], false);
+    assert!(section["reason"].as_str().is_some_and(|reason| reason.contains("simulation/beta/S03.csv")), "{section}");
+}
+
+/// What needs one simulation says that there are several.
+#[test]
+fn who_needs_one_record_refuses_several() {
+    let folder = three_codes();
+    let out = tempfile::tempdir().expect("a folder");
+    let (here, out) = (folder.path().display().to_string(), out.path().join("new").display().to_string());
+    for arguments in [
+        &["study", "sync", "--offsets", "0,1"][..],
+        &["study", "sections"],
+        &["diagnose"],
+        &["simulate", "--increment", "--effect", "friction=0.2"],
+    ] {
+        let (command, options) = arguments.split_at(if arguments[0] == "study" { 2 } else { 1 });
+        let mut all = command.to_vec();
+        all.extend([here.as_str(), "--out", &out]);
+        all.extend(options);
+        let ran = fishplate(&all);
+        assert_ne!(ran.code, 0);
+        assert!(ran.stderr.contains("error[several-records]") && ran.stderr.contains("campaign.yaml:5:13"), "{all:?}: {}", ran.stderr);
+        assert!(!Path::new(&out).exists(), "{all:?}");
+    }
+}
+
+/// Misfits of repeats and of the model, and the quality index, 1e-9; see `cases/values/repeats/misfit.json`.
+#[test]
+fn repeats_are_compared_with_their_originals() {
+    let folder = copy(&root().join("tests/cases/values/repeats"));
+    let text = "filter LP20 \"Low-pass filter\"\n  step  low-pass 20 Hz, order 4, zero-phase, as-applied\n\n\
+                quantity index \"Quality index\"\n  of  az at each gear\n  filter  LP20\n  metric  misfit\n  compare  repeats with originals\n  \
+                limit  p80 1\n  limit  each 1\n\n\
+                quantity model \"Misfit of the model\"\n  of  az at each gear\n  filter  LP20\n  metric  misfit\n  limit  p80 100\n\n\
+                quantity values \"Extreme values measured again\"\n  of  az at each gear\n  filter  LP20\n  value  |p99.85|\n  \
+                compare  repeats with originals\n  difference  (simulated - measured) / measured\n  limit  mean 1\n";
+    let found = run(folder.path(), text);
+    assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
+    let results = found.results();
+    let expected: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("misfit.json")).expect("numbers")).expect("JSON");
+    let mut numbers = Vec::new();
+    for (id, key, count) in [("index", "repeats", 4), ("model", "model", 8)] {
+        let values = quantity(&results, id)["values"].as_array().expect("a list");
+        let expected = expected[key].as_array().expect("a list");
+        assert_eq!((values.len(), expected.len()), (count, count), "{id}");
+        for one in expected {
+            let value = values.iter().find(|value| value["section"] == one["section"] && value["signal"] == one["signal"]);
+            let value = value.and_then(|value| value["value"].as_f64()).expect("a value");
+            let want = one["misfit"].as_f64().expect("a number");
+            assert!((value - want).abs() < 1e-9 * want.max(1.0), "{one}: {value}");
+            if id == "index" {
+                numbers.push(want);
+            }
+        }
+    }
+    let index = quantity(&results, "index");
+    let p80 = percentile(&numbers, 80.0, Method::Linear).expect("a percentile");
+    assert_records(&by_record(index, "p80"), &[("all", p80, 4, 2)]);
+    // Each value of a repeat follows from its two sides, and is traced to both records.
+    let report = found.folder().join("results.json").display().to_string();
+    let (here, small) = (folder.path().display().to_string(), folder.path().join("small.fp").display().to_string());
+    let verified = fishplate(&["verify", &report, &here, "--protocol", &small]);
+    assert_eq!(verified.code, 0, "{}{}", verified.stdout, verified.stderr);
+    for quantity in ["index", "values"] {
+        let traced = fishplate(&["trace", &report, quantity, "S18", "az_I", "--campaign", &here, "--protocol", &small]);
+        assert_eq!(traced.code, 0, "{}{}", traced.stdout, traced.stderr);
+        assert!(traced.stdout.contains("measurement/S06.csv") && traced.stdout.contains("measurement/S18.csv"), "{}", traced.stdout);
+        assert!(!traced.stdout.contains("NOT"), "{}", traced.stdout);
+    }
+    // A repeat of a section that is not used has no value.
+    fs::remove_file(folder.path().join("measurement/S06.csv")).expect("removed");
+    let found = run(folder.path(), text);
+    let values = quantity(&found.results(), "index")["values"].as_array().map(Vec::len);
+    assert_eq!(values, Some(2), "{}", found.ran.stderr);
+}
+
+/// Without a repeat there is nothing to compare: not assessable.
+#[test]
+fn without_repeats_their_quantity_is_not_assessable() {
+    let folder = tiny();
+    let text =
+        "quantity index \"Quality index\"\n  of  Q at wheelset 1\n  metric  misfit\n  compare  repeats with originals\n  limit  p80 1\n";
+    let found = run(folder.path(), text);
+    let reason = found.results()["reasons"][0].as_str().map(str::to_string);
+    assert!(reason.as_deref().is_some_and(|reason| reason.contains("repeats another one")), "{reason:?}");
+}
+
+const LP20: &str = "filter LP20 \"Low-pass filter\"\n  step  low-pass 20 Hz, order 4, zero-phase, as-applied\n\n";
+const INDEX: &str = "quantity repeated \"Misfit of repeats\"\n  of  az at each gear\n  filter  LP20\n  metric  misfit\n  \
+     compare  repeats with originals\n\n";
+
+/// The model's misfits against those of the repeats, whether the quantity referred to stands before or after.
+#[test]
+fn a_limit_refers_to_another_quantity() {
+    let folder = copy(&root().join("tests/cases/values/repeats"));
+    let model = "quantity model \"Misfit of the model\"\n  of  az at each gear\n  filter  LP20\n  metric  misfit\n  \
+                 limit  (share where value <= 3 * p80 of repeated) at least 0.5\n  limit  p80 p80 of repeated\n  \
+                 limit  (p80 / (p80 of repeated)) 10\n\n";
+    let read = |text: &str| run(folder.path(), text).results();
+    let results = read(&format!("{LP20}{INDEX}{model}"));
+    let after = read(&format!("{LP20}{model}{INDEX}"));
+    for key in ["value", "limit", "holds"] {
+        let of =
+            |quantity: &Value| quantity["statistics"].as_array().expect("a list").iter().map(|one| one[key].clone()).collect::<Vec<_>>();
+        assert_eq!(of(&results["quantities"][1]), of(&after["quantities"][0]), "{key}");
+    }
+    let expected: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("misfit.json")).expect("numbers")).expect("JSON");
+    let numbers = |key: &str| -> Vec<f64> {
+        expected[key].as_array().expect("a list").iter().map(|one| one["misfit"].as_f64().expect("a number")).collect()
+    };
+    let p80 = |key: &str| percentile(&numbers(key), 80.0, Method::Linear).expect("a percentile");
+    let share = numbers("model").iter().filter(|misfit| **misfit <= 3.0 * p80("repeats")).count() as f64 / 8.0;
+    let near =
+        |value: &Value, want: f64| assert!((value.as_f64().expect("a number") - want).abs() < 1e-8 * want.max(1.0), "{value} {want}");
+    let statistics = &results["quantities"][1]["statistics"];
+    near(&statistics[0]["value"], share);
+    near(&statistics[1]["limit"], p80("repeats"));
+    near(&statistics[2]["value"], p80("model") / p80("repeats"));
+    // Repeats that cannot be had are a reason.
+    replace(&folder.path().join("sections.csv"), "second,S06", "second,");
+    replace(&folder.path().join("sections.csv"), "second,S11", "second,");
+    let results = read(&format!("{LP20}{INDEX}{model}"));
+    assert_eq!(results["verdict"], "not assessable", "{}", results["reasons"]);
+}
+
+/// A datum of the vehicle that differs from section to section is a column: here the wheel load Q0 of two states.
+#[test]
+fn a_state_of_the_vehicle_is_section_data() {
+    let folder = tiny();
+    common::campaign::lines(&folder.path().join("sections.csv"), |lines| {
+        for (row, line) in lines.iter_mut().enumerate() {
+            line.push_str(if row == 0 {
+                ",state,Q0 [kN]"
+            } else if row % 2 == 0 {
+                ",laden,80"
+            } else {
+                ",tare,50"
+            });
+        }
+    });
+    let text = "section state \"State\"\n  one of  tare, laden\n\nsection wheel_load \"Static wheel load\"\n  in      kN\n  column  \"Q0\"\n\n\
+                quantity Q \"Q\"\n  of  Q at wheelset 1\n  from  measured\n  value  mean - wheel_load\n  limit  each 20 kN + wheel_load\n  \
+                limit  mean 20 kN + mean of wheel_load for each state\n";
+    let found = run(folder.path(), text);
+    assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
+    let results = found.results();
+    let statistics = quantity(&results, "Q")["statistics"].as_array().expect("a list").clone();
+    let of_state = |state: &str| {
+        let one = statistics.iter().find(|one| one["group"]["state"] == state).unwrap_or_else(|| panic!("{statistics:?}"));
+        (one["limit"].as_f64().map(f64::round), one["count"].as_u64(), one["n"].as_u64())
+    };
+    assert_eq!((of_state("tare"), of_state("laden")), ((Some(70.0), Some(12), Some(6)), (Some(100.0), Some(12), Some(6))));
+}
