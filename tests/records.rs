@@ -291,6 +291,38 @@ fn repeats_are_compared_with_their_originals() {
     assert_eq!(values, Some(2), "{}", found.ran.stderr);
 }
 
+/// Numbers of both sides' samples, as a metric by itself: the repeat lies elsewhere than its original.
+#[test]
+fn expressions_compare_repeats_with_their_originals() {
+    let folder = copy(&root().join("tests/cases/values/repeats"));
+    let of = |name: &str, metric: &str| {
+        format!(
+            "quantity {name} \"{name}\"\n  of  az at each gear\n  filter  LP20\n  metric  {metric}\n  \
+             compare  repeats with originals\n  limit  p80 100\n\n"
+        )
+    };
+    let repeat = "((rms of (simulated - measured)) / (rms of (simulated + 0 * measured)))^2";
+    let original = "((rms of (simulated - measured)) / (rms of (measured + 0 * simulated)))^2";
+    let all = [("index", "misfit"), ("double", "2 * misfit"), ("repeat", repeat), ("original", original)];
+    let text = all.iter().fold(LP20.to_string(), |text, (name, metric)| text + &of(name, metric));
+    let found = run(folder.path(), &text);
+    assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
+    let results = found.results();
+    let values = |id: &str| -> Vec<f64> {
+        let values = quantity(&results, id)["values"].as_array().expect("a list");
+        values.iter().map(|value| value["value"].as_f64().expect("a value")).collect()
+    };
+    let index = values("index");
+    assert_eq!(index.len(), 4);
+    let (double, repeat, original) = (values("double"), values("repeat"), values("original"));
+    assert_eq!((double.len(), repeat.len(), original.len()), (4, 4, 4));
+    for (at, one) in index.iter().enumerate() {
+        // A misfit is over the smaller sum of squares.
+        let samples = repeat[at].max(original[at]);
+        assert!((2.0 * one - double[at]).abs() <= 1e-9 * one && (one - samples).abs() <= 1e-9 * one, "{one}: {} {samples}", double[at]);
+    }
+}
+
 /// Without a repeat there is nothing to compare: not assessable.
 #[test]
 fn without_repeats_their_quantity_is_not_assessable() {

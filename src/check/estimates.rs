@@ -221,7 +221,7 @@ impl Checker<'_> {
             let fields = block.fields_named("limit").chain(block.fields_named("is").filter(|_| block.kind.text == "estimate"));
             fields.into_iter().any(|field| refers(&field.value))
         };
-        self.blocks.iter().any(|block| of_block(block))
+        self.blocks.iter().any(of_block)
     }
 
     /// In a condition on one value, `p80 of ...` can only be of another quantity.

@@ -94,7 +94,7 @@ impl<'a> Sides<'a> {
                     (Some(s), Some(m)) => Some(format!("{s}, {m}").into()),
                     (one, other) => one.clone().or_else(|| other.clone()),
                 };
-                (name, Two { simulated, measured: *measured, known, extent, method, shift: 0.0 })
+                (name, Two { simulated, measured, known, extent, method, shift: 0.0 })
             };
             measured.iter().map(one).collect::<Vec<_>>()
         })
