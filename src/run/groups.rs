@@ -181,6 +181,11 @@ impl<'a> Part<'a> {
             .map_err(|reason| format!("it cannot be determined whether section {} belongs to this group: {reason}", unit.name))
     }
 
+    /// Whether keys of sections tell it apart from other groups.
+    pub fn by_section(&self) -> bool {
+        self.keys.iter().any(|(key, ..)| !matches!(key, Key::Place(_)))
+    }
+
     /// Which positions of the quantity belong to it.
     pub fn positions(&self, quantity: &Quantity) -> Vec<bool> {
         let of_place = |key: &Key| if let Key::Place(place) = key { Some(place.clone()) } else { None };

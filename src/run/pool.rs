@@ -225,7 +225,12 @@ fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &[Unit], values: &[Se
 
 fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Option<PooledLimit> {
     let Judging { plan, facts, quantity, members, .. } = *judging;
-    let inside = units.iter().map(|unit| part.has_section(unit, facts)).collect::<Result<Vec<_>, _>>().ok()?;
+    let inside = if part.by_section() {
+        let own = part.members(facts, members).ok()?;
+        units.iter().map(|unit| own.iter().any(|member| member.unit.name == unit.name)).collect()
+    } else {
+        units.iter().map(|unit| part.has_section(unit, facts)).collect::<Result<Vec<_>, _>>().ok()?
+    };
     let positions = part.positions(quantity);
     let shown = |known: &Known<'_>, part: &Part<'_>, members: &[Member<'_>]| {
         judging.bound(limit, part, members, known).ok().map(|bound| judging.unit(limit).from_si(bound))
