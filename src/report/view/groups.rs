@@ -13,8 +13,6 @@ pub struct EstimateRow {
     pub id: String,
     pub symbol: String,
     pub title: String,
-    pub filter: String,
-    pub processing: String,
     pub estimate: String,
     pub unit: String,
     /// Groups that hold: `14 of 16`.
@@ -72,8 +70,6 @@ fn row(quantity: &QuantityResult, limit: &OfLimit<'_>) -> EstimateRow {
         id: quantity.id.clone(),
         symbol: super::symbol(&quantity.symbol),
         title: quantity.title.clone(),
-        filter: quantity.filter.clone(),
-        processing: quantity.processing.clone(),
         estimate: number::formula(&decisive.title),
         unit: number::unit(&decisive.unit),
         holding: limit.holding(),
