@@ -253,6 +253,7 @@ mod tests {
             ("range of curvature <= 5 % * |mean of curvature|", "(LessEqual range of curvature (Multiply 0.05 |mean of curvature|))"),
             ("-p0.15", "(neg p0.15)"),
             ("x^2 is not 3", "(IsNot x^2 3)"),
+            ("1\tm + 2\n  m", "(Add 1 2)"),
         ] {
             let mut problems = Problems::default();
             let phrase = expression(&text(words), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
