@@ -1,5 +1,9 @@
 //! The table of values: assessments of one record, estimates by group, and what has no number.
 
+mod common {
+    pub mod pools;
+}
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -223,6 +227,48 @@ fn a_study_takes_estimates_and_repeats() {
     assert_eq!((merged.strata[0].members.as_slice(), merged.quantities[0].values[0].len()), ([0, 2].as_slice(), 2));
     let found = merged.quantities[0].measures[0].over(merged.usable().into_iter()).expect("a value");
     assert!((found - value(&(0..13).collect::<Vec<_>>())).abs() < 1e-12 * found, "{found}");
+}
+
+/// Estimates over selections against every selection by itself: from sums, of one zone, of all. Where selections are drawn at random,
+/// those of one zone are exact all the same.
+#[test]
+fn a_study_evaluates_estimates_of_groups_for_each_choice_of_their_sections() {
+    use fishplate::run::{Shifts, evaluate};
+    use fishplate::study::{Settings as StudySettings, case::Case, enumerate, sampling};
+
+    let protocol = small(
+        "quantity Q \"Q\"\n  from    measured\n  of      Q at wheelset 1 and side R\n  of      Q at wheelset 2 and side R when zone is 4\n  \
+         filter  LP20\n  value   p99.85\n  limit   (mean + 2.2 * std) 72 kN\n  limit   (mean + 0.5 * rms) 120 kN for each zone\n  \
+         limit   (regression over cant_deficiency at 100 mm) 75 kN\n  limit   (regression over cant_deficiency at 120 mm) 75 kN for zone 4\n  \
+         limit   median 80 kN for each zone\n",
+    );
+    let mut problems = Problems::default();
+    let campaign = Campaign::open(&root().join("examples/coach-good"), &mut problems).expect("a campaign");
+    let all = evaluate(&protocol.plan, &protocol.graph, &campaign, &Shifts::NONE, &|_| {}).expect("values").swap_remove(0);
+    let case = Case::of(&all.pool(&protocol.plan), Some(2)).expect("a case");
+    let selections = common::pools::every(&case);
+    // Two of 3, 3, 3 and 4 sections.
+    assert_eq!(selections.len(), 3 * 3 * 3 * 6);
+    let judged: Vec<_> = selections.iter().map(|selection| case.judge(selection)).collect();
+    let counted = enumerate::all(&case);
+    let good = judged.iter().filter(|(verdict, _)| *verdict == Verdict::Validated).count();
+    assert_eq!(counted.share.validated as usize, good);
+    let drawn = sampling::some(&case, &StudySettings { most: 0.0, width: 0.2, seed: 1 });
+    let statistics = &counted.quantities[0].statistics;
+    assert_eq!(statistics.len(), 1 + 4 + 1 + 1 + 4);
+    for (at, (counted, drawn)) in statistics.iter().zip(&drawn.quantities[0].statistics).enumerate() {
+        let values: Vec<f64> = judged.iter().filter_map(|(_, all)| all[at].normalised).collect();
+        let failing = judged.iter().filter(|(_, all)| all[at].normalised.is_some() && !all[at].holds).count();
+        assert_eq!((counted.failing * judged.len() as f64).round() as usize, failing, "{} {}", counted.title, counted.scope);
+        let wanted = common::pools::sorted(values).expect("values");
+        let (found, again) = (counted.spread.expect("values"), drawn.spread.expect("values"));
+        let parts = [(found, wanted), (again, wanted)];
+        for (found, wanted) in parts {
+            let pairs = [(found.min, wanted.min), (found.q1, wanted.q1), (found.median, wanted.median), (found.max, wanted.max)];
+            assert!(pairs.iter().all(|(a, b)| (a - b).abs() <= 1e-12 * b.abs()), "{} {}: {pairs:?}", counted.title, counted.scope);
+            assert_eq!((found.count, found.outliers, found.exact), (wanted.count, wanted.outliers, true));
+        }
+    }
 }
 
 /// Neither the order of keys nor the unit of a quantity changes what is found.

@@ -12,7 +12,8 @@ use super::section::SectionValues;
 use super::sections::Unit;
 use super::table::{Member, Row, Table};
 use crate::catalog::Statistic;
-use crate::check::plan::{Decision, EstimateKind, Limit, Plan, Quantity};
+use crate::check::evaluate::number;
+use crate::check::plan::{Decision, EstimateKind, Limit, OfGroup, Plan, Quantity, Taking};
 
 pub use crate::check::plan::Rule;
 
@@ -112,6 +113,31 @@ impl Estimator {
         self.others = Arc::new(self.others.iter().map(|rows| rows.as_ref().map(all).map_err(Clone::clone)).collect());
     }
 
+    /// Whether it needs rows of a section, by number.
+    pub fn concerns(&self, section: usize) -> bool {
+        let has = |rows: &[Numbered]| rows.iter().any(|(number, ..)| *number == section);
+        has(&self.rows) || self.others.iter().flatten().any(|rows| has(rows))
+    }
+
+    /// The estimate as a function of sums, where it takes only means, standard deviations and root mean squares of its rows.
+    pub fn from_sums(&self, sections: usize) -> Option<FromSums<'_>> {
+        let (plan, facts) = self.rules.as_ref();
+        let EstimateKind::Of(of) = &plan.quantities[self.quantity].limits[self.limit].estimate.kind else { return None };
+        let of_sums = |taking: &Taking| match taking {
+            Taking::Statistic(Statistic::Named(entry), ddof) => Some((Moment::named(entry.name)?, *ddof as f64)),
+            _ => None,
+        };
+        let taken = of.taken.iter().map(of_sums).collect::<Option<Vec<_>>>()?;
+        // Sums about the common mean avoid cancellation.
+        let centre = self.rows.iter().map(|(.., row)| row.value).sum::<f64>() / self.rows.len().max(1) as f64;
+        let mut sums = vec![Sums::default(); sections];
+        for (section, _, row) in self.rows.iter() {
+            let x = row.value - centre;
+            sums[*section] = sums[*section].plus(Sums { n: 1.0, x, xx: x * x });
+        }
+        Some(FromSums { facts, of, taken, centre, sums, bound: self.bound })
+    }
+
     /// The estimate over the rows of some sections, by number, divided by the limit of all; `None` where it is not defined.
     pub fn over(&self, sections: &[usize]) -> Option<f64> {
         let (plan, facts) = self.rules.as_ref();
@@ -129,6 +155,69 @@ impl Estimator {
         let EstimateKind::Of(of) = &limit.estimate.kind else { return None };
         let group = Group { plan, facts, members: &members, table: &table };
         group.number(of).ok().map(|value| value / self.bound).filter(|value| value.is_finite())
+    }
+}
+
+/// Number of values, their sum and their sum of squares.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sums {
+    n: f64,
+    x: f64,
+    xx: f64,
+}
+
+impl Sums {
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self { n: self.n + other.n, x: self.x + other.x, xx: self.xx + other.xx }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Moment {
+    Mean,
+    Deviation,
+    RootMeanSquare,
+}
+
+impl Moment {
+    fn named(name: &str) -> Option<Self> {
+        match name {
+            "mean" => Some(Self::Mean),
+            "std" => Some(Self::Deviation),
+            "rms" => Some(Self::RootMeanSquare),
+            _ => None,
+        }
+    }
+}
+
+/// An estimate of which a selection of sections needs no more than the sums of its values.
+#[derive(Debug)]
+pub struct FromSums<'a> {
+    facts: &'a Facts,
+    of: &'a OfGroup,
+    /// With the number that a divisor is less than the number of values.
+    taken: Vec<(Moment, f64)>,
+    centre: f64,
+    /// Of each section, about the centre.
+    pub sums: Vec<Sums>,
+    bound: f64,
+}
+
+impl FromSums<'_> {
+    /// As [`Estimator::over`], for sections with these sums in all.
+    pub fn over(&self, Sums { n, x, xx }: Sums) -> Option<f64> {
+        let squares = (xx - x * x / n).max(0.0);
+        let of = |(moment, ddof): &(Moment, f64)| match moment {
+            Moment::Deviation if n <= *ddof => Err(String::new()),
+            _ if n < 1.0 => Err(String::new()),
+            Moment::Mean => Ok(self.centre + x / n),
+            Moment::Deviation => Ok((squares / (n - ddof)).sqrt()),
+            Moment::RootMeanSquare => Ok((squares / n + (self.centre + x / n).powi(2)).sqrt()),
+        };
+        let taken: Vec<Result<f64, String>> = self.taken.iter().map(of).collect();
+        let value = number(&self.of.expr, &Known { inputs: &taken, ..Known::vehicle(self.facts) });
+        value.ok().map(|value| value / self.bound).filter(|value| value.is_finite())
     }
 }
 

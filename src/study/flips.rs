@@ -28,7 +28,7 @@ pub struct Marked<'a> {
 pub fn flips(before: Marked<'_>, after: Marked<'_>, settings: &Settings) -> Result<Flips, String> {
     let (one, two) = (before.case.with_sections_of(after.case)?, after.case.with_sections_of(before.case)?);
     let combinations = one.combinations();
-    if combinations > settings.most_of(&one).min(settings.most_of(&two)) {
+    if !settings.evaluates_all(&one) || !settings.evaluates_all(&two) {
         return Ok(drawn(&one, &two, settings));
     }
     let halves = Halves::of(&one);

@@ -19,7 +19,8 @@ pub fn known(case: &Case) -> Vec<Option<Spread>> {
     let combinations = case.combinations();
     let measures: Vec<&Measure> = case.measures().map(|(_, measure)| measure).collect();
     let of = |measure: &&Measure| match (measure.kind, &halves) {
-        (Kind::Deviation { .. } | Kind::Pooled(_) | Kind::Estimated, _) => None,
+        (Kind::Deviation { .. }, _) => None,
+        (Kind::Pooled(_) | Kind::Estimated, _) => measure.listed_alone(case).map(Spread::from),
         (Kind::Largest | Kind::Smallest | Kind::LargestMagnitude, _) => extremes::over_all(case, measure).map(Spread::from),
         (Kind::Mean | Kind::RootMeanSquare, Some(halves)) => match measure.parts(halves) {
             Parts::Sums { blocks, form, .. } => sums(&blocks, form).map(Spread::from),
@@ -37,7 +38,7 @@ pub fn methods(known: &[Option<Spread>]) -> Vec<String> {
     let mut methods = Vec::new();
     if exact > 0 {
         methods.push(format!(
-            "{exact} of {all} statistics are nevertheless exact: selections with a largest value up to a bound are counted by binomial coefficients, and order statistics of means follow from sorted half selections."
+            "{exact} of {all} statistics are nevertheless exact: selections with a largest value up to a bound are counted by binomial coefficients, order statistics of means follow from sorted half selections, and estimates of one group are evaluated for every choice of its sections."
         ));
     }
     if !surely.is_empty() {

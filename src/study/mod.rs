@@ -6,6 +6,7 @@
 //! | `halves` | selections as pairs of two halves; a statistic as a sum of their contributions |
 //! | `groups`, `buckets` | rows of selections with the columns in approximate order of the values |
 //! | `spread`, `pilot`, `window` | exact order statistics of such sums, without storing them |
+//! | `pooled` | statistics that are no sums, from the values of each selection |
 //! | `listed`, `extremes` | order statistics from lists or sorted sums; of largest values, by binomial coefficients |
 //! | `grid` | bounds of the order statistics of means, for any number of selections |
 //! | `overall` | one statistic over all selections |
@@ -33,6 +34,7 @@ mod known;
 pub mod listed;
 pub mod overall;
 mod pilot;
+mod pooled;
 pub mod quartiles;
 pub mod random;
 mod reduce;
@@ -59,8 +61,6 @@ pub struct Settings {
 
 /// Largest number of enumerated selections: a bit set of them takes 25 MB, and about eight are used.
 pub const MOST: f64 = 2e8;
-/// The same where a statistic must be computed from all values together.
-const MOST_POOLED: f64 = 2e6;
 
 impl Default for Settings {
     fn default() -> Self {
@@ -69,10 +69,9 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The number of selections up to which all selections of a case are evaluated.
-    fn most_of(&self, case: &Case) -> f64 {
-        let pooled = case.measures().any(|(_, measure)| matches!(measure.kind, case::Kind::Pooled(_) | case::Kind::Estimated));
-        if pooled { self.most.min(MOST_POOLED) } else { self.most }
+    /// Whether every selection of a case is evaluated.
+    fn evaluates_all(&self, case: &Case) -> bool {
+        case.combinations() <= self.most && case.measures().all(|(_, measure)| measure.is_countable(case))
     }
 }
 
@@ -85,7 +84,7 @@ pub fn selections(case: &Case, settings: &Settings) -> SelectionStudy {
 /// The same without these sets, with the selections that are not validated if all were evaluated.
 pub fn marked(case: &Case, settings: &Settings) -> (SelectionStudy, Option<Fails>) {
     let combinations = case.combinations();
-    let (counted, fails) = if combinations <= settings.most_of(case) {
+    let (counted, fails) = if settings.evaluates_all(case) {
         let (counted, fails) = enumerate::marked(case);
         (counted, Some(fails))
     } else {

@@ -4,7 +4,8 @@ use super::case::{Case, Measure, Quantity};
 use super::extremes;
 use super::fails::Fails;
 use super::halves::{Half, Halves, Parts};
-use super::listed::{Listed, weighted};
+use super::listed::Listed;
+use super::pooled::Pooled;
 use super::spread::{Limit, Memory, order};
 
 /// A statistic over all selections.
@@ -27,8 +28,9 @@ pub fn over_all(
 ) -> OverAll {
     let parts = measure.parts(halves);
     if matches!(parts, Parts::Pooled) {
-        let (listed, ends, failing) = pooled(measure, halves, fails, undefined);
-        return with_worst(measure, listed, ends, failing);
+        let found = Pooled::over(measure, halves);
+        let failing = found.mark(measure, halves, fails, undefined);
+        return with_worst(measure, found.listed(1.0), found.ends(), failing);
     }
     let mut without = |row: u32, column: u32| {
         undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count)).one(row, column);
@@ -77,7 +79,7 @@ fn with_worst(measure: &Measure, listed: Option<Listed>, ends: Ends, failing: u6
     OverAll { spread: listed, failing, worst }
 }
 
-type Ends = Option<((u32, u32), (u32, u32))>;
+pub(super) type Ends = Option<((u32, u32), (u32, u32))>;
 
 /// Positions of the minimum and the maximum of the larger of two.
 fn extreme_ends(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -> Ends {
@@ -87,33 +89,6 @@ fn extreme_ends(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -
     let at_least = (least(rows)? as u32, least(columns)? as u32);
     let at_most = (most(rows)? as u32, most(columns)? as u32);
     Some(if negative { (at_most, at_least) } else { (at_least, at_most) })
-}
-
-/// From the values of every selection.
-fn pooled(measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut Option<Fails>) -> (Option<Listed>, Ends, u64) {
-    let mut list = Vec::new();
-    let mut failing = 0;
-    let mut without = |row: u32, column: u32| {
-        undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count)).one(row, column);
-    };
-    for (row, of_row) in halves.rows.choices().enumerate() {
-        for (column, of_column) in halves.columns.choices().enumerate() {
-            match measure.over(of_row.iter().chain(of_column).map(|&at| at as usize)) {
-                None => without(row as u32, column as u32),
-                Some(value) => {
-                    if !measure.holds(value) {
-                        fails.one(row as u32, column as u32);
-                        failing += 1;
-                    }
-                    list.push((value, (row as u32, column as u32)));
-                }
-            }
-        }
-    }
-    list.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let ends = list.first().zip(list.last()).map(|(first, last)| (first.1, last.1));
-    let single: Vec<(f64, f64)> = list.into_iter().map(|(value, _)| (value, 1.0)).collect();
-    (weighted(&single), ends, failing)
 }
 
 /// Marks selections with fewer signals or pairs than the protocol requires.

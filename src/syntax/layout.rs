@@ -34,14 +34,19 @@ pub fn is_bare(block: &Block) -> bool {
     block.fields.is_empty() && block.comments.after.is_empty()
 }
 
+/// Blanks between words. Any other one, such as a no-break space, is an error that a change of form must keep.
+fn is_blank(c: char) -> bool {
+    matches!(c, ' ' | '\t' | '\r' | '\n')
+}
+
 /// A phrase on one line, with single blanks outside quotes.
 pub fn phrase(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut quoted = Quotes::default();
-    for c in text.trim().chars() {
+    for c in text.trim_matches(is_blank).chars() {
         let inside = quoted.inside;
         quoted.pass(c);
-        if matches!(c, '\n' | '\r') || c.is_whitespace() && !inside {
+        if matches!(c, '\n' | '\r') || is_blank(c) && !inside {
             // A line break inside quotes parts words as a blank does.
             if !out.ends_with(' ') {
                 out.push(' ');
@@ -223,6 +228,7 @@ mod tests {
     #[test]
     fn blanks_are_single_outside_quotes_only() {
         assert_eq!(phrase("std  9\n   kN of \"a  b\" "), "std 9 kN of \"a  b\"");
+        assert_eq!(phrase("1.1 *\u{c}x  \u{a0}y"), "1.1 *\u{c}x \u{a0}y");
     }
 
     #[test]
