@@ -1,9 +1,9 @@
-//! A signal along its axis: derivative, integral, the signal moved.
+//! A signal along its axis: derivative, integral, shifted signal.
 
 use super::resample::{ResampleError, interpolate};
 
-/// Slope at each sample: the parabola through it and both neighbours; at the ends the line to the one neighbour. `None` where there
-/// are fewer than two samples, or not as many as points of the axis.
+/// Slope at each sample, from the parabola through it and both neighbours; at the ends, the slope to the one neighbour. `None` for
+/// fewer than two samples or lists of different length.
 pub fn derivative(axis: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
     let count = signal.len();
     if count < 2 || axis.len() != count {
@@ -12,7 +12,7 @@ pub fn derivative(axis: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
     let slope = |from: usize| (signal[from + 1] - signal[from]) / (axis[from + 1] - axis[from]);
     let inside = |at: usize| {
         let (before, behind) = (axis[at] - axis[at - 1], axis[at + 1] - axis[at]);
-        // Of equal steps this is the difference of both neighbours over two steps.
+        // For equal steps, this is the difference of both neighbours divided by two steps.
         (slope(at - 1) * behind + slope(at) * before) / (before + behind)
     };
     Some(
@@ -30,7 +30,7 @@ pub fn derivative(axis: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
     )
 }
 
-/// Integral from the first sample on, by trapezoids.
+/// Integral from the first sample on, by the trapezoidal rule.
 pub fn integral(axis: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
     if signal.is_empty() || axis.len() != signal.len() {
         return None;
@@ -48,8 +48,8 @@ pub fn integral(axis: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
     )
 }
 
-/// The signal moved forward by a distance, on the same points. Where the record does not reach, its end is held: whoever takes a value
-/// there has to look first.
+/// The signal moved forward by a distance, at the same points. Beyond the record, its end value is used; callers must check that
+/// the record is long enough.
 ///
 /// # Errors
 /// As [`interpolate`].
@@ -67,7 +67,8 @@ mod tests {
         (0..400).map(|k| 3.0 + 0.05 * f64::from(k) + 0.01 * f64::from(k % 3)).collect()
     }
 
-    /// A parabola has the slope of the parabola at every inner sample, also of unequal steps; the ends have that half a step inside.
+    /// For a parabola, the slope is exact at every inner sample, also with unequal steps; at the ends it is the slope half a step
+    /// inside.
     #[test]
     fn the_slope_of_a_parabola_is_exact_inside() {
         let axis = axis();
@@ -80,7 +81,7 @@ mod tests {
         assert!(derivative(&[1.0], &[1.0]).is_none());
     }
 
-    /// Trapezoids are exact for a line, and err by the square of the step for a sine.
+    /// The trapezoidal rule is exact for a line; for a sine, its error is of second order in the step.
     #[test]
     fn the_integral_of_a_line_is_exact() {
         let axis = axis();
@@ -92,7 +93,7 @@ mod tests {
         for (x, value) in axis.iter().zip(&found) {
             assert!((value - (axis[0].cos() - x.cos())).abs() < 1e-3);
         }
-        // The slope of the integral is the signal, but for what the two differ in between samples.
+        // The slope of the integral is the signal, except for the interpolation between samples.
         assert!(integral(&[], &[]).is_none());
     }
 

@@ -1,8 +1,8 @@
-//! Confidence of statistics of values that are independent between sites, not within one.
+//! Confidence bounds of statistics of values that are independent between sites, but not within a site.
 //!
-//! A site is what was tested in one place: a section with its repeats and all its signals. Values come grouped by site. Four ways
-//! to a bound: drawing sites ([`bootstrap`]), leaving one out ([`jackknife`]), and closed forms of the mean ([`Mean`]) and the
-//! standard deviation ([`StandardDeviation`]). What share of true values they hold is in `docs/definitions.md`.
+//! A site is one test location: a section with its repeats and all its signals. Values are grouped by site. There are four methods:
+//! drawing sites ([`bootstrap`]), leaving out one site at a time ([`jackknife`]), and closed forms for the mean ([`Mean`]) and the
+//! standard deviation ([`StandardDeviation`]). Their coverage is given in `docs/definitions.md`.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -17,21 +17,22 @@ use super::{
     sum::{sum, sum_of},
 };
 
-/// Draws of a bootstrap: percentiles of 2.5 and 97.5 % have 50 of them beyond.
+/// Number of draws of a bootstrap. 50 of them lie beyond each of the 2.5 % and 97.5 % values.
 pub const REPLICATES: usize = 2000;
 
-/// Where the draws start: any number, the same for all that are to be compared.
+/// Seed of the draws: an arbitrary number, the same for all results that are compared.
 pub const SEED: u64 = 14363;
 
-/// Values below which a statistic lies with some probability.
+/// Confidence bounds of a statistic.
 pub trait Bounds {
-    /// What the true value stays below with this probability (0 to 1), in the unit of the statistic.
+    /// The bound that the true value is below with this probability (0 to 1), in the unit of the statistic.
     ///
     /// # Errors
+    /// A probability not between 0 and 1; a bound that overflows.
     /// A probability not between 0 and 1; a bound beyond the range of numbers.
     fn bound(&self, probability: f64) -> Result<f64, ClusterError>;
 
-    /// From the bound that leaves half of what the confidence leaves to the one that leaves it above.
+    /// Two-sided interval with equal tails.
     ///
     /// # Errors
     /// As [`Self::bound`].
@@ -62,16 +63,16 @@ pub fn by_site<T: Copy>(values: &[T], site: &[usize]) -> Result<Vec<Vec<T>>, Clu
     Ok(groups)
 }
 
-/// Draws of as many sites as there are, with replacement; all statistics of a campaign use the same.
+/// Draws of sites with replacement, as many as there are sites. All statistics of a campaign use the same draws.
 #[derive(Clone, Debug)]
 pub struct Draws {
     sites: usize,
-    /// Draw by draw, from 0.
+    /// Site indices from 0, draw after draw.
     drawn: Vec<usize>,
 }
 
 impl Draws {
-    /// `replicates` draws of `sites` sites, by SplitMix64 from `seed`: the same on every machine.
+    /// `replicates` draws of `sites` sites, by SplitMix64 from `seed`; the same on every machine.
     ///
     /// # Errors
     /// Fewer than two sites, no draw.
@@ -91,11 +92,11 @@ impl Draws {
     }
 }
 
-/// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+/// Generator of Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
 struct SplitMix64(u64);
 
 impl SplitMix64 {
-    /// Uniform from 0 to below 1.
+    /// Uniform in [0, 1).
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -106,7 +107,7 @@ impl SplitMix64 {
     }
 }
 
-/// A statistic of each draw, sorted. Its bounds are percentiles (type 7).
+/// The statistic of each draw, sorted. Bounds are its percentiles (type 7).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replicates(Vec<f64>);
 
@@ -123,11 +124,11 @@ impl Bounds for Replicates {
     }
 }
 
-/// A statistic of the values of the drawn sites, draw by draw (Efron and Tibshirani, "An Introduction to the Bootstrap", 1993,
+/// A statistic of the values of the drawn sites, for each draw (Efron and Tibshirani, "An Introduction to the Bootstrap", 1993,
 /// chapters 8 and 13).
 ///
 /// # Errors
-/// Not as many sites as the draws are of; a draw of which the statistic is not defined.
+/// A number of sites other than that of the draws; a draw for which the statistic is not defined.
 pub fn bootstrap<T: Copy>(sites: &[Vec<T>], draws: &Draws, statistic: impl Fn(&[T]) -> Option<f64>) -> Result<Replicates, ClusterError> {
     if sites.len() != draws.sites {
         return Err(ClusterError::OtherSites { sites: sites.len(), draws: draws.sites });
@@ -144,12 +145,12 @@ pub fn bootstrap<T: Copy>(sites: &[Vec<T>], draws: &Draws, statistic: impl Fn(&[
     Ok(Replicates(replicates))
 }
 
-/// A statistic with its standard error. Its bounds are those of Student's t.
+/// A statistic with its standard error; bounds from Student's t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     pub value: f64,
     pub standard_error: f64,
-    /// Sites less one.
+    /// Number of sites minus one.
     pub degrees: f64,
 }
 
@@ -161,11 +162,12 @@ impl Bounds for Estimate {
     }
 }
 
-/// The statistic of all values, and its standard error from leaving out one site after the other: root of (G - 1)/G times the sum
-/// of squares about their mean (Efron and Tibshirani 1993, chapter 11). The lower bound of a standard deviation may be negative.
+/// The statistic of all values. Its standard error follows from leaving out one site at a time: the square root of (G - 1)/G times
+/// the sum of squares about their mean, for G sites (Efron and Tibshirani 1993, chapter 11). The lower bound of a standard
+/// deviation can be negative.
 ///
 /// # Errors
-/// Fewer than two sites; a statistic that is not defined, of all values or without a site.
+/// Fewer than two sites; a statistic that is not defined for all values or without one of the sites.
 pub fn jackknife<T: Copy>(sites: &[Vec<T>], statistic: impl Fn(&[T]) -> Option<f64>) -> Result<Estimate, ClusterError> {
     enough(sites.len())?;
     let of = |left_out: Option<usize>| {
@@ -181,21 +183,22 @@ pub fn jackknife<T: Copy>(sites: &[Vec<T>], statistic: impl Fn(&[T]) -> Option<f
     Ok(Estimate { value, standard_error: in_range((degrees * variance).sqrt())?, degrees })
 }
 
-/// The mean of all values by its closed form: variance G/(G - 1) sum(S_j^2)/n^2, S_j being the sum of a site's deviations from it
-/// (Liang and Zeger, Biometrika 73, 1986). With one value per site this is the usual interval.
+/// The mean of all values, with bounds in closed form: variance G/(G - 1) sum(S_j^2)/n^2 for G sites and n values, where S_j is the
+/// sum of the deviations of site j from the mean (Liang and Zeger, Biometrika 73, 1986). With one value per site, this is the usual
+/// interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mean {
     pub estimate: Estimate,
-    /// How many independent values would say as much of the mean: variance of the values over that of the mean, but not more
-    /// than there are values.
+    /// Number of independent values with the same variance of the mean: variance of the values divided by that of the mean, at most
+    /// the number of values.
     pub effective_values: f64,
-    /// Variance of the mean over what it were if all values were independent (Kish, "Survey Sampling", 1965).
+    /// Variance of the mean divided by its variance for independent values (Kish, "Survey Sampling", 1965).
     pub design_effect: f64,
 }
 
 impl Mean {
     /// # Errors
-    /// Fewer than two sites; sums beyond the range of numbers, or a value that is not finite.
+    /// Fewer than two sites; sums that overflow; a value that is not finite.
     pub fn of(sites: &[Vec<f64>]) -> Result<Self, ClusterError> {
         enough(sites.len())?;
         let values = sites.concat();
@@ -204,7 +207,7 @@ impl Mean {
         let of_values = statistics::variance(&values, Divisor::Sample).ok_or_else(out_of_range)?;
         let sums: Vec<f64> = sites.iter().map(|values| sum_of(values, |value| value - mean)).collect();
         let (groups, count) = (sites.len() as f64, values.len() as f64);
-        // Of equal values nothing but rounding is left.
+        // For equal values, only rounding errors remain.
         let squares = if of_values > 0.0 { sum_of(&sums, |sum| sum * sum) } else { 0.0 };
         let standard_error = in_range((groups / (groups - 1.0) * squares).sqrt() / count)?;
         let variance = standard_error * standard_error;
@@ -222,13 +225,15 @@ impl Bounds for Mean {
     }
 }
 
-/// The standard deviation (n - 1) of all values by a closed form: its square behaves as chi-square with
-/// nu = 2 sigma^4/var(sigma^2) degrees of freedom, sigma^2 = sum(V_j)/n and var(sigma^2) = G/(G - 1) sum((V_j - n_j sigma^2)^2)/n^2,
-/// V_j being the sum of squares of a site's deviations from the mean (moments after Satterthwaite, Biometrics Bulletin 2, 1946).
+/// The standard deviation (n - 1) of all values, with bounds in closed form. Its square has approximately a chi-square distribution
+/// with nu = 2 sigma^4/var(sigma^2) degrees of freedom, where sigma^2 = sum(V_j)/n, var(sigma^2) = G/(G - 1) sum((V_j - n_j
+/// sigma^2)^2)/n^2, and V_j is the sum of squares of the deviations of site j from the mean (method of moments after Satterthwaite,
+/// Biometrics Bulletin 2, 1946).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandardDeviation {
     pub value: f64,
-    /// `None`: sites of equal sums of squares, of which the scatter says nothing; the bounds are the value itself.
+    /// `None` if all sites have equal sums of squares. Their scatter then gives no information, and the bounds are the value
+    /// itself.
     pub degrees: Option<f64>,
 }
 
@@ -254,7 +259,8 @@ impl StandardDeviation {
     }
 }
 
-/// From here on the scatter of the sites' sums of squares is rounding, and an interval narrower than 1e-6 of the value a point.
+/// Degrees of freedom above which the scatter of the sums of squares is rounding; the interval is then narrower than 1e-6 of the
+/// value and is replaced by the value.
 const MOST_DEGREES: f64 = 1e13;
 
 impl Bounds for StandardDeviation {
@@ -278,7 +284,7 @@ fn in_range(value: f64) -> Result<f64, ClusterError> {
     if value.is_finite() { Ok(value) } else { Err(ClusterError::OutOfRange) }
 }
 
-/// Of what a statistic is taken. Counted from 1.
+/// The values that a statistic is computed from; numbers from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     All,
@@ -286,7 +292,7 @@ pub enum Part {
     Without(usize),
 }
 
-/// Why there is no bound.
+/// Reason why there is no bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ClusterError {
     Length { values: usize, sites: usize },
@@ -301,16 +307,16 @@ pub enum ClusterError {
 impl fmt::Display for ClusterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Length { values, sites } => write!(f, "{values} values have {sites} numbers of sites"),
-            Self::TooFew { sites: 0 } => f.write_str("there is no site: at least 2 needed"),
-            Self::TooFew { .. } => f.write_str("there is 1 site: at least 2 needed"),
-            Self::NoDraw => f.write_str("no sites are drawn: at least one draw is needed"),
+            Self::Length { values, sites } => write!(f, "there are {values} values but {sites} site numbers"),
+            Self::TooFew { sites: 0 } => f.write_str("there is no site; at least 2 are needed"),
+            Self::TooFew { .. } => f.write_str("there is 1 site; at least 2 are needed"),
+            Self::NoDraw => f.write_str("the number of draws is zero; at least one draw is needed"),
             Self::OtherSites { sites, draws } => write!(f, "the values are of {sites} sites, the draws of {draws}"),
             Self::Undefined { of: Part::All } => f.write_str("the statistic is not defined for these values"),
             Self::Undefined { of: Part::Draw(number) } => write!(f, "the statistic is not defined for draw {number} of the sites"),
             Self::Undefined { of: Part::Without(site) } => write!(f, "the statistic is not defined without site {site}"),
-            Self::Probability { probability } => write!(f, "a probability lies between 0 and 1, not at {probability}"),
-            Self::OutOfRange => f.write_str("a value is not finite, or sums exceed the range of numbers"),
+            Self::Probability { probability } => write!(f, "a probability must be between 0 and 1, this is {probability}"),
+            Self::OutOfRange => f.write_str("a value is not finite, or a sum overflows"),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Coherence of two signals: the share of one that follows the other linearly, by frequency (Welch).
+//! Coherence of two signals: the share of one that depends linearly on the other, as a function of frequency (Welch).
 
 use std::f64::consts::TAU;
 
@@ -7,22 +7,22 @@ use realfft::num_complex::Complex;
 
 use super::pair::Undefined;
 
-/// Samples of a window. Frequencies lie a 256th of the sampling rate apart: 0.8 Hz at 200 samples a second.
+/// Number of samples of a window. The spectral lines are 1/256 of the sampling rate apart: 0.8 Hz at 200 samples per second.
 pub const WINDOW: usize = 256;
-/// From one window to the next: they overlap by half.
+/// Samples from one window to the next: 50 % overlap.
 const ADVANCE: usize = WINDOW / 2;
 
-/// Mean coherence of the lines with low <= f < high.
+/// Mean coherence of the spectral lines with low <= f < high, for a sampling rate and frequencies in the same unit.
 ///
-/// The spectra are means over Hann windows (periodic), each without its mean. One window alone has coherence 1 at every frequency,
-/// whatever the signals are.
+/// The spectra are averages over periodic Hann windows, each with its mean removed. With a single window, the coherence is 1 at
+/// every frequency, for any signals.
 ///
 /// # Errors
-/// Fewer samples than a window, no line between the two frequencies, a signal without any part at one of these.
+/// Fewer samples than a window; no spectral line in the band; a signal without content at a line of the band.
 pub fn in_band(simulated: &[f64], measured: &[f64], rate: f64, (low, high): (f64, f64)) -> Result<f64, Undefined> {
     if simulated.len() != measured.len() || simulated.len() < WINDOW {
         let count = simulated.len().min(measured.len());
-        return Err(Undefined::because(format!("the signals have {count} samples, and one window of the coherence has {WINDOW}")));
+        return Err(Undefined::because(format!("the signals have {count} samples; a window of the coherence needs {WINDOW}")));
     }
     let lines: Vec<usize> = (0..=WINDOW / 2).filter(|&line| (low..high).contains(&(line as f64 * rate / WINDOW as f64))).collect();
     if lines.is_empty() {
@@ -53,7 +53,7 @@ pub fn in_band(simulated: &[f64], measured: &[f64], rate: f64, (low, high): (f64
     for ((s, m), both) in of_s.iter().zip(&of_m).zip(&of_both) {
         let one = both.norm_sqr() / (s * m);
         if !one.is_finite() {
-            return Err(Undefined::because("one of the signals has no part at a frequency of the band"));
+            return Err(Undefined::because("one of the signals has no content at a frequency of the band"));
         }
         sum += one;
     }
@@ -77,7 +77,7 @@ mod tests {
         let a = noise(20_000, 1);
         let b: Vec<f64> = a.iter().map(|value| -3.0 * value + 2.0).collect();
         assert!((in_band(&a, &b, 200.0, (1.0, 20.0)).expect("a number") - 1.0).abs() < 1e-12);
-        // Of n windows of independent noise the mean is about 1/n, with half overlap somewhat more.
+        // For n windows of independent noise, the mean is about 1/n; with 50 % overlap it is somewhat larger.
         let none = in_band(&a, &noise(20_000, 2), 200.0, (1.0, 20.0)).expect("a number");
         assert!(none < 0.03, "{none}");
     }

@@ -1,41 +1,40 @@
-//! Two hysteresis loops, output over an input that runs up and down: how far the simulated lies from the measured.
+//! Comparison of two hysteresis loops, output over an input that rises and falls.
 //!
-//! Each record is split at the turning points of its input into rising and falling branches, and branches are compared with
-//! branches of the same direction at the inputs of the measurement. A record may hold several cycles: at each input the outputs
-//! of the long branches of one direction are averaged. A short branch, such as a first loading or the rest of a cycle in which
-//! the record ends, counts only where no long one reaches. What is left of a record after its last turning point, if less than
-//! the threshold, is not used.
+//! Each record is split at the turning points of its input into rising and falling branches. Branches of the same direction are
+//! compared at the inputs of the measurement. A record can contain several cycles: at each input, the outputs of the long branches
+//! of one direction are averaged. Short branches, such as a first loading or an incomplete last cycle, are used only where there is
+//! no long branch. The part of a record after its last turning point is not used if its range is below the threshold.
 
 use super::pair::Undefined;
 
-/// A branch is long if it covers this share of the longest of its direction.
+/// A branch is long if it covers at least this share of the longest branch of its direction.
 const LONG: f64 = 0.9;
 
-/// A record of output `y` over input `x`, in the order of time; same length.
+/// A record of output `y` over input `x`, in the order of time; both have the same length.
 #[derive(Clone, Copy, Debug)]
 pub struct Loop<'a> {
     pub x: &'a [f64],
     pub y: &'a [f64],
 }
 
-/// How far the simulated loop lies from the measured, in the unit of the output.
+/// Difference between the simulated and the measured loop, in the unit of the output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matching {
     /// Largest magnitude of the difference.
     pub maximum: f64,
-    /// Mean magnitude of the difference over the input, both directions together: resting at an input does not count.
+    /// Mean magnitude of the difference over the input, for both directions together. Samples at a constant input have no weight.
     pub mean: f64,
-    /// Largest less smallest measured output at the inputs compared.
+    /// Largest minus smallest measured output at the inputs compared.
     pub range: f64,
 }
 
 impl Matching {
-    /// [`Self::maximum`] as a fraction of the range; None for a measured output that does not move.
+    /// [`Self::maximum`] divided by the range; `None` if the measured output is constant.
     pub fn relative_maximum(&self) -> Option<f64> {
         (self.range > 0.0).then(|| self.maximum / self.range)
     }
 
-    /// [`Self::mean`] as a fraction of the range; None for a measured output that does not move.
+    /// [`Self::mean`] divided by the range; `None` if the measured output is constant.
     pub fn relative_mean(&self) -> Option<f64> {
         (self.range > 0.0).then(|| self.mean / self.range)
     }
@@ -43,12 +42,12 @@ impl Matching {
 
 /// Compares two loops.
 ///
-/// `threshold` is the fraction of the input's range by which it must turn back for a turning point: more than its noise, less
-/// than its swing; 0.05 suits most records.
+/// `threshold` is the share of the input's range by which it must reverse for a turning point. It must be larger than the noise and
+/// smaller than the amplitude; 0.05 suits most records.
 ///
 /// # Errors
-/// A record without samples, of unequal lengths, with a value that is not finite or an input that does not run up and down; a
-/// threshold not between 0 and 1; loops without a common input in either direction.
+/// A record without samples, with unequal lengths, with a value that is not finite, or with an input that does not rise and fall; a
+/// threshold not between 0 and 1; loops without common inputs in a direction.
 pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Matching, Undefined> {
     let simulated = Sides::of(simulated, threshold, "simulated")?;
     let measured = Sides::of(measured, threshold, "measured")?;
@@ -68,7 +67,7 @@ pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Match
         }
         let part = trapezia(&errors);
         if part.length <= 0.0 {
-            return Err(Undefined::because(format!("the loops have no input in common while it is {}", direction.word())));
+            return Err(Undefined::because(format!("the loops have no common input while it is {}", direction.word())));
         }
         integral += part.integral;
         length += part.length;
@@ -76,10 +75,10 @@ pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Match
     Ok(Matching { maximum, mean: integral / length, range: highest - lowest })
 }
 
-/// Area of a loop: the integral over the input of rising less falling output, in the product of their units.
+/// Area of a loop: the integral over the input of rising minus falling output, in the product of their units.
 ///
-/// Positive where the output is larger while the input rises, that is for energy dissipated by a force over a displacement. Of
-/// several cycles the mean; over the inputs that both directions reach.
+/// It is positive where the output is larger while the input rises: the energy dissipated by a force over a displacement. For
+/// several cycles it is the mean. Only inputs that both directions reach are used.
 ///
 /// # Errors
 /// As [`matching`], for one record.
@@ -94,13 +93,13 @@ pub fn area(of: Loop, threshold: f64) -> Result<f64, Undefined> {
     Ok(trapezia(&heights).integral)
 }
 
-/// What trapezia between points add up to.
+/// Sums of trapezoids between points.
 struct Trapezia {
     integral: f64,
     length: f64,
 }
 
-/// Integral over points in order; none reaches across points without a value.
+/// Integral over points in order, without intervals that have a point without a value.
 fn trapezia(points: &[(f64, Option<f64>)]) -> Trapezia {
     let mut total = Trapezia { integral: 0.0, length: 0.0 };
     for [(x, left), (x_next, right)] in points.array_windows() {
@@ -127,7 +126,7 @@ impl Direction {
     }
 }
 
-/// A run of samples between two turning points.
+/// Consecutive samples between two turning points.
 #[derive(Clone, Copy, Debug)]
 struct Branch {
     direction: Direction,
@@ -147,7 +146,7 @@ impl Branch {
     }
 }
 
-/// A loop taken apart.
+/// The two directions of a loop.
 struct Sides {
     rising: Side,
     falling: Side,
@@ -157,13 +156,13 @@ impl Sides {
     fn of(of: Loop, threshold: f64, which: &str) -> Result<Self, Undefined> {
         let undefined = |what: &str| Undefined::because(format!("the {which} loop {what}"));
         if !(threshold > 0.0 && threshold < 1.0) {
-            return Err(Undefined::because(format!("a turning threshold lies between 0 and 1 of the range, not at {threshold}")));
+            return Err(Undefined::because(format!("the turning threshold must be between 0 and 1 of the range, this is {threshold}")));
         }
         if of.x.len() != of.y.len() {
             return Err(undefined(&format!("has {} inputs and {} outputs", of.x.len(), of.y.len())));
         }
         if of.x.iter().chain(of.y).any(|value| !value.is_finite()) {
-            return Err(undefined("holds a value that is not finite"));
+            return Err(undefined("has a value that is not finite"));
         }
         let (low, high) = of.x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
         let branches = branches(of.x, threshold * (high - low));
@@ -188,7 +187,7 @@ struct Side {
 }
 
 impl Side {
-    /// None if there is no branch of the direction.
+    /// `None` if there is no branch of the direction.
     fn of(of: Loop, branches: &[Branch], direction: Direction) -> Option<Self> {
         let ours = branches.iter().filter(|branch| branch.direction == direction);
         let longest = ours.clone().map(Branch::span).max_by(f64::total_cmp)?;
@@ -197,12 +196,12 @@ impl Side {
         Some(Self { long: curves(long), short: curves(short) })
     }
 
-    /// Mean output of the long branches at an input, or of the short where there is none.
+    /// Mean output of the long branches at an input, or of the short branches where there is no long one.
     fn at(&self, x: f64) -> Option<f64> {
         average(&self.long, x).or_else(|| average(&self.short, x))
     }
 
-    /// All inputs, in order, each once.
+    /// All inputs in order, without duplicates.
     fn inputs(&self) -> Vec<f64> {
         let mut inputs: Vec<f64> = self.long.iter().chain(&self.short).flat_map(|curve| curve.x.iter().copied()).collect();
         inputs.sort_unstable_by(f64::total_cmp);
@@ -211,10 +210,10 @@ impl Side {
     }
 }
 
-/// The branches of an input that turns where it goes back by more than `turn_back`.
+/// Splits an input into branches, at points where it reverses by more than `turn_back`.
 ///
-/// A rising branch ends at the first sample of the highest input and the falling one begins at the last: an output that changes
-/// while the input rests belongs to neither.
+/// A rising branch ends at the first sample of the highest input, and the falling branch begins at the last one. Changes of the
+/// output at constant input belong to neither.
 fn branches(x: &[f64], turn_back: f64) -> Vec<Branch> {
     let mut found = Vec::new();
     let Some(&start) = x.first() else { return found };
@@ -259,7 +258,7 @@ fn branches(x: &[f64], turn_back: f64) -> Vec<Branch> {
     found
 }
 
-/// A highest or lowest input, and the first and last sample that have it.
+/// The highest or lowest input, with its first and last sample.
 #[derive(Clone, Copy)]
 struct Extreme {
     value: f64,
@@ -280,7 +279,7 @@ impl Extreme {
     }
 }
 
-/// The output of one branch as a function of the input: in order of the input, outputs at equal inputs averaged.
+/// The output of one branch as a function of the input, sorted by input; outputs at equal inputs are averaged.
 struct Curve {
     x: Vec<f64>,
     y: Vec<f64>,
@@ -298,7 +297,7 @@ impl Curve {
         curve
     }
 
-    /// The output at an input, linear between points; None outside.
+    /// The output at an input, by linear interpolation; `None` outside.
     fn at(&self, x: f64) -> Option<f64> {
         let after = self.x.partition_point(|&at| at < x);
         let (&x_after, &y_after) = (self.x.get(after)?, self.y.get(after)?);
@@ -311,7 +310,7 @@ impl Curve {
     }
 }
 
-/// Mean output of the curves that have this input.
+/// Mean output of the curves that contain this input.
 fn average(curves: &[Curve], x: f64) -> Option<f64> {
     let (total, count) = curves.iter().filter_map(|curve| curve.at(x)).fold((0.0, 0), |(total, count), y| (total + y, count + 1));
     (count > 0).then(|| total / f64::from(count))

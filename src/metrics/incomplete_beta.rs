@@ -1,13 +1,13 @@
-//! The regularised incomplete beta function, for as many degrees of freedom as a record has samples.
+//! The regularised incomplete beta function, also for large numbers of degrees of freedom.
 
 use std::f64::consts::TAU;
 
 use statrs::function::gamma::ln_gamma;
 
-/// I_x(a, b) for positive a and b and x in [0, 1]; `complement` is 1 - x, given so that neither loses digits.
+/// I_x(a, b) for positive a and b and x in [0, 1]. `complement` is 1 - x, passed separately so that neither loses digits.
 ///
-/// Continued fraction by Lentz's method (Numerical Recipes, 3rd ed., 6.4), which needs of order sqrt(max(a, b)) terms: the
-/// fixed number that libraries allow is not enough for long records.
+/// Continued fraction by Lentz's method (Numerical Recipes, 3rd ed., 6.4). It needs of the order of sqrt(max(a, b)) terms;
+/// libraries limit the number of terms, which is not sufficient for long records.
 pub(super) fn incomplete_beta(a: f64, b: f64, x: f64, complement: f64) -> f64 {
     if x <= 0.0 {
         0.0
@@ -22,11 +22,11 @@ pub(super) fn incomplete_beta(a: f64, b: f64, x: f64, complement: f64) -> f64 {
 
 /// ln of x^a (1 - x)^b / B(a, b)
 ///
-/// By Stirling where it holds: the large logarithms of the plain form then cancel on paper instead of in digits.
+/// With Stirling's formula for large arguments, where differences of large logarithms would lose digits.
 fn ln_front(a: f64, b: f64, x: f64, complement: f64) -> f64 {
     let (small, large) = (a.min(b), a.max(b));
     if small >= STIRLING {
-        // About the peak at a / (a + b).
+        // Expanded about the maximum at a / (a + b).
         let off = x * b - complement * a;
         let deviance = a * (off / a).ln_1p() + b * (-off / b).ln_1p();
         return deviance + 0.5 * (a * b / (TAU * (a + b))).ln() + stirling(a + b) - stirling(a) - stirling(b);
@@ -40,10 +40,10 @@ fn ln_front(a: f64, b: f64, x: f64, complement: f64) -> f64 {
     ratio - ln_gamma(small) + a * ln(x, complement) + b * ln(complement, x)
 }
 
-/// From here on five terms of Stirling's series are exact to the last digit.
+/// From this argument on, five terms of Stirling's series are exact in double precision.
 const STIRLING: f64 = 20.0;
 
-/// ln Gamma(z) less Stirling's formula.
+/// ln Gamma(z) minus Stirling's formula.
 fn stirling(z: f64) -> f64 {
     let square = 1.0 / (z * z);
     (1.0 / 12.0 - square * (1.0 / 360.0 - square * (1.0 / 1260.0 - square * (1.0 / 1680.0 - square / 1188.0)))) / z

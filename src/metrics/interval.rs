@@ -5,27 +5,27 @@ use super::{
     statistics::{Divisor, standard_deviation},
 };
 
-/// The confidence usual in test reports.
+/// Confidence level usual in test reports.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// Lower and upper end of an interval that holds the true value with some confidence.
+/// Lower and upper end of a confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     pub low: f64,
     pub high: f64,
 }
 
-/// Interval of the mean of values that are independent between sites, not within one: [`Mean`].
+/// Interval of the mean of values that are independent between sites, but not within a site; see [`Mean`].
 ///
-/// `site` numbers the site of each value. `None` for fewer than two sites, lists of different length, a value that is not finite,
-/// or a confidence not between 0 and 1.
+/// `site` is the site of each value. `None` for fewer than two sites, lists of different length, a value that is not finite, or a
+/// confidence not between 0 and 1.
 pub fn mean_interval(values: &[f64], site: &[usize], confidence: f64) -> Option<Interval> {
     Mean::of(&by_site(values, site).ok()?).ok()?.interval(confidence).ok()
 }
 
-/// Interval of the standard deviation, chi-square with G - 1 degrees of freedom for G sites, equal tails: values of one site
-/// are taken for one, since how far they depend on each other is not known. With one value per site this is the usual
-/// interval. [`StandardDeviation::of`] is narrower, and holds the true value less often than it says.
+/// Interval of the standard deviation, with equal tails: chi-square with G - 1 degrees of freedom for G sites. The values of one
+/// site count as one value, as their dependence is not known. With one value per site, this is the usual interval.
+/// [`StandardDeviation::of`] is narrower, but its coverage is below the stated confidence.
 ///
 /// `site` and `None` as in [`mean_interval`].
 pub fn standard_deviation_interval(values: &[f64], site: &[usize], confidence: f64) -> Option<Interval> {
@@ -34,10 +34,10 @@ pub fn standard_deviation_interval(values: &[f64], site: &[usize], confidence: f
     StandardDeviation { value, degrees: Some(degrees) }.interval(confidence).ok()
 }
 
-/// Interval of a share, 95 % (Wilson 1927): how many of how many. Of none every share is possible.
+/// 95 % interval of a share `good` of `all` (Wilson 1927); 0 to 1 if `all` is zero.
 #[must_use]
 pub fn wilson(good: u64, all: u64) -> (f64, f64) {
-    /// 97.5 % value of the normal distribution.
+    /// 97.5 % quantile of the normal distribution.
     const NORMAL: f64 = 1.959_963_984_540_054;
     if all == 0 {
         return (0.0, 1.0);
@@ -46,6 +46,6 @@ pub fn wilson(good: u64, all: u64) -> (f64, f64) {
     let square = NORMAL * NORMAL;
     let center = (p + square / (2.0 * n)) / (1.0 + square / n);
     let half = NORMAL / (1.0 + square / n) * (p * (1.0 - p) / n + square / (4.0 * n * n)).sqrt();
-    // At the ends the two terms cancel, but for rounding.
+    // At the ends, both terms cancel except for rounding.
     (if good == 0 { 0.0 } else { (center - half).max(0.0) }, if good == all { 1.0 } else { (center + half).min(1.0) })
 }

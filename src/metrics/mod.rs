@@ -1,8 +1,7 @@
-//! Numbers from signals: slices in, numbers out, no I/O.
+//! Numerical methods: slices in, numbers out, no I/O.
 //!
-//! Values are in SI and carry no quantity: what a signal is and which limit holds is a protocol's business. Where a number
-//! is not defined (nothing to average, a division by zero, a sample that is not finite) there is none: `None` or an error
-//! with the reason, never a stand-in.
+//! Values are in SI. Quantities and limits are defined by protocols, not here. Where a number is not defined (no values, a division
+//! by zero, a sample that is not finite), the result is `None` or an error with the reason.
 //!
 //! | module | from | to |
 //! |---|---|---|
@@ -11,16 +10,16 @@
 //! | [`resample`] | signal over an axis | the signal at other points |
 //! | [`percentile`] | values | order statistics, interpolated |
 //! | [`statistics`], [`interval`] | values | mean, scatter, extremes, regression; confidence intervals |
-//! | [`cluster`] | values by site | bounds of any statistic: drawing sites, leaving one out, closed forms |
+//! | [`cluster`] | values by site | bounds of any statistic: bootstrap and jackknife over sites, closed forms |
 //! | [`regression`] | values and regressors | least squares, bounds at a point |
 //! | [`student`] | probability | quantiles of Student's t |
-//! | [`sampling`] | values | how they were recorded: held, saturated, quantised |
-//! | [`pair`] | simulated and measured signal | how well they agree |
-//! | [`random_effects`] | estimates with variances | by how much they scatter beyond these |
-//! | [`synchronise`] | signals of two records | by how much one lies ahead of the other |
-//! | [`coherence`] | simulated and measured signal | how far one follows the other linearly, by frequency |
-//! | [`along`] | signal over an axis | derivative, integral, the signal elsewhere |
-//! | [`hysteresis`] | two loops of output over input | how well they agree, branch by branch |
+//! | [`sampling`] | values | signs of recording faults: held, saturated, quantised |
+//! | [`pair`] | simulated and measured signal | measures of agreement |
+//! | [`random_effects`] | estimates with variances | the variance between them |
+//! | [`synchronise`] | signals of two records | the shift between them |
+//! | [`coherence`] | simulated and measured signal | the linear dependence as a function of frequency |
+//! | [`along`] | signal over an axis | derivative, integral, shifted signal |
+//! | [`hysteresis`] | two loops of output over input | their difference, branch by branch |
 
 pub mod along;
 pub mod cluster;
@@ -41,7 +40,7 @@ mod sum;
 pub mod synchronise;
 pub mod window;
 
-/// A number of a message: six digits, so that a conversion between units leaves no tail.
+/// A number for a message, with six significant digits to hide rounding of unit conversions.
 pub fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }

@@ -1,11 +1,11 @@
-//! Percentiles of unsorted values, by the methods of Hyndman and Fan and those that NumPy has besides.
+//! Percentiles of unsorted values, by the methods of Hyndman and Fan and the further methods of NumPy.
 //!
 //! Source: Hyndman and Fan, "Sample quantiles in statistical packages", The American Statistician 50 (1996) 361-365. Names,
 //! edge cases and the last digit follow `numpy.percentile`.
 
 use std::fmt;
 
-/// How the value between two order statistics is formed.
+/// Rule for the value between two order statistics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Method {
     /// Type 1.
@@ -68,13 +68,13 @@ impl Method {
         }
     }
 
-    /// The method of a name.
+    /// The method with this name of NumPy.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
 
-    /// Where the quantile lies among the order statistics of `count` values: the one below, counted from 0, and the weight of
-    /// the one above.
+    /// Position of the quantile among the order statistics of `count` values: index of the one below, from 0, and weight of the one
+    /// above.
     fn position(self, count: usize, quantile: f64) -> (usize, f64) {
         let n = count as f64;
         let between = |alpha: f64, beta: f64| n * quantile + (alpha + quantile * (1.0 - alpha - beta)) - 1.0;
@@ -88,7 +88,7 @@ impl Method {
             }
             Self::ClosestObservation => {
                 let (below, rest) = fraction(n * quantile - 1.5);
-                // Half way, the even one counted from 1.
+                // Halfway, the order statistic with even number (from 1).
                 whole(if rest == 0.0 && below.rem_euclid(2.0) == 1.0 { below } else { below + 1.0 })
             }
             Self::InterpolatedInvertedCdf => fraction(between(0.0, 1.0)),
@@ -133,7 +133,7 @@ pub fn percentiles(values: &[f64], percents: &[f64], method: Method) -> Result<V
     let found: Vec<Option<f64>> = percents.iter().map(|&percent| near_an_end(values, percent, method)).collect();
     let inside = found.iter().filter(|value| value.is_none()).count();
     let mut values = if inside > 0 { values.to_vec() } else { Vec::new() };
-    // A selection costs about three looks at each value, a sort about log2(n).
+    // Selection reads each value about three times, sorting about log2(n) times.
     let sorted = inside > 0 && inside * 3 >= values.len().ilog2() as usize;
     if sorted {
         values.sort_unstable_by(f64::total_cmp);
@@ -148,11 +148,11 @@ pub fn percentiles(values: &[f64], percents: &[f64], method: Method) -> Result<V
     Ok(found.into_iter().zip(percents).map(|(value, &percent)| value.unwrap_or_else(|| of_copy(percent))).collect())
 }
 
-/// Most values kept beside each other while looking for one near an end.
+/// Largest number of values kept in the search for a percentile near an end.
 const NEAR: usize = 64;
 
-/// A percentile among the smallest or largest values, as the 0.15 % and 99.85 % values of a record are: one look at each value, and
-/// no copy. `None` if it lies further inside, where selection is faster.
+/// A percentile among the smallest or largest values, such as the 0.15 % and 99.85 % values of a record. It reads each value once,
+/// without a copy. `None` if the percentile is not near an end; selection is then faster.
 fn near_an_end(values: &[f64], percent: f64, method: Method) -> Option<f64> {
     let (below, weight) = method.position(values.len(), percent / 100.0);
     let both = usize::from(weight > 0.0);
@@ -169,7 +169,7 @@ fn near_an_end(values: &[f64], percent: f64, method: Method) -> Option<f64> {
     }
 }
 
-/// The `count` smallest values, in order; there must be as many.
+/// The `count` smallest values, sorted; there must be at least as many.
 fn smallest(values: impl Iterator<Item = f64>, count: usize) -> Vec<f64> {
     let mut kept: Vec<f64> = Vec::with_capacity(count + 1);
     for value in values {
@@ -189,7 +189,7 @@ fn check(values: &[f64], percents: &[f64]) -> Result<(), PercentileError> {
     if values.is_empty() {
         return Err(PercentileError::Empty);
     }
-    // All of them without a way out of the loop, which is faster than to stop at the first.
+    // The loop checks all values without an early exit, which is faster.
     if values.iter().fold(true, |all, value| all & value.is_finite()) {
         return Ok(());
     }
@@ -204,7 +204,7 @@ fn select(values: &mut [f64], percent: f64, method: Method) -> f64 {
     blend(lower, upper, weight)
 }
 
-/// NumPy's interpolation: from the nearer end, so that it is monotone and meets both ends.
+/// NumPy's interpolation, from the nearer end, so that it is monotone and exact at both ends.
 fn blend(lower: f64, upper: f64, weight: f64) -> f64 {
     if weight == 0.0 {
         lower
@@ -215,7 +215,7 @@ fn blend(lower: f64, upper: f64, weight: f64) -> f64 {
     }
 }
 
-/// Why there is no percentile.
+/// Reason why there is no percentile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PercentileError {
     Empty,
@@ -233,7 +233,7 @@ impl fmt::Display for PercentileError {
         match *self {
             Self::Empty => f.write_str("there are no values"),
             Self::NotFinite { index } => write!(f, "value {} is not finite", index + 1),
-            Self::Percent { percent } => write!(f, "a percentile lies between 0 and 100 %, not at {percent} %"),
+            Self::Percent { percent } => write!(f, "a percentile must be from 0 to 100 %, this is {percent} %"),
         }
     }
 }

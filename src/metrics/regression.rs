@@ -1,7 +1,7 @@
-//! Ordinary least squares with one regressor, several, or none, and bounds of what it says at a point.
+//! Ordinary least squares with several regressors, one, or none, and confidence bounds at a point.
 //!
-//! The model is value = intercept + sum of coefficient x regressor + error, with errors that are independent, normal and of equal
-//! variance. Source: Draper and Smith, "Applied Regression Analysis", 3rd ed. (1998), chapters 1, 3 and 5.
+//! The model is value = intercept + sum of coefficient x regressor + error, with independent normal errors of equal variance.
+//! Source: Draper and Smith, "Applied Regression Analysis", 3rd ed. (1998), chapters 1, 3 and 5.
 
 use std::fmt;
 
@@ -13,17 +13,17 @@ use super::{
     sum::{sum_of, sum_of_pairs},
 };
 
-/// Regressors are collinear when the smallest singular value of the columns, the intercept's among them and each scaled to length
-/// 1, is below this part of the largest: what is left of 16 digits then no longer tells their coefficients apart.
+/// Regressors are collinear if the smallest singular value of the columns (including the intercept, each scaled to length 1) is
+/// below this share of the largest. In double precision, their coefficients can then not be distinguished.
 const COLLINEAR: f64 = 1e-10;
 
 /// A fitted regression.
 #[derive(Clone, Debug)]
 pub struct Regression {
     mean: f64,
-    /// Of each regressor: mean, length of its column about the mean, coefficient.
+    /// For each regressor: mean, length of its centred column, coefficient.
     regressors: Vec<Regressor>,
-    /// Takes a point, centred and scaled, to a vector whose squared length is its part of the leverage; row by row.
+    /// Matrix, row by row, that maps a centred and scaled point to a vector whose squared length is its part of the leverage.
     whitening: Vec<Vec<f64>>,
     count: usize,
     residual_standard_deviation: f64,
@@ -36,12 +36,12 @@ struct Regressor {
     coefficient: f64,
 }
 
-/// What is to stay inside a bound.
+/// The quantity that a bound is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The next single value at the point: fit -+ t s sqrt(1 + h).
+    /// A further single value at the point: fit -+ t s sqrt(1 + h).
     Prediction,
-    /// The mean of values at the point: fit -+ t s sqrt(h).
+    /// The mean of the values at the point: fit -+ t s sqrt(h).
     Mean,
 }
 
@@ -51,22 +51,22 @@ pub enum Side {
     Lower,
 }
 
-/// How much of the probability that the confidence leaves lies beyond the bound.
+/// Share of the error probability (1 - confidence) that is beyond the bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tails {
-    /// All of it: of 95 %, the 95 % value of Student's t.
+    /// All of it: for 95 %, the 95 % quantile of Student's t.
     One,
-    /// Half of it: of 95 %, the 97.5 % value.
+    /// Half of it: for 95 %, the 97.5 % quantile.
     Two,
 }
 
 impl Regression {
-    /// Fit of `values` by `regressors`, each with one number per value, in any units; an intercept always belongs to it. Without
-    /// regressors it is the mean, and its bounds are those of a sample.
+    /// Fit of `values` by `regressors`, each with one number per value, in any units, with an intercept. Without regressors, it is
+    /// the mean, and its bounds are those of a sample.
     ///
     /// # Errors
-    /// Lists of different length, fewer values than one more than there are coefficients, a number that is not finite, a regressor
-    /// that does not vary, regressors that are collinear, squares beyond the range of numbers.
+    /// Lists of different length; fewer values than the number of coefficients plus one; a number that is not finite; a regressor
+    /// that does not vary; collinear regressors; squares that overflow.
     pub fn fit(values: &[f64], regressors: &[Vec<f64>]) -> Result<Self, RegressionError> {
         check(values, regressors)?;
         let count = values.len();
@@ -82,7 +82,7 @@ impl Regression {
         if !fit.regressors.is_empty() {
             fit.solve(values, regressors)?;
         }
-        // A constant is met exactly: what is left would be rounding.
+        // Constant values are fitted exactly; residuals would be rounding.
         if !is_constant(values) {
             let mut residuals = Vec::with_capacity(count);
             for (row, value) in values.iter().enumerate() {
@@ -94,7 +94,7 @@ impl Regression {
         if fit.residual_standard_deviation.is_finite() { Ok(fit) } else { Err(RegressionError::OutOfRange) }
     }
 
-    /// By singular values of the columns about their means, each scaled to length 1.
+    /// By singular values of the centred columns, each scaled to length 1.
     fn solve(&mut self, values: &[f64], regressors: &[Vec<f64>]) -> Result<(), RegressionError> {
         refuse_collinear(regressors)?;
         let count = values.len();
@@ -127,12 +127,12 @@ impl Regression {
         std::iter::once(intercept).chain(self.regressors.iter().map(|of| of.coefficient)).collect()
     }
 
-    /// Values less coefficients.
+    /// Number of values minus number of coefficients.
     pub fn degrees_of_freedom(&self) -> usize {
         self.count - 1 - self.regressors.len()
     }
 
-    /// Root of the sum of the squared residuals over the degrees of freedom, in the unit of the values.
+    /// Square root of the sum of squared residuals divided by the degrees of freedom, in the unit of the values.
     pub fn residual_standard_deviation(&self) -> f64 {
         self.residual_standard_deviation
     }
@@ -140,15 +140,15 @@ impl Regression {
     /// The fitted value at a point: one number per regressor.
     ///
     /// # Errors
-    /// Not as many numbers as regressors, one that is not finite, a result beyond the range of numbers.
+    /// Not as many numbers as regressors; one that is not finite; a result that overflows.
     pub fn at(&self, point: &[f64]) -> Result<f64, RegressionError> {
         let centred = self.centred(point)?;
         let fitted = self.regressors.iter().zip(&centred).fold(self.mean, |sum, (of, scaled)| sum + of.coefficient * of.length * scaled);
         in_range(fitted)
     }
 
-    /// How far a point lies from the middle of those fitted: x (X'X)^-1 x', with the intercept. Its root is the standard error of
-    /// the fit there over the residual standard deviation; 1/n in the middle.
+    /// Leverage of a point: x (X'X)^-1 x', with the intercept. Its square root is the standard error of the fit divided by the
+    /// residual standard deviation. It is 1/n at the mean of the regressors.
     ///
     /// # Errors
     /// As [`Self::at`].
@@ -158,7 +158,7 @@ impl Regression {
         in_range(1.0 / self.count as f64 + squares)
     }
 
-    /// The value at a point that, with this confidence (0 to 1), is not exceeded on this side: by the next value, or by the mean.
+    /// The bound at a point, on one side, with this confidence (0 to 1), for a further value or for the mean.
     ///
     /// # Errors
     /// As [`Self::at`]; a confidence not between 0 and 1.
@@ -220,7 +220,7 @@ fn refuse_collinear(regressors: &[Vec<f64>]) -> Result<(), RegressionError> {
     if least >= COLLINEAR * greatest { Ok(()) } else { Err(RegressionError::Collinear) }
 }
 
-/// Root of the sum of squares about a centre, where it is a number to divide by.
+/// Square root of the sum of squares about a centre; `None` where it cannot be a divisor.
 fn length(column: &[f64], center: f64) -> Option<f64> {
     let length = sum_of_pairs(column, column, |a, b| (a - center) * (b - center)).sqrt();
     (length.is_finite() && length > 0.0).then_some(length)
@@ -230,7 +230,7 @@ fn in_range(value: f64) -> Result<f64, RegressionError> {
     if value.is_finite() { Ok(value) } else { Err(RegressionError::OutOfRange) }
 }
 
-/// Why there is no regression, or nothing it says at a point. Values and regressors are counted from 1.
+/// Reason why there is no regression, or no value at a point. Values and regressors are counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RegressionError {
     Length {
@@ -242,7 +242,7 @@ pub enum RegressionError {
         values: usize,
         coefficients: usize,
     },
-    /// Of the values themselves where `regressor` is 0.
+    /// `regressor` 0 stands for the values themselves.
     NotFinite {
         regressor: usize,
         value: usize,
@@ -278,13 +278,13 @@ impl fmt::Display for RegressionError {
             Self::NotFinite { regressor: 0, value } => write!(f, "value {value} is not finite"),
             Self::NotFinite { regressor, value } => write!(f, "number {value} of regressor {regressor} is not finite"),
             Self::Constant { regressor } => write!(f, "regressor {regressor} does not vary"),
-            Self::Collinear => f.write_str("the regressors are collinear: one of them follows from the others"),
-            Self::OutOfRange => f.write_str("the squares of the numbers exceed the range of numbers"),
+            Self::Collinear => f.write_str("the regressors are collinear: one of them depends linearly on the others"),
+            Self::OutOfRange => f.write_str("the sum of the squares overflows"),
             Self::Point { found, regressors } => {
                 write!(f, "the point has {found} number{} for {regressors} regressor{}", s(found), s(regressors))
             }
             Self::PointNotFinite { regressor } => write!(f, "number {regressor} of the point is not finite"),
-            Self::Confidence { confidence } => write!(f, "a confidence lies between 0 and 1, not at {confidence}"),
+            Self::Confidence { confidence } => write!(f, "a confidence level must be between 0 and 1, this is {confidence}"),
         }
     }
 }

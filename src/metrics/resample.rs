@@ -1,17 +1,17 @@
-//! A signal at other points of its axis, by linear interpolation.
+//! Linear interpolation of a signal at other points of its axis.
 
 use std::fmt;
 
 use super::rounded;
 
-/// Most points of a grid: 50 km at a centimetre, 40 MB for each signal. A step mistyped by orders of magnitude is refused before it
-/// fills the memory.
+/// Largest number of points of a grid: 50 km in steps of a centimetre, 40 MB for each signal. A step that is wrong by orders of
+/// magnitude gives an error instead of filling the memory.
 const MOST_POINTS: f64 = 5e6;
 
-/// Points `start, start + step, ...` up to and including `end`, to a billionth of a step.
+/// Points `start, start + step, ...` up to and including `end`, with a tolerance of 1e-9 steps.
 ///
 /// # Errors
-/// A step that is not positive, an end before the start, more points than can be meant.
+/// A step that is not positive; an end before the start; too many points.
 pub fn uniform_grid(start: f64, end: f64, step: f64) -> Result<Vec<f64>, ResampleError> {
     let steps = ((end - start) / step + 1e-9).floor();
     if !(step > 0.0 && (0.0..MOST_POINTS).contains(&steps)) {
@@ -20,7 +20,7 @@ pub fn uniform_grid(start: f64, end: f64, step: f64) -> Result<Vec<f64>, Resampl
     Ok((0..=steps as usize).map(|k| (start + k as f64 * step).min(end)).collect())
 }
 
-/// The signal on a uniform grid over the whole of its axis: the grid, and the values on it.
+/// The signal on a uniform grid over its whole axis: the grid and the values.
 ///
 /// # Errors
 /// As [`uniform_grid`] and [`interpolate`].
@@ -35,13 +35,14 @@ pub fn resample(axis: &[f64], signal: &[f64], step: f64) -> Result<(Vec<f64>, Ve
 /// The signal at given points, in any order; fastest when they increase.
 ///
 /// # Errors
-/// An axis that does not increase strictly or is not as long as the signal; a point outside the axis: nothing is extrapolated.
+/// An axis that does not increase strictly or differs in length from the signal; a point outside the axis, as nothing is
+/// extrapolated.
 pub fn interpolate(axis: &[f64], signal: &[f64], points: &[f64]) -> Result<Vec<f64>, ResampleError> {
     check(axis, signal)?;
     let (Some(&first), Some(&last)) = (axis.first(), axis.last()) else {
         return if points.is_empty() { Ok(Vec::new()) } else { Err(ResampleError::Empty) };
     };
-    // The sample at or before the last point.
+    // Index of the sample at or before the last point.
     let mut before = 0;
     points
         .iter()
@@ -64,7 +65,7 @@ pub fn interpolate(axis: &[f64], signal: &[f64], points: &[f64]) -> Result<Vec<f
         .collect()
 }
 
-/// Index of the first sample that does not lie beyond the one before it, or is no number.
+/// Index of the first sample that is not larger than the one before, or is NaN.
 pub(super) fn not_increasing(axis: &[f64]) -> Option<usize> {
     if axis.first().is_some_and(|first| !first.is_finite()) {
         return Some(0);
@@ -82,7 +83,7 @@ fn check(axis: &[f64], signal: &[f64]) -> Result<(), ResampleError> {
     }
 }
 
-/// Why a signal cannot be had at other points.
+/// Reason why a signal has no values at other points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ResampleError {
     Empty,
@@ -116,7 +117,7 @@ impl fmt::Display for ResampleError {
                 write!(f, "the point {} lies outside the record, {} to {}", rounded(point), rounded(first), rounded(last))
             }
             Self::Grid { start, end, step } => {
-                write!(f, "no grid leads from {} to {} in steps of {}", rounded(start), rounded(end), rounded(step))
+                write!(f, "there is no grid from {} to {} in steps of {}", rounded(start), rounded(end), rounded(step))
             }
         }
     }

@@ -1,16 +1,16 @@
-//! How a signal was recorded: values that stand still, ends of the range, steps of quantisation.
+//! How a signal was recorded: held values, saturation, quantisation.
 
-/// Share of the samples that the longest run of equal values takes: near 0 for a live signal, 1 for one that never changes.
+/// Share of the samples in the longest run of equal values: near 0 for a signal that varies, 1 for a constant one.
 ///
 /// `None` without samples.
 pub fn longest_held_share(values: &[f64]) -> Option<f64> {
     let longest = values.chunk_by(|a, b| a == b).map(<[f64]>::len).max()?;
-    // A single sample holds nothing.
+    // A single sample is not a run.
     let longest = if longest == 1 && values.len() > 1 { 0 } else { longest };
     Some(longest as f64 / values.len() as f64)
 }
 
-/// Share of the samples that lie at the end of the range where more of them lie: large where a recorder was driven to its limit.
+/// Share of the samples at the smallest or at the largest value, the larger of both. It is large for a saturated recorder.
 ///
 /// `None` without samples, or with one that is not finite.
 pub fn share_at_extreme(values: &[f64]) -> Option<f64> {
@@ -19,18 +19,19 @@ pub fn share_at_extreme(values: &[f64]) -> Option<f64> {
     Some(at(least).max(at(greatest)) as f64 / values.len() as f64)
 }
 
-/// The smallest change from one sample to the next that is one: the step of quantisation of a live signal, in its unit; 0 for a constant.
+/// The smallest change between consecutive samples, in their unit: the quantisation step of a signal that varies; 0 for a constant
+/// one.
 ///
 /// `None` without samples, or with one that is not finite.
 pub fn resolution(values: &[f64]) -> Option<f64> {
     let (least, greatest) = ends(values)?;
-    // Values written with a fixed number of decimals differ by rounding of the last bit when they are turned into SI.
+    // Values with a fixed number of decimals differ by rounding of the last bit after conversion to SI.
     let rounding = ROUNDING * least.abs().max(greatest.abs());
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > rounding);
     Some(steps.reduce(f64::min).unwrap_or(0.0))
 }
 
-/// Relative to the largest value: changes below it are none.
+/// Relative to the largest value; smaller changes count as none.
 const ROUNDING: f64 = 1e-12;
 
 fn ends(values: &[f64]) -> Option<(f64, f64)> {
@@ -55,7 +56,7 @@ mod tests {
         assert_eq!((longest_held_share(&[]), share_at_extreme(&[]), resolution(&[f64::NAN])), (None, None, None));
     }
 
-    /// Values with two decimals in kN, read into N: steps of 10 N, whatever the rounding.
+    /// Values with two decimals in kN, converted to N: steps of 10 N in spite of rounding.
     #[test]
     fn steps_survive_the_change_of_unit() {
         let values: Vec<f64> = (0..500).map(|k| f64::from(k * k * 7 % 101) * 0.01 * 1000.0 + 54_540.0).collect();

@@ -1,4 +1,4 @@
-//! Statistics of values, and of one signal against another.
+//! Statistics of values, and regression and correlation of two signals.
 //!
 //! `None` where the number is not defined: too few values, a value that is not finite, a division by zero.
 
@@ -7,12 +7,12 @@ use super::{
     sum::{sum, sum_of, sum_of_pairs},
 };
 
-/// By what a sum of squares is divided.
+/// Divisor of a sum of squares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Divisor {
     /// n - 1: the values are a sample.
     Sample,
-    /// n: the values are all there are.
+    /// n: the values are the whole population.
     Population,
 }
 
@@ -21,7 +21,7 @@ pub fn mean(values: &[f64]) -> Option<f64> {
     finite(sum(values) / count(values)?)
 }
 
-/// Variance, about the mean in two passes.
+/// Variance, about the mean, in two passes.
 pub fn variance(values: &[f64], divisor: Divisor) -> Option<f64> {
     let n = count(values)?;
     let degrees = match divisor {
@@ -36,7 +36,7 @@ pub fn variance(values: &[f64], divisor: Divisor) -> Option<f64> {
     }
     let mean = mean(values)?;
     let squares = sum_of(values, |value| (value - mean) * (value - mean));
-    // What the rounded mean is off by, taken out again.
+    // Corrects for the rounding error of the mean.
     let off = sum_of(values, |value| value - mean);
     finite((squares - off * off / n).max(0.0) / degrees)
 }
@@ -56,27 +56,27 @@ pub fn median(values: &[f64]) -> Option<f64> {
     percentiles(values, &[50.0], Method::Linear).ok()?.first().copied()
 }
 
-/// Least value.
+/// Smallest value.
 pub fn minimum(values: &[f64]) -> Option<f64> {
     extremes(values).map(|(least, _)| least)
 }
 
-/// Greatest value.
+/// Largest value.
 pub fn maximum(values: &[f64]) -> Option<f64> {
     extremes(values).map(|(_, greatest)| greatest)
 }
 
-/// Greatest magnitude.
+/// Largest magnitude.
 pub fn peak_magnitude(values: &[f64]) -> Option<f64> {
     extremes(values).map(|(least, greatest)| greatest.abs().max(least.abs()))
 }
 
-/// Greatest less least value.
+/// Largest minus smallest value.
 pub fn range(values: &[f64]) -> Option<f64> {
     finite(extremes(values).map(|(least, greatest)| greatest - least)?)
 }
 
-/// Quartiles: 25, 50 and 75 %, linear between order statistics.
+/// Quartiles: 25, 50 and 75 %, with linear interpolation.
 pub fn quartiles(values: &[f64]) -> Option<[f64; 3]> {
     percentiles(values, &[25.0, 50.0, 75.0], Method::Linear).ok()?.try_into().ok()
 }
@@ -86,14 +86,14 @@ pub fn interquartile_range(values: &[f64]) -> Option<f64> {
     quartiles(values).and_then(|[lower, _, upper]| finite(upper - lower))
 }
 
-/// A straight line through points, least squares in y.
+/// A straight line fitted to points by least squares in y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
     pub slope: f64,
     pub intercept: f64,
 }
 
-/// Regression of y on x. None for fewer than two points, signals of different length, or x without scatter.
+/// Regression of y on x. `None` for fewer than two points, signals of different length, or x without scatter.
 pub fn regression(x: &[f64], y: &[f64]) -> Option<Line> {
     let moments = Moments::of(x, y)?;
     if moments.xx == 0.0 {
@@ -103,13 +103,14 @@ pub fn regression(x: &[f64], y: &[f64]) -> Option<Line> {
     Some(Line { slope, intercept: finite(moments.mean_y - slope * moments.mean_x)? })
 }
 
-/// Pearson's correlation, in [-1, 1]. None for fewer than two points, signals of different length, or either without scatter.
+/// Pearson's correlation, in [-1, 1]. `None` for fewer than two points, signals of different length, or one of them without
+/// scatter.
 pub fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
     let moments = Moments::of(x, y)?;
     if moments.xx == 0.0 || moments.yy == 0.0 {
         return None;
     }
-    // Root by root: the product of two sums of squares may leave the range of numbers.
+    // Separate roots, as the product of both sums of squares may overflow.
     finite((moments.xy / moments.xx.sqrt() / moments.yy.sqrt()).clamp(-1.0, 1.0))
 }
 
@@ -128,7 +129,7 @@ impl Moments {
             return None;
         }
         let (mean_x, mean_y) = (mean(x)?, mean(y)?);
-        // A constant signal differs from its rounded mean; it has no scatter for all that.
+        // A constant signal can differ from its rounded mean, but has no scatter.
         let squares = |values: &[f64], mean: f64| {
             if is_constant(values) { 0.0 } else { sum_of(values, |value| (value - mean) * (value - mean)) }
         };
@@ -143,7 +144,7 @@ pub(super) fn is_constant(values: &[f64]) -> bool {
 
 fn extremes(values: &[f64]) -> Option<(f64, f64)> {
     let first = *values.first()?;
-    // Comparisons with what is not a number are false and would pass it over.
+    // Comparisons with NaN are false and would not find it.
     if !values.iter().all(|value| value.is_finite()) {
         return None;
     }

@@ -4,18 +4,19 @@ use statrs::distribution::{Continuous, ContinuousCDF, StudentsT};
 
 use super::incomplete_beta::incomplete_beta;
 
-/// A tail this close to the one asked for, relative to it, is met: what is left is rounding of the tail.
+/// Relative tolerance of the tail probability; the rest is rounding.
 const CLOSE: f64 = 1e-11;
 
-/// Of these a handful is needed; it ends in any case.
+/// Largest number of Newton steps; a few are needed.
 const MOST_STEPS: usize = 50;
 
-/// The value that Student's t with `degrees` degrees of freedom stays below with this probability. Degrees need not be whole.
+/// Quantile of Student's t: the value that is not exceeded with this probability, for any positive number of degrees of freedom.
 ///
-/// `None`: a probability not between 0 and 1, degrees that are not positive and finite.
+/// `None` for a probability not between 0 and 1, or degrees of freedom that are not positive and finite.
 ///
-/// The library's is off in the sixth digit from some 10,000 degrees of freedom on, and far out with few: Newton's steps on a tail
-/// that is not. The smaller tail is worked on, so that a probability near 0 keeps its digits.
+/// The quantile of the library is wrong in the sixth digit from about 10,000 degrees of freedom on, and far in the tails for few
+/// degrees. Its tail probability is accurate; this function applies Newton steps to it. It uses the smaller tail, so that a
+/// probability near 0 keeps its digits.
 pub fn student_quantile(probability: f64, degrees: f64) -> Option<f64> {
     if !(probability > 0.0 && probability < 1.0 && degrees.is_finite()) {
         return None;
@@ -34,7 +35,7 @@ pub fn student_quantile(probability: f64, degrees: f64) -> Option<f64> {
         }
         t += step;
     }
-    // Far out the tail is a power of t: a straight line between the logarithms, where Newton's steps are long enough.
+    // Far out, the tail is a power of t. Newton steps in the logarithms, where it is a straight line, are long enough.
     for _ in 0..MOST_STEPS {
         let left = beyond(t);
         let step = (left / tail).ln() * left / (t * student.pdf(t));

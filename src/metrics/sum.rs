@@ -1,9 +1,9 @@
-//! Sums whose rounding error does not grow with the length of a record.
+//! Sums with a rounding error that hardly grows with the number of values.
 
-/// Longest run added up directly; beyond it the run is halved.
+/// Longest block that is added directly; longer ones are halved.
 const BLOCK: usize = 128;
 
-/// Sum of values, pairwise: error of order log(n) rounding units.
+/// Pairwise sum; its error is of the order of log(n) rounding units.
 pub(super) fn sum(values: &[f64]) -> f64 {
     sum_of(values, |value| value)
 }
@@ -13,16 +13,16 @@ pub(super) fn sum_of(values: &[f64], term: impl Fn(f64) -> f64 + Copy) -> f64 {
     sum_of_pairs(values, values, |value, _| term(value))
 }
 
-/// Pairwise sum of `term` over two signals, to the end of the shorter.
+/// Pairwise sum of `term` over two signals, up to the end of the shorter one.
 pub(super) fn sum_of_pairs(left: &[f64], right: &[f64], term: impl Fn(f64, f64) -> f64 + Copy) -> f64 {
     let length = left.len().min(right.len());
     let (left, right) = (&left[..length], &right[..length]);
     if length > BLOCK {
-        // Multiples of the lane count keep every block but the last full.
+        // Multiples of the number of lanes keep all blocks but the last full.
         let half = length / 2 / 8 * 8;
         return sum_of_pairs(&left[..half], &right[..half], term) + sum_of_pairs(&left[half..], &right[half..], term);
     }
-    // Eight independent sums: no addition waits for the one before, and each is a further halving.
+    // Eight independent sums: no addition waits for the previous one, and each is a further halving.
     let mut lanes = [0.0; 8];
     let (left_eights, left_rest) = left.as_chunks::<8>();
     let (right_eights, right_rest) = right.as_chunks::<8>();
@@ -35,7 +35,7 @@ pub(super) fn sum_of_pairs(left: &[f64], right: &[f64], term: impl Fn(f64, f64) 
     ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7])) + rest
 }
 
-/// Running sums kept to twice the precision, so that the difference of two of them is as good as the sum between them.
+/// Cumulative sums in twice the precision, so that the difference of two of them is as accurate as the sum between them.
 #[derive(Debug)]
 pub(super) struct RunningSums(Vec<(f64, f64)>);
 
@@ -45,7 +45,7 @@ impl RunningSums {
         let (mut high, mut low) = (0.0_f64, 0.0_f64);
         sums.push((high, low));
         for term in terms {
-            // Knuth's two-sum: the part of the term that the addition rounds away.
+            // Knuth's two-sum: the part of the term that is lost by rounding.
             let next = high + term;
             let taken = next - high;
             low += (high - (next - taken)) + (term - taken);
@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn small_terms_survive_a_large_sum() {
-        // A million tenths: adding one by one is off by 1e-6, pairwise by a few rounding units.
+        // A million tenths: direct addition has an error of 1e-6, pairwise addition of a few rounding units.
         let tenths = vec![0.1; 1_000_000];
         assert!((sum(&tenths) - 1e5).abs() < 1e-10);
         let sums = RunningSums::new([1e16].into_iter().chain([0.1; 10]).collect::<Vec<_>>().into_iter());

@@ -1,20 +1,20 @@
-//! By how much one record lies ahead of another along the axis: cross-correlation of several signals at once, with an interval.
+//! Shift between two records along the axis: cross-correlation of several signals together, with a confidence interval.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::random_effects::between;
 use super::resample::{interpolate, uniform_grid};
 
-/// One signal of both records: axis and samples of each, the axes increasing.
+/// One signal of both records: axis and samples of each, with increasing axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<'a> {
     pub simulated: (&'a [f64], &'a [f64]),
     pub measured: (&'a [f64], &'a [f64]),
-    /// Signals with the same number are not independent of one another, such as a force and a sum that it is part of.
+    /// Signals with the same group are not independent, such as a force and a sum that contains it.
     pub group: usize,
 }
 
-/// The stretch compared, the farthest shift looked for and the grid of both, all in the unit of the axis.
+/// The range compared, the largest shift and the grid step, all in the unit of the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Search {
     pub start: f64,
@@ -23,36 +23,35 @@ pub struct Search {
     pub step: f64,
 }
 
-/// What is to be added to the measured axis.
+/// The shift to be added to the measured axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     pub shift: f64,
-    /// 95 % interval, from what parts of the stretch and what single signals say.
+    /// 95 % interval, from the scatter between parts of the range and between signals.
     pub low: f64,
     pub high: f64,
-    /// Root of the mean square correlation of the signals there.
+    /// Root mean square correlation of the signals at this shift.
     pub correlation: f64,
 }
 
-/// Parts of the stretch that are left out in turn.
+/// Number of parts of the range that are left out one at a time.
 const BLOCKS: usize = 8;
-/// Steps of the fine search for one of the coarse one, and how many of the coarse one it reaches to either side: single signals
-/// have their best shift there, too, or are not followed.
+/// Steps of the fine search per coarse step. It also gives the number of coarse steps on either side: the best shift of a single
+/// signal must be within this range, or the signal is not used.
 const FINER: i64 = 5;
 const REACH: i64 = 4;
 
-/// The shift at which the signals are most likely one another's, as far as both records reach.
+/// The most likely shift, over the range that both records cover.
 ///
-/// It is looked for on the grid first, then more finely about the best point.
+/// The search uses the grid first, then a finer one near the best point. The criterion is the likelihood for signals that differ by
+/// white noise of unknown variance: the sum of -ln(1 - r^2). A signal with high correlation thus has a large weight. Between grid
+/// points, the geometric mean of 1 - r^2 is interpolated by a parabola.
 ///
-/// The criterion is the likelihood of signals that differ by white noise of unknown size each: the sum of -ln(1 - r^2), so that
-/// a signal that follows closely says more than one that hardly does. Between points of the grid the geometric mean of 1 - r^2
-/// is taken as a parabola.
-/// `None`: no signal varies, none follows, or the best shift lies at the end of what was looked at.
+/// `None` if no signal varies, none is correlated, or the best shift is at the end of the search range.
 pub fn estimate(pairs: &[Pair<'_>], search: &Search) -> Option<Estimate> {
     let grid = uniform_grid(search.start, search.end, search.step).ok()?;
     let most = (search.farthest / search.step).floor().max(1.0) as i64;
-    // As far as every measured record reaches on both sides.
+    // The range that every measured record covers on both sides.
     let reach = |lag: i64| {
         let shift = lag as f64 * search.step;
         pairs.iter().all(|pair| {
@@ -80,12 +79,13 @@ pub fn estimate(pairs: &[Pair<'_>], search: &Search) -> Option<Estimate> {
 
 /// Half the width of the interval.
 ///
-/// All signals together are a weighted mean of what each group of signals says. Two things spoil it. Parts of the section may lie
-/// otherwise than the whole (the axis of a record stretched there): that is the variance of a jackknife without each part, which
-/// holds the noise of the signals, too. And a group may lie otherwise than the others all along (a phase that the model has wrong),
-/// which its parts do not show: the variance between groups, that of random effects, counts as often as the squares of the
-/// weights say, once where one group decides alone. Student's t has one degree of freedom less than the fewer of both are. Where
-/// one group alone tells, it is taken at its word.
+/// The estimate from all signals is a weighted mean of those from each group of signals. There are two sources of error. First,
+/// parts of the section may have other shifts than the whole (a stretched axis). This is the jackknife variance over the parts,
+/// which includes the noise of the signals. Second, a group may have another shift than the others along the whole section (a wrong
+/// phase in the model), which the parts do not show. This is the variance between groups of a random-effects model. It is
+/// multiplied by the sum of the squared weights, which is 1 if one group decides alone. Student's t has one degree of freedom less
+/// than the smaller number of parts or groups.
+/// For a single group, only the first variance is used.
 fn error(searched: &Searched, joint: f64) -> Option<f64> {
     let without = |part: usize, group: Option<usize>, near: f64| {
         searched.near(near, |of, at| at == part || group.is_some_and(|group| group != of)).map(|best| best.shift)
@@ -112,19 +112,19 @@ fn error(searched: &Searched, joint: f64) -> Option<f64> {
     Some(student(BLOCKS.min(singles.len()) - 1) * (of_parts + between * squares).sqrt())
 }
 
-/// Variance of an estimate from those without one of its parts each. `None` where one of them is not to be had.
+/// Jackknife variance from the estimates without one part each. `None` if one of them is missing.
 fn jackknife(left_out: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let all: Vec<f64> = left_out.collect::<Option<_>>()?;
     let (n, mean) = (all.len() as f64, all.iter().sum::<f64>() / all.len() as f64);
     Some((n - 1.0) / n * all.iter().map(|one| (one - mean).powi(2)).sum::<f64>())
 }
 
-/// 97.5 % value of Student's t.
+/// 97.5 % quantile of Student's t.
 fn student(freedom: usize) -> f64 {
     StudentsT::new(0.0, 1.0, freedom.max(1) as f64).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975))
 }
 
-/// What a correlation is made of.
+/// Sums of which a correlation is computed.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     n: f64,
@@ -159,13 +159,13 @@ impl Sums {
         }
     }
 
-    /// Sum of squares that a line through the points leaves.
+    /// Residual sum of squares of the regression line.
     fn left(&self) -> f64 {
         let r = self.correlation();
         (self.xx - self.x * self.x / self.n) * (1.0 - r * r)
     }
 
-    /// 0 where it is not defined.
+    /// 0 where the correlation is not defined.
     fn correlation(&self) -> f64 {
         let (xx, yy) = (self.xx - self.x * self.x / self.n, self.yy - self.y * self.y / self.n);
         let r = (self.xy - self.x * self.y / self.n) / (xx.max(0.0).sqrt() * yy.max(0.0).sqrt());
@@ -173,16 +173,16 @@ impl Sums {
     }
 }
 
-/// Sums of each part of the stretch at each shift, the least first. `None` where a signal does not vary.
+/// Sums of each part of the range at each shift, the smallest shift first. `None` if a signal does not vary.
 ///
-/// Shifts that are steps of the grid need one interpolation for all, others one each.
+/// Shifts that are multiples of the grid step need one interpolation in total, others one each.
 fn sums(pair: &Pair<'_>, grid: &[f64], shifts: &[f64], on_grid: bool) -> Option<Vec<[Sums; BLOCKS]>> {
     let (axis, values) = pair.measured;
     let (first, last) = (*axis.first()?, *axis.last()?);
     let simulated = centred(interpolate(pair.simulated.0, pair.simulated.1, grid).ok()?)?;
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let mut varies = false;
-    // The grid reaches as far as the record does; rounding may put its ends just beyond.
+    // The grid has the range of the record; rounding may put its ends just outside.
     let mut under = |points: &mut dyn Iterator<Item = f64>| {
         let points: Vec<f64> = points.map(|x| x.clamp(first, last)).collect();
         let mut measured = interpolate(axis, values, &points).ok()?;
@@ -206,7 +206,7 @@ fn sums(pair: &Pair<'_>, grid: &[f64], shifts: &[f64], on_grid: bool) -> Option<
     varies.then_some(found)
 }
 
-/// Less its mean, so that sums of squares keep their digits.
+/// The values minus their mean, so that sums of squares keep their digits.
 fn centred(mut values: Vec<f64>) -> Option<Vec<f64>> {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     values.iter_mut().for_each(|value| *value -= mean);
@@ -219,7 +219,7 @@ struct Best {
     correlation: f64,
 }
 
-/// Sums of every signal that varies in both records, at every shift looked at.
+/// Sums of every signal that varies in both records, at every shift of the search.
 struct Searched {
     signals: Vec<Vec<[Sums; BLOCKS]>>,
     groups: Vec<usize>,
@@ -232,7 +232,7 @@ impl Searched {
         Self { signals, groups, shifts }
     }
 
-    /// What a group weighs in the best shift: how sharply what its signals leave unexplained grows about it, for its size.
+    /// Weight of a group in the best shift: the relative curvature of the unexplained variance of its signals at this shift.
     fn weight(&self, group: usize, best: f64) -> f64 {
         let near = |at: &usize| (self.shifts[*at] - best).abs();
         let at = (1..self.shifts.len() - 1).min_by(|a, b| near(a).total_cmp(&near(b))).unwrap_or(1);
@@ -245,12 +245,12 @@ impl Searched {
         of.sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
-    /// The best shift, parts of signals of some groups left out. `None`: nothing follows, or it lies at the end.
+    /// The best shift without the parts and groups left out. `None` if no signal is correlated or the shift is at the end.
     fn best(&self, left_out: impl Fn(usize, usize) -> bool) -> Option<Best> {
         self.peak(left_out, |score| (0..score.len()).max_by(|a, b| score[*a].total_cmp(&score[*b])))
     }
 
-    /// The best shift among those about it that is nearest to a given one: signals with waves are one another's at others, too.
+    /// The local optimum nearest to a given shift; periodic signals have several.
     fn near(&self, shift: f64, left_out: impl Fn(usize, usize) -> bool) -> Option<Best> {
         self.peak(left_out, |score| {
             let peaks = (1..score.len().saturating_sub(1)).filter(|at| score[*at] >= score[at - 1] && score[*at] > score[at + 1]);
@@ -272,8 +272,8 @@ impl Searched {
         if at == 0 || at + 1 == score.len() || score[at] <= 0.0 {
             return None;
         }
-        // The score has a sharp peak where signals follow closely, which a parabola does not fit; what is left unexplained, the
-        // geometric mean of 1 - r^2, is a parabola there at any size of noise.
+        // The score has a sharp peak for well correlated signals, which a parabola does not fit. The geometric mean of 1 - r^2
+        // (unexplained variance) is close to a parabola at any noise level.
         let count = correlations(at).count() as f64;
         let left = |at: usize| (-score[at] / count).exp();
         let (before, least, after) = (left(at - 1), left(at), left(at + 1));
@@ -289,7 +289,7 @@ impl Searched {
 mod tests {
     use super::*;
 
-    /// Uneven waves, sampled at points of its own.
+    /// A sum of waves without a common period.
     fn wave(x: f64) -> f64 {
         (0.31 * x).sin() + 0.6 * (0.117 * x + 1.0).sin() + 0.3 * (0.73 * x + 2.0).cos()
     }
@@ -310,7 +310,7 @@ mod tests {
         }
     }
 
-    /// Shifts of half a metre: the parabola finds what lies between them.
+    /// Steps of half a metre: the parabola finds shifts between them.
     #[test]
     fn the_best_shift_lies_between_those_looked_at() {
         let axis: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.05).collect();
@@ -324,7 +324,7 @@ mod tests {
         }
     }
 
-    /// A signal of which one record does not vary says nothing of the shift, and nothing of how well the others follow.
+    /// A signal that is constant in one record gives no information on the shift or on the correlation of the others.
     #[test]
     fn a_signal_that_does_not_vary_changes_nothing() {
         let axis: Vec<f64> = (0..1500).map(|k| f64::from(k) * 0.2).collect();
@@ -346,24 +346,24 @@ mod tests {
         let both = Sums::of(&x[..2], &y[..2]).plus(&Sums::of(&x[2..], &y[2..]));
         assert_eq!(parts(both), [5.0, 25.0, 14.0, 191.0, 52.0, 83.0]);
         assert_eq!(parts(both), parts(Sums::of(&x, &y)));
-        // Squares about the means 66 and 12.8, products 13.
+        // Sums of squares about the means 66 and 12.8, sum of products 13.
         assert!((both.correlation() - 13.0 / (66.0_f64 * 12.8).sqrt()).abs() < 1e-14);
         assert!((both.left() - (66.0 - 169.0 / 12.8)).abs() < 1e-12, "{}", both.left());
     }
 
-    /// Signals that lie wrong by a phase of their own, with waves that only one record has: the interval holds what was
-    /// imposed about as often as it says, whether all signals follow as closely or some hardly at all.
+    /// Signals with phase errors of their own and with waves in one record only. The interval contains the imposed shift about as
+    /// often as stated, for signals of equal and of very different correlation.
     #[test]
     fn the_interval_holds_the_imposed_shift() {
         for noise in [[1.0; 6], [0.1, 0.3, 1.0, 2.0, 0.5, 3.0]] {
             let (held, all, width) = held(noise);
             assert!(all >= 95 && held * 100 >= all * 91, "{held} of {all}");
-            // An interval as wide as the search holds everything; these are 0.55 and 0.86 m wide in the mean.
+            // An interval as wide as the search would contain everything; the mean widths here are 0.55 and 0.86 m.
             assert!(width < 1.0, "{width}");
         }
     }
 
-    /// How many intervals hold the shift, of how many, and their mean width.
+    /// Number of intervals that contain the shift, number of intervals, and their mean width.
     fn held(noise: [f64; 6]) -> (usize, usize, f64) {
         let mut state = 11_u64;
         let mut uniform = || {
@@ -387,7 +387,7 @@ mod tests {
                 let wrong = 0.3 * (0..6).map(|_| uniform() - 0.5).sum::<f64>();
                 let simulated: Vec<f64> = axis.iter().map(|x| at(&common, *x)).collect();
                 let measured: Vec<f64> = axis.iter().map(|x| at(&common, x + shift + wrong) + at(&own, *x)).collect();
-                // The second shares a part of the first.
+                // The second signal shares a part with the first.
                 let sum: Vec<f64> = measured.iter().zip(&axis).map(|(y, x)| y + 0.3 * at(&common, 2.0 * x)).collect();
                 signals.push((group, simulated.clone(), measured));
                 signals.push((group, simulated, sum));
@@ -410,7 +410,7 @@ mod tests {
         let search = Search { start: 200.0, end: 700.0, farthest: 25.0, step: 0.5 };
         assert_eq!(estimate(&[], &search), None);
         assert_eq!(estimate(&[Pair { simulated: (&axis, &flat), measured: (&axis, &flat), group: 0 }], &search), None);
-        // A straight line is as well correlated at every shift.
+        // A straight line has the same correlation at every shift.
         let found = estimate(&[Pair { simulated: (&axis, &line), measured: (&axis, &line), group: 0 }], &search);
         assert!(found.is_none_or(|found| found.high - found.low >= 0.0));
     }

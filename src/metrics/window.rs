@@ -4,26 +4,26 @@ use std::fmt;
 
 use super::{resample::not_increasing, rounded, sum::RunningSums};
 
-/// A sample this near to the edge of a window, in units of the axis, lies on it.
+/// A sample within this distance of the edge of a window, in units of the axis, counts as on it.
 const ON_THE_EDGE: f64 = 1e-6;
-/// A last window that would end this fraction of a step beyond the section still counts.
+/// A last window that ends up to this share of a step beyond the section is used.
 const LAST_STEP: f64 = 1e-9;
-/// Most windows: a step mistyped by orders of magnitude is refused before it fills the memory.
+/// Largest number of windows. A step that is wrong by orders of magnitude gives an error instead of filling the memory.
 const MOST_WINDOWS: f64 = 1e8;
 
-/// What is taken of each window.
+/// The value of each window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Mean,
     Rms,
 }
 
-/// What a window holds.
+/// Treatment of the ends of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
     /// The samples with `a <= x < a + width`, each with the same weight.
     Samples,
-    /// The integral of the signal, linear between samples, from `a` to `a + width`.
+    /// The integral of the linearly interpolated signal from `a` to `a + width`.
     Integral,
 }
 
@@ -37,10 +37,10 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// Where the windows begin: `start, start + step, ...` while the window lies inside the section `start..=end`.
+    /// Start points of the windows: `start, start + step, ...` while the window is inside the section `start..=end`.
     ///
     /// # Errors
-    /// A width or step that is not positive, a section shorter than one window, more windows than can be meant.
+    /// A width or step that is not positive; a section shorter than one window; too many windows.
     pub fn starts(&self, start: f64, end: f64) -> Result<Vec<f64>, SlidingError> {
         let Self { width, step, .. } = *self;
         if !(width > 0.0 && step > 0.0 && width.is_finite() && step.is_finite()) {
@@ -61,11 +61,11 @@ impl Sliding {
 
     /// One value per window, in the order of [`Self::starts`].
     ///
-    /// The record must reach both ends of the section, for [`Ends::Samples`] to within one sampling distance, so that a
-    /// record already cut to the section will do.
+    /// The record must reach both ends of the section, for [`Ends::Samples`] to within one sampling distance, so that a record cut
+    /// to the section is sufficient.
     ///
     /// # Errors
-    /// As [`Self::starts`]; an axis that does not increase strictly or is not as long as the signal; a record that does not
+    /// As [`Self::starts`]; an axis that does not increase strictly or differs in length from the signal; a record that does not
     /// reach the ends of the section; a window without samples; a value that is not finite.
     pub fn over(&self, axis: &[f64], signal: &[f64], start: f64, end: f64) -> Result<Vec<f64>, SlidingError> {
         let starts = self.starts(start, end)?;
@@ -116,7 +116,7 @@ impl Sliding {
         let sums = RunningSums::new(pieces.map(|([a, b], &[x, y])| self.integral(b - a, x, y)));
         let mut from_sample = Cursor::default();
         let mut to_sample = Cursor::default();
-        // The sample that opens the piece in which a point lies, and the integral from there to the point.
+        // The sample before a point, and the integral from there to the point.
         let within = |cursor: &mut Cursor, point: f64| {
             let piece = cursor.first_beyond(axis, point).saturating_sub(1).min(axis.len() - 2);
             let along = point - axis[piece];
@@ -133,7 +133,7 @@ impl Sliding {
             .collect()
     }
 
-    /// Integral over a piece of some length on which the signal goes straight from `x` to `y`.
+    /// Integral over an interval of this length in which the signal is linear from `x` to `y`.
     fn integral(&self, length: f64, x: f64, y: f64) -> f64 {
         match self.kind {
             Kind::Mean => 0.5 * length * (x + y),
@@ -151,7 +151,7 @@ impl Sliding {
     fn root(&self, average: f64) -> f64 {
         match self.kind {
             Kind::Mean => average,
-            // A window of zeros may come out as minus a rounding unit.
+            // For a window of zeros, rounding may give a small negative number.
             Kind::Rms => average.max(0.0).sqrt(),
         }
     }
@@ -178,7 +178,7 @@ impl Cursor {
     }
 }
 
-/// Why there are no sliding values. Places are in units of the axis.
+/// Reason why there are no sliding values. Places are in units of the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SlidingError {
     Window {
@@ -221,11 +221,11 @@ pub enum SlidingError {
 }
 
 impl SlidingError {
-    /// The fact with rounded numbers in the unit of the axis.
+    /// The message, with rounded numbers in the unit of the axis.
     pub fn in_words(&self, unit: &str) -> String {
         let shown = |value: f64| format!("{} {unit}", rounded(value)).trim_end().to_string();
         match *self {
-            Self::Window { width, step } => format!("no window slides with a width of {} in steps of {}", shown(width), shown(step)),
+            Self::Window { width, step } => format!("a window cannot have a width of {} and steps of {}", shown(width), shown(step)),
             Self::Section { start, end } => format!("a section from {} to {} has no length", shown(start), shown(end)),
             Self::SectionTooShort { length, width } => {
                 format!("the section is {} long, shorter than one window of {}", shown(length), shown(width))
@@ -237,8 +237,8 @@ impl SlidingError {
                 let (record, section) = ((shown(first), shown(last)), (shown(start), shown(end)));
                 format!("the record from {} to {} does not cover the section from {} to {}", record.0, record.1, section.0, section.1)
             }
-            Self::Empty { from, width } => format!("the window from {} to {} holds no sample", shown(from), shown(from + width)),
-            Self::NotFinite { from } => format!("the window from {} holds a value that is not finite", shown(from)),
+            Self::Empty { from, width } => format!("the window from {} to {} has no sample", shown(from), shown(from + width)),
+            Self::NotFinite { from } => format!("the window from {} has a value that is not finite", shown(from)),
         }
     }
 }

@@ -123,9 +123,9 @@ fn what_has_no_bound_is_told() {
     let sites = [vec![1.0, 2.0], vec![4.0]];
     let draws = |sites| Draws::new(sites, 10, SEED).expect("draws");
     let one = by_site(&[1.0, 2.0], &[7, 7]).expect_err("one site");
-    assert_eq!(one.to_string(), "there is 1 site: at least 2 needed");
-    assert_eq!(by_site::<f64>(&[], &[]).expect_err("none").to_string(), "there is no site: at least 2 needed");
-    assert_eq!(by_site(&[1.0], &[]).expect_err("lengths").to_string(), "1 values have 0 numbers of sites");
+    assert_eq!(one.to_string(), "there is 1 site; at least 2 are needed");
+    assert_eq!(by_site::<f64>(&[], &[]).expect_err("none").to_string(), "there is no site; at least 2 are needed");
+    assert_eq!(by_site(&[1.0], &[]).expect_err("lengths").to_string(), "there are 1 values but 0 site numbers");
     assert_eq!(Draws::new(1, 10, SEED).expect_err("one site"), ClusterError::TooFew { sites: 1 });
     assert_eq!(Draws::new(2, 0, SEED).expect_err("none"), ClusterError::NoDraw);
     assert_eq!(Mean::of(&sites[..1]), Err(ClusterError::TooFew { sites: 1 }));

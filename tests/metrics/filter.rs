@@ -151,8 +151,8 @@ fn refuses_what_cannot_be_designed() {
         let message = design(band, order, sampling_rate).map(|_| ()).expect_err("refused").to_string();
         assert!(message.contains(text), "{message}");
     };
-    says(Band::LowPass(20.0), 0, 200.0, "order from 1 to 20, not 0");
-    says(Band::LowPass(20.0), 21, 200.0, "not 21");
+    says(Band::LowPass(20.0), 0, 200.0, "order of a filter must be from 1 to 20, this is 0");
+    says(Band::LowPass(20.0), 21, 200.0, "this is 21");
     says(Band::LowPass(100.0), 4, 200.0, "100 Hz does not lie between 0 and half the sampling rate, 100 Hz");
     says(Band::LowPass(0.0), 4, 200.0, "0 Hz");
     says(Band::HighPass(f64::NAN), 4, 200.0, "NaN");

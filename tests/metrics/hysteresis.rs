@@ -128,7 +128,7 @@ fn refuses_with_the_reason() {
     says(of(&good), Loop { x: &[1.0; 5], y: &[1.0; 5] }, THRESHOLD, "no rising branch");
     says(of(&good), Loop { x: &ramp, y: &[1.0] }, THRESHOLD, "50 inputs and 1 outputs");
     says(of(&good), Loop { x: &[0.0, f64::NAN], y: &[0.0; 2] }, THRESHOLD, "not finite");
-    says(of(&good), Loop { x: &far, y: &good.1 }, THRESHOLD, "no input in common while it is rising");
+    says(of(&good), Loop { x: &far, y: &good.1 }, THRESHOLD, "no common input while it is rising");
     for threshold in [0.0, 1.0, f64::NAN] {
         says(of(&good), of(&good), threshold, "threshold");
     }

@@ -137,9 +137,9 @@ fn undefined_says_why() {
     says(weighted_integrated_factor(&zero, &zero), "both signals");
     says(correlation(&one, &ramp), "constant");
     says(anova_mean(&one, &zero), "measured signal is zero");
-    says(anova_standard_deviation(&one[..1], &one[..1]), "one sample");
+    says(anova_standard_deviation(&one[..1], &one[..1]), "single sample");
     says(bogojevic(&ramp, &one), "measured signal is constant");
-    says(root_mean_square_error(&[1e200], &[-1e200]), "range of numbers");
+    says(root_mean_square_error(&[1e200], &[-1e200]), "overflows");
 }
 
 /// A phase error of 1e-9 is seen as such: the plain arc cosine would give 0.

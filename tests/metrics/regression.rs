@@ -196,13 +196,13 @@ fn what_cannot_be_fitted_is_told() {
     assert_eq!(says(&[], &[]), "0 values for 1 coefficient: at least 2 needed");
     assert_eq!(says(&y, &[x.clone(), vec![1.0]]), "regressor 2 has 1 number for 4 values");
     assert_eq!(says(&y, &[vec![0.3; 4]]), "regressor 1 does not vary");
-    assert_eq!(says(&y, &[x.clone(), twice]), "the regressors are collinear: one of them follows from the others");
+    assert_eq!(says(&y, &[x.clone(), twice]), "the regressors are collinear: one of them depends linearly on the others");
     // A hair's breadth of a column beside its size.
     let nearly: Vec<f64> = x.iter().map(|x| 1.0 + 1e-14 * x).collect();
     assert_eq!(Regression::fit(&y, &[nearly]).expect_err("refused"), RegressionError::Collinear);
     assert_eq!(says(&[1.0, f64::NAN, 2.0, 1.0], std::slice::from_ref(&x)), "value 2 is not finite");
     assert_eq!(says(&y, &[vec![1.0, 2.0, f64::INFINITY, 3.0]]), "number 3 of regressor 1 is not finite");
-    assert_eq!(says(&[1e300, -1e300, 1e300, 3.0], std::slice::from_ref(&x)), "the squares of the numbers exceed the range of numbers");
+    assert_eq!(says(&[1e300, -1e300, 1e300, 3.0], std::slice::from_ref(&x)), "the sum of the squares overflows");
     let fit = Regression::fit(&y, &[x]).expect("a fit");
     assert_eq!(fit.at(&[]).expect_err("refused").to_string(), "the point has 0 numbers for 1 regressor");
     assert_eq!(fit.leverage(&[f64::NAN]).expect_err("refused").to_string(), "number 1 of the point is not finite");

@@ -1,7 +1,7 @@
 //! Butterworth design: analogue prototype, frequency transformation, bilinear transformation, pairing into sections.
 //!
 //! The variable of the analogue plane is scaled so that the bilinear transformation is z = (1 + s) / (1 - s), and a
-//! frequency f stands at tan(pi f / sampling rate).
+//! frequency f is at tan(pi f / sampling rate).
 
 use std::f64::consts::PI;
 
@@ -20,7 +20,7 @@ pub(super) struct Design {
     pub time_constant: f64,
 }
 
-/// Where the response is to go: the pre-warped edges, moved if both passes together are to have their -3 dB there.
+/// Edges of the response after pre-warping, moved if both passes together are to have their -3 dB points there.
 #[derive(Clone, Copy)]
 enum Target {
     LowPass { edge: f64 },
@@ -35,7 +35,7 @@ pub(super) fn design(band: Band, order: usize, sampling_rate: f64, both_passes: 
     }
     let target = target(band, order, sampling_rate, both_passes)?;
     let (gain, mut poles) = poles(target, order);
-    // SciPy's order: the poles nearest to the unit circle last, so that what they amplify has been attenuated before.
+    // Order of SciPy: poles nearest to the unit circle last, so that the signal they amplify was attenuated before.
     poles.sort_by(|left, right| left.radius().total_cmp(&right.radius()));
     let sections: Vec<Section> = sections(target, order, &poles);
     let time_constant = poles.iter().map(Poles::time_constant).fold(0.0, f64::max);
@@ -61,7 +61,7 @@ fn target(band: Band, order: usize, sampling_rate: f64, both_passes: bool) -> Re
         let (warped_low, warped_high) = (warped(low)?, warped(high)?);
         if low < high && warped_low < warped_high { Ok((warped_low, warped_high)) } else { Err(DesignError::Edges { low, high }) }
     };
-    // Two passes are at 1/sqrt(2) where one is at 2^(-1/4), that is where (w / edge)^(2 order) = sqrt(2) - 1.
+    // Two passes have a gain of 1/sqrt(2) where one has 2^(-1/4), that is where (w / edge)^(2 order) = sqrt(2) - 1.
     let widen = if both_passes { (2_f64.sqrt() - 1.0).powf(-0.5 / order as f64) } else { 1.0 };
     Ok(match band {
         Band::LowPass(frequency) => Target::LowPass { edge: warped(frequency)? * widen },
@@ -85,11 +85,11 @@ fn poles(target: Target, order: usize) -> (f64, Vec<Poles>) {
         gain *= numerator / poles.product();
         all.push(poles);
     };
-    // Prototype poles exp(i angle) in the upper half plane; their conjugates come with them.
+    // Prototype poles exp(i angle) in the upper half plane; each stands for itself and its conjugate.
     for k in 0..order / 2 {
         let (sine, cosine) = (PI * (2 * k + 1) as f64 / (2 * order) as f64).sin_cos();
         let pole = Complex { re: -sine, im: cosine };
-        // The pole lies on the unit circle: its inverse is its conjugate.
+        // The pole is on the unit circle: its inverse is its conjugate.
         let inverse = Complex { re: pole.re, im: -pole.im };
         match target {
             Target::LowPass { edge } => place(Poles::Conjugate(pole.times(edge)), edge * edge),
@@ -117,8 +117,8 @@ fn poles(target: Target, order: usize) -> (f64, Vec<Poles>) {
     (gain, all)
 }
 
-/// Roots of s^2 - 2 half s + centre^2: where the transformation to a band moves a pole. The smaller root from the product,
-/// as the difference would cancel in a wide band.
+/// Roots of s^2 - 2 half s + centre^2: the poles that the band transformation makes of a pole. The smaller root follows from the
+/// product, as the difference loses digits in a wide band.
 fn around(half: Complex, centre: f64) -> [Complex; 2] {
     let square = Complex { re: half.re * half.re - half.im * half.im - centre * centre, im: 2.0 * half.re * half.im };
     let root = square.sqrt();
@@ -141,7 +141,7 @@ fn around_real(width: f64, centre: f64) -> Poles {
     }
 }
 
-/// Zeros to poles: the poles nearest to the unit circle take the nearest zeros first.
+/// Assigns zeros to poles; the poles nearest to the unit circle get the nearest zeros first.
 fn sections(target: Target, order: usize, poles: &[Poles]) -> Vec<Section> {
     let (mut left_at_plus_one, mut left_at_minus_one) = (order, order);
     let mut sections: Vec<Section> = poles

@@ -14,7 +14,7 @@ use super::rounded;
 use section::Section;
 pub use transfer::{Roots, TransferFunction, Warping};
 
-/// What passes, with the edges in Hz.
+/// The pass band or stop band, with the edges in Hz.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Band {
     LowPass(f64),
@@ -23,14 +23,14 @@ pub enum Band {
     BandStop(f64, f64),
 }
 
-/// How the filter runs over a record.
+/// Direction and initial state of the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// Forward and backward: no delay, twice the attenuation. Ends are extended by an odd reflection.
     Zero,
-    /// One pass, starting as if the first value had stood for ever.
+    /// One pass, from the steady state of the first value.
     Causal,
-    /// One pass, starting as if zero had stood for ever.
+    /// One pass, from the steady state of zero.
     CausalFromRest,
 }
 
@@ -50,7 +50,7 @@ pub struct Filter {
     /// Of one pass.
     gain: f64,
     sections: Vec<Section>,
-    /// Samples by which each end is extended.
+    /// Number of samples by which each end is extended.
     padding: usize,
     sampling_rate: f64,
     time_constant: f64,
@@ -64,20 +64,20 @@ impl Filter {
     /// passes together lie at the stated ones; a band keeps its centre.
     ///
     /// # Errors
-    /// An order outside 1 to 20; a frequency that is not between 0 and half the sampling rate; a lower edge that is not below
-    /// the upper; edges so near to 0 or to half the sampling rate that the sections cannot be told from unstable ones.
+    /// An order outside 1 to 20; a frequency not between 0 and half the sampling rate; a lower edge not below the upper one; edges
+    /// so close to 0 or to half the sampling rate that the sections would be unstable in double precision.
     pub fn design(band: Band, order: usize, sampling_rate: f64, phase: Phase, cutoff: Cutoff) -> Result<Self, DesignError> {
         let both_passes = phase == Phase::Zero && cutoff == Cutoff::AsApplied;
         let design = butterworth::design(band, order, sampling_rate, both_passes)?;
         Ok(Self::of(design, sampling_rate, phase))
     }
 
-    /// Filter by poles and zeros for signals at `sampling_rate` in Hz. With [`Phase::Zero`] both passes are of the function: its
-    /// magnitude is squared, but for the gain, which is that of both passes together.
+    /// Filter by poles and zeros for signals at `sampling_rate` in Hz. With [`Phase::Zero`], both passes use the function: its
+    /// magnitude is squared, except for the gain, which is that of both passes together.
     ///
     /// # Errors
-    /// Poles that are not above 0 Hz, more zeros than poles, a gain that is not above zero; a pre-warped frequency that is not below
-    /// half the sampling rate; poles that cannot be told from the unit circle.
+    /// Poles not above 0 Hz; more zeros than poles; a gain not above zero; a pre-warped frequency not below half the sampling rate;
+    /// poles that cannot be distinguished from the unit circle in double precision.
     pub fn transfer(function: &TransferFunction, sampling_rate: f64, phase: Phase, warping: Warping) -> Result<Self, DesignError> {
         let gain = if phase == Phase::Zero { function.gain.sqrt() } else { function.gain };
         let of_one_pass = TransferFunction { gain, ..*function };
@@ -92,9 +92,9 @@ impl Filter {
         Self { phase, gain: design.gain, sections: design.sections, padding, sampling_rate, time_constant }
     }
 
-    /// The filtered signal, as long as the signal.
+    /// The filtered signal, with the same length.
     ///
-    /// A sample that is not finite spoils all of the record: it is to be found before.
+    /// A sample that is not finite makes the whole result not finite; check for it before.
     ///
     /// # Errors
     /// A signal not longer than the extension of its ends.
@@ -104,8 +104,8 @@ impl Filter {
         Ok(filtered)
     }
 
-    /// The filtered signals, bit for bit those of [`Self::apply`], several times faster: neighbours of equal length run in
-    /// lockstep.
+    /// The filtered signals, identical to those of [`Self::apply`] to the last bit, but several times faster: neighbouring signals
+    /// of equal length are filtered together.
     ///
     /// # Errors
     /// A signal not longer than the extension of its ends.
@@ -124,7 +124,7 @@ impl Filter {
                 [] => {}
                 [a] => filtered.extend(self.run([a], &mut Vec::new())),
                 [a, b] => filtered.extend(self.run([a, b], &mut Vec::new())),
-                // Four lanes cost what three would: the last runs twice.
+                // Four lanes take as long as three; the last signal is filtered twice.
                 [a, b, c, ..] => filtered.extend(self.run([a, b, c, c], &mut fours_at_work).into_iter().take(3)),
             }
         }
@@ -143,15 +143,15 @@ impl Filter {
         self.time_constant
     }
 
-    /// Time, in s, in which the slowest part of a transient falls to 1 %: a record should reach that far beyond the part of it
-    /// that is evaluated, at both ends for [`Phase::Zero`].
+    /// Time, in s, in which the slowest part of a transient falls to 1 %. A record should extend this far beyond the part that is
+    /// evaluated, at both ends for [`Phase::Zero`].
     ///
-    /// An estimate: 4.6 time constants of the slowest pole. What the filter makes of a particular end may die out sooner.
+    /// This is an estimate: 4.6 time constants of the slowest pole. The transient of a particular record may be shorter.
     pub fn settling_time(&self) -> f64 {
         self.time_constant * 100_f64.ln()
     }
 
-    /// Samples that a signal must have at least.
+    /// Minimum number of samples of a signal.
     pub fn samples_needed(&self) -> usize {
         self.padding + 1
     }
@@ -175,7 +175,7 @@ impl Filter {
     }
 }
 
-/// Why there is no such filter.
+/// Reason why a filter cannot be designed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DesignError {
     Order {
@@ -184,17 +184,17 @@ pub enum DesignError {
     SamplingRate {
         sampling_rate: f64,
     },
-    /// All in Hz.
+    /// In Hz.
     Frequency {
         frequency: f64,
         sampling_rate: f64,
     },
-    /// Both in Hz.
+    /// In Hz.
     Edges {
         low: f64,
         high: f64,
     },
-    /// The poles cannot be told from the unit circle in double precision.
+    /// The poles cannot be distinguished from the unit circle in double precision.
     Degenerate {
         order: usize,
         sampling_rate: f64,
@@ -204,7 +204,7 @@ pub enum DesignError {
 impl fmt::Display for DesignError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Order { order } => write!(f, "a filter has an order from 1 to {}, not {order}", butterworth::HIGHEST_ORDER),
+            Self::Order { order } => write!(f, "the order of a filter must be from 1 to {}, this is {order}", butterworth::HIGHEST_ORDER),
             Self::SamplingRate { sampling_rate } => write!(f, "the sampling rate {sampling_rate} Hz is not a positive number"),
             Self::Frequency { frequency, sampling_rate } => write!(
                 f,

@@ -1,4 +1,4 @@
-//! Roots in the analogue plane, and where the bilinear transformation takes them.
+//! Roots in the analogue plane, and their images under the bilinear transformation.
 
 /// The poles of one section in the analogue plane.
 #[derive(Clone, Copy)]
@@ -25,7 +25,7 @@ impl Poles {
         }
     }
 
-    /// Product of `1 - s`: what the bilinear transformation takes out of the gain.
+    /// Product of `1 - s`: the factor of the gain from the bilinear transformation.
     pub(super) fn product(&self) -> f64 {
         match *self {
             Self::Conjugate(s) => s.distance_to_one(),
@@ -54,14 +54,14 @@ impl Poles {
         self.outer().1
     }
 
-    /// Samples until the slowest of the poles has fallen to 1/e: -1 / ln |z|, without the cancellation near |z| = 1.
+    /// Number of samples in which the slowest pole decays to 1/e: -1 / ln |z|, without loss of digits near |z| = 1.
     pub(super) fn time_constant(&self) -> f64 {
         let samples = |s: Complex| -2.0 / (4.0 * s.re / s.distance_to_one()).ln_1p();
         let real = |s: f64| samples(Complex { re: s, im: 0.0 });
         match *self {
             Self::Conjugate(s) => samples(s),
             Self::Real(one, two) => real(one).max(real(two)),
-            // A real pole at the origin has no memory: ln 0.
+            // A real pole at the origin has no memory (ln 0).
             Self::Single(s) => real(s),
         }
     }
@@ -91,7 +91,7 @@ impl Complex {
         (1.0 - self.re) * (1.0 - self.re) + self.im * self.im
     }
 
-    /// Principal square root, without cancellation in either part.
+    /// Principal square root, without loss of digits in either part.
     pub(super) fn sqrt(self) -> Self {
         let larger = ((self.re.hypot(self.im) + self.re.abs()) / 2.0).sqrt();
         if larger == 0.0 {

@@ -1,6 +1,6 @@
 //! One second-order section of a filter.
 
-/// `(1 + b1 z^-1 + b2 z^-2) / (1 + a1 z^-1 + a2 z^-2)`; the gain stands apart, once for all sections.
+/// `(1 + b1 z^-1 + b2 z^-2) / (1 + a1 z^-1 + a2 z^-2)`; the gain is stored once for all sections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Section {
     pub b1: f64,
@@ -9,7 +9,7 @@ pub(super) struct Section {
     pub a2: f64,
 }
 
-/// The state of a section on which a step of height 1 has stood for ever, and what it gives then.
+/// The steady state of a section for a constant input of 1, and its output.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Steady {
     pub state: [f64; 2],
@@ -30,7 +30,7 @@ impl Section {
         along(self.b1, self.b2) / along(self.a1, self.a2)
     }
 
-    /// Whether both poles lie inside the unit circle (Jury), to the last digit of the coefficients.
+    /// Whether both poles are inside the unit circle (Jury criterion), in double precision.
     pub(super) fn is_stable(&self) -> bool {
         self.a2.abs() < 1.0 && 1.0 + self.a1 + self.a2 > 0.0 && 1.0 - self.a1 + self.a2 > 0.0
     }

@@ -1,12 +1,13 @@
-//! Running the sections over signals: the hot path.
+//! Runs the sections over signals. Most of the computing time is spent here.
 //!
-//! A recursion waits for its own last value, so one signal keeps a processor mostly idle. Up to four signals are laid
-//! side by side, sample by sample, and up to four sections work on them in one sweep: the compiler turns the lanes into
-//! vectors and the processor overlaps the sections. Each lane does the operations of a single signal in the same order.
+//! A recursion depends on its own previous value, so that a single signal leaves most of a processor idle. Therefore up to four
+//! signals are stored side by side, sample by sample, and up to four sections are applied in one sweep. The compiler turns the
+//! signals into vector instructions, and the processor overlaps the sections. Each signal gets the same operations in the same
+//! order as alone.
 
 use super::{Filter, Phase, section::Section};
 
-/// Rows that are moved between the signals and the lanes at a time: few enough to stay in the nearest cache.
+/// Number of rows copied between the signals and the lanes at a time; they fit in the first-level cache.
 const ROWS: usize = 64;
 
 impl Filter {
@@ -32,7 +33,7 @@ impl Filter {
         filtered
     }
 
-    /// The signals side by side, both ends reflected about their end points, times the gain of all passes.
+    /// The signals side by side, with both ends reflected about their end points, multiplied by the gain of all passes.
     fn lay_out<const LANES: usize>(&self, signals: [&[f64]; LANES], samples: &mut Vec<[f64; LANES]>) {
         let gain = if self.phase == Phase::Zero { self.gain * self.gain } else { self.gain };
         let length = signals[0].len();
@@ -72,7 +73,7 @@ fn sweep_all<const LANES: usize, const BACKWARD: bool>(sections: &[Section], sam
     }
 }
 
-/// Some sections in one sweep; gives the level that reaches the sections after them.
+/// Applies some sections in one sweep; returns the level of the input of the sections after them.
 fn sweep_some<const LANES: usize, const SECTIONS: usize, const BACKWARD: bool>(
     sections: &[Section; SECTIONS],
     samples: &mut [[f64; LANES]],
@@ -84,7 +85,7 @@ fn sweep_some<const LANES: usize, const SECTIONS: usize, const BACKWARD: bool>(
         level = level.map(|level| level * steady.output);
         states
     });
-    // Most numerators end in 1: one multiplication fewer, by which nothing changes.
+    // Most numerators end in 1: one multiplication less, with the same result.
     if sections.iter().all(|section| section.b2 == 1.0) {
         sweep::<LANES, SECTIONS, BACKWARD, true>(sections, samples, states);
     } else {
@@ -106,7 +107,7 @@ fn sweep<const LANES: usize, const SECTIONS: usize, const BACKWARD: bool, const 
             for lane in 0..LANES {
                 let input = values[lane];
                 let output = input + states[k][0][lane];
-                // The product with the output comes last: nothing else has to wait for it.
+                // The product with the output is last, as nothing else depends on it.
                 states[k][0][lane] = (b1 * input + states[k][1][lane]) - a1 * output;
                 states[k][1][lane] = if ENDS_IN_ONE { input } else { b2 * input } - a2 * output;
                 values[lane] = output;

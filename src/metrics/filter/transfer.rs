@@ -11,31 +11,32 @@ use super::{
     section::Section,
 };
 
-/// Roots of a polynomial in s, by where they lie in Hz.
+/// Roots of a polynomial in s, given by frequencies in Hz.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Roots {
     /// 1 + s/w, w = 2 pi frequency.
     One(f64),
-    /// 1 + s/(quality w) + (s/w)^2; of infinite quality 1 + (s/w)^2.
+    /// 1 + s/(quality w) + (s/w)^2; for infinite quality, 1 + (s/w)^2.
     Two { frequency: f64, quality: f64 },
 }
 
-/// gain x zeros(s) / poles(s): 1 x gain far below all of them. Zeros at 0 Hz are s/w, or (s/w)^2, with the w of the poles: with as many
-/// of them as there are poles it is 1 x gain far above.
+/// gain x zeros(s) / poles(s), which tends to the gain at low frequencies. Zeros at 0 Hz are s/w or (s/w)^2 with the w of the
+/// poles; with as many zeros as poles, the function then tends to the gain at high frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransferFunction {
     pub poles: Roots,
-    /// Not more of them than poles.
+    /// Not more zeros than poles.
     pub zeros: Option<Roots>,
     pub gain: f64,
 }
 
-/// Where the bilinear transformation, which squeezes all frequencies below half the sampling rate, has those of the function.
+/// Frequencies of the poles and zeros after the bilinear transformation, which compresses all frequencies below half the sampling
+/// rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Warping {
-    /// Each pole and zero where it was said: its frequency is moved beforehand.
+    /// As stated; each frequency is pre-warped.
     PreWarped,
-    /// Too low, the more so the nearer to half the sampling rate.
+    /// Too low; the error increases towards half the sampling rate.
     Plain,
 }
 
@@ -50,7 +51,7 @@ impl Roots {
         if matches!(self, Self::One(_)) { 1 } else { 2 }
     }
 
-    /// In the plane in which z = (1 + s)/(1 - s), with a frequency at `at` on its axis.
+    /// The poles in the plane in which z = (1 + s)/(1 - s), with a frequency placed at `at` on its axis.
     fn placed(self, at: f64) -> Poles {
         match self {
             Self::One(_) => Poles::Single(-at),
@@ -60,7 +61,7 @@ impl Roots {
                 if square >= 0.0 {
                     Poles::Conjugate(Complex { re: -at * half, im: at * square.sqrt() })
                 } else {
-                    // The smaller root from the product: the difference would cancel.
+                    // The smaller root follows from the product; the difference loses digits.
                     let large = half + (-square).sqrt();
                     Poles::Real(-at * large, -at / large)
                 }
@@ -96,7 +97,7 @@ pub(super) fn design(function: &TransferFunction, sampling_rate: f64, warping: W
         let scale = if zeros.frequency() == 0.0 { at } else { at_zeros };
         of_gain *= placed.product() / scale.powi(zeros.count());
     }
-    // What poles there are more than zeros lies at infinity, and the transformation takes infinity to z = -1.
+    // Poles in excess of the zeros have zeros at infinity, which the transformation moves to z = -1.
     for _ in 0..poles.count() - zeros.map_or(0, Roots::count) {
         (b1, b2) = (b1 + 1.0, b2 + b1);
     }

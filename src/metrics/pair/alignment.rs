@@ -1,42 +1,42 @@
-//! Whether two records of one run lie alike along the axis: shifted, mirrored, drifting apart.
+//! Alignment of two records along the axis: shift, mirroring, drift.
 
 use super::{Undefined, check};
 use crate::metrics::resample::{interpolate, uniform_grid};
 use crate::metrics::statistics;
 
-/// Points of the grid on which a shift is looked for; the steps between them are refined by a parabola.
+/// Number of grid points of the search for a shift; a parabola refines the result between them.
 const GRID: f64 = 256.0;
-/// The farthest shift looked for, as a share of the stretch compared: so much of it is always left to compare.
+/// Largest shift, as a share of the compared range, so that most of the range is always compared.
 const FARTHEST: f64 = 0.25;
-/// Signals whose best correlation is below this follow each other at no shift. Between unrelated stretches of 250 m with waves of
-/// 10 m (25 waves) the best of some 50 independent shifts is seldom above 0.5.
+/// If the largest correlation is below this, the signals are not related at any shift. For unrelated ranges of 250 m with
+/// wavelengths of 10 m (25 waves), the largest correlation at about 50 independent shifts is seldom above 0.5.
 const FOLLOWS: f64 = 0.5;
 
-/// What is to be added to the measured axis so that the measured signal follows the simulated one best, in the unit of the axis.
+/// Shift to be added to the measured axis for the largest correlation with the simulated signal, in the unit of the axis.
 ///
-/// The correlation is taken where both overlap, at every shift up to a quarter of the stretch.
+/// The correlation is computed over the overlap, for every shift up to a quarter of the range.
 ///
 /// # Errors
-/// The signals follow each other at no shift, or best at the end of what is looked at; an axis that does not increase.
+/// The signals are not related at any shift; the best shift is at the end of the search range; an axis that does not increase.
 pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     check(simulated, measured)?;
-    let no_axis = || Undefined::because("the samples do not follow each other along the axis");
+    let no_axis = || Undefined::because("the axis does not increase");
     let (Some(first), Some(last)) = (axis.first(), axis.last()) else { return Err(no_axis()) };
     let step = (last - first) / GRID;
     let grid = uniform_grid(*first, *last, step).map_err(|_| no_axis())?;
     let on_grid = |signal: &[f64]| interpolate(axis, signal, &grid).map_err(|_| no_axis());
     let (s, m) = (on_grid(simulated)?, on_grid(measured)?);
     let most = (FARTHEST * GRID) as usize;
-    // Ahead: the measured signal at a smaller place shows what the simulated one shows further on.
+    // Ahead: the measured signal has at a smaller coordinate the value that the simulated signal has at a larger one.
     let ahead = |lag: usize| statistics::correlation(&s[lag..], &m[..m.len() - lag]);
     let behind = |lag: usize| statistics::correlation(&s[..s.len() - lag], &m[lag..]);
     let all: Vec<f64> = (1..=most).rev().map(behind).chain((0..=most).map(ahead)).map(|found| found.unwrap_or(f64::NEG_INFINITY)).collect();
     let best = (0..all.len()).fold(0, |best, at| if all[at] > all[best] { at } else { best });
     if all[best] < FOLLOWS {
-        return Err(Undefined::because("the signals follow each other at no shift"));
+        return Err(Undefined::because("the signals are not correlated at any shift"));
     }
     if best == 0 || best + 1 == all.len() {
-        return Err(Undefined::because("the best shift lies at the end of what is looked at"));
+        return Err(Undefined::because("the best shift is at the end of the search range"));
     }
     let (before, at, after) = (all[best - 1], all[best], all[best + 1]);
     let curvature = before - 2.0 * at + after;
@@ -44,7 +44,7 @@ pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Result<f64, U
     Ok((best as f64 - most as f64 + refined) * step)
 }
 
-/// Correlation of the measured signal with the simulated one read from its end: near 1 where one of the records is mirrored.
+/// Correlation of the measured signal with the simulated one in reverse order; near 1 if one of the records is mirrored.
 ///
 /// # Errors
 /// A signal is constant.
@@ -53,8 +53,8 @@ pub fn mirrored_correlation(simulated: &[f64], measured: &[f64]) -> Result<f64, 
     super::correlation(&mirrored, measured)
 }
 
-/// By how much the measured signal drifts away from the simulated one from the first to the last sample, in the unit of the
-/// signals: the regression line of their difference, measured less simulated.
+/// Drift of the measured signal from the simulated one between the first and the last sample, in the unit of the signals: the
+/// change of the regression line of measured minus simulated.
 ///
 /// # Errors
 /// Fewer than two samples.
@@ -76,7 +76,7 @@ mod tests {
         (TAU * x / 7.3).sin() + 0.6 * (TAU * x / 19.1 + 1.0).sin() + 0.4 * (TAU * x / 31.7 + 2.0).cos()
     }
 
-    /// A measurement that reads 3.2 m too little shows at x what is simulated at x + 3.2 m.
+    /// A measured coordinate that is 3.2 m too small shows at x the simulated value at x + 3.2 m.
     #[test]
     fn a_known_shift_is_found() {
         let axis: Vec<f64> = (0..1000).map(|k| 100.0 + 0.2 * f64::from(k)).collect();

@@ -6,10 +6,10 @@ use crate::metrics::{
     sum::sum_of_pairs,
 };
 
-/// Root mean square of simulation less measurement, in the unit of the signals.
+/// Root mean square of simulation minus measurement, in the unit of the signals.
 ///
 /// # Errors
-/// Signals of different length, without samples, or with a sample that is not finite; so for every metric here.
+/// Signals of different length, without samples, or with a sample that is not finite. This applies to every metric of this module.
 pub fn root_mean_square_error(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     let energies = Energies::of(simulated, measured)?;
     Ok((energies.difference / simulated.len() as f64).sqrt())
@@ -26,7 +26,7 @@ pub fn correlation(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined
 
 /// Misfit of Kraft et al.: `sum (s - m)^2 / min(sum s^2, sum m^2)`.
 ///
-/// The form as other papers describe it; the original gives the idea of the smaller energy as reference.
+/// The formula is that of later papers; the original describes the smaller energy as the reference.
 ///
 /// # Errors
 /// A signal is zero throughout.
@@ -47,7 +47,7 @@ pub fn kraft_misfit_root(simulated: &[f64], measured: &[f64]) -> Result<f64, Und
     kraft_misfit(simulated, measured).map(f64::sqrt)
 }
 
-/// Weighted integrated factor: 1 for equal signals, 0 for signals of opposite sign throughout; symmetric.
+/// Weighted integrated factor: 1 for equal signals, 0 for signals of opposite sign throughout. It is symmetric.
 ///
 /// `1 - sqrt(sum max(m^2, s^2) (1 - max(0, m s) / max(m^2, s^2))^2 / sum max(m^2, s^2))`
 ///
@@ -65,12 +65,12 @@ pub fn weighted_integrated_factor(simulated: &[f64], measured: &[f64]) -> Result
         if larger == 0.0 { 0.0 } else { larger * (1.0 - (s * m).max(0.0) / larger).powi(2) }
     });
     let factor = 1.0 - (missing / whole).sqrt();
-    if factor.is_finite() { Ok(factor) } else { Err(Undefined::because("the squares of the samples exceed the range of numbers")) }
+    if factor.is_finite() { Ok(factor) } else { Err(Undefined::because("the sum of the squares of the samples overflows")) }
 }
 
-/// Mean residual of the analysis of variance, relative to the largest magnitude of the measurement.
+/// Mean residual of the analysis of variance, divided by the largest magnitude of the measurement.
 ///
-/// As in the crash-test software RSVVP, whose limit is 5 % either way.
+/// As in the crash-test software RSVVP, with limits of +-5 %.
 ///
 /// # Errors
 /// The measurement is zero throughout.
@@ -86,7 +86,7 @@ pub fn anova_mean(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined>
 pub fn anova_standard_deviation(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     let residuals = residuals(simulated, measured)?;
     if residuals.len() < 2 {
-        return Err(Undefined::because("one sample has no scatter"));
+        return Err(Undefined::because("the scatter of a single sample is not defined"));
     }
     statistics::standard_deviation(&residuals, Divisor::Sample).ok_or_else(too_large)
 }
@@ -100,5 +100,5 @@ fn residuals(simulated: &[f64], measured: &[f64]) -> Result<Vec<f64>, Undefined>
 }
 
 fn too_large() -> Undefined {
-    Undefined::because("the residuals exceed the range of numbers")
+    Undefined::because("the sum of the residuals overflows")
 }

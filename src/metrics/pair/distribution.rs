@@ -8,12 +8,12 @@ use crate::metrics::{
     sum::{sum, sum_of_pairs},
 };
 
-/// A mean this small beside the signal's largest magnitude is rounding.
+/// A mean below this share of the signal's largest magnitude is rounding.
 const ZERO_MEAN: f64 = 1e-12;
 
 /// Area between the distribution functions of the values (Ferson, Oberkampf and Ginzburg 2008), in the unit of the signals.
 ///
-/// Of equal counts the mean distance of the sorted values, which is the 1-Wasserstein distance.
+/// For equal numbers of values, this is the mean distance of the sorted values (1-Wasserstein distance).
 ///
 /// # Errors
 /// Signals of different length, without samples, or with a sample that is not finite.
@@ -23,20 +23,20 @@ pub fn area_metric(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined
     in_range(area)
 }
 
-/// A signal as so many values of its distribution: the quantiles at (i - 0.5)/n, i = 1 to n, linear between order statistics (type 7).
-/// There may be more of them than samples.
+/// The distribution of a signal as `points` values: the quantiles at (i - 0.5)/n, i = 1 to n, with linear interpolation between
+/// order statistics (type 7). There may be more points than samples.
 ///
 /// # Errors
 /// No points, no samples, a sample that is not finite.
 pub fn quantiles(signal: &[f64], points: usize) -> Result<Vec<f64>, Undefined> {
     if points == 0 {
-        return Err(Undefined::because("a distribution has at least one point"));
+        return Err(Undefined::because("a distribution needs at least one point"));
     }
     let percents: Vec<f64> = (0..points).map(|point| 100.0 * (point as f64 + 0.5) / points as f64).collect();
     percentiles(signal, &percents, Method::Linear).map_err(|error| Undefined::because(error.to_string()))
 }
 
-/// [`area_metric`] of two sets of values whose counts may differ: the integral of the distance of the distribution functions.
+/// [`area_metric`] for different numbers of values: the integral of the distance between the distribution functions.
 ///
 /// # Errors
 /// No values on either side, or a value that is not finite.
@@ -58,13 +58,15 @@ pub fn area_between(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefine
     in_range(sum(&strips))
 }
 
-/// Ratio of the variances (n - 1), simulation over measurement.
+/// Ratio of the variances (n - 1), simulation divided by measurement.
 ///
 /// # Errors
 /// The measurement is constant, or there is one sample only.
 pub fn bogojevic_variance_ratio(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     check_values(simulated, measured)?;
-    let of = |signal: &[f64]| variance(signal, Divisor::Sample).ok_or_else(|| Undefined::because("one sample has no scatter"));
+    let of = |signal: &[f64]| {
+        variance(signal, Divisor::Sample).ok_or_else(|| Undefined::because("the scatter of a single sample is not defined"))
+    };
     let (of_simulated, of_measured) = (of(simulated)?, of(measured)?);
     if of_measured == 0.0 {
         return Err(Undefined::because("the measured signal is constant"));
@@ -72,11 +74,11 @@ pub fn bogojevic_variance_ratio(simulated: &[f64], measured: &[f64]) -> Result<f
     Ok(of_simulated / of_measured)
 }
 
-/// Two-sided probability of that ratio, or one farther from 1, if the variances were equal and all samples independent: with one
-/// degree of freedom less than each side has samples.
+/// Two-sided probability of this ratio, or one farther from 1, for equal variances and independent samples (F test). The degrees of
+/// freedom are the numbers of samples minus one.
 ///
-/// Samples of a record are not independent: with their full number the probability is far too small. It is meant for values
-/// taken so far apart that they are.
+/// Consecutive samples of a record are not independent: with their full number, the probability is far too small. Use values that
+/// are far enough apart to be independent.
 ///
 /// # Errors
 /// As [`bogojevic_variance_ratio`].
@@ -91,7 +93,7 @@ pub fn bogojevic_variance_probability(simulated: &[f64], measured: &[f64]) -> Re
 /// A signal without samples, or with a sample that is not finite.
 pub fn bogojevic_mean_term(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     check_values(simulated, measured)?;
-    let too_large = || Undefined::because("the sums of the samples exceed the range of numbers");
+    let too_large = || Undefined::because("the sum of the samples overflows");
     let (Some(of_simulated), Some(of_measured)) = (mean(simulated), mean(measured)) else { return Err(too_large()) };
     let larger = of_simulated.abs().max(of_measured.abs());
     let magnitude = peak_magnitude(simulated).zip(peak_magnitude(measured)).map(|(s, m)| s.max(m)).ok_or_else(too_large)?;
@@ -101,7 +103,7 @@ pub fn bogojevic_mean_term(simulated: &[f64], measured: &[f64]) -> Result<f64, U
     Ok((1.0 - (of_simulated - of_measured).abs() / larger).max(0.0))
 }
 
-/// Metric of Bogojevic and Lucanin: probability of the variance ratio times the agreement of the means; 1 is perfect.
+/// Metric of Bogojevic and Lucanin: probability of the variance ratio times the agreement of the means; 1 is best.
 ///
 /// # Errors
 /// As [`bogojevic_variance_ratio`].
@@ -111,7 +113,7 @@ pub fn bogojevic(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> 
 
 /// Two-sided probability of a variance ratio under the F distribution: twice the smaller tail, at most 1.
 ///
-/// Each tail by itself from the incomplete beta function: one less the other would lose a small one.
+/// Each tail is computed from the incomplete beta function; one minus the other tail would lose digits.
 pub fn f_two_sided(ratio: f64, numerator_degrees: f64, denominator_degrees: f64) -> f64 {
     let whole = numerator_degrees * ratio + denominator_degrees;
     let (of_numerator, of_denominator) = (numerator_degrees * ratio / whole, denominator_degrees / whole);
@@ -120,7 +122,7 @@ pub fn f_two_sided(ratio: f64, numerator_degrees: f64, denominator_degrees: f64)
     (2.0 * lower.min(upper)).min(1.0)
 }
 
-/// Values on both sides, not equally many.
+/// Checks values of both sides, whose numbers may differ.
 fn check_values(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
     for (signal, which) in [(simulated, "simulated"), (measured, "measured")] {
         if signal.is_empty() {
@@ -132,7 +134,7 @@ fn check_values(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
 }
 
 fn in_range(area: f64) -> Result<f64, Undefined> {
-    if area.is_finite() { Ok(area) } else { Err(Undefined::because("the differences exceed the range of numbers")) }
+    if area.is_finite() { Ok(area) } else { Err(Undefined::because("the sum of the differences overflows")) }
 }
 
 fn sorted(values: &[f64]) -> Vec<f64> {

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use super::{Energies, Undefined};
 use crate::metrics::sum::sum_of_pairs;
 
-/// Sprague and Geers magnitude error: `sqrt(sum s^2 / sum m^2) - 1`. Negative: the simulation is smaller.
+/// Sprague and Geers magnitude error: `sqrt(sum s^2 / sum m^2) - 1`. Negative if the simulation is smaller.
 ///
 /// # Errors
 /// The measurement is zero throughout.
@@ -18,7 +18,8 @@ pub fn sprague_geers_magnitude(simulated: &[f64], measured: &[f64]) -> Result<f6
     magnitude(&Energies::of(simulated, measured)?)
 }
 
-/// Sprague and Geers phase error: the angle between the signals over pi, `acos(sum s m / sqrt(sum s^2 sum m^2)) / pi`, in [0, 1].
+/// Sprague and Geers phase error: the angle between the signals divided by pi, `acos(sum s m / sqrt(sum s^2 sum m^2)) / pi`, in [0,
+/// 1].
 ///
 /// # Errors
 /// A signal is zero throughout.
@@ -35,7 +36,7 @@ pub fn sprague_geers_comprehensive(simulated: &[f64], measured: &[f64]) -> Resul
     Ok(magnitude(&energies)?.hypot(angle(simulated, measured, &energies)? / PI))
 }
 
-/// Phase error of Geers (1984): one less the cosine of the angle between the signals, in [0, 2].
+/// Phase error of Geers (1984): one minus the cosine of the angle between the signals, in [0, 2].
 ///
 /// # Errors
 /// A signal is zero throughout.
@@ -43,7 +44,7 @@ pub fn geers_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined
     Ok(one_less_cosine(angle(simulated, measured, &Energies::of(simulated, measured)?)?))
 }
 
-/// Comprehensive error of Geers (1984), from the magnitude of Sprague and Geers and the older phase.
+/// Comprehensive error of Geers (1984), from the magnitude error of Sprague and Geers and the phase error of 1984.
 ///
 /// # Errors
 /// A signal is zero throughout.
@@ -52,7 +53,7 @@ pub fn geers_comprehensive(simulated: &[f64], measured: &[f64]) -> Result<f64, U
     Ok(magnitude(&energies)?.hypot(one_less_cosine(angle(simulated, measured, &energies)?)))
 }
 
-/// Russell's magnitude error: `sign(r) log10(1 + |r|)`, `r = (S - M) / sqrt(S M)` of the sums of squares.
+/// Russell's magnitude error: `sign(r) log10(1 + |r|)`, `r = (S - M) / sqrt(S M)`, with S and M the sums of squares.
 ///
 /// # Errors
 /// A signal is zero throughout.
@@ -60,7 +61,7 @@ pub fn russell_magnitude(simulated: &[f64], measured: &[f64]) -> Result<f64, Und
     russell(&Energies::of(simulated, measured)?)
 }
 
-/// Russell's phase error: that of Sprague and Geers.
+/// Russell's phase error, the same as that of Sprague and Geers.
 ///
 /// # Errors
 /// A signal is zero throughout.
@@ -87,16 +88,16 @@ fn magnitude(energies: &Energies) -> Result<f64, Undefined> {
 
 fn russell(energies: &Energies) -> Result<f64, Undefined> {
     both_move(energies)?;
-    // (S - M) / sqrt(S M), with neither product nor difference of the energies leaving the range of numbers.
+    // (S - M) / sqrt(S M), without overflow of the product or the difference of the energies.
     let ratio = energies.simulated.sqrt() / energies.measured.sqrt();
     let relative = ratio - 1.0 / ratio;
     Ok(relative.signum() * relative.abs().ln_1p() / std::f64::consts::LN_10)
 }
 
-/// Angle between the signals, [0, pi].
+/// Angle between the signals, in [0, pi].
 ///
-/// The cosine of a small angle has lost half its digits, and rounding may take it beyond 1. Kahan's formula from the sides of
-/// the triangle of the two unit signals keeps them, and needs no clamp.
+/// The cosine of a small angle has half the digits only, and rounding can make it larger than 1. Kahan's formula, from the sides of
+/// the triangle of the two unit signals, has neither problem.
 fn angle(simulated: &[f64], measured: &[f64], energies: &Energies) -> Result<f64, Undefined> {
     both_move(energies)?;
     let (s_length, m_length) = (energies.simulated.sqrt(), energies.measured.sqrt());

@@ -1,7 +1,8 @@
-//! How well a simulated signal agrees with a measured one: equal length, one common grid, the measurement the reference.
+//! Measures of agreement of a simulated and a measured signal with equal length and common points. The measurement is the
+//! reference.
 //!
-//! Every metric is `fn(simulated, measured) -> Result<f64, Undefined>`. The mean is never removed beforehand. Sums stand for
-//! integrals over a uniform grid: the sampling distance cancels.
+//! Every metric is `fn(simulated, measured) -> Result<f64, Undefined>`. The mean is not removed. Sums replace integrals over a
+//! uniform grid, as the sampling distance cancels.
 
 mod alignment;
 mod deviation;
@@ -27,7 +28,7 @@ use std::fmt;
 
 use super::sum::{sum_of, sum_of_pairs};
 
-/// Why a metric has no value for these signals.
+/// Reason why a metric has no value for these signals.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Undefined {
     pub reason: String,
@@ -47,7 +48,7 @@ impl fmt::Display for Undefined {
 
 impl std::error::Error for Undefined {}
 
-/// Equal length, not empty, all samples finite.
+/// Checks for equal length, at least one sample, and finite samples.
 fn check(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
     if simulated.len() != measured.len() {
         return Err(Undefined::because(format!("the simulated signal has {} samples, the measured {}", simulated.len(), measured.len())));
@@ -85,7 +86,7 @@ impl Energies {
         if energies.simulated.is_finite() && energies.measured.is_finite() && energies.difference.is_finite() {
             Ok(energies)
         } else {
-            Err(Undefined::because("the squares of the samples exceed the range of numbers"))
+            Err(Undefined::because("the sum of the squares of the samples overflows"))
         }
     }
 }

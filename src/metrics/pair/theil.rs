@@ -33,26 +33,26 @@ pub fn theil_u2(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     Ok(energies.difference.sqrt() / energies.measured.sqrt())
 }
 
-/// Share of the mean square error that is a difference of the means.
+/// Share of the mean square error from the difference of the means.
 ///
 /// # Errors
-/// The signals are equal: there is no error to share out.
+/// The signals are equal, so that there is no error.
 pub fn theil_bias(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     Proportions::of(simulated, measured).map(|proportions| proportions.bias)
 }
 
-/// Share of the mean square error that is a difference of the standard deviations.
+/// Share of the mean square error from the difference of the standard deviations.
 ///
 /// # Errors
-/// The signals are equal: there is no error to share out.
+/// The signals are equal, so that there is no error.
 pub fn theil_variance(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     Proportions::of(simulated, measured).map(|proportions| proportions.variance)
 }
 
-/// Share of the mean square error that is a lack of correlation.
+/// Share of the mean square error from incomplete correlation.
 ///
 /// # Errors
-/// The signals are equal: there is no error to share out.
+/// The signals are equal, so that there is no error.
 pub fn theil_covariance(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     Proportions::of(simulated, measured).map(|proportions| proportions.covariance)
 }
@@ -73,10 +73,10 @@ impl Proportions {
         }
         let moments = |signal: &[f64]| Some((mean(signal)?, standard_deviation(signal, Divisor::Population)?));
         let (Some((mean_s, deviation_s)), Some((mean_m, deviation_m))) = (moments(simulated), moments(measured)) else {
-            return Err(Undefined::because("the sums of the samples exceed the range of numbers"));
+            return Err(Undefined::because("the sum of the samples overflows"));
         };
         let covariance = if deviation_s > 0.0 && deviation_m > 0.0 {
-            // 2 (sigma_s sigma_m - cov) as a sum of squares: the difference would cancel for signals that correlate well.
+            // 2 (sigma_s sigma_m - cov) as a sum of squares; the difference loses digits for well correlated signals.
             let root = (deviation_m / deviation_s).sqrt();
             let term = |s: f64, m: f64| (s - mean_s) * root - (m - mean_m) / root;
             sum_of_pairs(simulated, measured, |s, m| term(s, m) * term(s, m)) / n
