@@ -1,4 +1,4 @@
-//! From plan to graph. It cannot fail: the plan holds nothing that has no operation.
+//! Builds the graph from a plan. It cannot fail: every rule of a plan has an operation.
 
 use indexmap::IndexMap;
 
@@ -29,7 +29,7 @@ pub fn from_plan(plan: &Plan) -> Graph {
 struct Builder {
     axis: Dimension,
     nodes: Vec<Node>,
-    /// What was built before: operation and inputs in words.
+    /// The nodes built so far, by operation and inputs as text.
     known: IndexMap<String, NodeId>,
     classes: IndexMap<String, usize>,
 }
@@ -49,13 +49,13 @@ struct Own<'a> {
 }
 
 impl Builder {
-    /// The node that does this, made only if there is none yet.
+    /// The node with this operation and these inputs; a new one only if there is none yet.
     fn add(&mut self, operation: Operation, inputs: Vec<NodeId>, dimension: Dimension, from: &Span, label: String, kind: String) -> NodeId {
         let what = match &operation {
             Operation::Read { column } => format!("read {column} {kind}"),
             Operation::Constant(expr) => format!("constant {}", shape(expr)),
             Operation::Select(conditions) => format!("select {}", conditions.iter().map(shape).collect::<Vec<_>>().join(";")),
-            // Each of these is a rule of its own.
+            // Each of these belongs to a single rule.
             Operation::Value(_) | Operation::Compare(_) | Operation::Estimate(_) | Operation::Limit(_) => {
                 format!("{kind} {label} {}", from.start)
             }
@@ -119,7 +119,7 @@ impl Builder {
                 steps.iter().fold(inner, |node, step| self.step(node, step))
             }
             SignalKind::OverAxis(operation, inner) => self.over_axis(operation, inner, signal),
-            // Never reached: the checker has sides only in what is taken from both.
+            // Not reached: the checker allows sides only in values taken from both sides.
             SignalKind::Side(_) => self.add(Operation::Cut, Vec::new(), dimension, from, String::new(), "nothing".into()),
             SignalKind::Select(arms, otherwise) => {
                 let mut inputs: Vec<NodeId> = arms.iter().map(|(_, signal)| self.signal(signal)).collect();
@@ -156,7 +156,7 @@ impl Builder {
         nodes.iter().map(|&node| self.named(node)).collect::<Vec<_>>().join(between)
     }
 
-    /// What a signal is called inside an expression: a filter by what it filters.
+    /// Name of a signal inside an expression; a filtered signal is named after its input.
     fn named(&self, node: NodeId) -> String {
         match (&self.nodes[node].operation, self.nodes[node].inputs.first()) {
             (Operation::Step(_), Some(&input)) => format!("{} filtered", self.grouped(input)),
@@ -164,7 +164,7 @@ impl Builder {
         }
     }
 
-    /// In parentheses where it is made of parts.
+    /// The name, in parentheses where it has several parts.
     fn grouped(&self, node: NodeId) -> String {
         match self.nodes[node].operation {
             Operation::Arithmetic(_) | Operation::Negative | Operation::Power(_) => format!("({})", self.named(node)),
@@ -187,7 +187,7 @@ impl Builder {
         self.add(Operation::Step(step.kind.clone()), vec![node], dimension, &step.span, step.words.clone(), kind)
     }
 
-    /// The filtered signal of the record and the processed one of the section.
+    /// The filtered signal of the record and the processed signal of the section.
     fn processed(&mut self, signal: &Signal, chain: &[Step], from: &Span) -> (NodeId, NodeId) {
         let mut node = self.signal(signal);
         let inside =
@@ -196,7 +196,7 @@ impl Builder {
             node = self.step(node, step);
         }
         let filtered = node;
-        // A window reaches for samples up to the ends of the section by itself; everything else works on the samples cut out.
+        // A window takes samples up to the ends of the section itself; all other steps work on the samples cut out.
         if !matches!(chain.get(inside).map(|step| &step.kind), Some(StepSpec::Window { .. })) {
             let dimension = self.nodes[node].dimension;
             node = self.add(Operation::Cut, vec![node], dimension, from, "samples of the section".into(), "cut".into());
@@ -209,7 +209,7 @@ impl Builder {
         (filtered, node)
     }
 
-    /// A number taken from a named signal, from the own one, or from the own one of both sides.
+    /// A value taken from a named signal, from the own signal, or from the own signal of both sides.
     fn input(&mut self, input: &Input, own: Option<Own<'_>>) -> InputNode {
         let own = match (&input.signal, own) {
             (Some(signal), _) if !matches!(input.taken, Taken::OfBoth(_)) => {
@@ -217,7 +217,7 @@ impl Builder {
                 Own { filtered, processed, chain: &[] }
             }
             (_, Some(own)) => own,
-            // Never reached: the checker gives an input without signal only where there is an own one.
+            // Not reached: the checker allows an input without signal only where there is an own signal.
             (_, None) => {
                 let nothing = self.add(Operation::Cut, Vec::new(), Dimension::ONE, &input.span, String::new(), "nothing".into());
                 Own { filtered: nothing, processed: nothing, chain: &[] }
@@ -243,7 +243,7 @@ impl Builder {
         InputNode { node, side: input.side, joint }
     }
 
-    /// The label of what a processed signal was made from.
+    /// The label of the signal that a processed signal was made from.
     fn origin(&self, mut node: NodeId) -> String {
         while let (Operation::Cut | Operation::Window(_) | Operation::Step(_), Some(&input)) =
             (&self.nodes[node].operation, self.nodes[node].inputs.first())
@@ -273,7 +273,7 @@ impl Builder {
         PlausibilityNodes { positions: own.into_iter().map(|own| position(self, own)).collect() }
     }
 
-    /// A verdict, after those that it is over. The checker has refused those that rest on themselves.
+    /// A verdict, after those that it uses. The checker has excluded verdicts that depend on themselves.
     fn verdict(&mut self, plan: &Plan, quantities: &[QuantityNodes], at: usize, nodes: &mut Vec<Option<NodeId>>) {
         if nodes[at].is_some() {
             return;
@@ -317,7 +317,7 @@ impl Builder {
         QuantityNodes { signals, limits }
     }
 
-    /// The rows of other quantities that a limit or what it is of takes a number from.
+    /// The rows of other quantities from which a limit or its estimate takes a number.
     fn rows_of_others(&mut self, plan: &Plan, limit: &Limit) -> Vec<NodeId> {
         let mut rows = Vec::new();
         for other in limit.estimate.others().into_iter().chain(limit.bound.others()) {
@@ -370,7 +370,7 @@ impl Builder {
     }
 }
 
-/// Which rows an estimate is taken over, where not over all.
+/// The rows that an estimate uses, as text; empty for all rows.
 fn of_rows(scope: &Scope) -> String {
     let mut words = String::new();
     if !scope.zones.is_empty() {

@@ -1,4 +1,5 @@
-//! The graph as a picture: one column a stage, nodes of the same kind at different positions as one box, few crossings.
+//! The graph as an SVG picture. Each stage is a column; nodes of the same kind at different positions are one box; crossings are
+//! few.
 
 use std::fmt::Write;
 
@@ -9,16 +10,16 @@ const BOX_WIDTH: f64 = 128.0;
 const LINE: f64 = 13.0;
 const GAP: f64 = 8.0;
 const TOP: f64 = 34.0;
-/// Characters that fit on a line of a box in the font size used.
+/// Number of characters on a line of a box in the font size used.
 const CHARACTERS: usize = 19;
-/// Height of the line that says how often a box stands, below its words.
+/// Height of the line with the number of nodes of a box, below its text.
 const COUNT_LINE: f64 = 11.0;
 const MOST_LINES: usize = 6;
 const SWEEPS: usize = 12;
 
 /// A box of the picture.
 struct Card {
-    /// Column: values of reduced signals stand right of what they are made from, though both belong to one stage.
+    /// Column. Values of reduced signals are placed right of their inputs, although both belong to one stage.
     column: (Stage, bool),
     lines: Vec<String>,
     count: usize,
@@ -26,7 +27,7 @@ struct Card {
     y: f64,
 }
 
-/// A self-contained SVG; text is escaped.
+/// A self-contained SVG; texts are escaped.
 pub fn svg(graph: &Graph) -> String {
     let mut cards = cards(graph);
     let mut stages: Vec<(Stage, bool)> = cards.iter().map(|card| card.column).collect();
@@ -39,8 +40,8 @@ pub fn svg(graph: &Graph) -> String {
     draw(&cards, &stages, width, height)
 }
 
-/// What the verdicts and the section checks are made from. Plausibility rules look at every channel in many ways: with them, nothing
-/// could be made out.
+/// The nodes that verdicts and section checks need. Plausibility rules are left out: they use every channel and would make the
+/// picture unreadable.
 fn drawn(graph: &Graph) -> Vec<bool> {
     let mut drawn = vec![false; graph.nodes.len()];
     let mut open: Vec<NodeId> = graph.checks.iter().flatten().map(|input| input.node).chain(graph.verdicts.iter().copied()).collect();
@@ -52,7 +53,7 @@ fn drawn(graph: &Graph) -> Vec<bool> {
     drawn
 }
 
-/// Nodes of one class, and all statistics or limits of one quantity, become one card.
+/// Nodes of one class become one box, and so do all statistics or limits of one quantity.
 fn cards(graph: &Graph) -> Vec<Card> {
     let mut card_of_class: Vec<Option<usize>> = vec![None; graph.nodes.iter().map(|node| node.class + 1).max().unwrap_or(0)];
     let mut members: Vec<Vec<NodeId>> = Vec::new();
@@ -94,7 +95,7 @@ fn label(graph: &Graph, members: &[NodeId]) -> String {
         Operation::Estimate(_) | Operation::Limit(_) => {
             let (quantity, _) = labels[0].split_once(": ").unwrap_or(("", labels[0]));
             let mut rest: Vec<&str> = labels.iter().map(|label| label.split_once(": ").map_or(*label, |(_, rest)| rest)).collect();
-            // One limit `for each zone` is one line.
+            // A limit `for each zone` is one line.
             rest.dedup();
             format!("{quantity}: {}", rest.join("; "))
         }
@@ -136,7 +137,7 @@ fn card_height(card: &Card) -> f64 {
     card.lines.len() as f64 * LINE + 8.0 + if card.count > 1 { COUNT_LINE } else { 0.0 }
 }
 
-/// Orders each column by the mean height of neighbours, sweeping to and fro; gives the height of the picture.
+/// Orders each column by the mean height of neighbours, in sweeps to the right and to the left; returns the height of the picture.
 fn place(cards: &mut [Card], mut columns: Vec<Vec<usize>>) -> f64 {
     let tallest =
         columns.iter().map(|column| column.iter().map(|&index| card_height(&cards[index]) + GAP).sum::<f64>()).fold(0.0, f64::max);
@@ -164,7 +165,7 @@ fn place(cards: &mut [Card], mut columns: Vec<Vec<usize>>) -> f64 {
     TOP + tallest + GAP
 }
 
-/// Spreads the cards of each column evenly over the height.
+/// Spreads the boxes of each column evenly over the height.
 fn stack(cards: &mut [Card], columns: &[Vec<usize>], tallest: f64) {
     for column in columns {
         let own: f64 = column.iter().map(|&index| card_height(&cards[index])).sum();
@@ -204,7 +205,7 @@ fn draw(cards: &[Card], stages: &[(Stage, bool)], width: f64, height: f64) -> St
                     "<path d=\"M{x1:.1} {y1:.1} C{middle:.1} {y1:.1} {middle:.1} {y2:.1} {x2:.1} {y2:.1}\" fill=\"none\" stroke=\"#8a97a8\" stroke-width=\"0.7\"/>"
                 );
             } else {
-                // Within one column: a loop on the right side.
+                // Both boxes are in one column: a loop on the right side.
                 let (x, bend) = (x1, x1 + 16.0);
                 let y2 = card.y + card_height(card) / 2.0;
                 let _ = writeln!(

@@ -1,8 +1,9 @@
-//! The processing graph: typed operations from channels to the verdicts, common parts once, each knowing the line it came from.
+//! The processing graph: typed operations from channels to verdicts. Common parts are stored once. Each node knows the line of its
+//! rule.
 //!
-//! Nodes up to [`Operation::Value`] work on one record and run once for each; [`Operation::Compare`] makes the rows of the table of
-//! values, of one record or of several; what follows works on groups of rows. Inputs always have a smaller number than the node, so the
-//! order of the nodes is an order to run them in, and there can be no cycle.
+//! Nodes up to [`Operation::Value`] are executed once for each record. [`Operation::Compare`] makes the rows of the table of
+//! values, from one record or from several. The following nodes use groups of rows. Inputs always have a smaller index than the
+//! node. The order of the nodes is therefore an order of execution, and cycles are impossible.
 
 mod build;
 mod draw;
@@ -25,11 +26,11 @@ pub type NodeId = usize;
 pub struct Graph {
     pub nodes: Vec<Node>,
     pub quantities: Vec<QuantityNodes>,
-    /// One per section check of the plan.
+    /// One for each section check of the plan.
     pub checks: Vec<Vec<InputNode>>,
-    /// One per plausibility rule of the plan.
+    /// One for each plausibility rule of the plan.
     pub plausibility: Vec<PlausibilityNodes>,
-    /// One per verdict of the plan, the overall one first.
+    /// One for each verdict of the plan, the overall verdict first.
     pub verdicts: Vec<NodeId>,
 }
 
@@ -38,13 +39,13 @@ pub struct Node {
     pub operation: Operation,
     pub inputs: Vec<NodeId>,
     pub dimension: Dimension,
-    /// Whether it works on the track record.
+    /// Whether it is computed from the track record.
     pub track: bool,
-    /// The rule it came from first.
+    /// The first rule that needed it.
     pub from: Span,
     /// In words: `low-pass 20 Hz, order 4, zero-phase, as-applied`.
     pub label: String,
-    /// Nodes that do the same at different positions share this number: they are drawn as one box.
+    /// Nodes with the same operation at different positions have the same class. They are drawn as one box.
     pub class: usize,
 }
 
@@ -53,13 +54,13 @@ pub enum Operation {
     Read {
         column: String,
     },
-    /// A number along the record.
+    /// A number that is constant along the record.
     Constant(Expr),
     Arithmetic(Operator),
     Negative,
     Power(i8),
     Apply(&'static Function),
-    /// Moved, derived or integrated along the axis.
+    /// Shifted, differentiated or integrated along the axis.
     OverAxis(AxisOperation),
     /// The first input whose condition on the section holds, else the last.
     Select(Vec<Expr>),
@@ -69,22 +70,22 @@ pub enum Operation {
     Cut,
     /// A step inside the section.
     Window(StepSpec),
-    /// A number from a signal; a slope over a second one, where there is one.
+    /// A value of a signal; for a slope, the second input can replace the axis.
     Reduce(Reducer),
-    /// A number of one record from reduced signals.
+    /// A number of one record, computed from values of signals.
     Value(Arc<Expr>),
-    /// Rows of the table of values: of one record each, or of records compared.
+    /// Rows of the table of values: of single records, or of compared records.
     Compare(Arc<Evaluation>),
-    /// What a limit is of, once for each group of rows.
+    /// The estimate of a limit, for each group of rows.
     Estimate(Arc<Limit>),
-    /// What was estimated against the limit, group by group.
+    /// Compares estimates with their limit, for each group of rows.
     Limit(Arc<Limit>),
     /// From limits, from other verdicts, or by a person.
     Verdict(Arc<Decision>),
 }
 
 impl Operation {
-    /// The stage it belongs to, in the order data passes them.
+    /// The stage it belongs to, in the order of execution.
     pub fn stage(&self) -> Stage {
         match self {
             Self::Read { .. } => Stage::Read,
@@ -138,12 +139,12 @@ impl Stage {
     }
 }
 
-/// Where the numbers of one quantity come from.
+/// The nodes of one quantity.
 #[derive(Clone, Debug)]
 pub struct QuantityNodes {
-    /// One per position of the quantity.
+    /// One for each position of the quantity.
     pub signals: Vec<SignalNodes>,
-    /// One per limit of the quantity.
+    /// One for each limit of the quantity.
     pub limits: Vec<LimitNodes>,
 }
 
@@ -157,28 +158,28 @@ pub struct LimitNodes {
 pub struct SignalNodes {
     /// The processed signal of the section.
     pub processed: NodeId,
-    /// The same signal through the filters but not cut: what plots show. `None` where the chain resamples.
+    /// The filtered but uncut signal, for plots. `None` where the chain resamples.
     pub filtered: NodeId,
-    /// One per value of the quantity; none where a metric takes both signals, or an expression of metrics.
+    /// One for each value of the quantity; empty for a metric or an expression of metrics.
     pub values: Vec<ValueNodes>,
-    /// The signal a metric runs over, processed.
+    /// The processed signal that a metric uses in place of the axis.
     pub over: Option<NodeId>,
-    /// What the expression of a metric is made of.
+    /// The inputs of an expression of metrics.
     pub inputs: Vec<InputNode>,
     pub compare: NodeId,
 }
 
 #[derive(Clone, Debug)]
 pub struct ValueNodes {
-    /// The value, or the reduced signal that it is.
+    /// The node of the value, or of the reduced signal if the value is just that.
     pub node: NodeId,
     pub inputs: Vec<InputNode>,
 }
 
-/// Where the numbers of one plausibility rule come from.
+/// The nodes of one plausibility rule.
 #[derive(Clone, Debug)]
 pub struct PlausibilityNodes {
-    /// One per signal of the rule; a single one where it has none.
+    /// One for each signal of the rule; a single one where it has no signal.
     pub positions: Vec<PositionNodes>,
 }
 
@@ -191,7 +192,7 @@ pub struct PositionNodes {
 
 #[derive(Clone, Debug)]
 pub struct InputNode {
-    /// A number, or the signal of both sides that a number is taken from.
+    /// A value, or the signal of both sides from which a value is taken.
     pub node: NodeId,
     pub side: InputSide,
     pub joint: Option<Joint>,
@@ -205,15 +206,15 @@ impl InputNode {
     }
 }
 
-/// How a number is taken from the signals of both sides.
+/// How a value is taken from the signals of both sides.
 #[derive(Clone, Debug)]
 pub enum Joint {
     Metric {
         metric: Metric,
-        /// Whether the simulated signal is brought onto the points of the measured one.
+        /// Whether the simulated signal is interpolated at the points of the measured one.
         on_common_points: bool,
         over: Option<NodeId>,
     },
-    /// From an expression over the samples of both.
+    /// From an expression over the samples of both sides.
     Samples { reducer: Reducer, signal: Arc<Signal> },
 }

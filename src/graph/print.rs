@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{Graph, Node};
 
-/// One line a node: number, stage, words, inputs, unit, the line of the protocol.
+/// One line for each node: index, stage, words, inputs, unit, and the line of the protocol.
 pub fn text(graph: &Graph) -> String {
     let mut out = String::new();
     for (id, node) in graph.nodes.iter().enumerate() {
@@ -26,7 +26,7 @@ pub fn text(graph: &Graph) -> String {
     out
 }
 
-/// Graphviz DOT, one cluster a stage.
+/// Graphviz DOT, with one cluster for each stage.
 pub fn dot(graph: &Graph) -> String {
     let mut out = String::from("digraph protocol {\n  rankdir=LR;\n  node [shape=box, fontname=\"sans-serif\"];\n");
     for (id, node) in graph.nodes.iter().enumerate() {
