@@ -81,7 +81,7 @@ fn one_faulty_section_is_not_used() {
         (
             "unknown unit",
             |campaign| replace(&campaign.join(M), "Q_3L [kN]", "Q_3L [kp]"),
-            "the unit of the column `Q_3L`: `kp` is no known unit (measurement/S01.csv, row 1): did you mean `km`?",
+            "the unit of the column `Q_3L`: `kp` is not a known unit (measurement/S01.csv, row 1): did you mean `km`?",
         ),
         (
             "no unit",
@@ -126,7 +126,7 @@ fn one_faulty_section_is_not_used() {
         (
             "empty cell",
             |campaign| cell(&campaign.join(S), 7, "ay_I [m/s^2]", ""),
-            "`ay_I`: the cell is empty; a number is needed (simulation/S01.csv, row 8)",
+            "`ay_I`: the cell is empty; expected a number (simulation/S01.csv, row 8)",
         ),
         (
             "decimal comma in quotes",
@@ -213,13 +213,13 @@ fn one_faulty_section_is_not_used() {
         (
             "zone unknown",
             |campaign| cell(&campaign.join("sections.csv"), 1, "zone [-]", "7"),
-            "`zone`: `7` is none of 1, 2, 3, 4 (sections.csv, row 2)",
+            "`zone`: `7` is not one of 1, 2, 3, 4 (sections.csv, row 2)",
         ),
         ("zone empty", |campaign| cell(&campaign.join("sections.csv"), 1, "zone [-]", ""), "`zone` is empty (sections.csv, row 2)"),
         (
             "direction misspelt",
             |campaign| cell(&campaign.join("sections.csv"), 1, "direction", "straigth"),
-            "`direction`: `straigth` is none of right, left, straight; did you mean `straight`? (sections.csv, row 2)",
+            "`direction`: `straigth` is not one of right, left, straight; did you mean `straight`? (sections.csv, row 2)",
         ),
         (
             "too short",
@@ -331,7 +331,7 @@ fn a_position_that_no_record_has_is_left_out_with_a_note() {
     });
     assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
     let results = found.results();
-    let note = "`Q_3L` is in no record of the measurement: its position is left out";
+    let note = "`Q_3L` is in no record of the measurement; its position is left out";
     assert!(results["notes"].as_array().expect("a list").iter().any(|found| found == note), "{}", results["notes"]);
     let pairs: Vec<u64> =
         results["quantities"].as_array().expect("a list").iter().map(|quantity| quantity["pairs"].as_u64().expect("a count")).collect();
@@ -434,7 +434,7 @@ fn unusable_campaigns() {
             "vehicle word unknown",
             |campaign| replace(&campaign.join("vehicle.yaml"), "passenger", "pasenger"),
             &[
-                "error[vehicle-data]: `category`: `pasenger` is none of passenger, locomotive, freight; did you mean `passenger`?",
+                "error[vehicle-data]: `category`: `pasenger` is not one of passenger, locomotive, freight; did you mean `passenger`?",
                 "vehicle.yaml:2:11",
             ],
         ),
@@ -537,7 +537,7 @@ fn unusable_campaigns() {
         (
             "parameter of a wrong unit",
             |campaign| replace(&campaign.join("campaign.yaml"), "name: Tiny", "name: Tiny\nparameters:\n  lowpass_frequency: 20 kN"),
-            &["error[unit-mismatch]: parameter `lowpass_frequency` is a frequency, this is a force", "campaign.yaml:3:22"],
+            &["error[unit-mismatch]: parameter `lowpass_frequency` is a frequency, the given value is a force", "campaign.yaml:3:22"],
         ),
         (
             "no folder of records",

@@ -57,7 +57,7 @@ fn a_load_that_is_none_is_an_error_at_its_place() {
         ("400 kN", "400 kN is outside the range of the protocol, 10 kN to 200 kN", "give its value with the unit"),
         ("5.1", "5.1 kN is outside the range of the protocol, 10 kN to 200 kN", "give its value with the unit"),
         ("50,5 kN", "`50,5 kN` has a decimal comma; numbers are written with a point", "write `50.5 kN`"),
-        ("50 kn", "`kn` is no known unit", "did you mean `kN`?"),
+        ("50 kn", "`kn` is not a known unit", "did you mean `kN`?"),
         ("heavy", "`heavy` is not a number (in kN)", ""),
     ] {
         let found = load(written);

@@ -1,7 +1,7 @@
-//! What a number that is off by a factor suggests.
+//! Probable cause of a value that differs from the expected one by a factor.
 
-/// A factor between what was found and what was expected, and what most likely makes it. Units of measure only: what is particular
-/// to a quantity, such as the load of an axle in place of that of a wheel, is the protocol's to say.
+/// A factor between the value found and the expected value, with its most probable cause. Only units of measure are listed. Causes
+/// that belong to a quantity, such as an axle load in place of a wheel load, are stated in the protocol.
 struct Factor {
     factor: f64,
     says: &'static str,
@@ -20,11 +20,11 @@ const FACTORS: &[Factor] = &[
     Factor { factor: 2.0, says: "a factor of 2" },
 ];
 
-/// How near a ratio must come to a factor to suggest it. Expected values are rough (a payload, a roll angle), and factors lie far
-/// apart; 9.81 and 10 are told as one.
+/// Tolerance for a ratio to agree with a factor (as a factor, in both directions). Expected values are rough (payload, roll angle),
+/// and the factors lie far apart; 9.81 and 10 are one entry.
 const NEARNESS: f64 = 1.25;
 
-/// `None` where the ratio suggests nothing.
+/// The cause; `None` where the ratio agrees with no factor.
 pub fn likely(found: f64, expected: f64) -> Option<String> {
     let ratio = found / expected;
     if !ratio.is_finite() {
@@ -43,8 +43,8 @@ pub fn likely(found: f64, expected: f64) -> Option<String> {
         })
     };
     match (ratio < 0.0, size) {
-        (true, None) => Some("a sign that is turned".into()),
-        (true, Some(size)) => Some(format!("a sign that is turned, and {size}")),
+        (true, None) => Some("a reversed sign".into()),
+        (true, Some(size)) => Some(format!("a reversed sign, and {size}")),
         (false, size) => size,
     }
 }
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn factors_and_signs() {
         let of = |found: f64| likely(found, 50.0).unwrap_or_default();
-        assert_eq!(of(-52.0), "a sign that is turned");
+        assert_eq!(of(-52.0), "a reversed sign");
         assert!(of(51_000.0).contains("factor of 1000, such as N in place of kN"));
         assert!(of(0.052).ends_with("the other way round"));
         assert!(of(5.3).contains("kgf or daN") && of(505.0).contains("kgf or daN"));

@@ -1,4 +1,4 @@
-//! The protocol's own checks of a section, on its track record or on the measurement.
+//! Section checks of the protocol, on the track record or on the records of both sides.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -16,14 +16,14 @@ use crate::graph::{InputNode, NodeId};
 use crate::result::CheckResult;
 use crate::units::Dimension;
 
-/// Checks that use the track record: without one they are said to be not checked. What the track record came to.
+/// Checks that use the track record; without one their result is "not checked". Returns the values of the track record.
 pub fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut SectionValues) -> Result<Evaluated, Fault> {
     let mut wanted: BTreeSet<NodeId> =
         work.graph.checks.iter().flatten().map(|input| input.node).filter(|&node| work.graph.nodes[node].track).collect();
     wanted.extend(plausibility::wanted(work, known, true));
     let there = || match work.campaign.record_place(RecordKind::Track, &unit.cell) {
         Ok(_) => Ok(true),
-        // That there is none is said of each check; that it cannot be read is a fault.
+        // A missing track record is stated for each check; a track record that cannot be read is a fault.
         Err(problem) if problem.code == "file-unreadable" => Err(Fault::new(problem.says)),
         Err(_) => Ok(false),
     };
@@ -34,7 +34,7 @@ pub fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mu
     };
     for (check, inputs) in work.plan.checks.iter().zip(&work.graph.checks) {
         if !inputs.is_empty() && !inputs.iter().all(|input| work.graph.nodes[input.node].track) {
-            // Filled in once both records are evaluated.
+            // Replaced after both records are evaluated.
             let says = "not checked: the records could not be evaluated".into();
             values.checks.push(CheckResult { name: check.name.clone(), title: check.title.clone(), holds: None, says });
             continue;
@@ -46,7 +46,7 @@ pub fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mu
     Ok(found)
 }
 
-/// Of several records the first that does not meet a check decides.
+/// With several records, the first that does not meet a check decides.
 pub fn record_checks(work: &Work<'_>, sides: &Sides<'_>, values: &mut SectionValues) {
     let side = if work.reads(Side::Measured) { InputSide::Measured } else { InputSide::Simulated };
     for (index, (check, inputs)) in work.plan.checks.iter().zip(&work.graph.checks).enumerate() {
@@ -81,7 +81,7 @@ fn checked(work: &Work<'_>, check: &Check, known: &Known<'_>, inputs: &[Result<f
     }
 }
 
-/// `; found: range of curvature 0.00021 1/m, mean of curvature 0.002 1/m`
+/// The values found, as text: `; found: range of curvature 0.00021 1/m, mean of curvature 0.002 1/m`.
 fn found_values(work: &Work<'_>, check: &Check, inputs: &[Result<f64, String>]) -> String {
     let one = |(input, value): (&Input, &Result<f64, String>)| {
         let value: f64 = format!("{:.3e}", value.as_ref().ok()?).parse().ok()?;

@@ -1,4 +1,4 @@
-//! Which positions were recorded at all, from the headings of the records.
+//! Which positions were recorded, from the column headings of the records.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use crate::data::record::read_headings;
 use crate::data::{Campaign, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
 
-/// Columns that some section has, for each record of a section.
+/// The columns that occur in some section, for each kind of record.
 pub type Seen = Vec<(WhichRecord, BTreeSet<String>)>;
 
 /// Reads the headings of every record.
@@ -21,7 +21,7 @@ pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[Unit]) -> Seen {
     for which in kinds.flat_map(|kind| campaign.records(kind)) {
         let mut columns = BTreeSet::new();
         for unit in units {
-            // A record that cannot be read is a fault of its section, told when it is opened.
+            // A record that cannot be read is a fault of its section and is reported when it is opened.
             let headings = campaign.place_of(which, &unit.cell).ok().and_then(|place| read_headings(&place.path, &place.shown).ok());
             columns.extend(headings.into_iter().flatten().map(|heading| heading.name));
         }
@@ -30,7 +30,7 @@ pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[Unit]) -> Seen {
     seen
 }
 
-/// Positions of plausibility rules whose columns the records have; others are passed over.
+/// Positions of plausibility rules whose columns are in the records; other positions are not checked.
 pub fn recorded_positions(graph: &Graph, seen: &Seen, facts: &Facts, units: &[Unit]) -> Vec<Vec<bool>> {
     let there = |node: NodeId| {
         let track = graph.nodes[node].track;
@@ -49,7 +49,8 @@ pub fn recorded_positions(graph: &Graph, seen: &Seen, facts: &Facts, units: &[Un
         .collect()
 }
 
-/// Which signals of which quantities were recorded at all: a position missing from every record is left out, not a fault of each section.
+/// Which signals of which quantities were recorded. A position missing from every record is left out and is not a fault of each
+/// section.
 pub fn present_columns(
     plan: &Plan,
     graph: &Graph,
@@ -80,14 +81,14 @@ pub fn present_columns(
                     missing
                 })
                 .collect();
-            // Where no position is there, the channel's name is wrong: that is a fault to be told, not a position left out.
+            // If no position is recorded, the name of the channel is wrong. This is a fault and is reported.
             let none = all.iter().all(|missing| !missing.is_empty());
             all.iter()
                 .map(|missing| {
                     if !none {
                         for (column, which) in missing {
                             let note =
-                                format!("`{column}` is in no record of the {}: its position is left out", campaign.record_in_words(*which));
+                                format!("`{column}` is in no record of the {}; its position is left out", campaign.record_in_words(*which));
                             if !notes.contains(&note) {
                                 notes.push(note);
                             }
@@ -100,11 +101,11 @@ pub fn present_columns(
         .collect()
 }
 
-/// Columns below a node that some section needs.
+/// Columns that a node needs in some section.
 fn reads(graph: &Graph, node: NodeId, facts: &Facts, units: &[Unit]) -> BTreeSet<String> {
     let mut read = BTreeSet::new();
     for unit in units {
-        // Where it cannot be told which signal applies, the section is refused when it is evaluated.
+        // Where it cannot be determined which signal applies, the section is refused when it is evaluated.
         for id in needed(graph, &BTreeSet::from([node]), &unit.known(facts)).unwrap_or_default() {
             if let Operation::Read { column } = &graph.nodes[id].operation {
                 read.insert(column.clone());

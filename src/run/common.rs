@@ -1,4 +1,4 @@
-//! Both sides of a section on common points, and numbers of expressions over their samples.
+//! Both sides of a section at common points, and values of expressions over their samples.
 
 use super::facts::Known;
 use super::signal::{Extent, Samples, Signal, apply, arithmetic, each};
@@ -8,14 +8,15 @@ use crate::check::plan::{self, AxisOperation, Side, SignalKind};
 use crate::metrics::percentile::Method;
 use crate::metrics::resample;
 
-/// Both signals on the measured samples of the section.
+/// Both signals at the measured samples of the section.
 pub struct Common {
     pub simulated: Vec<f64>,
     pub measured: Samples,
 }
 
 impl Common {
-    /// The simulated signal, moved along the axis by `shift`, is interpolated unless its samples lie where the measured ones do already.
+    /// The simulated signal is moved along the axis by `shift` (SI) and interpolated at the measured points, unless its samples lie
+    /// there already.
     pub fn of(simulated: &Samples, measured: &Samples, extent: Option<Extent>, shift: f64) -> Result<Self, String> {
         let cut = |samples: &Samples| match extent {
             Some(extent) => samples.cut(extent),
@@ -33,7 +34,7 @@ impl Common {
     }
 }
 
-/// The simulated signal, moved along the axis, at points of the measured one.
+/// The simulated signal, moved along the axis by `shift`, at the given points.
 fn at(simulated: &Samples, points: &[f64], shift: f64) -> Result<Vec<f64>, String> {
     let own = &simulated.along.axis;
     let interpolated = match shift {
@@ -41,23 +42,23 @@ fn at(simulated: &Samples, points: &[f64], shift: f64) -> Result<Vec<f64>, Strin
         _ => resample::interpolate(&own.iter().map(|at| at + shift).collect::<Vec<_>>(), &simulated.values, points),
     };
     interpolated.map_err(|error| match shift {
-        0.0 => format!("the simulation cannot be brought onto the measured points: {error}"),
-        _ => format!("the repeat cannot be brought onto the points of its original: {error}"),
+        0.0 => format!("the simulation cannot be interpolated at the measured points: {error}"),
+        _ => format!("the repeat cannot be interpolated at the points of its original: {error}"),
     })
 }
 
-/// The filtered signals of both records, of which an expression takes samples in the section.
+/// The filtered signals of both records, from which an expression takes its samples.
 pub struct Both<'a> {
     pub simulated: &'a Samples,
     pub measured: &'a Samples,
     pub known: &'a Known<'a>,
     pub extent: Option<Extent>,
-    /// What is added to the axis of the simulated one.
+    /// Added to the axis of the simulated signal, SI.
     pub shift: f64,
 }
 
 impl Both<'_> {
-    /// A number of an expression over both, and of how many samples.
+    /// The value of a reduced expression over both sides, and the number of samples.
     pub fn reduced(&self, reducer: Reducer, method: Method, of: &plan::Signal) -> Result<(f64, usize), String> {
         let common = Common::of(self.simulated, self.measured, self.extent, self.shift)?;
         let samples = match self.signal(of, &common)? {
@@ -90,7 +91,7 @@ impl Both<'_> {
                 let distance = number(distance, self.known)?;
                 let points: Vec<f64> = common.measured.along.axis.iter().map(|x| x - distance - moved).collect();
                 let moved = resample::interpolate(&of_record.along.axis, &of_record.values, &points)
-                    .map_err(|error| format!("the record does not reach as far beyond the section as the signal is shifted: {error}"))?;
+                    .map_err(|error| format!("the record is too short beyond the section for this shift: {error}"))?;
                 Ok(Signal::Samples(common.measured.with(moved)))
             }
             SignalKind::OverAxis(operation, signal) => match inner(signal)? {
@@ -99,12 +100,10 @@ impl Both<'_> {
                     let extent = (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
                     Ok(Signal::Samples(samples.over_axis(operation, self.known, extent)?))
                 }
-                Signal::Constant(_) => Err("a number has no course along the axis".into()),
+                Signal::Constant(_) => Err("a constant number has no samples along the axis".into()),
             },
-            // Never reached: the checker refuses them here.
-            SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => {
-                Err("this signal has samples of its own".into())
-            }
+            // The checker does not allow these here.
+            SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => Err("this signal has other samples".into()),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Signals that are copies of each other: of another channel, of another section, of the other side.
+//! Finds signals that are copies: of another channel, of another section, of the other side.
 
 use std::collections::BTreeMap;
 
@@ -11,25 +11,26 @@ use crate::check::plan::{Distinct, Plan, Plausibility, Test};
 use crate::data::{Campaign, RecordKind, WhichRecord};
 use crate::result::Finding;
 
-/// Samples in a row that make one mark. Two live signals, written to a thousandth of their range, agree in eight samples in a row
-/// by chance once in 10^21 places.
+/// Number of consecutive samples of a mark. Two independent signals with a resolution of a thousandth of their range agree in eight
+/// consecutive samples by chance at one of 10^21 places.
 const RUN: usize = 8;
-/// One run in so many is a mark, chosen by its content: the same runs are chosen wherever they stand in a record.
+/// One run of samples in this many becomes a mark. It is chosen by its content, so that the same runs are chosen wherever they are
+/// in a record.
 const ONE_IN: u64 = 16;
-/// Two signals are copies if they share this part of the marks of the shorter one ...
+/// Two signals are copies if they share at least this part of the marks of the shorter one ...
 const SHARED: f64 = 0.3;
-/// ... and at least so many marks, some 100 samples.
+/// ... and at least this many marks, which is about 100 samples.
 const LEAST: usize = 6;
-/// Channels that a finding names before it counts them.
+/// Largest number of channels that a finding names; the others are counted.
 const NAMED: usize = 4;
 
-/// Marks of one signal of one section.
+/// Marks of one signal in one section.
 #[derive(Clone, Debug)]
 pub struct Print {
     rule: String,
     channel: String,
     which: WhichRecord,
-    /// Sorted, each once.
+    /// Sorted, without duplicates.
     marks: Vec<u64>,
 }
 
@@ -42,8 +43,8 @@ impl Print {
     }
 }
 
-/// Marks of a signal: hashes of runs, rolled on from sample to sample. What stands still is the same everywhere and has none; it is told
-/// by another rule.
+/// Marks of a signal: rolling hashes of runs of samples. Constant runs are equal everywhere and give no mark; another rule reports
+/// them.
 fn marks(samples: &[f64]) -> Vec<u64> {
     const BASE: u64 = 0x9E37_79B9_7F4A_7C15;
     let leaving = (1..RUN).fold(1_u64, |power, _| power.wrapping_mul(BASE));
@@ -67,20 +68,20 @@ fn marks(samples: &[f64]) -> Vec<u64> {
     found
 }
 
-/// Spreads the bits (the finaliser of SplitMix64, Steele et al. 2014).
+/// Mixes the bits (finaliser of SplitMix64, Steele et al. 2014).
 fn mixed(mut bits: u64) -> u64 {
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     bits ^ (bits >> 31)
 }
 
-/// Where a print was taken: section, and number among its prints.
+/// Where a print was taken: section, and index among its prints.
 type Place = (usize, usize);
 
-/// Two records that share signals: the later one, the earlier one, and the channels of both.
+/// Two records that share signals: the later and the earlier one, with the channels of both.
 type Shared<'a> = BTreeMap<(usize, WhichRecord, usize, WhichRecord), Vec<(&'a str, &'a str)>>;
 
-/// Copies among the signals of every rule that asks signals to differ.
+/// Copies among the signals of every rule with `distinct`.
 pub fn find(plan: &Plan, campaign: &Campaign, units: &[Unit], values: &[SectionValues]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut done: Vec<&str> = Vec::new();
@@ -91,7 +92,7 @@ pub fn find(plan: &Plan, campaign: &Campaign, units: &[Unit], values: &[SectionV
         }
         done.push(&rule.name);
         for ((later, which, earlier, of), channels) in shared(&rule.name, distinct, values) {
-            // A section measured again may be compared with the simulation there is.
+            // A repeated section may be compared with the same simulation.
             let again = later != earlier && units[later].site == units[earlier].site;
             if again && (which.kind, of.kind) == (RecordKind::Simulation, RecordKind::Simulation) {
                 continue;
@@ -115,7 +116,7 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
     all.par_sort_unstable();
     let mut counts: BTreeMap<(Place, Place), usize> = BTreeMap::new();
     for alike in all.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
-        // A copy shares its marks with one that was there before; all pairs of many copies need not be counted.
+        // A copy is counted against one earlier signal; not all pairs of many copies are counted.
         for (number, (_, later)) in alike.iter().enumerate().skip(1) {
             for (_, earlier) in &alike[..number.min(NAMED)] {
                 *counts.entry((*earlier, *later)).or_default() += 1;
@@ -133,7 +134,8 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
             (true, true, _) => distinct.channels,
             (true, false, _) => distinct.sides,
             (false, true, true) => distinct.sections,
-            // The same channel of another section and the other side, or another channel of another section: told by what is nearer.
+            // Another channel of another section: reported if equality between sections and between channels (or sides) is to be
+            // found.
             (false, ..) => distinct.sections && (distinct.channels || distinct.sides),
         };
         if asked {
@@ -209,7 +211,7 @@ mod tests {
             print("Q", RecordKind::Simulation, &b),
             print("Y", RecordKind::Measurement, &c),
         ]);
-        // Half of the simulated Y of the first section, later in the record; and one channel twice.
+        // Half of the simulated Y of the first section, later in the record, and one channel twice.
         let mut half = signal(4, 700);
         half.extend(&a[..800]);
         let d = signal(5, 1500);

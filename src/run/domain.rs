@@ -1,4 +1,4 @@
-//! The validity domain: what range of each section column the used sections cover.
+//! The validity domain: the range of each section column over the sections used.
 
 use super::sections::Unit;
 use crate::check::plan::{DatumKind, Plan, Scalar};

@@ -1,4 +1,4 @@
-//! What is estimated from the rows of a group.
+//! Estimates from the rows of a group.
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -28,7 +28,7 @@ impl Group<'_> {
         self.members.iter().map(|member| member.row.value).collect()
     }
 
-    /// For each row the number of its unit of independence.
+    /// The index of the independent unit of each row.
     pub fn units(&self) -> Vec<usize> {
         independent(self.plan, self.members)
     }
@@ -38,7 +38,7 @@ impl Group<'_> {
         self.members.iter().map(|member| member.unit).filter(|unit| seen.insert(unit.name.as_str())).collect()
     }
 
-    /// The value of an expression over the group.
+    /// The value of an expression over the group, SI.
     ///
     /// # Errors
     /// What cannot be estimated from these rows, and why.
@@ -47,13 +47,13 @@ impl Group<'_> {
         self.over(of, &values)
     }
 
-    /// What an expression takes from the group, one by one.
+    /// The numbers that an expression takes from the group, in order.
     pub fn taken(&self, of: &OfGroup) -> Vec<Result<f64, String>> {
         let values = self.values();
         of.taken.iter().map(|taking| self.take(taking, &values)).collect()
     }
 
-    /// As [`Self::number`], with other values in place of the rows' own.
+    /// As [`Self::number`], with other values in place of those of the rows.
     fn over(&self, of: &OfGroup, values: &[f64]) -> Result<f64, String> {
         let taken: Vec<Result<f64, String>> = of.taken.iter().map(|taking| self.take(taking, values)).collect();
         number(&of.expr, &Known { inputs: &taken, ..Known::vehicle(self.facts) })
@@ -76,7 +76,7 @@ impl Group<'_> {
                 share(self.members.iter().zip(values).map(of_row))
             }
             Taking::Other { quantity, id, statistic, ddof } => {
-                let rows = self.table.get(*quantity).ok_or_else(|| format!("there are no rows of {id}"))?;
+                let rows = self.table.get(*quantity).ok_or_else(|| format!("{id} has no rows"))?;
                 let found = rows.clone().and_then(|rows| {
                     let values: Vec<f64> = rows.iter().map(|member| member.row.value).collect();
                     statistic_of(*statistic, *ddof, &values)
@@ -97,10 +97,10 @@ impl Group<'_> {
         }
     }
 
-    /// An end of the confidence interval of an estimate, one-sided: closed where the estimate is a mean or a standard deviation, else by a
-    /// bootstrap of the units of independence.
+    /// An end of the one-sided confidence interval of an estimate: in closed form for a mean or a standard deviation with divisor
+    /// n-1, else by a bootstrap of the independent units.
     fn bound(&self, of: &Estimate, upper: bool, confidence: f64, bootstrap: bool, values: &[f64]) -> Result<f64, String> {
-        let EstimateKind::Of(of_group) = &of.kind else { return Err("every value by itself has no interval".into()) };
+        let EstimateKind::Of(of_group) = &of.kind else { return Err("a single value has no interval".into()) };
         let units = self.units();
         let probability = if upper { confidence } else { 1.0 - confidence };
         let found = match of.statistic() {
@@ -147,8 +147,8 @@ impl Group<'_> {
         Ok(Fitted { regression, regressors, at })
     }
 
-    /// What is drawn of an estimate that is a regression with one regressor, in the unit of the quantity; `None` of other estimates, and
-    /// where there is no number.
+    /// The diagram of a regression with one regressor, in the unit of the quantity; `None` for other estimates and where there is
+    /// no value.
     pub fn figure(&self, of: &OfGroup, unit: &units::Unit) -> Option<RegressionFigure> {
         let (Kind::Input(0), [Taking::Fit(fit)]) = (&of.expr.kind, of.taken.as_slice()) else { return None };
         let [over] = fit.over.as_slice() else { return None };
@@ -193,10 +193,10 @@ impl Group<'_> {
     }
 }
 
-/// Pieces of the curve of a regression: enough that a hyperbola looks smooth in a diagram of a few centimetres.
+/// Number of pieces of a regression curve in a diagram. A hyperbola then looks smooth at a few centimetres.
 const STEPS: usize = 32;
 
-/// A regression with the numbers it was fitted to and taken at.
+/// A regression with the numbers it was fitted to and the point at which it is evaluated.
 struct Fitted {
     regression: Regression,
     regressors: Vec<Vec<f64>>,
@@ -210,11 +210,13 @@ fn bound_at(regression: &Regression, fit: &Fit, confidence: f64, at: &[f64]) -> 
     regression.bound(at, kind, side, tails, confidence).map_err(|error| error.to_string())
 }
 
-/// A percentage without the rounding of its conversion from a share: 99.9, not 99.90000000000001.
+/// A percentage without rounding errors of its conversion from a share: 99.9, not 99.90000000000001.
 fn rounded(percent: f64) -> f64 {
     (percent * 1e9).round() / 1e9
 }
 
+/// The statistic of the values, with divisor n - `ddof`.
+///
 /// # Errors
 /// It is not defined for so few values.
 pub fn statistic_of(statistic: Statistic, ddof: usize, values: &[f64]) -> Result<f64, String> {
@@ -231,12 +233,12 @@ pub fn statistic_of(statistic: Statistic, ddof: usize, values: &[f64]) -> Result
 fn share(found: impl Iterator<Item = Result<bool, String>>) -> Result<f64, String> {
     let found = found.collect::<Result<Vec<bool>, _>>()?;
     if found.is_empty() {
-        return Err("there is nothing to take a share of".into());
+        return Err("a share needs at least one value".into());
     }
     Ok(found.iter().filter(|holds| **holds).count() as f64 / found.len() as f64)
 }
 
-/// What names stand for in an expression over a group, beside what is taken from it.
+/// Values of the names in an expression over a group, in addition to the numbers taken from it.
 #[derive(Debug)]
 pub struct Taken<'a, V: Values> {
     pub values: &'a V,

@@ -1,4 +1,4 @@
-//! Vehicle data as the protocol names them, and what names of expressions stand for while running.
+//! Vehicle data under the names of the protocol, and values of names in expressions during a run.
 
 use super::told::is_dimensioned;
 use crate::check::evaluate::Values;
@@ -8,24 +8,24 @@ use crate::problem::{Problem, Problems};
 use crate::result::DataItem;
 use crate::units::{self, number::Refused};
 
-/// Values of the vehicle, one for each [`Plan::vehicle`].
+/// Vehicle data, one for each [`Plan::vehicle`].
 #[derive(Clone, Debug)]
 pub struct Facts {
-    /// Why there is no value, for a datum that may be absent.
+    /// An error states why a datum that may be absent has no value.
     pub vehicle: Vec<Result<Scalar, String>>,
-    /// For each of them whether it is a number that the vehicle file gives without a unit.
+    /// For each datum, whether it is a number without a unit in the vehicle file.
     pub assumed: Vec<bool>,
 }
 
 impl Facts {
-    /// Reads every vehicle datum the protocol declares; a missing or ill-formed one is a problem.
+    /// Reads every vehicle datum that the protocol declares. A missing or ill-formed one is a problem.
     pub fn read(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Self {
         let read = |datum| vehicle_datum(datum, campaign, problems).unwrap_or((Ok(Scalar::Number(0.0)), false));
         let (vehicle, assumed) = plan.vehicle.iter().map(read).unzip();
         Self { vehicle, assumed }
     }
 
-    /// The values as a report prints them.
+    /// The vehicle data as printed in a report.
     pub fn items(&self, plan: &Plan) -> Vec<DataItem> {
         let of = |(datum, (value, assumed)): (&Datum, (&Result<Scalar, String>, &bool))| {
             let unit_assumed = *assumed && is_dimensioned(&datum.kind);
@@ -35,7 +35,7 @@ impl Facts {
     }
 }
 
-/// A value as a report prints it, in the unit the protocol declares.
+/// A value as printed in a report, in the unit declared in the protocol.
 pub fn item(datum: &Datum, value: Option<&Scalar>) -> DataItem {
     let unit = if let DatumKind::Number(unit) = &datum.kind { Some(unit) } else { None };
     let value = match value {
@@ -47,15 +47,15 @@ pub fn item(datum: &Datum, value: Option<&Scalar>) -> DataItem {
     DataItem { name: datum.title.clone(), value, unit: unit.map(|unit| unit.text.clone()), used: true, unit_assumed: false }
 }
 
-/// Why a datum that may be absent has no value.
+/// The reason why a datum that may be absent has no value.
 pub fn absent(datum: &Datum) -> String {
     format!("the vehicle file does not state `{}`", datum.key)
 }
 
-/// In place of a value that the vehicle file need not state and does not.
+/// Printed in place of a value that the vehicle file does not state.
 pub const NOT_STATED: &str = "not stated";
 
-/// As [`item`], of the vehicle; a value that is not stated is said to be so.
+/// As [`item`], for vehicle data; a value that is not stated is marked so.
 pub fn vehicle_item(datum: &Datum, value: &Result<Scalar, String>) -> DataItem {
     match value {
         Ok(value) => item(datum, Some(value)),
@@ -63,7 +63,7 @@ pub fn vehicle_item(datum: &Datum, value: &Result<Scalar, String>) -> DataItem {
     }
 }
 
-/// A number of a table without the tail that conversion between units leaves: `56.3`, not `56.300000000000004`.
+/// A number without rounding errors of unit conversion: `56.3`, not `56.300000000000004`.
 pub fn trimmed(value: f64) -> String {
     let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
@@ -107,7 +107,7 @@ fn vehicle_datum(datum: &Datum, campaign: &Campaign, problems: &mut Problems) ->
     None
 }
 
-/// Why a number is none that the protocol takes. Where its unit was assumed, one in which it would be is named.
+/// Why a number is not allowed. If its unit was assumed, the help names a unit in which the number would be allowed.
 fn out_of_range(datum: &Datum, value: &Scalar, assumed: bool) -> Option<Refused> {
     let (Some(range), Scalar::Number(si), DatumKind::Number(unit)) = (&datum.range, value, &datum.kind) else { return None };
     if (range.low..=range.high).contains(si) {
@@ -124,7 +124,7 @@ fn out_of_range(datum: &Datum, value: &Scalar, assumed: bool) -> Option<Refused>
     Some(Refused { says, help: Some(help) })
 }
 
-/// A text as a value of the declared kind; numbers are in the declared unit.
+/// Converts a text to a value of the declared kind; numbers are in the declared unit.
 pub fn scalar(kind: &DatumKind, text: &str) -> Result<Scalar, String> {
     match kind {
         DatumKind::Number(unit) => match text.parse::<f64>() {
@@ -145,14 +145,14 @@ pub fn scalar(kind: &DatumKind, text: &str) -> Result<Scalar, String> {
             let number = text.parse::<f64>().ok().and_then(|number| words.iter().find(|word| word.parse() == Ok(number)));
             match (number, crate::problem::nearest(text, words.iter().map(String::as_str))) {
                 (Some(word), _) => Ok(Scalar::Word(word.clone())),
-                (None, Some(near)) => Err(format!("`{text}` is none of {}; did you mean `{near}`?", words.join(", "))),
-                (None, None) => Err(format!("`{text}` is none of {}", words.join(", "))),
+                (None, Some(near)) => Err(format!("`{text}` is not one of {}; did you mean `{near}`?", words.join(", "))),
+                (None, None) => Err(format!("`{text}` is not one of {}", words.join(", "))),
             }
         }
     }
 }
 
-/// What names stand for in one section; parts that are not known give the reason.
+/// Values of the names in one section. Where a value is not known, the reason is given.
 #[derive(Debug)]
 pub struct Known<'a> {
     pub facts: &'a Facts,
@@ -176,7 +176,7 @@ impl Values for Known<'_> {
     fn column(&self, index: usize) -> Result<Scalar, String> {
         match self.columns {
             Some(columns) => columns[index].clone(),
-            None => Err("it differs from section to section".into()),
+            None => Err("it differs between sections".into()),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Groups of rows: which a limit is about.
+//! Groups of rows that a limit applies to.
 
 use std::collections::HashMap;
 
@@ -10,21 +10,23 @@ use super::table::Member;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Key, Limit, Plan, Quantity, Scalar, Scope};
 
-/// What an estimate is taken over.
+/// The group of rows of an estimate.
 #[derive(Clone, Debug)]
 pub struct Part<'a> {
     scope: &'a Scope,
-    /// The zones of the scope, or that of one section.
+    /// The zones of the scope, or the zone of one section.
     zones: Vec<String>,
-    /// Each key with the member that the group is of, and what it is called.
+    /// Each key with the member of the group and the printed name.
     keys: Vec<(&'a Key, String, String)>,
-    /// Numbers of its rows among those of the quantity, where keys tell groups apart.
+    /// Indices of its rows among those of the quantity, where keys define the groups.
     rows: Vec<usize>,
 }
 
-/// The groups of a limit. Its zones that need no section and have none are left out; so are zones that the quantity leaves out by its own
-/// condition or for want of repeats, unless it leaves out all, and groups of which a condition leaves no row, unless it leaves none at all.
-/// A group of a place is there wherever the place was recorded.
+/// The groups of a limit.
+///
+/// Left out are: zones that need no section and have none; zones that the condition of the quantity excludes or that have no
+/// repeats, unless all are excluded; groups in which a condition leaves no row, unless it leaves none in any group. A group of a
+/// place exists wherever the place was recorded.
 pub fn parts<'a>(plan: &Plan, quantity: &Quantity, limit: &'a Limit, members: &[Member<'_>], facts: &Facts) -> Vec<Part<'a>> {
     let scope = &limit.scope;
     let selective = (quantity.only.is_some() || quantity.evaluation.of_repeats()) && !members.is_empty();
@@ -35,7 +37,7 @@ pub fn parts<'a>(plan: &Plan, quantity: &Quantity, limit: &'a Limit, members: &[
     }
     let whole = Part { scope, zones: scope.zones.clone(), keys: Vec::new(), rows: Vec::new() };
     let inside: Vec<Result<bool, String>> = members.iter().map(|member| whole.has_section(member.unit, facts)).collect();
-    // Where it cannot be told which rows belong to it, the limit is not assessable, and says why.
+    // Where it cannot be determined which rows belong to it, the limit is not assessable, and the reason is given.
     if inside.iter().any(Result::is_err) {
         return vec![whole];
     }
@@ -50,11 +52,11 @@ pub fn parts<'a>(plan: &Plan, quantity: &Quantity, limit: &'a Limit, members: &[
         return if excluded { Vec::new() } else { vec![whole] };
     }
     let groups = whole.by_keys(plan, quantity, members, &rows);
-    // What should be there and is not is told by the group of all.
+    // Missing groups are reported for the group of all rows.
     if groups.is_empty() && scope.condition.is_none() { vec![whole] } else { groups }
 }
 
-/// The member of a key that a row is of, and what the group is called.
+/// The member of a key that a row belongs to, and its printed name.
 fn of_key(plan: &Plan, quantity: &Quantity, key: &Key, member: &Member<'_>) -> (String, String) {
     let named = |of: &str, name: String| (name.clone(), format!("{of} {name}"));
     match key {
@@ -80,12 +82,12 @@ fn of_key(plan: &Plan, quantity: &Quantity, key: &Key, member: &Member<'_>) -> (
 }
 
 impl<'a> Part<'a> {
-    /// The groups of some rows. What differs by place is expected wherever there are rows; what differs by section is what there is.
+    /// Groups of rows by keys. For places, every recorded position has a group; for sections, the groups that occur.
     fn by_keys(&self, plan: &Plan, quantity: &Quantity, members: &[Member<'_>], rows: &[usize]) -> Vec<Self> {
         let keys = &self.scope.each;
         let of = |member: &Member<'_>, key: &Key| of_key(plan, quantity, key, member);
         let mut rows_of: HashMap<Vec<String>, Vec<usize>> = HashMap::new();
-        // What sections have in common, one after another.
+        // Combinations of the section keys, in order of occurrence.
         let mut of_sections: IndexSet<Vec<Option<(String, String)>>> = IndexSet::new();
         for &row in rows {
             let found: Vec<(String, String)> = keys.iter().map(|key| of(&members[row], key)).collect();
@@ -122,13 +124,13 @@ impl<'a> Part<'a> {
         groups
     }
 
-    /// What a limit of a single value is about: the zone of its section.
+    /// The group for a limit of a single value: the zone of its section.
     pub fn of_section(plan: &Plan, limit: &'a Limit, unit: &Unit) -> Self {
         let zones = unit.zone.iter().filter(|_| !plan.zones.is_empty()).cloned().collect();
         Self { scope: &limit.scope, zones, keys: Vec::new(), rows: Vec::new() }
     }
 
-    /// `all`, `zones 2, 3`, `zone 1, wheelset 2`
+    /// The group as text: `all`, `zones 2, 3`, `zone 1, wheelset 2`.
     pub fn in_words(&self) -> String {
         let mut words: Vec<String> = Vec::new();
         if !self.zones.is_empty() {
@@ -139,7 +141,7 @@ impl<'a> Part<'a> {
         if words.is_empty() { "all".into() } else { words.join(", ") }
     }
 
-    /// Each key with its member, the zone first; none where the zone alone tells groups apart.
+    /// Each key with its member, the zone first; empty where only the zone defines the groups.
     pub fn keys(&self) -> Vec<(String, String)> {
         if self.keys.is_empty() {
             return Vec::new();
@@ -157,7 +159,7 @@ impl<'a> Part<'a> {
     /// The rows of the group.
     ///
     /// # Errors
-    /// It cannot be told whether a section belongs to it.
+    /// It cannot be determined whether a section belongs to it.
     pub fn members<'m>(&self, facts: &Facts, all: &[Member<'m>]) -> Result<Vec<Member<'m>>, String> {
         if !self.keys.is_empty() {
             return Ok(self.rows.iter().map(|&row| all[row]).collect());
@@ -171,7 +173,7 @@ impl<'a> Part<'a> {
         Ok(inside)
     }
 
-    /// Whether rows of a section belong to it, whatever their position.
+    /// Whether rows of a section belong to it, at any position.
     pub fn has_section(&self, unit: &Unit, facts: &Facts) -> Result<bool, String> {
         if !self.zones.is_empty() && !unit.zone.as_ref().is_some_and(|zone| self.zones.contains(zone)) {
             return Ok(false);
@@ -181,7 +183,7 @@ impl<'a> Part<'a> {
             .map_err(|reason| format!("it cannot be determined whether section {} belongs to this group: {reason}", unit.name))
     }
 
-    /// Whether keys of sections tell it apart from other groups.
+    /// Whether keys of sections distinguish it from other groups.
     pub fn by_section(&self) -> bool {
         self.keys.iter().any(|(key, ..)| !matches!(key, Key::Place(_)))
     }
@@ -194,7 +196,7 @@ impl<'a> Part<'a> {
         quantity.positions.iter().map(|position| asked.iter().all(|(place, of)| at(&position.places, place, of))).collect()
     }
 
-    /// Whether a limit of this scope is the limit of the group, too; how closely it was meant for it.
+    /// Whether a limit of this scope also applies to the group, and how specific it is.
     pub fn covered_by(&self, scope: &Scope) -> Option<Closeness> {
         let condition = |scope: &Scope| scope.condition.as_ref().map(|(_, words)| words.clone());
         let within = scope.zones.is_empty() || !self.zones.is_empty() && self.zones.iter().all(|zone| scope.zones.contains(zone));

@@ -1,4 +1,4 @@
-//! From the rows of all sections to results of quantities and the verdict: the nodes of the graph after the table of values.
+//! From the rows of all sections to results of quantities and verdicts: the nodes of the graph after the table of values.
 
 use std::collections::BTreeSet;
 
@@ -15,10 +15,10 @@ use crate::result::{Consequence, Finding, PairValue, QuantityResult, Verdict, Ve
 #[derive(Debug)]
 pub struct Judged {
     pub verdict: Verdict,
-    /// The overall verdict in the protocol's own words, if it has some.
+    /// The overall verdict in the words of the protocol, if it states them.
     pub own_word: Option<String>,
     pub reasons: Vec<String>,
-    /// Those with a name.
+    /// Verdicts with a name.
     pub verdicts: Vec<VerdictResult>,
     pub quantities: Vec<QuantityResult>,
     pub zones: Vec<ZoneResult>,
@@ -54,12 +54,12 @@ pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: 
     Judged { verdict, own_word: own, reasons: overall.reasons, verdicts: named, quantities, zones }
 }
 
-/// How many different sites sections are of.
+/// Number of different sites of the sections.
 fn sites<'a>(units: impl Iterator<Item = &'a Unit>) -> usize {
     units.map(|unit| unit.site).collect::<BTreeSet<_>>().len()
 }
 
-/// `2 usable sections`; where some of them are repeats, `3 usable sections of 2 sites (a repeat is no further section)`
+/// `2 usable sections`; with repeats, `3 usable sections of 2 sites (a repeat is no further section)`.
 fn usable(sections: usize, sites: usize) -> String {
     let sections_in_words = count(sections, "usable section");
     if sections == sites {
@@ -68,8 +68,8 @@ fn usable(sections: usize, sites: usize) -> String {
     format!("{sections_in_words} of {} (a repeat is no further section)", count(sites, "site"))
 }
 
-/// One reason for each plausibility rule that makes the campaign not assessable; where sections are missing, also for each that took
-/// sections away.
+/// One reason for each plausibility rule that makes the campaign not assessable. If sections are missing, also one for each rule
+/// that excluded sections.
 fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<String> {
     let mut reasons: Vec<String> = Vec::new();
     for rule in &plan.plausibility {
@@ -96,7 +96,7 @@ fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<Strin
     reasons
 }
 
-/// Why a quantity cannot be had of some of the sections: the first of them in full.
+/// Why a quantity cannot be evaluated in some of the sections: the first of them in full.
 fn impossible(index: usize, used: &[(&Unit, &SectionValues)]) -> Option<String> {
     let of_section =
         |values: &SectionValues| values.impossible.iter().find(|(quantity, _)| *quantity == index).map(|(_, says)| says.clone());
@@ -104,8 +104,8 @@ fn impossible(index: usize, used: &[(&Unit, &SectionValues)]) -> Option<String> 
     let (name, says) = found.next()?;
     let more = match found.count() {
         0 => String::new(),
-        1 => "; so is 1 other section".into(),
-        more => format!("; so are {more} other sections"),
+        1 => "; the same holds for 1 other section".into(),
+        more => format!("; the same holds for {more} other sections"),
     };
     Some(format!("it cannot be evaluated in section {name}, {says}{more}"))
 }
@@ -126,7 +126,7 @@ fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
     }
 }
 
-/// The rows of a quantity over all sections that are used.
+/// The rows of a quantity over all sections used.
 pub fn members<'a>(quantity: &'a Quantity, index: usize, used: &[(&'a Unit, &'a SectionValues)]) -> Vec<Member<'a>> {
     let mut members = Vec::new();
     for (unit, values) in used {
@@ -137,7 +137,7 @@ pub fn members<'a>(quantity: &'a Quantity, index: usize, used: &[(&'a Unit, &'a 
     members
 }
 
-/// Runs the estimates and limits of a quantity: what each limit came to, group by group.
+/// Evaluates the estimates and limits of a quantity, group by group.
 fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Vec<Compared> {
     let of_limit = |nodes: &crate::graph::LimitNodes| match (&graph.nodes[nodes.estimate].operation, &graph.nodes[nodes.limit].operation) {
         (Operation::Estimate(estimate), Operation::Limit(limit)) => {
@@ -149,14 +149,14 @@ fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Vec<
     nodes.limits.iter().flat_map(of_limit).collect()
 }
 
-/// The rows of a quantity, and why they do not suffice.
+/// The rows of a quantity, or the reason why they are not sufficient.
 pub struct Rows<'a> {
     members: Vec<Member<'a>>,
     reason: Option<String>,
 }
 
 impl<'a> Rows<'a> {
-    /// For who takes a number of another quantity.
+    /// The rows, for a quantity or limit that uses numbers of this one.
     pub fn usable(&'a self) -> Result<&'a [Member<'a>], String> {
         self.reason.clone().map_or(Ok(&self.members), Err)
     }
@@ -182,7 +182,7 @@ pub fn rows<'a>(plan: &Plan, quantity: &'a Quantity, index: usize, used: &[(&'a 
     Rows { members, reason }
 }
 
-/// The result, and a sentence for each limit that does not hold.
+/// The result, and a sentence for each limit that is not met.
 fn quantity_result(graph: &Graph, index: usize, judging: &Judging<'_>, reason: Option<String>) -> (QuantityResult, Vec<String>) {
     let Judging { plan, quantity, members, .. } = *judging;
     let (statistics, fails): (Vec<_>, Vec<_>) =
@@ -238,7 +238,7 @@ fn quantity_result(graph: &Graph, index: usize, judging: &Judging<'_>, reason: O
     (result, fails.into_iter().flatten().collect())
 }
 
-/// `1 section`, `2 sections`, `no quantities`
+/// A number with its noun: `1 section`, `2 sections`, `no quantities`.
 pub fn count(number: usize, noun: &str) -> String {
     let plural = noun.strip_suffix('y').map_or_else(|| format!("{noun}s"), |stem| format!("{stem}ies"));
     match number {

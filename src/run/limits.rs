@@ -1,4 +1,4 @@
-//! What is estimated of the rows of a quantity, against its limits.
+//! Compares the estimates of a quantity with its limits.
 
 use super::estimates::{Group, Taken};
 use super::facts::{Facts, Known};
@@ -13,21 +13,21 @@ use crate::result::{RegressionFigure, RulePlace, Sample, StatisticResult};
 use crate::source::Span;
 use crate::units::Unit;
 
-/// A value equal to its limit passes; this much room is for the rounding of units and sums.
+/// Relative tolerance for rounding of units and sums. A value equal to its limit meets the limit.
 const EQUAL: f64 = 1e-12;
 
-/// A group of rows and what was estimated of it.
+/// A group of rows and its estimate.
 #[derive(Debug)]
 pub struct Estimated<'a> {
     pub part: Part<'a>,
     pub members: Vec<Member<'a>>,
-    /// In SI; `None` of limits of each value.
+    /// In SI; `None` for limits of each value.
     pub value: Result<Option<f64>, String>,
     pub interval: Option<(f64, f64)>,
     pub regression: Option<RegressionFigure>,
 }
 
-/// An estimate against its limit, and the sentence for the verdict where it does not hold.
+/// An estimate compared with its limit, and the sentence for the verdict where the limit is not met.
 #[derive(Debug)]
 pub struct Compared {
     pub result: StatisticResult,
@@ -49,10 +49,10 @@ pub fn applies(limit: &Limit, facts: &Facts) -> Result<bool, String> {
 }
 
 impl<'a> Judging<'a> {
-    /// What a limit is of, group by group; nothing where the limit does not apply to this vehicle.
+    /// The estimates of a limit, group by group; empty where the limit does not apply to this vehicle.
     ///
     /// # Errors
-    /// Whether it applies cannot be told.
+    /// It cannot be determined whether the limit applies.
     pub fn estimate(&self, limit: &'a Limit) -> Result<Vec<Estimated<'a>>, String> {
         if !applies(limit, self.facts)? {
             return Ok(Vec::new());
@@ -85,7 +85,7 @@ impl<'a> Judging<'a> {
         Estimated { part, members, value, interval, regression }
     }
 
-    /// What was estimated against the limit, group by group.
+    /// Compares the estimates with the limit, group by group.
     pub fn against(&self, limit: &'a Limit, estimated: Result<Vec<Estimated<'a>>, String>) -> Vec<Compared> {
         match estimated {
             Ok(groups) => groups.iter().map(|group| self.of_group(limit, group)).collect(),
@@ -146,12 +146,12 @@ impl<'a> Judging<'a> {
         Compared { result, fails }
     }
 
-    /// In which the estimate and its limit are told.
+    /// The unit in which the estimate and its limit are printed.
     pub fn unit(&self, limit: &'a Limit) -> &'a Unit {
         limit.estimate.unit.as_ref().unwrap_or(&self.quantity.unit)
     }
 
-    /// One number against one limit.
+    /// Compares one number with one limit.
     fn one(&self, limit: &'a Limit, group: &Estimated<'a>, value: f64, result: &mut StatisticResult) -> Result<bool, String> {
         let show = |value: f64| self.unit(limit).from_si(value);
         result.value = Some(show(value));
@@ -164,13 +164,13 @@ impl<'a> Judging<'a> {
         Ok(holds)
     }
 
-    /// Every row against its own limit: the worst stands for all.
+    /// Compares every row with its own limit; the worst row decides.
     fn each(&self, limit: &'a Limit, members: &[Member<'_>], result: &mut StatisticResult) -> Result<bool, String> {
         let mut worst: Option<(bool, f64, f64, f64)> = None;
         let mut all_hold = true;
         for member in members {
             let unit = member.unit;
-            // The limit of another statistic, if this one refers to it, is that of the section's zone.
+            // If this limit refers to that of another statistic, the latter is taken for the section's zone.
             let part = Part::of_section(self.plan, limit, unit);
             let bound = self
                 .bound(limit, &part, &[*member], &unit.known(self.facts))
@@ -178,7 +178,7 @@ impl<'a> Judging<'a> {
             let value = member.row.value;
             let (normalised, holds) = against(value, bound, limit.at_least);
             all_hold &= holds;
-            // One that fails is worse than any that holds, also where a share cannot be formed.
+            // A value that fails is worse than any that passes, also where no share can be computed.
             let share = normalised.unwrap_or(if holds { 0.0 } else { f64::INFINITY });
             if worst.is_none_or(|(held, before, _, _)| (!holds, share) > (!held, before)) {
                 worst = Some((holds, share, value, bound));
@@ -198,12 +198,12 @@ impl<'a> Judging<'a> {
     }
 }
 
-/// Where a rule stands, by the name of its file: folders differ from one machine to the next.
+/// The place of a rule, with the name of its file only, as folders differ between machines.
 pub fn rule_place(span: &Span) -> RulePlace {
     RulePlace { file: span.source.file_name(), line: span.line() }
 }
 
-/// `Y_qst: mean 4.33 kN exceeds the limit 3.33 kN by 30 %`
+/// The sentence of a limit that is not met: `Y_qst: mean 4.33 kN exceeds the limit 3.33 kN by 30 %`.
 fn sentence(quantity: &Quantity, limit: &Limit, result: &StatisticResult) -> String {
     let scope = if result.scope == "all" { String::new() } else { format!(" ({})", result.scope) };
     let unit = if result.unit == "-" { String::new() } else { format!(" {}", result.unit) };
@@ -219,7 +219,7 @@ fn sentence(quantity: &Quantity, limit: &Limit, result: &StatisticResult) -> Str
     format!("{what} {of} {shown_bound}{unit}{}", excess(value.abs() / bound))
 }
 
-/// ` by 30 %`; nothing where the ratio says nothing.
+/// The excess as text, such as ` by 30 %`; empty where the ratio is not meaningful.
 fn excess(ratio: f64) -> String {
     let percent = 100.0 * (ratio - 1.0);
     match percent {
@@ -231,7 +231,7 @@ fn excess(ratio: f64) -> String {
     }
 }
 
-/// Value and limit with three significant digits, more where they would read the same or compare otherwise than they do.
+/// Value and limit with three significant digits, or with more if the rounded texts would be equal or in the wrong order.
 fn apart(value: f64, bound: f64) -> (String, String) {
     let read = |text: &str| text.replace('\u{2212}', "-").parse::<f64>().unwrap_or(f64::NAN).abs();
     let shown = |digits: usize| (significant(value, digits), significant(bound, digits));
@@ -239,7 +239,7 @@ fn apart(value: f64, bound: f64) -> (String, String) {
     (LEAST_DIGITS..MOST_DIGITS).map(shown).find(right).unwrap_or_else(|| shown(MOST_DIGITS))
 }
 
-/// Significant digits of a value in a sentence, and of one that is close to its limit.
+/// Significant digits of a value in a sentence; more are used close to the limit.
 const LEAST_DIGITS: usize = 3;
 const MOST_DIGITS: usize = 12;
 
@@ -251,8 +251,8 @@ fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}").replace('-', "\u{2212}")
 }
 
-/// Whether values on both sides of a limit lie in an interval, so that the data do not decide. Where a magnitude is limited,
-/// minus the limit is one, too.
+/// Whether an interval contains values on both sides of a limit, so that the data do not decide. For a limited magnitude, minus the
+/// limit counts as well.
 fn spans((low, high): (f64, f64), bound: f64, at_least: bool) -> bool {
     let inside = |bound: f64| low < bound && bound < high;
     inside(bound) || !at_least && inside(-bound)
@@ -262,7 +262,7 @@ fn no_limit(reason: &str) -> String {
     format!("its limit cannot be evaluated: {reason}")
 }
 
-/// Share of the limit used, and whether it holds. With "at least", the limit over the value.
+/// Share of the limit used, and whether the limit is met. For "at least", the share is limit / value.
 fn against(value: f64, bound: f64, at_least: bool) -> (Option<f64>, bool) {
     let room = EQUAL * bound.abs();
     if at_least {
@@ -271,18 +271,18 @@ fn against(value: f64, bound: f64, at_least: bool) -> (Option<f64>, bool) {
     ((bound > 0.0).then(|| value.abs() / bound), value.abs() <= bound + room)
 }
 
-/// Limits in SI, for one part of one quantity.
+/// Limits in SI, for one group of one quantity.
 #[derive(Debug)]
 pub struct Bounds<'a> {
     pub quantity: &'a Quantity,
     pub part: &'a Part<'a>,
-    /// Data of its sections may be in the limit.
+    /// Data of its sections can be used in the limit.
     pub group: Group<'a>,
     pub known: &'a Known<'a>,
 }
 
 impl Bounds<'_> {
-    /// The limit with its factors; a reference to another statistic is that statistic's limit, factors included.
+    /// The limit with its factors. A reference to another statistic means the limit of that statistic, with its factors.
     pub fn of(&self, limit: &Limit, depth: usize) -> Result<f64, String> {
         if depth > self.quantity.limits.len() {
             return Err("it depends on itself".into());
@@ -301,7 +301,7 @@ impl Bounds<'_> {
         Ok(value)
     }
 
-    /// The limit of another statistic: that given for just this part before one given for all.
+    /// The limit of another statistic: one for just this group has priority over one for all.
     fn of_statistic(&self, name: &str, depth: usize) -> Result<f64, String> {
         let mut found: Option<(Closeness, &Limit)> = None;
         for limit in self.quantity.limits.iter().filter(|limit| limit.estimate.name == name) {
@@ -315,7 +315,7 @@ impl Bounds<'_> {
     }
 }
 
-/// What names stand for in a limit.
+/// Values of the names in a limit.
 struct Named<'a> {
     bounds: &'a Bounds<'a>,
     depth: usize,

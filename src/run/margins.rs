@@ -1,4 +1,4 @@
-//! Whether records reach far enough beyond their section for slow filters to settle.
+//! Checks whether records extend far enough beyond their section for slow filters to settle.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use crate::check::plan::StepSpec;
 use crate::graph::{NodeId, Operation};
 use crate::metrics::filter::{Band, Roots};
 
-/// One note for all used sections with too little record for a slow filter.
+/// One note for all sections used whose record is too short for a slow filter.
 pub fn margin_note<'a>(used: impl Iterator<Item = &'a SectionValues>) -> Option<String> {
     let margins: Vec<Option<f64>> = used.map(|values| values.short_margin).collect();
     let short: Vec<f64> = margins.iter().copied().flatten().collect();
@@ -22,19 +22,19 @@ pub fn margin_note<'a>(used: impl Iterator<Item = &'a SectionValues>) -> Option<
     ))
 }
 
-/// What a short margin does: margin in s, and the largest change of an rms value and of an extreme value (0.15 and 99.85 % values) in per
-/// cent, against records that reach 3.2 s beyond the section. Own trials with car body accelerations of seven sections of three simulated
-/// campaigns (28 values of each kind), band-pass 0.4 to 10 Hz, order 4, zero-phase, parts of 2 to 4 s evaluated: short ones, in which the ends
-/// weigh most. Half of the values moved by less than a fifth of this.
+/// Effect of a short margin: margin in s, and the largest change in % of an rms value and of an extreme value (0.15 and 99.85 %
+/// values), compared with records that extend 3.2 s beyond the section. Source: own trials with car body accelerations of seven
+/// sections of three simulated campaigns (28 values of each kind), band-pass 0.4 to 10 Hz, order 4, zero-phase. Evaluated parts of
+/// 2 to 4 s, for which the ends have the largest effect. Half of the values changed by less than a fifth of this.
 const MARGIN_TRIALS: [(f64, u8, u8); 7] =
     [(0.0, 50, 75), (0.25, 19, 50), (0.5, 16, 41), (1.0, 9, 27), (1.5, 7, 16), (2.0, 4, 10), (3.0, 2, 10)];
 
-/// Filters that reach below this frequency need this much record on each side to settle (own trials: 5 s keep the error of a
-/// 0.4 Hz edge below 0.5 % of an rms value).
+/// Frequency in Hz below which a filter needs this margin, and the margin in s on each side of the section (own trials: 5 s keep
+/// the error at a 0.4 Hz edge below 0.5 % of an rms value).
 const SLOW_FILTER: f64 = 1.0;
 const SLOW_FILTER_MARGIN: f64 = 5.0;
 
-/// Of a filter: its lowest edge, or where its slowest pole lies.
+/// Lowest edge frequency of a filter, or the frequency of its slowest pole.
 fn lowest_frequency(step: &StepSpec) -> Option<f64> {
     match step {
         StepSpec::Butterworth { band, .. } => match band {
@@ -42,7 +42,7 @@ fn lowest_frequency(step: &StepSpec) -> Option<f64> {
         },
         StepSpec::Transfer { function, .. } => match function.poles {
             Roots::One(frequency) => Some(frequency),
-            // Of low quality, two real poles part; the lower one lies near this.
+            // At low quality there are two real poles; the lower one is near this frequency.
             Roots::Two { frequency, quality } => Some(frequency * quality.min(1.0)),
         },
         _ => None,

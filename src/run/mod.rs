@@ -1,4 +1,4 @@
-//! Runs a graph over a campaign: records in parallel, one at a time per worker, to plain results.
+//! Executes a graph over a campaign: records in parallel, one at a time per worker, to plain results.
 
 mod causes;
 mod checks;
@@ -45,14 +45,14 @@ use section::SectionValues;
 use sections::Unit;
 pub use synchronisation::{Offset, Shifts};
 
-/// What a run computed; the report adds what the protocol and the campaign say about themselves.
+/// The results of a run. The report adds the descriptions of protocol and campaign.
 #[derive(Debug)]
 pub struct Outcome {
     pub verdict: Verdict,
-    /// The overall verdict in the protocol's own words, if it has some.
+    /// The overall verdict in the words of the protocol, if it states them.
     pub own_word: Option<String>,
     pub reasons: Vec<String>,
-    /// Those with a name.
+    /// Verdicts with a name.
     pub verdicts: Vec<VerdictResult>,
     pub quantities: Vec<QuantityResult>,
     pub sections: Vec<SectionResult>,
@@ -67,17 +67,17 @@ pub struct Outcome {
     pub files: Vec<FileHash>,
 }
 
-/// How a run is done, beside what the protocol says.
+/// Settings of a run that are not part of the protocol.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// How many sections' traces to keep for plots.
+    /// Number of sections whose traces are kept for plots.
     pub traces: usize,
 }
 
-/// Told whenever a record is done, from any thread.
+/// Called after each record, from any thread.
 pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
 
-/// A campaign with every section evaluated, before anything is judged.
+/// A campaign with every section evaluated, before limits are applied.
 #[derive(Debug)]
 pub struct Evaluated {
     facts: Facts,
@@ -89,10 +89,11 @@ pub struct Evaluated {
     pub files: Vec<FileHash>,
 }
 
-/// Runs the whole protocol.
+/// Executes the whole protocol.
 ///
 /// # Errors
-/// What makes the campaign unusable as a whole: vehicle data missing, no usable section, or a fault where the protocol says to stop.
+/// Reasons why the campaign cannot be used as a whole: missing vehicle data, no usable section, or a fault for which the protocol
+/// states `stop`.
 pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Outcome, Problems> {
     let prepared = Prepared::new(plan, graph, campaign)?;
     let evaluated = prepared.evaluate(&Shifts::NONE, progress)?.swap_remove(0);
@@ -126,7 +127,7 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
     })
 }
 
-/// Evaluates every section with the measurement at each of several shifts; filters run once.
+/// Evaluates every section with the measurement at each of several shifts (SI of the axis). Filters run once.
 ///
 /// # Errors
 /// As [`run`].
@@ -141,7 +142,9 @@ pub fn evaluate(
         let one = campaign.one_of_each().err();
         let repeats = plan.quantities.iter().find(|quantity| quantity.evaluation.of_repeats()).map(|quantity| {
             let says = format!("`{}` compares repeats, whose records cannot be moved along the track against the simulation", quantity.id);
-            Problem::error("repeats-shifted", says).at(&quantity.span).help("leave it out: `remove quantity ...` in a protocol of its own")
+            Problem::error("repeats-shifted", says)
+                .at(&quantity.span)
+                .help("remove the quantity with `remove quantity ...` in a protocol that extends this one")
         });
         if let Some(problem) = one.or(repeats) {
             return Err(Problems(vec![problem]));
@@ -151,12 +154,12 @@ pub fn evaluate(
 }
 
 impl Evaluated {
-    /// What a certification of all usable sections finds.
+    /// Results of quantities and verdicts over all usable sections.
     pub fn judge(&self, plan: &Plan, graph: &Graph) -> Judged {
         judge::judge(plan, graph, &self.facts, &self.units, &self.values, &self.findings)
     }
 
-    /// Every value and limit that the verdict rests on.
+    /// All values and limits that the verdict depends on.
     pub fn pool(&self, plan: &Plan) -> Pool {
         pool::pool(plan, &self.facts, &self.units, &self.values)
     }
@@ -171,13 +174,13 @@ impl Evaluated {
         &self.notes
     }
 
-    /// Each section with the shift found for it [SI of the axis], where that was asked for.
+    /// Each section with its estimated shift (SI of the axis), where it was requested.
     pub fn offsets(&self) -> impl Iterator<Item = (&str, Option<&str>, Option<&Offset>)> {
         self.units.iter().zip(&self.values).map(|(unit, values)| (unit.name.as_str(), unit.zone.as_deref(), values.offset.as_ref()))
     }
 }
 
-/// What is read before any record.
+/// Data read before any record.
 struct Prepared<'a> {
     plan: &'a Plan,
     graph: &'a Graph,
@@ -223,7 +226,7 @@ impl<'a> Prepared<'a> {
         let mut values: Vec<Vec<SectionValues>> = self
             .units
             .par_iter()
-            // Sections differ in length: shared out one by one, no worker is left with several while another has none.
+            // Sections differ in length. Distributed one by one, they keep all workers busy.
             .with_max_len(1)
             .map(|unit| {
                 let faulty = || vec![SectionValues::default(); shifts.offsets.len()];
@@ -239,7 +242,7 @@ impl<'a> Prepared<'a> {
         shifts.offsets.iter().enumerate().map(of_shift).collect()
     }
 
-    /// A repeat of a section that is not used has nothing to be compared with.
+    /// A repeat whose original is not used cannot be compared: quantities of repeats have no rows in it.
     fn without_unused_originals(&self, units: &[Unit], mut values: Vec<SectionValues>) -> Vec<SectionValues> {
         let unused = |unit: &Unit| unit.original.is_some_and(|original| units[original].fault.is_some());
         for (_, values) in units.iter().zip(&mut values).filter(|(unit, _)| unused(unit)) {
@@ -249,7 +252,7 @@ impl<'a> Prepared<'a> {
         values
     }
 
-    /// All sections at one shift; without one, some section must be usable.
+    /// All sections at one shift. If `needed`, at least one section must be usable.
     fn at(&self, values: Vec<SectionValues>, needed: bool) -> Result<Evaluated, Problems> {
         let (mut units, mut notes) = (self.units.clone(), self.notes.clone());
         let copies = copies::find(self.plan, self.campaign, &units, &values);
@@ -257,7 +260,7 @@ impl<'a> Prepared<'a> {
         stop_on_fault(self.plan, &units, &values)?;
         let values = self.without_unused_originals(&units, values);
         let findings: Vec<Finding> = values.iter().flat_map(|values| values.findings.iter().cloned()).chain(copies).collect();
-        // Sections that are not plausible say why in the findings of a report.
+        // Sections excluded by a plausibility rule state the reason in the findings of a report.
         let refused_by_finding = findings.iter().any(|finding| finding.consequence == Consequence::NotUsed);
         if needed && !refused_by_finding && units.iter().all(|unit| unit.fault.is_some()) {
             return Err(nothing_usable(&units, values));
@@ -267,7 +270,7 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// A protocol may say that a fault in one section ends the run. The problems of its records say where it is.
+/// Ends the run at a fault in one section, where the protocol states `stop`. The problems of the records give the place.
 fn stop_on_fault(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Result<(), Problems> {
     if plan.sections.faulty != OnFault::Stop {
         return Ok(());
@@ -279,7 +282,7 @@ fn stop_on_fault(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Resul
             problems.push(problem.clone());
         }
         let why = unit.fault.as_ref().filter(|_| told.is_empty()).map_or(String::new(), |fault| format!(": {fault}"));
-        let says = format!("section {} is faulty, and the protocol says to stop then{why}", unit.name);
+        let says = format!("section {} is faulty, and the protocol states `stop` for faulty sections{why}", unit.name);
         let problem = Problem::error("faulty-section", says);
         problems.push(match &unit.span {
             Some(span) => problem.at(span),
@@ -289,10 +292,10 @@ fn stop_on_fault(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Resul
     if problems.any_error() { Err(problems) } else { Ok(()) }
 }
 
-/// Every section is faulty: the problems of their records say more than a report without numbers would.
+/// Used if every section is faulty: the problems of the records are more useful than a report without numbers.
 fn nothing_usable(units: &[Unit], values: Vec<SectionValues>) -> Problems {
     const MOST: usize = 8;
-    // What is wrong in the same way in section after section is shown once and counted.
+    // A problem that occurs in several sections is shown once, with the number of occurrences.
     let mut told: IndexMap<(&str, String), (Problem, usize)> = IndexMap::new();
     for (unit, values) in units.iter().zip(values) {
         let mut problems = values.problems;

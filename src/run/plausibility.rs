@@ -1,4 +1,4 @@
-//! Plausibility rules in one section: what does not satisfy them, as findings.
+//! Plausibility rules in one section: violations as findings.
 
 use std::collections::BTreeSet;
 
@@ -14,10 +14,10 @@ use crate::check::plan::{InputSide, Looks, OnFault, Plausibility, Requirement, T
 use crate::graph::{InputNode, NodeId, PositionNodes};
 use crate::result::{Consequence, Finding};
 
-/// Digits of a number in the sentence of a finding; the number itself stands beside it in full.
+/// Significant digits of a number in the sentence of a finding; the result file has all digits.
 const DIGITS: usize = 4;
 
-/// Nodes whose values the rules need, of the track record or of both others.
+/// Nodes whose values the rules need, of the track record (`track`) or of the other records.
 pub fn wanted(work: &Work<'_>, known: &Known<'_>, track: bool) -> BTreeSet<NodeId> {
     let mut wanted = BTreeSet::new();
     for (rule, nodes, _) in positions(work, known) {
@@ -30,8 +30,8 @@ pub fn wanted(work: &Work<'_>, known: &Known<'_>, track: bool) -> BTreeSet<NodeI
     wanted
 }
 
-/// Every rule that the section is to satisfy, at every position that was recorded: the rule, its nodes there, and the name of the
-/// position. Where it cannot be told whether a rule applies, or to which signal, the section lacks a datum that it can do without.
+/// Every rule that applies to the section, at every recorded position: the rule, its nodes and the name of the position. A rule is
+/// passed over where it cannot be determined, for a missing datum, whether it applies or to which signal.
 fn positions<'a>(work: &'a Work<'_>, known: &'a Known<'_>) -> impl Iterator<Item = (&'a Plausibility, &'a PositionNodes, &'a str)> {
     let asked = |rule: &Plausibility| rule.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known)) == Ok(false);
     let decided = |nodes: &PositionNodes| {
@@ -49,7 +49,7 @@ fn positions<'a>(work: &'a Work<'_>, known: &'a Known<'_>) -> impl Iterator<Item
     })
 }
 
-/// Looks at one section; what is found goes into its values.
+/// Checks one section and adds its findings to the values.
 pub fn look(work: &Work<'_>, unit: &Unit, sides: &Sides<'_>, track: &Evaluated, values: &mut SectionValues) {
     for (rule, nodes, name) in positions(work, sides.known) {
         match &rule.test {
@@ -68,7 +68,7 @@ pub fn look(work: &Work<'_>, unit: &Unit, sides: &Sides<'_>, track: &Evaluated, 
     }
 }
 
-/// A requirement at one position of one section.
+/// A requirement at one position in one section.
 struct Position<'a> {
     work: &'a Work<'a>,
     rule: &'a Plausibility,
@@ -106,7 +106,7 @@ impl Position<'_> {
         self.work.campaign.record_in_words(record.which)
     }
 
-    /// `None` where the requirement is met, or cannot be told for want of a datum.
+    /// `None` where the requirement is met, or cannot be evaluated because a datum is missing.
     fn finding(&self, known: &Known<'_>, inputs: &[Result<f64, String>], record: Option<String>) -> Option<Finding> {
         let known = Known { inputs, ..section(known) };
         if flag(&self.requirement.holds, &known) != Ok(false) {
@@ -141,7 +141,7 @@ impl Position<'_> {
     }
 }
 
-/// What a rule's `otherwise` makes of a finding; a run that is to stop does so for its own reason.
+/// The consequence of a finding, from the rule's `otherwise`. For `stop`, the run ends elsewhere.
 pub fn consequence(otherwise: OnFault) -> Consequence {
     match otherwise {
         OnFault::Note => Consequence::Note,

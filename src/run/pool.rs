@@ -1,5 +1,5 @@
-//! What a verdict rests on, for who asks what another choice of sections would have said: values of every section and every
-//! limit with its bound, in the unit of the quantity.
+//! Everything a verdict depends on, for studies of the selection of sections: the values of every section and every limit with its
+//! bound, in the unit of the quantity.
 
 use std::sync::Arc;
 
@@ -20,9 +20,9 @@ pub use crate::check::plan::Rule;
 #[derive(Clone, Debug)]
 pub struct Pool {
     pub sections: Vec<Section>,
-    /// Zones with the sections that each needs; empty where the protocol knows none.
+    /// Zones with the number of sections that each needs; empty where the protocol has no zones.
     pub zones: Vec<Zone>,
-    /// Usable sections needed in all.
+    /// Number of usable sections needed in total.
     pub minimum: usize,
     pub quantities: Vec<PooledQuantity>,
     /// The rule of the overall verdict; `None` where other verdicts or a person decide it.
@@ -33,7 +33,7 @@ pub struct Pool {
 pub struct Section {
     pub name: String,
     pub zone: Option<String>,
-    /// Number of the first section of its site: repeats have the same.
+    /// Index of the first section of its site; repeats have the same.
     pub site: usize,
     pub used: bool,
     pub reason: Option<String>,
@@ -59,18 +59,18 @@ pub struct PooledQuantity {
     pub limits: Vec<PooledLimit>,
 }
 
-/// What a limit is of.
+/// The estimate of a limit.
 #[derive(Clone, Debug)]
 pub enum Pooled {
-    /// With the divisor's n - `ddof`.
+    /// A statistic with divisor n - `ddof`.
     Statistic(Statistic, usize),
     Estimate(Estimator),
 }
 
-/// A row with the number of its section and the section.
+/// A row with its section and the index of the section.
 type Numbered = (usize, Unit, Row);
 
-/// An estimate of a group of rows and its limit, for any choice of sections.
+/// An estimate of a group of rows and its limit, for any selection of sections.
 #[derive(Clone)]
 pub struct Estimator {
     rules: Arc<(Plan, Facts)>,
@@ -78,7 +78,7 @@ pub struct Estimator {
     limit: usize,
     /// The rows of the group.
     rows: Arc<Vec<Numbered>>,
-    /// The rows of every quantity, where it takes numbers of others.
+    /// The rows of every quantity, where the estimate uses numbers of other quantities.
     others: Arc<Vec<Result<Vec<Numbered>, String>>>,
     bound: f64,
 }
@@ -105,7 +105,7 @@ impl Estimator {
         }
     }
 
-    /// Rows of a repeat go with those of the section that it repeats.
+    /// Rows of a repeat are selected together with those of the section that it repeats.
     pub fn take_together(&mut self, first: usize, repeat: usize) {
         let moved = |(section, unit, row): &Numbered| (if *section == repeat { first } else { *section }, unit.clone(), row.clone());
         let all = |rows: &Vec<Numbered>| rows.iter().map(moved).collect();
@@ -113,7 +113,7 @@ impl Estimator {
         self.others = Arc::new(self.others.iter().map(|rows| rows.as_ref().map(all).map_err(Clone::clone)).collect());
     }
 
-    /// Whether it needs rows of a section, by number.
+    /// Whether it needs rows of a section, given by index.
     pub fn concerns(&self, section: usize) -> bool {
         let has = |rows: &[Numbered]| rows.iter().any(|(number, ..)| *number == section);
         has(&self.rows) || self.others.iter().flatten().any(|rows| has(rows))
@@ -138,7 +138,8 @@ impl Estimator {
         Some(FromSums { facts, of, taken, centre, sums, bound: self.bound })
     }
 
-    /// The estimate over the rows of some sections, by number, divided by the limit of all; `None` where it is not defined.
+    /// The estimate over the rows of some sections, given by index, divided by the limit over all sections; `None` where it is not
+    /// defined.
     pub fn over(&self, sections: &[usize]) -> Option<f64> {
         let (plan, facts) = self.rules.as_ref();
         let quantity = &plan.quantities[self.quantity];
@@ -221,7 +222,7 @@ impl FromSums<'_> {
     }
 }
 
-/// The rows of some sections, by number.
+/// The rows of some sections, given by index.
 fn among<'a>(rows: &'a [Numbered], quantity: &'a Quantity, sections: &[usize]) -> Vec<Member<'a>> {
     let inside = rows.iter().filter(|(section, ..)| sections.contains(section));
     inside.map(|(_, unit, row)| Member { unit, signal: &quantity.positions[row.position].name, row }).collect()
@@ -233,24 +234,23 @@ impl std::fmt::Debug for Estimator {
     }
 }
 
-/// A limit that applies to this vehicle, for one of its scopes.
+/// A limit that applies to this vehicle, for one of its groups.
 #[derive(Clone, Debug)]
 pub struct PooledLimit {
     pub estimate: Pooled,
     pub at_least: bool,
-    /// `standard deviation (n-1)`
+    /// As printed: `standard deviation (n-1)`.
     pub title: String,
-    /// `all`, `zone 1`
+    /// As printed: `all`, `zone 1`.
     pub scope: String,
     pub inside: Vec<bool>,
-    /// For each position of the quantity whether its values are among those that the limit is about; all where it does not say.
+    /// For each position of the quantity, whether the limit applies to its values; all where it states none.
     pub positions: Vec<bool>,
-    /// One for each section where every value has its own limit, else one.
+    /// One bound for each section where every value has its own limit, else one.
     pub bounds: Vec<f64>,
 }
 
-/// # Errors
-/// None: a limit whose bound has no value is left out with its quantity told as not assessable by the run itself.
+/// Limits whose bound has no value are left out; the run itself reports their quantity as not assessable.
 pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]) -> Pool {
     let (rule, about) = match &plan.overall().decision {
         Decision::Limits { rule, quantities } => (Some(*rule), quantities.as_slice()),
@@ -306,7 +306,7 @@ fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &[Unit], values: &[Se
         unit: quantity.unit.text.clone(),
         values: units.iter().zip(values).map(of_section).collect(),
         minimum_signals: quantity.minimum_signals,
-        // One that cannot be had of some section is not assessable, however many pairs the others give.
+        // A quantity that cannot be evaluated in some section is not assessable, however many pairs the others give.
         minimum_pairs: if impossible { usize::MAX } else { quantity.minimum_pairs },
         limits,
     }
@@ -332,7 +332,7 @@ fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, par
         units.iter().map(own).collect::<Option<Vec<_>>>()?
     } else {
         let members = part.members(facts, members).ok()?;
-        // Data of sections may be in the limit: that of all sections stands here, and an estimate takes its own.
+        // Data of sections can be used in the limit. This bound is that of all sections; an estimate computes its own.
         vec![shown(&Known::vehicle(facts), part, &members)?]
     };
     let estimate = match limit.estimate.statistic() {

@@ -1,4 +1,4 @@
-//! One record through the signal part of the graph.
+//! One record through the signal nodes of the graph.
 
 mod held;
 
@@ -22,16 +22,16 @@ use crate::problem::Problem;
 use crate::result::{FileHash, RecordOf};
 use crate::units::Dimension;
 
-/// What every record is worked on with.
+/// Data used for every record.
 #[derive(Clone, Copy, Debug)]
 pub struct Work<'a> {
     pub plan: &'a Plan,
     pub graph: &'a Graph,
     pub campaign: &'a Campaign,
     pub facts: &'a Facts,
-    /// All sections: a repeat looks for its original.
+    /// All sections; a repeat needs that of its original.
     pub units: &'a [Unit],
-    /// For each position of each quantity, whether its channels were recorded at all.
+    /// For each position of each quantity, whether its channels were recorded.
     pub present: &'a [Vec<bool>],
     /// The same for each position of each plausibility rule.
     pub recorded: &'a [Vec<bool>],
@@ -44,7 +44,7 @@ impl Work<'_> {
     }
 }
 
-/// A reason why a record cannot be used, and the problems behind it.
+/// A reason why a record cannot be used, and the problems that caused it.
 #[derive(Debug)]
 pub struct Fault {
     pub says: String,
@@ -64,29 +64,29 @@ impl Fault {
     }
 }
 
-/// A record read and found fit for the section.
+/// A record that was read and covers the section.
 #[derive(Debug)]
 pub struct Opened {
-    /// By name.
+    /// Name and samples.
     columns: Vec<(String, Arc<Vec<f64>>)>,
     along: Arc<Along>,
     pub extent: Extent,
     pub file: FileHash,
-    /// Time before and after the section [s], where there is a time.
+    /// Time recorded before and after the section, in s, where records have a time.
     pub margins: Option<(f64, f64)>,
 }
 
-/// Value of a wanted node.
+/// Value of a requested node.
 #[derive(Clone, Debug)]
 pub enum Found {
-    /// A reduced signal, and of how many samples or windows.
+    /// A value of a signal, and the number of samples or windows.
     Number(f64, usize),
     Samples(Samples),
-    /// What the rules ask for cannot be had of this record: the reason.
+    /// The value cannot be computed from this record: the reason.
     Failed(String),
 }
 
-/// All nodes that the wanted ones need in one section: of the cases of a signal, the one that applies.
+/// All nodes that the requested ones need in one section; of the cases of a signal, only the one that applies.
 pub fn needed(graph: &Graph, wanted: &BTreeSet<NodeId>, known: &Known<'_>) -> Result<BTreeSet<NodeId>, String> {
     let mut needed = BTreeSet::new();
     let mut open: Vec<NodeId> = wanted.iter().copied().collect();
@@ -103,7 +103,7 @@ pub fn needed(graph: &Graph, wanted: &BTreeSet<NodeId>, known: &Known<'_>) -> Re
     Ok(needed)
 }
 
-/// Which input of a `Select` applies in this section.
+/// The input of a `Select` that applies in this section.
 fn chosen(conditions: &[crate::check::plan::Expr], inputs: &[NodeId], known: &Known<'_>) -> Result<usize, String> {
     for (index, condition) in conditions.iter().enumerate() {
         if flag(condition, known)? {
@@ -158,11 +158,11 @@ pub fn open(work: &Work<'_>, unit: &Unit, which: WhichRecord, needed: &BTreeSet<
     Ok(Opened { columns, along, extent, file, margins })
 }
 
-/// The facts of several problems in one line, each with its place unless the fact names it, and with its help.
+/// Several problems in one line, each with its place unless the text already names it, and with its help.
 fn said(campaign: &Campaign, problems: &[Problem]) -> String {
     let mut told: Vec<(&Problem, usize)> = Vec::new();
     for problem in problems {
-        // The same fact in row after row is told once.
+        // The same problem in several rows is stated once.
         match told.iter_mut().find(|(first, _)| first.says == problem.says) {
             Some((_, more)) => *more += 1,
             None => told.push((problem, 0)),
@@ -178,7 +178,7 @@ fn said(campaign: &Campaign, problems: &[Problem]) -> String {
     told.iter().map(sentence).collect::<Vec<_>>().join("; ")
 }
 
-/// A fact that names its file and row already needs no place; one that names its file only needs none in the header.
+/// Adds the place to a text. A text that names file and row needs none; one that names the file needs none in the header.
 fn placed(says: &str, file: &str, row: usize, more: usize) -> String {
     let names_file = says.contains(&format!("`{file}`"));
     let names_row = row == 1 || says.split(|c: char| !c.is_ascii_digit()).any(|word| word.parse() == Ok(row));
@@ -190,14 +190,14 @@ fn placed(says: &str, file: &str, row: usize, more: usize) -> String {
 }
 
 impl Opened {
-    /// First and last row of the file inside the section, and its last row; the header is row 1.
+    /// First and last row of the file inside the section, and the last row of the file; the header is row 1.
     pub fn rows(&self) -> ((usize, usize), usize) {
         let first = self.along.first_row.unwrap_or(1);
         let inside = self.along.inside(self.extent);
         ((first + inside.start, first + inside.end.saturating_sub(1)), first + self.along.axis.len().saturating_sub(1))
     }
 
-    /// Values of the wanted nodes. Nodes run level by level, so that channels that pass the same filter pass it together.
+    /// Values of the requested nodes. Nodes run level by level, so that channels with the same filter are filtered together.
     pub fn evaluate(
         &self,
         graph: &Graph,
@@ -212,7 +212,7 @@ impl Opened {
         Ok(state.found)
     }
 
-    /// As far as nothing depends on where the section lies: filters have run, nothing is cut.
+    /// Runs the nodes that do not depend on the place of the section: filters run, nothing is cut.
     pub fn hold<'a>(
         &'a self,
         graph: &'a Graph,
@@ -241,9 +241,9 @@ struct State<'a> {
     known: &'a Known<'a>,
     method: Method,
     values: Vec<Option<Signal>>,
-    /// Why a node has no value: it, and what is made of it, has none, and the others run on.
+    /// Why a node has no value. Nodes that depend on it have none either; the others run on.
     failed: Vec<Option<String>>,
-    /// How many nodes still need a value.
+    /// Number of nodes that still need the value.
     uses: Vec<usize>,
     cutter: Cutter,
     /// The part of the section that is evaluated.
@@ -269,7 +269,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// The needed nodes by level, inputs before what uses them, and how often each is used.
+    /// The needed nodes by level, inputs before the nodes that use them, and the number of uses of each.
     fn count(&mut self, needed: &BTreeSet<NodeId>) -> Vec<Vec<NodeId>> {
         let mut level = vec![0_usize; self.graph.nodes.len()];
         let mut levels: Vec<Vec<NodeId>> = Vec::new();
@@ -286,7 +286,7 @@ impl<'a> State<'a> {
         levels
     }
 
-    /// Runs the nodes that are chosen; values of the wanted ones are kept.
+    /// Runs the chosen nodes and keeps the values of the requested ones.
     fn run(&mut self, levels: &[Vec<NodeId>], wanted: &BTreeSet<NodeId>, chosen: impl Fn(NodeId) -> bool) -> Result<(), String> {
         for level in levels {
             let here: Vec<NodeId> = level.iter().copied().filter(|&id| chosen(id)).collect();
@@ -315,7 +315,7 @@ impl<'a> State<'a> {
 }
 
 impl State<'_> {
-    /// Gives memory of inputs back that no later node needs.
+    /// Frees inputs that no later node needs.
     fn release(&mut self, id: NodeId) {
         for &input in &self.graph.nodes[id].inputs {
             if self.uses[input] > 0 {
@@ -331,7 +331,7 @@ impl State<'_> {
         self.values[id].as_ref().ok_or_else(|| self.failed[id].clone().unwrap_or_else(|| "an input is missing".to_string()))
     }
 
-    /// Whether an input has no value; then neither has this node, for the same reason.
+    /// Whether an input has no value. Then this node has none for the same reason.
     fn without_input(&mut self, id: NodeId) -> bool {
         let reason = self.graph.nodes[id].inputs.iter().find_map(|&input| self.failed[input].clone());
         let failed = reason.is_some();
@@ -345,8 +345,8 @@ impl State<'_> {
         self.failed[id] = Some(format!("{reason} ({})", self.graph.nodes[id].label));
     }
 
-    /// What a step asks for may be impossible, which is the matter of who asks; samples that combine to no number are a fault of the
-    /// record.
+    /// Computes a node. Where a step of a quantity is not possible, only this node has no value. Samples without a finite result
+    /// are a fault of the record.
     fn value(&mut self, id: NodeId) -> Result<(), String> {
         if self.without_input(id) {
             return Ok(());
@@ -366,14 +366,14 @@ impl State<'_> {
     fn samples(&self, id: NodeId) -> Result<Samples, String> {
         match self.signal(id)? {
             Signal::Samples(samples) => Ok(samples.clone()),
-            // A number that does not change still fills a signal where one is needed.
+            // A constant becomes a signal of equal samples where a signal is needed.
             Signal::Constant(value) => {
                 Ok(Samples { along: Arc::clone(&self.opened.along), values: Arc::new(vec![*value; self.opened.along.axis.len()]) })
             }
         }
     }
 
-    /// Filters of one level: all channels of one design in one go.
+    /// Filters of one level: all channels with the same design together.
     fn filters(&mut self, here: &[NodeId]) -> Result<(), String> {
         let mut groups: Vec<(StepSpec, Vec<(NodeId, Samples)>)> = Vec::new();
         for &id in here {
@@ -412,7 +412,7 @@ impl State<'_> {
         Ok(())
     }
 
-    /// Reducers of one level: percentiles of one signal sort it once.
+    /// Reducers of one level: percentiles of one signal share one sorting.
     fn reducers(&mut self, here: &[NodeId]) -> Result<(), String> {
         let mut sorted: Vec<(NodeId, Vec<(NodeId, f64)>)> = Vec::new();
         for &id in here {
@@ -485,7 +485,7 @@ impl State<'_> {
                 Ok(Signal::Samples(self.cutter.cut(&samples)?))
             }
             Operation::Window(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.extent)?)),
-            _ => Err("this node joins records".into()),
+            _ => Err("this node combines records".into()),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A verdict once more, from values that were recorded in a result: for who has no records and asks whether it follows from them.
+//! Computes a verdict again from the values recorded in a result, without the records, to check that it follows from them.
 
 use super::facts::{Facts, Known, NOT_STATED, absent, scalar};
 use super::judge::{Judged, judge};
@@ -13,7 +13,7 @@ use crate::graph::{Graph, NodeId};
 use crate::result::{Consequence, Finding};
 use crate::source::{Source, Spanned};
 
-/// What a result says of the data that rules read. All texts are as results have them, in the units that the protocol declares.
+/// The part of a result that rules use. All texts are as in the result, in the units that the protocol declares.
 #[derive(Clone, Debug, Default)]
 pub struct Recorded {
     /// One for each [`Plan::vehicle`].
@@ -27,7 +27,7 @@ pub struct Recorded {
 #[derive(Clone, Debug)]
 pub struct RecordedSection {
     pub name: String,
-    /// The first section of its site; its own name where the result does not say.
+    /// The first section of its site; its own name where the result states none.
     pub site: String,
     pub zone: Option<String>,
     /// Why it is not used.
@@ -46,29 +46,28 @@ pub struct RecordedValue {
     pub record: Option<String>,
     /// Which of several values, in words.
     pub taken: Option<String>,
-    /// In the unit of the quantity, as all values.
+    /// In the unit of the quantity, as are all values.
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
     pub difference: f64,
     pub samples: usize,
 }
 
-/// What follows from recorded values.
+/// What follows from the recorded values.
 #[derive(Debug)]
 pub struct Replayed {
     pub judged: Judged,
-    /// What does not agree with itself, in words.
+    /// Inconsistencies of the result, in words.
     pub contradictions: Vec<String>,
 }
 
-/// Differences that follow from their two sides agree to this share of the larger side: values are recorded in the quantity's unit
-/// and are turned back into SI.
+/// Relative tolerance, of the larger side, between a difference and its two sides. It covers the rounding of unit conversions.
 const ROUNDING: f64 = 1e-9;
 
-/// Judges recorded values as a run judges those it computed.
+/// Evaluates recorded values as a run evaluates those it computed.
 ///
 /// # Errors
-/// What the result says does not fit the protocol, in words.
+/// The result does not agree with the protocol, in words.
 pub fn replay(plan: &Plan, graph: &Graph, recorded: &Recorded) -> Result<Replayed, String> {
     let facts = facts(plan, recorded)?;
     let mut units = units(plan, recorded)?;
@@ -181,12 +180,12 @@ fn difference(plan: &Plan, facts: &Facts, unit: &Unit, index: usize, row: &Row) 
     let scale = s.abs().max(m.abs()).max(row.value.abs());
     let unit = &plan.quantities[index].unit;
     let shown = |value: f64| format!("{}{}", unit.from_si(value), unit.suffix());
-    // A value that is no number compares as far away.
+    // NaN counts as a difference.
     (far.is_nan() || far > ROUNDING * scale)
         .then(|| format!("its difference is {}, {} follows from the two sides", shown(row.value), shown(follows)))
 }
 
-/// Sections that are used though requirements on their data are not met.
+/// Sections that are used although requirements on their data are not met.
 fn refused(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
     let mut again: Vec<Unit> = units.iter().filter(|unit| unit.fault.is_none()).cloned().collect();
     requirements::check_data(plan, facts, &mut again);
@@ -194,7 +193,7 @@ fn refused(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
     again.iter().filter_map(says).collect()
 }
 
-/// Sections that are used though a finding says that they are not.
+/// Sections that are used although a finding excludes them.
 fn barred(units: &[Unit], findings: &[Finding]) -> Vec<String> {
     let of = |finding: &Finding, unit: &Unit| finding.consequence == Consequence::NotUsed && finding.section.as_deref() == Some(&unit.name);
     let says = |unit: &Unit| {
@@ -204,10 +203,10 @@ fn barred(units: &[Unit], findings: &[Finding]) -> Vec<String> {
     units.iter().filter_map(says).collect()
 }
 
-/// The operations that one value of a result came out of, in the order in which they run.
+/// The operations by which one value of a result was computed, in order of execution.
 ///
 /// # Errors
-/// What the result says does not fit the protocol, in words.
+/// The result does not agree with the protocol, in words.
 pub fn operations(
     plan: &Plan,
     graph: &Graph,

@@ -1,4 +1,4 @@
-//! Requirements on sections: what is asked of their data and of their records, and what comes of one that is not met.
+//! Requirements on the data and records of sections, and the consequences of those that are not met.
 
 use super::facts::{Facts, item, trimmed};
 use super::section::SectionValues;
@@ -9,10 +9,10 @@ use crate::check::possible::{Possible, possible};
 use crate::problem::{Problem, Problems};
 use crate::result::{CheckResult, Consequence, Finding};
 
-/// By so much, relative, may a length fall short of its minimum: what two decimals lose of a section's ends.
+/// Relative tolerance for a minimum length, for the rounding of section ends written with two decimals.
 const ROUNDING: f64 = 1e-9;
 
-/// Requirements that need no record: the protocol's selection, the zone's condition, the length.
+/// Requirements that need no record: selection of sections, condition of the zone, length.
 pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
     for unit in units.iter_mut() {
         if let Some(index) = plan.sections.zone
@@ -33,7 +33,7 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
             checks.extend(length(plan, facts, unit, zone));
         }
         for check in checks {
-            // What the vehicle file does not state is no fault of a section: it is used, and a finding tells it.
+            // A datum missing from the vehicle file is not a fault of the section. The section is used, and a finding reports it.
             let untold = check.name == "length" && check.holds.is_none() && {
                 let minimum = asked(plan, unit, &check);
                 minimum.is_some_and(|minimum| !not_stated(minimum, facts).is_empty())
@@ -54,7 +54,7 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
     }
 }
 
-/// A condition on the section's data, told with the data it was read from.
+/// A condition on the section's data, reported with the data that it uses.
 fn condition(plan: &Plan, facts: &Facts, unit: &Unit, name: &str, title: &str, expr: &Expr, words: &str) -> CheckResult {
     let known = unit.known(facts);
     let watched = Watched::new(&known);
@@ -79,12 +79,12 @@ fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckR
     let axis = &plan.axis.unit;
     let shown = |length: f64| format!("{} {axis}", trimmed(axis.from_si(length)));
     let known = unit.known(facts);
-    // A length written with two decimals may fall short of the minimum by rounding alone.
+    // A length written with two decimals may be below the minimum by rounding only.
     let reaches = |minimum: f64| end - start >= minimum * (1.0 - ROUNDING);
     let found = |minimum: f64| format!("{}; at least {} required", shown(end - start), shown(minimum));
     let (holds, says) = match number(minimum, &known) {
         Ok(minimum) => (Some(reaches(minimum)), found(minimum)),
-        // Long enough or too short whatever the values that are not known, or not told by what is known.
+        // Long enough or too short for every value of the unknown names, or not decided.
         Err(reason) => match possible(minimum, &known) {
             Possible::Number(_, most) if reaches(most) => (Some(true), format!("{}; at most {} required", shown(end - start), shown(most))),
             Possible::Number(least, _) if least.is_finite() && !reaches(least) => (Some(false), found(least)),
@@ -104,7 +104,7 @@ fn not_stated(expr: &Expr, facts: &Facts) -> Vec<usize> {
     found
 }
 
-/// One finding for each vehicle datum that is not stated and each requirement that could therefore not be checked.
+/// One finding for each vehicle datum that is not stated and each requirement that could not be checked without it.
 pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
     let mut found: Vec<(usize, &str, Vec<&str>)> = Vec::new();
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
@@ -126,7 +126,7 @@ pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
     found.into_iter().map(finding).collect()
 }
 
-/// The rule behind a requirement that may be left unchecked.
+/// The rule behind a requirement that may remain unchecked.
 fn asked<'a>(plan: &'a Plan, unit: &Unit, check: &CheckResult) -> Option<&'a Expr> {
     if check.name == "length" {
         let zone = plan.zones.iter().find(|zone| Some(&zone.name) == unit.zone.as_ref())?;
@@ -143,10 +143,10 @@ fn sections_in_words(names: &[&str], of: usize) -> String {
     }
 }
 
-/// Results of the records back to the sections: faults, and the protocol's own checks.
+/// Transfers results of the records to the sections: faults and section checks.
 ///
 /// # Errors
-/// `section-check` for each check that is not met and says `otherwise stop`.
+/// `section-check` for each check that is not met and has `otherwise stop`.
 pub fn take_over(
     plan: &Plan,
     facts: &Facts,
@@ -187,12 +187,12 @@ pub fn take_over(
     if stop.any_error() { Err(stop) } else { Ok(()) }
 }
 
-/// One note for each requirement that could not be checked on sections that are used all the same.
+/// One note for each requirement that could not be checked in sections that are used nevertheless.
 fn unchecked(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
     let mut found: Vec<(&str, &str, Vec<&str>)> = Vec::new();
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
         for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
-            // What the vehicle file does not state is told by a finding.
+            // A datum missing from the vehicle file is reported by a finding.
             if asked(plan, unit, check).is_some_and(|rule| !not_stated(rule, facts).is_empty()) {
                 continue;
             }

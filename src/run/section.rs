@@ -21,24 +21,24 @@ use crate::graph::{InputNode, NodeId, SignalNodes};
 use crate::problem::Problem;
 use crate::result::{CheckResult, FileHash, Finding};
 
-/// What one section came to.
+/// Results of one section.
 #[derive(Clone, Debug, Default)]
 pub struct SectionValues {
-    /// For each quantity the rows of the section; none where the position was not recorded or the quantity leaves the section out.
+    /// The rows of the section for each quantity; empty where the position was not recorded or the quantity excludes the section.
     pub rows: Vec<Vec<Row>>,
-    /// Quantities that cannot be had of this section, with the signal and the reason.
+    /// Quantities that cannot be evaluated in this section, with the signal and the reason.
     pub impossible: Vec<(usize, String)>,
     pub checks: Vec<CheckResult>,
-    /// What is not plausible in this section alone.
+    /// Plausibility findings within this section.
     pub findings: Vec<Finding>,
-    /// Marks of the signals that are to differ from others.
+    /// Marks of the signals that are compared with others to find copies.
     pub prints: Vec<Print>,
     pub files: Vec<FileHash>,
-    /// What a whole record covers, as measured.
+    /// The measured range of a whole record.
     pub extent: Option<Extent>,
-    /// Record beyond the section [s], where it is too little for a slow filter to settle.
+    /// Record beyond the section, in s, where it is too short for a slow filter to settle.
     pub short_margin: Option<f64>,
-    /// Where the measurement lies against the simulation, where that was asked for.
+    /// Shift of the measurement against the simulation, where it was requested.
     pub offset: Option<Offset>,
     pub fault: Option<String>,
     pub problems: Vec<Problem>,
@@ -66,7 +66,7 @@ pub fn of_section(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>) -> Vec<Sect
     }
 }
 
-/// Which positions of which quantities are evaluated in a section; those of repeats only in one that repeats another.
+/// The positions of each quantity that are evaluated in a section; those of repeats only in a section that repeats another.
 type Active = Vec<Vec<bool>>;
 
 fn active(work: &Work<'_>, repeats: bool, known: &Known<'_>) -> Result<Active, Fault> {
@@ -83,7 +83,7 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
     let known = unit.known(work.facts);
     let track = track_checks(work, unit, &known, common)?;
     let active = active(work, unit.original.is_some(), &known)?;
-    // A record is reduced to numbers before the next one is opened: one record in memory at a time.
+    // A record is reduced to numbers before the next one is opened, so that one record is in memory at a time.
     let simulated = records(work, unit, Side::Simulated, &wanted(work, &known, &active, shifts, Side::Simulated), &known, common);
     let wanted = wanted(work, &known, &active, shifts, Side::Measured);
     let measured = match &simulated {
@@ -119,7 +119,7 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
     Ok(measured.into_iter().map(one).collect())
 }
 
-/// The records of one side, evaluated; none where the protocol does not read that side.
+/// The evaluated records of one side; empty where the protocol does not read that side.
 fn records(
     work: &Work<'_>,
     unit: &Unit,
@@ -134,7 +134,7 @@ fn records(
     let mut records: Result<Vec<RecordOfSide>, Fault> = Ok(Vec::new());
     for which in work.campaign.records(side.kind()) {
         let one = one_record(work, unit, which, wanted, known, common).map(|(found, opened)| {
-            // The first measurement says what a whole record covers, and where there is none, the simulation.
+            // The first measurement defines the range of a whole record; without measurements, the simulation.
             if side == Side::Measured && which.number == 0 || common.extent.is_none() {
                 common.extent = Some(opened.extent);
             }
@@ -156,8 +156,8 @@ fn of_side(work: &Work<'_>, which: WhichRecord, found: Evaluated) -> RecordOfSid
     RecordOfSide { name: work.campaign.record_name(which).cloned(), which, found }
 }
 
-/// The section that this one repeats, with what quantities of repeats need of it. Where it cannot be had, it is not used itself, and says
-/// why.
+/// The section that this one repeats, with the values that quantities of repeats need. If it cannot be evaluated, it is itself not
+/// used and states the reason.
 fn original<'a>(work: &Work<'a>, unit: &Unit, active: &Active) -> Option<Original<'a>> {
     let original = work.units.get(unit.original?)?;
     let mut wanted = BTreeSet::new();
@@ -172,7 +172,7 @@ fn original<'a>(work: &Work<'a>, unit: &Unit, active: &Active) -> Option<Origina
         return None;
     }
     let known = original.known(work.facts);
-    // Its files and margins are told by itself.
+    // Its files and margins are reported with the original itself.
     let records = records(work, original, Side::Measured, &wanted, &known, &mut SectionValues::default()).ok()?;
     Some(Original { unit: original, known, records })
 }
@@ -204,7 +204,7 @@ fn shifted(
     Ok(shifts.offsets.iter().map(at).collect())
 }
 
-/// A row that cannot be had is the matter of its quantity: the section serves the others.
+/// A row that cannot be computed affects its quantity only; the section is used for the others.
 fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &Active, values: &mut SectionValues) {
     for (index, quantity) in work.plan.quantities.iter().enumerate() {
         let mut rows = Vec::new();
@@ -218,7 +218,7 @@ fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &Active, values: &mut 
     }
 }
 
-/// Nodes whose values are needed of the records of one side.
+/// Nodes whose values are needed from the records of one side.
 fn wanted(work: &Work<'_>, known: &Known<'_>, active: &Active, shifts: &Shifts<'_>, side: Side) -> BTreeSet<NodeId> {
     let mut wanted = BTreeSet::new();
     for (index, quantity) in work.graph.quantities.iter().enumerate() {
@@ -251,22 +251,22 @@ fn wanted_of(quantity: &Quantity, signal: &SignalNodes, wanted: &mut BTreeSet<No
     }
 }
 
-/// The rows of one position and what each record gave.
+/// The rows of one position and the values of each record.
 pub struct Computed {
     pub rows: Vec<Row>,
     pub records: Vec<OneRecord>,
 }
 
-/// A record of one position by itself.
+/// The values of one record at one position.
 pub struct OneRecord {
-    /// Where its value stands in a row: a repeat in the place of the simulation.
+    /// The column of its value in a row; a repeat takes the place of the simulation.
     pub place: Side,
     pub name: Option<Arc<str>>,
     pub found: Evaluated,
     pub opened: Opened,
 }
 
-/// One position of one quantity in one section, by itself.
+/// One position of one quantity in one section.
 pub fn single(work: &Work<'_>, unit: &Unit, index: usize, signal: usize) -> Result<Computed, Fault> {
     let known = unit.known(work.facts);
     let nodes = &work.graph.quantities[index].signals[signal];

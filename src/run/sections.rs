@@ -11,29 +11,29 @@ use crate::result::{CheckResult, SectionResult};
 use crate::source::Span;
 use crate::units::Unit as OfMeasure;
 
-/// A section, or a whole record where there are none.
+/// A section, or a whole record where there are no sections.
 #[derive(Clone, Debug)]
 pub struct Unit {
     pub name: String,
-    /// The name where it is written, which is also that of its records.
+    /// The section name with its place in the table; it is also the name of the records.
     pub cell: Cell,
     pub zone: Option<String>,
-    /// Number of its site: sections of the same stretch of track have the same.
+    /// Index of its site: sections of the same stretch of track have the same.
     pub site: usize,
     /// Name of the first section of the site.
     pub site_name: String,
-    /// Number of the section that it repeats.
+    /// Index of the section that it repeats.
     pub original: Option<usize>,
     /// `None` for a whole record.
     pub extent: Option<Extent>,
-    /// What a report says it covers: the section, or the measured record.
+    /// The range that a report states: that of the section, or of the measured record.
     pub covered: Option<Extent>,
     /// One for each [`Plan::columns`].
     pub columns: Vec<Result<Scalar, String>>,
     pub checks: Vec<CheckResult>,
     /// Why it is not used.
     pub fault: Option<String>,
-    /// The fault lies in the data, not in a requirement.
+    /// Whether the fault is in the data and not in a requirement.
     pub faulty: bool,
     /// Row of the table of sections.
     pub span: Option<Span>,
@@ -44,7 +44,7 @@ impl Unit {
         Known { columns: Some(&self.columns), extent: self.extent, ..Known::vehicle(facts) }
     }
 
-    /// Notes the first reason not to use it.
+    /// Records the first reason not to use it.
     pub fn refuse(&mut self, reason: String, faulty: bool) {
         if self.fault.is_none() {
             self.fault = Some(reason);
@@ -53,7 +53,7 @@ impl Unit {
     }
 }
 
-/// Reads the sections as the protocol declares their columns.
+/// Reads the sections with the columns that the protocol declares.
 pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<Unit> {
     if plan.sections.whole_records {
         return campaign.names.iter().enumerate().map(|(site, name)| whole_record(plan, name, site)).collect();
@@ -148,7 +148,7 @@ fn whole_record(plan: &Plan, name: &Cell, site: usize) -> Unit {
     }
 }
 
-/// A column that the protocol declares must be there, in a unit of its dimension.
+/// Reports a declared column that is missing or has a unit of another dimension.
 fn column_missing(datum: &Datum, table: &Table, problems: &mut Problems) -> bool {
     let Some(index) = table.column(&datum.key) else {
         if datum.default.is_some() {
@@ -182,7 +182,7 @@ struct Row<'a> {
     file: &'a str,
 }
 
-/// Why a cell has no value. An empty one is a fault where a rule asks for it; one that cannot be read is a fault in any case.
+/// Why a cell has no value. An empty cell is a fault only if a rule needs it; a cell that cannot be read is always a fault.
 struct CellFault {
     says: String,
     ill_formed: bool,
@@ -198,7 +198,7 @@ impl Row<'_> {
         if text.is_empty() {
             return nothing(self.placed(&format!("`{}` is empty", datum.key)));
         }
-        // Cells are in the unit of the column's header, which was found to be of the right dimension.
+        // Cells are in the unit of the column header, whose dimension was checked.
         let of_column = match (&datum.kind, self.table.columns[index].unit(None)) {
             (DatumKind::Number(_), Ok(unit)) => DatumKind::Number(unit),
             (kind, _) => kind.clone(),

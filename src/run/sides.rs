@@ -1,4 +1,4 @@
-//! The records of one section, evaluated: values, differences and metrics from them.
+//! The evaluated records of one section, and the values, differences and metrics computed from them.
 
 use std::sync::Arc;
 
@@ -16,13 +16,13 @@ use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes}
 use crate::metrics::percentile::Method;
 use crate::metrics::statistics;
 
-/// Values of the wanted nodes of one record.
+/// Values of the requested nodes of one record.
 pub type Evaluated = Vec<(NodeId, Found)>;
 
 /// One record of a side.
 #[derive(Clone, Debug)]
 pub struct RecordOfSide {
-    /// Its name, where the campaign has several of the side.
+    /// Its name, where the campaign has several records of the side.
     pub name: Option<Arc<str>>,
     pub which: WhichRecord,
     pub found: Evaluated,
@@ -37,11 +37,11 @@ pub struct Sides<'a> {
     pub original: Option<&'a Original<'a>>,
     pub known: &'a Known<'a>,
     pub extent: Option<Extent>,
-    /// How percentiles are read between samples.
+    /// Interpolation rule of percentiles.
     pub method: Method,
 }
 
-/// A section that was measured again, and its measured records.
+/// The original of a repeated section, and its measured records.
 #[derive(Debug)]
 pub struct Original<'a> {
     pub unit: &'a Unit,
@@ -56,13 +56,13 @@ pub struct Two<'a> {
     pub measured: &'a Evaluated,
     pub known: &'a Known<'a>,
     pub extent: Option<Extent>,
-    /// How percentiles are read between samples.
+    /// Interpolation rule of percentiles.
     pub method: Method,
-    /// What is added to the axis of the simulated one: a repeat lies elsewhere than its original.
+    /// Added to the axis of the simulated record, SI: a repeat is at another distance than its original.
     pub shift: f64,
 }
 
-/// What a side comes to that is not read.
+/// The values of a side that is not read.
 pub static NOT_READ: Evaluated = Vec::new();
 
 impl<'a> Sides<'a> {
@@ -73,12 +73,12 @@ impl<'a> Sides<'a> {
         }
     }
 
-    /// One record by itself, in the place of both sides.
+    /// One record in the place of both sides.
     pub fn alone(&self, record: &'a RecordOfSide) -> Two<'a> {
         Two { simulated: &record.found, measured: &record.found, known: self.known, extent: self.extent, method: self.method, shift: 0.0 }
     }
 
-    /// Every record of one side with every record of the other, and the name of those of which there are several.
+    /// Every record of one side with every record of the other, with the names of those of which there are several.
     pub fn pairs(&self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>)> {
         let (known, extent, method) = (self.known, self.extent, self.method);
         let of = |records: &'a [RecordOfSide]| -> Vec<(Option<Arc<str>>, &'a Evaluated)> {
@@ -100,8 +100,8 @@ impl<'a> Sides<'a> {
         })
     }
 
-    /// Every measured record of a repeat with that of its original, which stands in the place of the measurement. Distances count from the
-    /// start of each section.
+    /// Every measured record of a repeat with that of its original, which takes the place of the measurement. Distances are counted
+    /// from the start of each section.
     fn repeats(&self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>, &'a RecordOfSide, &'a RecordOfSide)> {
         let (known, own, method) = (self.known, self.extent, self.method);
         self.original.into_iter().flat_map(move |original| {
@@ -117,7 +117,7 @@ impl<'a> Sides<'a> {
     /// The rows of one position.
     pub fn rows(&self, work: &Work<'_>, position: usize, nodes: &SignalNodes) -> Result<Vec<Row>, String> {
         let Operation::Compare(evaluation) = &work.graph.nodes[nodes.compare].operation else {
-            return Err("this node makes no rows".into());
+            return Err("this node gives no rows".into());
         };
         match evaluation.as_ref() {
             Evaluation::Metric { metric, repeats, .. } => {
@@ -149,7 +149,7 @@ impl<'a> Sides<'a> {
                 let mut rows = Vec::new();
                 let mut applied = false;
                 for (which, (value, of)) in values.iter().zip(&nodes.values).enumerate() {
-                    // Of several values, those apply whose cases do.
+                    // Of several values, only those whose case applies.
                     if values.len() > 1 && !applies(&value.expr, self.known)? {
                         continue;
                     }
@@ -218,7 +218,7 @@ impl<'a> Sides<'a> {
                 let all = alone(*side).collect::<Result<Vec<_>, _>>()?;
                 let values: Vec<f64> = all.iter().map(|(_, _, value)| *value).collect();
                 if values.len() < 2 {
-                    return Err(format!("there is one {} record, and several are compared", side.in_words()));
+                    return Err(format!("there is only one {} record; this comparison needs several", side.in_words()));
                 }
                 let center = match center {
                     Center::Mean => statistics::mean(&values),
@@ -243,13 +243,13 @@ fn own(side: Side) -> InputSide {
     }
 }
 
-/// Whether the samples of the record are still there after the quantity's filter.
+/// Whether the samples of the record are still available after the quantity's filter.
 pub fn keeps_samples(work: &Work<'_>, nodes: &SignalNodes) -> bool {
     let quantity = work.graph.quantities.iter().position(|known| known.signals.iter().any(|signal| signal.compare == nodes.compare));
     quantity.is_none_or(|index| work.plan.quantities[index].keeps_samples())
 }
 
-/// Whether some case of an expression holds; one without cases always applies.
+/// Whether some case of an expression holds; an expression without cases always applies.
 fn applies(expr: &Expr, known: &Known<'_>) -> Result<bool, String> {
     let Kind::Cases(arms, None) = &expr.kind else { return Ok(true) };
     for (_, condition) in arms {
@@ -261,7 +261,7 @@ fn applies(expr: &Expr, known: &Known<'_>) -> Result<bool, String> {
 }
 
 impl Two<'_> {
-    /// The number of one side that a value node gives.
+    /// The value of a node for one side.
     fn value(&self, work: &Work<'_>, value: &ValueNodes, side: InputSide) -> Result<f64, String> {
         match &work.graph.nodes[value.node].operation {
             Operation::Value(expr) => {
@@ -272,7 +272,7 @@ impl Two<'_> {
         }
     }
 
-    /// A metric of both signals of a node, and of how many measured samples.
+    /// A metric of both signals of a node, and the number of measured samples.
     fn compared(&self, metric: Metric, on_common_points: bool, node: NodeId, over: Option<NodeId>) -> Result<(f64, usize), String> {
         let (simulated, measured) = (samples_of(self.simulated, node)?, samples_of(self.measured, node)?);
         let common = if on_common_points {
@@ -295,7 +295,7 @@ impl Two<'_> {
         self.counted(input, side).map(|(value, _)| value)
     }
 
-    /// A number, and of how many samples.
+    /// A value, and the number of samples.
     fn counted(&self, input: &InputNode, side: InputSide) -> Result<(f64, usize), String> {
         match &input.joint {
             None => {
@@ -324,7 +324,7 @@ impl Two<'_> {
         if side == InputSide::Measured { self.measured } else { self.simulated }
     }
 
-    /// How many samples or windows of the quantity's own signal a value was taken from.
+    /// Number of samples or windows of the quantity's own signal that a value was taken from.
     fn samples(&self, work: &Work<'_>, nodes: &SignalNodes, value: &ValueNodes, side: InputSide) -> usize {
         let own = |input: &&InputNode| work.graph.nodes[input.node].inputs.contains(&nodes.processed);
         let input = value.inputs.iter().find(own).or(value.inputs.first());
@@ -353,7 +353,7 @@ pub fn samples_of(found: &Evaluated, node: NodeId) -> Result<&Samples, String> {
     }
 }
 
-/// The same names with nothing yet for inputs and sides.
+/// The same names, without inputs and sides.
 pub fn section<'a>(known: &Known<'a>) -> Known<'a> {
     Known { facts: known.facts, columns: known.columns, extent: known.extent, inputs: &[], sides: None }
 }

@@ -9,13 +9,13 @@ use crate::metrics::filter::Filter;
 use crate::metrics::window::{Kind, Sliding};
 use crate::metrics::{along, resample, rounded};
 
-/// What samples run along, in SI; axis and time increase strictly.
+/// The axis of the samples, and their time, in SI; both increase strictly.
 #[derive(Debug)]
 pub struct Along {
     pub axis: Arc<Vec<f64>>,
     pub time: Option<Arc<Vec<f64>>>,
     pub rate: Rate,
-    /// Row of the file that the first sample was read from; `None` where samples are not those of the file.
+    /// Row of the file of the first sample; `None` where the samples are not those of the file.
     pub first_row: Option<usize>,
 }
 
@@ -32,14 +32,14 @@ pub struct Samples {
     pub values: Arc<Vec<f64>>,
 }
 
-/// Value of a signal node: a number along the record stays one number.
+/// Value of a signal node; a number that is constant along the record is stored once.
 #[derive(Clone, Debug)]
 pub enum Signal {
     Samples(Samples),
     Constant(f64),
 }
 
-/// The section on the axis, SI.
+/// Start and end of the section on the axis, SI.
 pub type Extent = (f64, f64);
 
 impl Along {
@@ -60,7 +60,7 @@ impl Along {
         }
     }
 
-    /// The same samples further along the axis.
+    /// The same samples, moved along the axis by `shift`.
     pub fn moved(&self, shift: f64) -> Self {
         Self {
             axis: Arc::new(self.axis.iter().map(|x| x + shift).collect()),
@@ -70,7 +70,7 @@ impl Along {
         }
     }
 
-    /// Where a sample is, in words.
+    /// Where a sample is, as text.
     fn place(&self, sample: usize) -> String {
         match self.first_row {
             Some(row) => format!("in row {}", row + sample),
@@ -79,7 +79,7 @@ impl Along {
     }
 }
 
-/// Cuts to one section. Signals of a record run along the same samples, whose part is made once for all of them.
+/// Cuts signals to one section. Signals of a record share their axis, whose part is cut once for all of them.
 #[derive(Clone, Debug)]
 pub struct Cutter {
     extent: Extent,
@@ -128,7 +128,7 @@ impl Samples {
         designed.map_err(|error| error.to_string())
     }
 
-    /// A step over the whole record other than a filter.
+    /// A step over the whole record that is not a filter.
     pub fn stepped(&self, spec: &StepSpec) -> Result<Self, String> {
         match spec {
             StepSpec::Magnitude => Ok(self.with(self.values.iter().map(|value| value.abs()).collect())),
@@ -152,7 +152,7 @@ impl Samples {
         Ok(Self { along: Arc::new(along), values: Arc::new(values) })
     }
 
-    /// A step inside the section. A window works on the samples of the record and stays inside the section by itself.
+    /// A step inside the section. A window uses the samples of the record and stays inside the section.
     pub fn windowed(&self, spec: &StepSpec, extent: Extent) -> Result<Self, String> {
         match spec {
             StepSpec::RemoveMean => {
@@ -179,10 +179,10 @@ impl Samples {
         }
     }
 
-    /// Moved, derived or integrated. What is moved needs a record that reaches as far beyond the section.
+    /// A signal shifted, differentiated or integrated. A shift needs a record that extends beyond the section by the same distance.
     pub fn over_axis(&self, operation: &AxisOperation, known: &dyn Values, extent: Extent) -> Result<Self, String> {
         let axis = |over_time: bool| if over_time { self.along.time.as_ref().unwrap_or(&self.along.axis) } else { &self.along.axis };
-        let few = || "it takes two samples".to_string();
+        let few = || "at least two samples are needed".to_string();
         let values = match operation {
             AxisOperation::Derivative { over_time } => along::derivative(axis(*over_time), &self.values).ok_or_else(few)?,
             AxisOperation::Integral { over_time } => along::integral(axis(*over_time), &self.values).ok_or_else(few)?,
@@ -194,7 +194,7 @@ impl Samples {
                 let slack = 1e-9 * (last - first);
                 if !(first <= from + slack && to <= last + slack) {
                     let (first, last, from, to) = (rounded(first), rounded(last), rounded(from), rounded(to));
-                    return Err(format!("the record reaches from {first} to {last}, and {from} to {to} is needed of it"));
+                    return Err(format!("the record extends from {first} to {last}; {from} to {to} is needed"));
                 }
                 along::moved(axis, &self.values, distance).map_err(|error| error.to_string())?
             }
@@ -221,7 +221,7 @@ impl Samples {
 /// `left op right`, sample by sample.
 ///
 /// # Errors
-/// Where the samples do not belong together or the result is not finite: which sample, and why.
+/// The signals have different samples, or a result is not finite: which sample, and why.
 pub fn arithmetic(operator: Operator, left: &Signal, right: &Signal) -> Result<Signal, String> {
     match operator {
         Operator::Add => each_pair(left, right, |a, b| a + b),
@@ -243,7 +243,7 @@ pub fn apply(inputs: &[&Signal], run: fn(&[f64]) -> f64) -> Result<Signal, Strin
     }
 }
 
-/// Each sample by itself.
+/// A function of each sample.
 ///
 /// # Errors
 /// As [`arithmetic`].
@@ -254,7 +254,7 @@ pub fn each(of: &Signal, run: impl Fn(f64) -> f64) -> Result<Signal, String> {
     }
 }
 
-// One loop for each operation, so that each becomes vector instructions.
+// One loop for each operation, so that the compiler vectorises it.
 fn each_pair(left: &Signal, right: &Signal, run: impl Fn(f64, f64) -> f64) -> Result<Signal, String> {
     match (left, right) {
         (Signal::Constant(a), Signal::Constant(b)) => constant(run(*a, *b)),
@@ -274,7 +274,7 @@ fn constant(value: f64) -> Result<Signal, String> {
 }
 
 fn finite(along: &Samples, values: Vec<f64>) -> Result<Signal, String> {
-    // All of them without a way out of the loop, which is faster than to stop at the first.
+    // The loop checks all values without an early exit, which is faster.
     if values.iter().fold(true, |all, value| all & value.is_finite()) {
         return Ok(Signal::Samples(along.with(values)));
     }

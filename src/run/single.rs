@@ -1,4 +1,4 @@
-//! One value by itself, with what it was made of: for who asks where a number of a result comes from.
+//! One value of a result computed again, with all intermediate values, to trace where it comes from.
 
 use super::section::{self, OneRecord};
 use super::{Found, Prepared};
@@ -8,37 +8,37 @@ use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::{FileHash, took_part};
 
-/// One section and signal of a quantity, computed anew.
+/// The value of one section and signal of a quantity.
 #[derive(Debug)]
 pub struct Single {
-    /// What was read, the simulation first.
+    /// The records read, the simulation first.
     pub records: Vec<Side>,
-    /// Difference, metric, or the value of the record that is assessed, in the unit of the quantity.
+    /// Difference, metric, or the value of an assessed record, in the unit of the quantity.
     pub difference: f64,
-    /// Samples or windows of the measured value.
+    /// Number of samples or windows of the measured value.
     pub samples: usize,
 }
 
-/// What one record gave.
+/// The values of one record.
 #[derive(Debug)]
 pub struct Side {
-    /// The column of the value in a result, in which a repeat stands in the place of the simulation; `None` of an assessment.
+    /// The column of the value in a result; a repeat takes the place of the simulation. `None` for an assessment.
     pub column: Option<plan::Side>,
     pub file: FileHash,
-    /// First and last row of the file that lie in the section, the header being row 1.
+    /// First and last row of the file inside the section; the header is row 1.
     pub inside: (usize, usize),
     /// The last row of the file.
     pub last: usize,
-    /// Reduced signals by the node of the graph that gives them, in SI, and of how many samples or windows.
+    /// Values of signals: the index of the graph node, the value in SI, and the number of samples or windows.
     pub reduced: Vec<(usize, f64, usize)>,
-    /// The value of this side, in the unit of the quantity; `None` where a metric gives one number of both.
+    /// The value of this side, in the unit of the quantity; `None` where a metric gives one number for both.
     pub value: Option<f64>,
 }
 
 /// Reads both records of a section and computes one value of one quantity.
 ///
 /// # Errors
-/// What makes the campaign unusable; `no-such-section`; `not-evaluated` with the reason.
+/// Reasons why the campaign cannot be used; `no-such-section`; `not-evaluated` with the reason.
 pub fn single(
     plan: &Plan,
     graph: &Graph,
@@ -67,7 +67,7 @@ pub fn single(
     let of = &plan.quantities[quantity].unit;
     let evaluation = plan.quantities[quantity].evaluation.as_ref();
     let assessed = matches!(evaluation, Evaluation::Values { records: Records::Of(_), .. });
-    // What is central of several records is made of all of them.
+    // The mean or median of several records needs all of them.
     let of_all = matches!(evaluation, Evaluation::Values { records: Records::Spread { .. }, .. });
     let own = |one: &OneRecord| of_all || took_part(record, one.place == plan::Side::Simulated, one.name.as_deref());
     let side = |one: OneRecord| {

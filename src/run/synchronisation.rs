@@ -1,4 +1,4 @@
-//! The measurement against the simulation along the axis: shifts asked for, and the one the signals themselves show.
+//! Shift of the measurement against the simulation along the axis: requested shifts, and the shift estimated from the signals.
 
 use std::collections::BTreeSet;
 
@@ -8,19 +8,19 @@ use super::sides::Evaluated;
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::synchronise::{self, Estimate, Search};
 
-/// Where to evaluate the measurement.
+/// The shifts at which the measurement is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Shifts<'a> {
-    /// What is added to the measurement's axis before sections are cut, SI.
+    /// Added to the measurement's axis before sections are cut, SI.
     pub offsets: &'a [f64],
-    /// Farthest shift looked for where each section's own is to be estimated, SI.
+    /// Largest shift of the search, where the shift of each section is to be estimated, SI.
     pub farthest: Option<f64>,
-    /// Whether what was estimated is added, too.
+    /// Whether the estimated shift is added as well.
     pub correct: bool,
 }
 
 impl Shifts<'_> {
-    /// The records as they are.
+    /// The records without a shift.
     pub const NONE: Shifts<'static> = Shifts { offsets: &[0.0], farthest: None, correct: false };
 
     pub fn plain(&self) -> bool {
@@ -28,21 +28,21 @@ impl Shifts<'_> {
     }
 }
 
-/// What would bring a section's measurement onto its simulation, in SI of the axis.
+/// The shift that aligns a section's measurement with its simulation, in SI of the axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Offset {
     pub shift: f64,
     /// 95 % interval.
     pub low: f64,
     pub high: f64,
-    /// Correlation of both at that shift, all signals together.
+    /// Correlation of both sides at that shift, over all signals.
     pub correlation: f64,
 }
 
-/// Steps of the search up to its farthest shift.
+/// Number of steps of the search up to its largest shift.
 const STEPS: f64 = 100.0;
 
-/// The filtered signals that are compared: each once, none that is resampled on the way.
+/// The filtered signals that are compared: each once, without those that are resampled.
 pub fn signals(work: &Work<'_>, active: &[Vec<bool>]) -> BTreeSet<NodeId> {
     let mut found = BTreeSet::new();
     for (index, quantity) in work.graph.quantities.iter().enumerate() {
@@ -55,7 +55,7 @@ pub fn signals(work: &Work<'_>, active: &[Vec<bool>]) -> BTreeSet<NodeId> {
     found
 }
 
-/// `None` where the records do not tell: no signal of both, or none that varies.
+/// `None` where the shift cannot be estimated: no signal that both sides have, or none that varies.
 pub fn estimate(graph: &Graph, unit: &Unit, farthest: f64, simulated: &Evaluated, measured: &Held<'_>) -> Option<Offset> {
     let (start, end) = unit.extent?;
     let mut pairs = Vec::new();
@@ -73,7 +73,7 @@ pub fn estimate(graph: &Graph, unit: &Unit, farthest: f64, simulated: &Evaluated
     Some(Offset { shift, low, high, correlation })
 }
 
-/// A number for each signal, the same for signals that share a channel, directly or through others.
+/// A group index for each signal; signals that share a channel, directly or through others, are in the same group.
 fn groups(graph: &Graph, nodes: &[NodeId]) -> Vec<usize> {
     let mut group: Vec<usize> = (0..nodes.len()).collect();
     let mut seen: Vec<(NodeId, usize)> = Vec::new();
@@ -90,7 +90,7 @@ fn groups(graph: &Graph, nodes: &[NodeId]) -> Vec<usize> {
     group
 }
 
-/// The nodes that read what a signal is made of.
+/// The nodes that read the channels of a signal.
 fn channels(graph: &Graph, node: NodeId) -> BTreeSet<NodeId> {
     let node_is = &graph.nodes[node];
     if matches!(node_is.operation, Operation::Read { .. }) {

@@ -1,4 +1,4 @@
-//! The table of values: one row for each section, position and record, or records compared.
+//! The table of values: one row for each section, position and record or pair of records.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -13,18 +13,18 @@ pub struct Row {
     pub position: usize,
     /// Index into the quantity's values, of which several may apply.
     pub which: usize,
-    /// Which record, where the campaign has several of a side.
+    /// The record, where the campaign has several of a side.
     pub record: Option<Arc<str>>,
-    /// What was compared, where the rows compare numbers, SI.
+    /// The values compared, where rows compare numbers, SI.
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
-    /// What estimates are taken over, SI: a difference, a metric, or the value of one record.
+    /// The value that estimates use, SI: a difference, a metric, or the value of one record.
     pub value: f64,
-    /// Samples or windows it was taken from.
+    /// Number of samples or windows.
     pub samples: usize,
 }
 
-/// A row with the section that it is of.
+/// A row with its section.
 #[derive(Clone, Copy, Debug)]
 pub struct Member<'a> {
     pub unit: &'a Unit,
@@ -33,10 +33,10 @@ pub struct Member<'a> {
     pub row: &'a Row,
 }
 
-/// The rows of every quantity, or why there is no number of them.
+/// The rows of every quantity, or the reason why they cannot be used.
 pub type Table<'a> = [Result<&'a [Member<'a>], String>];
 
-/// Numbers the units that are independent of each other, one for each member.
+/// The index of the independent unit of each member.
 pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
     let mut names: Vec<String> = Vec::new();
     let mut of_column = |unit: &Unit, index: usize| {
@@ -44,7 +44,7 @@ pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
             Ok(Scalar::Word(word)) => word.clone(),
             Ok(Scalar::Number(number)) => format!("{number:e}"),
             Ok(Scalar::Flag(flag)) => flag.to_string(),
-            // A section that does not say what it depends on depends on its site.
+            // A section that does not state its unit counts as part of its site.
             Err(_) => format!("site {}", unit.site),
         };
         names.iter().position(|known| *known == name).unwrap_or_else(|| {
@@ -64,7 +64,7 @@ pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
     members.iter().map(one).collect()
 }
 
-/// How many independent units members are of.
+/// Number of independent units of the members.
 pub fn count_independent(plan: &Plan, members: &[Member<'_>]) -> usize {
     independent(plan, members).into_iter().collect::<BTreeSet<_>>().len()
 }

@@ -1,4 +1,4 @@
-//! What a run tells of the vehicle's data: units that were assumed, and limits that these data multiply.
+//! Findings about the vehicle data: assumed units, and limits with factors that depend on these data.
 
 use super::facts::{Facts, Known, vehicle_item};
 use crate::check::evaluate::{flag, number};
@@ -8,10 +8,10 @@ use crate::units::Dimension;
 
 /// Code of the finding about units that the vehicle file does not state.
 const UNIT_ASSUMED: &str = "unit-assumed";
-/// Code of the finding about limits that vehicle data multiply.
+/// Code of the finding about limits with factors that depend on vehicle data.
 const LIMIT_FACTOR: &str = "limit-factor";
 
-/// Findings about the vehicle's data; none of them changes the verdict.
+/// Findings about the vehicle data; none of them changes the verdict.
 pub fn findings(plan: &Plan, facts: &Facts, quantities: &[QuantityResult]) -> Vec<Finding> {
     assumed(plan, facts).into_iter().chain(multiplied(quantities)).collect()
 }
@@ -62,7 +62,7 @@ fn times(by: f64) -> String {
     if by == 2.0 { "doubled".into() } else { format!("multiplied by {by}") }
 }
 
-/// The factors of a limit that the vehicle's data alone switch on, each with its reason.
+/// The factors of a limit that apply because of vehicle data alone, each with its reason.
 pub fn factors(plan: &Plan, facts: &Facts, limit: &Limit) -> Vec<LimitFactor> {
     let known = Known::vehicle(facts);
     let of = |(factor, condition): &(Expr, Expr)| {
@@ -75,7 +75,7 @@ pub fn factors(plan: &Plan, facts: &Facts, limit: &Limit) -> Vec<LimitFactor> {
     limit.factors.iter().filter_map(of).collect()
 }
 
-/// The parts of a condition that make it what it is, in words: `vehicle category is freight`.
+/// The parts of a condition that decide its result, in words: `vehicle category is freight`.
 fn reasons(plan: &Plan, facts: &Facts, condition: &Expr, wanted: bool, found: &mut Vec<String>) {
     match &condition.kind {
         Kind::Not(inner) => reasons(plan, facts, inner, !wanted, found),
@@ -101,7 +101,7 @@ fn reasons(plan: &Plan, facts: &Facts, condition: &Expr, wanted: bool, found: &m
     }
 }
 
-/// Vehicle data that an expression reads, in the order in which it names them.
+/// Vehicle data that an expression uses, in the order of their occurrence.
 fn vehicle_data(expr: &Expr, found: &mut Vec<usize>) {
     match &expr.kind {
         Kind::Vehicle(index) => found.push(*index),

@@ -1,4 +1,4 @@
-//! Signals of the sections that matter most, thinned for plotting.
+//! Signals of the most important sections, reduced for plotting.
 
 use std::collections::BTreeSet;
 
@@ -12,11 +12,11 @@ use crate::graph::NodeId;
 use crate::result::{Curve, QuantityResult, Trace, took_part};
 use crate::units::Unit;
 
-/// Points of a curve in a plot: each of so many stretches keeps its smallest and largest sample, so that no peak is lost.
+/// Number of stretches of a plotted curve. Each keeps its smallest and largest sample, so that no peak is lost.
 const STRETCHES: usize = 700;
 
-/// The pair with the largest difference of each quantity, measured by its limits; the worst first, each signal of a section once.
-/// For a plot that cannot be made, a note says why.
+/// The pair with the largest difference of each quantity, relative to its limits. The worst is first, each signal of a section
+/// once. If a plot cannot be made, a note states the reason.
 pub fn traces(work: &Work<'_>, units: &[Section], quantities: &[QuantityResult], most: usize) -> Vec<Result<Trace, String>> {
     let mut picks: Vec<(f64, Pick<'_>)> = Vec::new();
     for (index, quantity) in quantities.iter().enumerate() {
@@ -51,11 +51,11 @@ struct Pick<'a> {
     quantity: usize,
     unit: usize,
     signal: usize,
-    /// Of several records the ones that were compared.
+    /// The records that were compared, where there are several.
     record: Option<&'a str>,
 }
 
-/// What a plot runs over: the axis of the records, or the signal that the quantity's metric runs over.
+/// The horizontal axis of a plot: the axis of the records, or the signal that the metric uses in its place.
 struct Over {
     node: Option<NodeId>,
     name: String,
@@ -72,7 +72,7 @@ fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record
         }
         _ => Over { node: None, name: axis.column.clone(), unit: axis.unit.clone() },
     };
-    // A loop is drawn from the signals it was compared by, everything else from the record around the section, too.
+    // A loop is plotted from the signals that were compared; other signals from the record around the section as well.
     let node = if over.node.is_some() { nodes.processed } else { nodes.filtered };
     let wanted: BTreeSet<NodeId> = [node].into_iter().chain(over.node).collect();
     let known = unit.known(work.facts);

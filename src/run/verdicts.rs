@@ -1,4 +1,4 @@
-//! From quantities to verdicts: by limits, over other verdicts, or left to a person.
+//! Verdicts: from limits of quantities, from other verdicts, or left to a person.
 
 use super::judge::count;
 use super::limits::rule_place;
@@ -6,13 +6,13 @@ use crate::check::plan::{Decision, Over, Plan, Rule};
 use crate::graph::{Graph, Operation};
 use crate::result::{Outcome, QuantityResult, VerdictResult};
 
-/// What verdicts follow from.
+/// What verdicts depend on.
 #[derive(Debug)]
 pub struct Given<'a> {
-    /// Why nothing that rests on limits can be assessed: sections that are missing, data that are not plausible.
+    /// Why no verdict on limits can be given: missing sections, implausible data.
     pub barred: Vec<String>,
     pub quantities: &'a [QuantityResult],
-    /// For each quantity a sentence for each limit that does not hold.
+    /// For each quantity, a sentence for each limit that is not met.
     pub fails: Vec<Vec<String>>,
 }
 
@@ -24,7 +24,7 @@ pub struct Decided {
 
 impl Default for Decided {
     fn default() -> Self {
-        Self::not_assessable(vec!["the graph ends without a verdict; this is a fault of the program".into()])
+        Self::not_assessable(vec!["the graph ends without a verdict; this is an error of the program".into()])
     }
 }
 
@@ -38,7 +38,7 @@ impl Decided {
     }
 }
 
-/// One for each verdict of the plan, run in the order of their nodes, so that each comes after those it is over.
+/// One result for each verdict of the plan. They run in the order of their nodes, so that each comes after those it uses.
 pub fn decide(plan: &Plan, graph: &Graph, given: &Given<'_>) -> Vec<Decided> {
     let mut order: Vec<usize> = (0..graph.verdicts.len()).collect();
     order.sort_by_key(|&at| graph.verdicts[at]);
@@ -84,7 +84,7 @@ pub fn named(plan: &Plan, decided: &[Decided]) -> Vec<VerdictResult> {
 fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Decided {
     let quantities = || about.iter().map(|&at| &given.quantities[at]);
     let mut missing = given.barred.clone();
-    // A quantity without limits is reported and decides nothing.
+    // A quantity without limits is reported and has no effect.
     let without = |quantity: &&QuantityResult| quantity.statistics.is_empty();
     missing.extend(
         quantities()
@@ -118,7 +118,7 @@ fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Dec
     Decided { outcome: Outcome::DoesNotHold, reasons }
 }
 
-/// Why nothing decides: a verdict needs at least one limit that applies.
+/// Why no verdict can be given: it needs at least one limit that applies.
 fn without_criterion(plan: &Plan, about: &[usize]) -> &'static str {
     let all = about.len() == plan.quantities.len();
     match (about.iter().all(|&at| plan.quantities[at].limits.is_empty()), all) {
@@ -129,7 +129,7 @@ fn without_criterion(plan: &Plan, about: &[usize]) -> &'static str {
     }
 }
 
-/// A verdict over others can be given when all of them are.
+/// A verdict that uses others can be given when all of them are given.
 fn by_verdicts(plan: &Plan, over: &Over, decided: &[Decided]) -> Decided {
     let title = |at: usize| plan.verdicts[at].title.as_str();
     let undecided = over.verdicts().into_iter().filter(|&at| decided[at].outcome.holds().is_none());
@@ -153,7 +153,7 @@ fn by_verdicts(plan: &Plan, over: &Over, decided: &[Decided]) -> Decided {
     Decided { outcome: Outcome::DoesNotHold, reasons: parts.into_iter().filter(|part| !holds(part, decided)).map(reason).collect() }
 }
 
-/// Of verdicts that are all decided.
+/// Whether the condition holds, for verdicts that are all given.
 fn holds(over: &Over, decided: &[Decided]) -> bool {
     let is = |at: &usize| decided[*at].outcome == Outcome::Holds;
     match over {
@@ -166,7 +166,7 @@ fn holds(over: &Over, decided: &[Decided]) -> bool {
     }
 }
 
-/// As the protocol may write it.
+/// The condition as it is written in a protocol.
 fn in_words(over: &Over, plan: &Plan) -> String {
     let name = |at: &usize| plan.verdicts[*at].name.clone().unwrap_or_default();
     let joined = |parts: &[Over], between: &str| {
@@ -190,7 +190,7 @@ fn in_words(over: &Over, plan: &Plan) -> String {
     }
 }
 
-/// How many limits of a quantity hold. A limit of groups holds if all of them do: as many groups are no further limits.
+/// Number of limits of a quantity that are met. A limit of several groups is met if all groups meet it, and counts once.
 fn limits_holding(quantity: &QuantityResult) -> usize {
     let mut limits: Vec<(&str, &str, usize, bool)> = Vec::new();
     for one in &quantity.statistics {

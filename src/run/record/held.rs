@@ -1,4 +1,4 @@
-//! A record that is held after its filters: cut and reduced again for every offset.
+//! A record kept after its filters ran, to be cut and reduced again for every shift.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -12,13 +12,13 @@ use crate::graph::NodeId;
 pub struct Held<'a> {
     pub(super) state: State<'a>,
     pub(super) levels: Vec<Vec<NodeId>>,
-    /// Nodes that depend on where the section lies.
+    /// Nodes that depend on the place of the section.
     pub(super) placed: Vec<bool>,
     pub(super) wanted: &'a BTreeSet<NodeId>,
 }
 
 impl Held<'_> {
-    /// A wanted signal of the whole record.
+    /// A requested signal of the whole record.
     pub fn samples(&self, node: NodeId) -> Option<&Samples> {
         self.state.found.iter().find_map(|(id, found)| match found {
             Found::Samples(samples) if *id == node => Some(samples),
@@ -26,7 +26,7 @@ impl Held<'_> {
         })
     }
 
-    /// The part of the section that the moved record covers.
+    /// The part of the section that the shifted record covers.
     fn covered(&self, shift: f64) -> Result<Extent, String> {
         let (start, end) = self.state.extent;
         if shift == 0.0 {
@@ -42,10 +42,10 @@ impl Held<'_> {
         Ok((from, to))
     }
 
-    /// Values of the wanted nodes with the record moved along the axis by a shift (SI) before the section is cut.
+    /// Values of the requested nodes with the record moved along the axis by `shift` (SI) before the section is cut.
     ///
     /// # Errors
-    /// Where the moved record covers too little of the section, and as evaluation.
+    /// Where the moved record covers too little of the section; and the errors of an evaluation.
     pub fn at(&self, shift: f64) -> Result<Vec<(NodeId, Found)>, String> {
         let mut moved = Moved { shift, known: Vec::new() };
         let extent = self.covered(shift)?;
@@ -67,10 +67,10 @@ impl Held<'_> {
     }
 }
 
-/// Share of a section that a moved record may leave uncovered: what there is of it is evaluated.
+/// Largest share of a section that a moved record may leave uncovered; the covered part is evaluated.
 const MOST_MISSING: f64 = 0.2;
 
-/// Signals of a record run along the same samples, which are moved once for all of them.
+/// Signals of a record share their axis, which is moved once for all of them.
 struct Moved {
     shift: f64,
     known: Vec<(Arc<Along>, Arc<Along>)>,
