@@ -1,25 +1,25 @@
-//! The whole registry in words, for `explain` and the language reference.
+//! The whole registry as text, for `explain` and the language reference.
 
 use std::fmt::Write;
 
 use super::{Best, DIFFERENCES, FUNCTIONS, Form, METRICS, NumberOption, REDUCERS, SIGNAL_FUNCTIONS, STATISTICS, STEPS, Signature};
 use crate::units::Dimension;
 
-/// One thing the language can do with signals or numbers.
+/// One operation of the language on signals or numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// `step`, `reducer`, `metric`, `difference`, `statistic`, `function` or `signal-function`.
     pub kind: &'static str,
     /// How it is written: `low-pass <cut-off: a frequency>`.
     pub wording: String,
-    /// What it takes and gives; `D` is any dimension.
+    /// Arguments and result; `D` is any dimension.
     pub signature: &'static str,
     pub about: String,
-    /// Which values are good, where that is known: `1, larger is better`.
+    /// The best value, where it is known: `1, larger is better`.
     pub best: Option<String>,
     /// Words and numbers that may follow a comma, each with its default.
     pub options: Vec<String>,
-    /// Where it is published, if it is.
+    /// Publication, if there is one.
     pub source: Option<&'static str>,
 }
 
@@ -28,7 +28,7 @@ impl Entry {
         Self { kind, wording: wording.into(), signature, about: about.into(), best: None, options: Vec::new(), source: None }
     }
 
-    /// All that is said about it, in one line.
+    /// The complete description, in one line.
     pub fn in_words(&self) -> String {
         let mut text = self.about.clone();
         if let Some(best) = &self.best {
@@ -44,7 +44,7 @@ impl Entry {
     }
 }
 
-/// Everything in the registry, kind by kind.
+/// All entries of the registry, kind by kind.
 pub fn entries() -> Vec<Entry> {
     let mut all = Vec::new();
     for entry in STEPS {
@@ -53,7 +53,7 @@ pub fn entries() -> Vec<Entry> {
             ..Entry::new("step", entry.form.in_words(), step_signature(&entry.form), entry.about)
         });
     }
-    all.push(Entry::new("reducer", "p<number>", "signal<D> -> D", "The value below which so many per cent of the samples lie."));
+    all.push(Entry::new("reducer", "p<number>", "signal<D> -> D", "The value below which this percentage of the samples lies."));
     for entry in REDUCERS {
         let signature = match (entry.gives)(Dimension::LENGTH, Dimension::TIME) {
             Dimension::LENGTH => "signal<D> -> D",
@@ -86,8 +86,8 @@ pub fn entries() -> Vec<Entry> {
         let about = format!("The {} of all pairs.", entry.title);
         all.push(Entry { best, ..Entry::new("statistic", entry.name, "pairs of D -> D", about) });
     }
-    all.push(Entry::new("statistic", "p<number>", "pairs of D -> D", "A percentile of all pairs, linear between two of them."));
-    all.push(Entry::new("statistic", "each", "each pair of D", "Every pair by itself; the worst decides."));
+    all.push(Entry::new("statistic", "p<number>", "pairs of D -> D", "A percentile of all pairs, with linear interpolation."));
+    all.push(Entry::new("statistic", "each", "each pair of D", "Every pair separately; the worst decides."));
     for function in FUNCTIONS {
         all.push(Entry::new("function", function.name, signature(function.signature), function.about));
     }

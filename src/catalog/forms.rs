@@ -1,25 +1,25 @@
-//! How a step or metric is worded: fixed words with slots, then options in any order.
+//! The wording of a step or metric: fixed words with slots, then options in any order.
 
 use crate::units::Dimension;
 
-/// A piece of a wording.
+/// A part of a wording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Part {
     /// A fixed word.
     Word(&'static str),
     /// A number of the given dimension.
     Number(&'static str, Dimension),
-    /// A number that is a time or a length: the axis it runs over follows from it.
+    /// A time or a length; its dimension decides the axis that is used.
     Extent(&'static str),
     /// A frequency: in time, or in cycles per length after resampling over a length.
     Frequency(&'static str),
-    /// The same, or 0 Hz.
+    /// A frequency or 0 Hz.
     FrequencyOrZero(&'static str),
     /// Another signal.
     Signal(&'static str),
 }
 
-/// An option with a few possible words, the first being the default.
+/// An option with a few possible words; the first is the default.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice {
     pub name: &'static str,
@@ -31,9 +31,9 @@ pub struct Choice {
 #[derive(Clone, Copy, Debug)]
 pub struct NumberOption {
     pub name: &'static str,
-    /// `None`: without the option nothing is done.
+    /// `None`: without the option, nothing is done.
     pub default: Option<f64>,
-    /// Whether it may have a unit. The unit is then that of what comes out over what goes in.
+    /// Whether it may have a unit. The signal is then multiplied by this unit.
     pub with_unit: bool,
 }
 
@@ -47,7 +47,7 @@ pub struct Form {
 }
 
 impl Form {
-    /// `band-pass {low: frequency} to {high: frequency}`
+    /// The wording as text: `band-pass <low: a frequency> to <high: a frequency>`.
     pub fn in_words(&self) -> String {
         let parts: Vec<String> = self
             .head

@@ -1,6 +1,6 @@
-//! The registry of what the language can do with signals and numbers: reducers, statistics, functions, filter steps, metrics.
+//! The registry of operations on signals and numbers: reducers, statistics, functions, filter steps, metrics.
 //!
-//! Each entry has a name, a signature and a sentence; checker, engine, `explain`, and the language reference read the same tables.
+//! Each entry has a name, a signature and a description. Checker, run, `explain` and the language reference use the same tables.
 
 mod entries;
 mod forms;
@@ -16,7 +16,7 @@ pub use reducers::{REDUCERS, Reducer, ReducerEntry, STATISTICS, Statistic, Stati
 pub use steps::{STEPS, StepEntry, StepKind};
 pub use two_signals::{Asked, Best, METRICS, Metric, MetricEntry, Pair};
 
-/// Comparisons of a simulated and a measured value with a name, so that protocols need not spell them out.
+/// Named differences of a simulated and a measured value, as name and expression.
 pub const DIFFERENCES: [(&str, &str); 3] = [
     ("oriented", "sign(measured) * (simulated - measured)"),
     ("magnitudes", "|simulated| - |measured|"),

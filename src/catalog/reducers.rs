@@ -1,4 +1,4 @@
-//! Numbers taken from one signal of one section, and statistics over all section x signal pairs.
+//! Values of one signal in one section, and statistics over all section x signal pairs.
 
 use crate::metrics::interval::{mean_interval, standard_deviation_interval};
 use crate::metrics::percentile::{Method, percentile};
@@ -6,10 +6,10 @@ use crate::metrics::sampling;
 use crate::metrics::statistics::{self, Divisor};
 use crate::units::Dimension;
 
-/// Confidence of the intervals printed beside statistics.
+/// Confidence level of the intervals printed with statistics.
 const CONFIDENCE: f64 = 0.95;
 
-/// What reduces a signal to a number.
+/// An operation that reduces a signal to a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reducer {
     Percentile(f64),
@@ -20,9 +20,9 @@ pub enum Reducer {
 pub struct ReducerEntry {
     pub name: &'static str,
     pub about: &'static str,
-    /// Dimension of the result from that of the signal and of the axis.
+    /// Dimension of the result, from those of the signal and of the axis.
     pub gives: fn(Dimension, Dimension) -> Dimension,
-    /// From the axis and the samples, both SI; `None` where it is not defined.
+    /// From the axis and the samples, both in SI; `None` where it is not defined.
     pub run: fn(&[f64], &[f64]) -> Option<f64>,
 }
 
@@ -42,19 +42,19 @@ macro_rules! share {
     };
 }
 
-/// Reducers by name; percentiles are written `p99.85` besides.
+/// Reducers by name; percentiles are written as `p99.85`.
 pub const REDUCERS: &[ReducerEntry] = &[
     same("median", "The 50 % value.", |_, x| statistics::median(x)),
     same("mean", "Arithmetic mean of the samples.", |_, x| statistics::mean(x)),
-    same("rms", "Root of the mean square; the mean is not removed.", |_, x| statistics::rms(x)),
+    same("rms", "Root mean square; the mean is not removed.", |_, x| statistics::rms(x)),
     same("std", "Standard deviation of the samples (n-1).", |_, x| statistics::standard_deviation(x, Divisor::Sample)),
     same("minimum", "Smallest sample.", |_, x| statistics::minimum(x)),
     same("maximum", "Largest sample.", |_, x| statistics::maximum(x)),
     same("peak", "Largest magnitude.", |_, x| statistics::peak_magnitude(x)),
-    same("range", "Largest less smallest sample.", |_, x| statistics::range(x)),
-    share!("held", "Share of the section in which the longest run of equal samples stands.", sampling::longest_held_share),
-    share!("at_extreme", "Share of the samples at the largest or at the smallest value, whichever are more.", sampling::share_at_extreme),
-    same("resolution", "Smallest change from one sample to the next: the step of quantisation of a live signal.", |_, x| {
+    same("range", "Largest minus smallest sample.", |_, x| statistics::range(x)),
+    share!("held", "Share of the samples in the longest run of equal values.", sampling::longest_held_share),
+    share!("at_extreme", "Share of the samples at the largest or at the smallest value, the larger of both.", sampling::share_at_extreme),
+    same("resolution", "Smallest change between consecutive samples: the quantisation step of a signal that varies.", |_, x| {
         sampling::resolution(x)
     }),
     same("first", "First sample of the section.", |_, x| x.first().copied()),
@@ -79,7 +79,7 @@ impl Reducer {
         }
     }
 
-    /// `None` where the value is not defined: no samples, a slope over one sample.
+    /// `None` where the value is not defined, such as for no samples or the slope of one sample.
     pub fn run(self, axis: &[f64], samples: &[f64], method: Method) -> Option<f64> {
         match self {
             Self::Percentile(percent) => percentile(samples, percent, method).ok(),
@@ -98,22 +98,22 @@ impl Reducer {
 /// A statistic over pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Statistic {
-    /// Every value by itself: the worst decides.
+    /// Every value separately; the worst decides.
     Each,
     Percentile(f64),
     Named(&'static StatisticEntry),
 }
 
-/// Low and high end of a confidence interval of some values, each with the number of its site.
+/// Lower and upper end of a confidence interval, from values and the index of the site of each.
 pub type Interval = fn(&[f64], &[usize]) -> Option<(f64, f64)>;
 
 #[derive(Debug)]
 pub struct StatisticEntry {
     pub name: &'static str,
     pub title: &'static str,
-    /// Whether it tells how far values differ from each other, so that 0 is best whatever they are.
+    /// Whether it measures scatter. The best value is then 0 for every quantity.
     pub of_scatter: bool,
-    /// From the differences and the divisor's n - `ddof`.
+    /// From the values and `ddof` (divisor n - `ddof`).
     pub run: fn(&[f64], usize) -> Option<f64>,
     /// 95 % confidence interval for normal values that are independent between sites, where there is one.
     pub interval: Option<Interval>,
@@ -163,7 +163,7 @@ impl Statistic {
         STATISTICS.iter().find(|entry| entry.name == word).map(Self::Named)
     }
 
-    /// As in result files: `mean`, `std`, `p95`, `each`.
+    /// Name in result files: `mean`, `std`, `p95`, `each`.
     pub fn name(self) -> String {
         match self {
             Self::Each => "each".into(),
@@ -172,7 +172,7 @@ impl Statistic {
         }
     }
 
-    /// Whether it tells how far values differ from each other.
+    /// Whether it measures scatter.
     pub fn of_scatter(self) -> bool {
         matches!(self, Self::Named(entry) if entry.of_scatter)
     }

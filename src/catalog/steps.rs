@@ -29,18 +29,18 @@ const BUTTERWORTH_CHOICES: &[Choice] = &[
     Choice {
         name: "phase",
         words: &["zero-phase", "causal", "causal-from-rest"],
-        about: "Forward and backward; or one pass from the steady state of the first sample; or one pass from rest.",
+        about: "Forward and backward; or one pass, starting from the steady state of the first sample; or one pass, starting from zero.",
     },
     Choice {
         name: "edge",
         words: &["as-applied", "per-pass"],
-        about: "Whether the frequencies are the -3 dB points of the filter as applied, or of each pass.",
+        about: "Whether the frequencies are the -3 dB points of the filter as applied or of each pass.",
     },
 ];
 const WINDOW_CHOICES: &[Choice] = &[Choice {
     name: "ends",
     words: &["samples", "integral"],
-    about: "Mean of the samples a <= x < a + window, or the trapezoidal integral over the window.",
+    about: "Mean of the samples a <= x < a + window, or the integral of the linearly interpolated signal over the window, divided by its width.",
 }];
 
 const fn butterworth(kind: StepKind, head: &'static [Part], about: &'static str) -> StepEntry {
@@ -52,12 +52,12 @@ const TRANSFER_CHOICES: &[Choice] = &[
     Choice {
         name: "phase",
         words: &["causal", "causal-from-rest", "zero-phase"],
-        about: "Of a transfer function: one pass from the steady state of the first sample; or one pass from rest; or forward and backward, which squares the magnitude without the gain.",
+        about: "For a transfer function: one pass, starting from the steady state of the first sample; or one pass, starting from zero; or forward and backward, which squares the magnitude but not the gain.",
     },
     Choice {
         name: "warping",
         words: &["pre-warped", "plain"],
-        about: "Whether the bilinear transformation keeps each pole and zero at its frequency, or moves them down as it does all others.",
+        about: "Whether the frequency of each pole and zero is pre-warped, so that the bilinear transformation keeps it, or not, so that it becomes lower.",
     },
 ];
 
@@ -146,18 +146,18 @@ pub const STEPS: &[StepEntry] = &[
     window(
         StepKind::SlidingMean,
         &[Part::Word("sliding"), Part::Word("mean"), Part::Extent("window"), Part::Word("every"), Part::Extent("step")],
-        "Mean in a window that slides from the start of the section and stays inside it.",
+        "Mean in a sliding window, from the start of the section; all windows are inside the section.",
     ),
     window(
         StepKind::SlidingRms,
         &[Part::Word("sliding"), Part::Word("rms"), Part::Extent("window"), Part::Word("every"), Part::Extent("step")],
-        "Root mean square in a window that slides from the start of the section and stays inside it.",
+        "Root mean square in a sliding window, from the start of the section; all windows are inside the section.",
     ),
     bare(
         StepKind::Resample,
         &[Part::Word("resample"), Part::Word("every"), Part::Extent("step")],
-        "Linear interpolation of the whole record onto equal steps; over a length, filters that follow take cycles per length.",
+        "Linear interpolation of the whole record at equal steps; after resampling over a length, filters have frequencies in cycles per length.",
     ),
-    bare(StepKind::RemoveMean, &[Part::Word("remove"), Part::Word("mean")], "Takes the mean of the section away."),
+    bare(StepKind::RemoveMean, &[Part::Word("remove"), Part::Word("mean")], "Subtracts the mean of the section."),
     bare(StepKind::Magnitude, &[Part::Word("magnitude")], "Absolute values, sample by sample."),
 ];

@@ -1,32 +1,32 @@
-//! Metrics: one number from the simulated and the measured signal of a section, the measured one being the reference.
+//! Metrics: one number from the simulated and the measured signal of a section. The measured signal is the reference.
 
 use super::forms::{Form, NumberOption, Part};
 use crate::metrics::{coherence, hysteresis, pair};
 use crate::units::Dimension;
 
-/// The two signals, cut to the section and on common points unless the metric says otherwise; SI.
+/// The two signals, cut to the section and at common points unless the metric needs none; SI.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<'a> {
-    /// Where both have a sample, along the axis: only of metrics on common points.
+    /// Axis values at which both have a sample; only for metrics at common points.
     pub axis: &'a [f64],
     pub simulated: &'a [f64],
     pub measured: &'a [f64],
     /// Samples of the measured signal per second, or per metre where the record has no time.
     pub rate: f64,
-    /// The frequencies that the wording names.
+    /// The frequency band of the wording.
     pub band: Option<(f64, f64)>,
-    /// The signal that the metric runs over, where its wording names one: simulated, measured.
+    /// The simulated and the measured signal used in place of the axis, where the wording names one.
     pub over: Option<(&'a [f64], &'a [f64])>,
 }
 
-/// Which values are good: what a limit has to leave in.
+/// The best value of a metric. A limit must admit it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Best {
-    /// The nearer to this, from either side, the better.
+    /// The nearer to this value, from either side, the better.
     Near(f64),
-    /// No value is below this; the smaller the better.
+    /// No value is below this; smaller is better.
     Least(f64),
-    /// No value is above this; the larger the better.
+    /// No value is above this; larger is better.
     Greatest(f64),
 }
 
@@ -37,7 +37,7 @@ impl Best {
         }
     }
 
-    /// `1, larger is better`
+    /// As text: `1, larger is better`.
     pub fn in_words(self) -> String {
         let way = match self {
             Self::Near(_) => "nearer",
@@ -48,28 +48,28 @@ impl Best {
     }
 }
 
-/// An entry, and what its wording asks for besides.
+/// A metric with the parameters of its wording.
 #[derive(Clone, Copy, Debug)]
 pub struct Metric(pub &'static MetricEntry, pub Asked);
 
-/// What the wording of a metric has besides its words.
+/// The parameters that the wording of a metric has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Asked {
-    /// How many points both distributions are taken at.
+    /// Number of points of both distributions.
     pub points: Option<usize>,
-    /// The frequencies from the first up to the second, SI.
+    /// The frequency band from the first value up to the second, SI.
     pub band: Option<(f64, f64)>,
 }
 
 impl Metric {
-    /// Whether the simulated signal is brought onto the points of the measured one before. Distributions need that nowhere, and are
-    /// taken of windows and resampled signals as these are.
+    /// Whether the simulated signal is first interpolated at the points of the measured one. Metrics of distributions do not need
+    /// that after a window or resampling.
     pub fn on_common_points(self, chain_keeps_samples: bool) -> bool {
         self.0.common_points && (chain_keeps_samples || !self.0.of_distributions)
     }
 
     /// # Errors
-    /// The reason where it is not defined.
+    /// The reason why it is not defined.
     pub fn run(self, pair: &Pair<'_>) -> Result<f64, String> {
         let pair = &Pair { band: self.1.band, ..*pair };
         let Some(points) = self.1.points else { return (self.0.run)(pair) };
@@ -88,36 +88,36 @@ impl PartialEq for Metric {
 #[derive(Debug)]
 pub struct MetricEntry {
     pub form: Form,
-    /// Dimension of the result from that of the signals and of the axis.
+    /// Dimension of the result, from those of the signals and of the axis.
     pub gives: fn(Dimension, Dimension) -> Dimension,
-    /// Whether the simulated signal is brought onto the points of the measured one before.
+    /// Whether the simulated signal is first interpolated at the points of the measured one.
     pub common_points: bool,
-    /// Whether it looks at the values regardless of their order, so that the sides may have different numbers of them.
+    /// Whether it uses the values regardless of their order, so that both sides may have different numbers of values.
     pub of_distributions: bool,
     pub best: Best,
     pub about: &'static str,
     pub source: &'static str,
-    /// The reason where it is not defined.
+    /// The error gives the reason why it is not defined.
     pub run: fn(&Pair<'_>) -> Result<f64, String>,
 }
 
 impl MetricEntry {
-    /// The metric that expressions call by this name.
+    /// The metric with this name in expressions.
     pub fn called(name: &str) -> Option<&'static Self> {
         METRICS.iter().find(|entry| entry.function_name() == name)
     }
 
-    /// Its words up to what it takes, joined: `theil_inequality`, `hysteresis_maximum`, `coherence`.
+    /// Its words before the first slot, joined: `theil_inequality`, `hysteresis_maximum`, `coherence`.
     pub fn function_name(&self) -> String {
         let head = self.form.head;
         let slot = head.iter().position(|part| !matches!(part, Part::Word(_)));
-        // The last word before a slot only leads to it: `over`, `from`.
+        // The last word before a slot is a preposition: `over`, `from`.
         let words = &head[..slot.map_or(head.len(), |slot| slot.saturating_sub(1))];
         let words: Vec<&str> = words.iter().filter_map(|part| if let Part::Word(word) = part { Some(*word) } else { None }).collect();
         words.join("_").replace('-', "_")
     }
 
-    /// As expressions call it: `coherence(<low>, <high>)`, `matching_probability` with or without `(<points>)`.
+    /// The call in expressions: `coherence(<low>, <high>)`, `matching_probability` with or without `(<points>)`.
     pub fn call_in_words(&self) -> String {
         let slots = self.form.head.iter().filter_map(|part| match part {
             Part::Word(_) => None,
@@ -166,21 +166,21 @@ pub const METRICS: &[MetricEntry] = &[
     ratio!(
         &[Part::Word("sprague-geers"), Part::Word("magnitude")],
         Best::Near(0.0),
-        "Root of the ratio of the integrals of the squares, less 1; negative where the simulation is smaller.",
+        "Square root of the ratio of the sums of squares, minus 1; negative where the simulation is smaller.",
         SG,
         pair::sprague_geers_magnitude
     ),
     ratio!(
         &[Part::Word("sprague-geers"), Part::Word("phase")],
         Best::Least(0.0),
-        "Angle between the two signals as vectors, over pi: 0 alike, 0.5 unrelated, 1 inverted.",
+        "Angle between the two signals as vectors, divided by pi: 0 for proportional signals, 0.5 for orthogonal ones, 1 for inverted ones.",
         SG,
         pair::sprague_geers_phase
     ),
     ratio!(
         &[Part::Word("sprague-geers"), Part::Word("comprehensive")],
         Best::Least(0.0),
-        "Root of the sum of the squares of magnitude and phase.",
+        "Square root of the sum of the squares of the magnitude and phase errors.",
         SG,
         pair::sprague_geers_comprehensive
     ),
@@ -191,25 +191,31 @@ pub const METRICS: &[MetricEntry] = &[
         RUSSELL,
         pair::russell_magnitude
     ),
-    ratio!(&[Part::Word("russell"), Part::Word("phase")], Best::Least(0.0), "As Sprague & Geers.", RUSSELL, pair::russell_phase),
+    ratio!(
+        &[Part::Word("russell"), Part::Word("phase")],
+        Best::Least(0.0),
+        "The same as the Sprague & Geers phase error.",
+        RUSSELL,
+        pair::russell_phase
+    ),
     ratio!(
         &[Part::Word("russell"), Part::Word("comprehensive")],
         Best::Least(0.0),
-        "Magnitude and phase together.",
+        "Square root of pi/4 times the sum of the squares of the magnitude and phase errors.",
         RUSSELL,
         pair::russell_comprehensive
     ),
     ratio!(
         &[Part::Word("theil"), Part::Word("inequality")],
         Best::Least(0.0),
-        "Root mean square difference over the sum of the root mean squares: 0 to 1.",
+        "Root mean square difference divided by the sum of the root mean squares, from 0 to 1.",
         "Theil 1966",
         pair::theil_u1
     ),
     ratio!(
         &[Part::Word("weighted"), Part::Word("integrated"), Part::Word("factor")],
         Best::Greatest(1.0),
-        "WIFac: 1 where the signals are alike, 0 where they have nothing in common.",
+        "WIFac: 1 for equal signals, 0 for signals of opposite sign throughout.",
         "Ray et al., NCHRP 22-24",
         pair::weighted_integrated_factor
     ),
@@ -217,7 +223,7 @@ pub const METRICS: &[MetricEntry] = &[
     ratio!(
         &[Part::Word("mirrored_correlation")],
         Best::Least(0.0),
-        "Pearson correlation with the simulated samples read from the end: near 1 where a record is mirrored.",
+        "Pearson correlation with the simulated samples in reverse order: near 1 if a record is mirrored.",
         "definition",
         pair::mirrored_correlation
     ),
@@ -227,7 +233,7 @@ pub const METRICS: &[MetricEntry] = &[
         common_points: true,
         of_distributions: false,
         best: Best::Near(0.0),
-        about: "What is to be added to the measured axis for the best correlation, up to a quarter of the section.",
+        about: "Shift to be added to the measured axis for the largest correlation, up to a quarter of the section.",
         source: "definition",
         run: |p| pair::shift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
     },
@@ -237,14 +243,14 @@ pub const METRICS: &[MetricEntry] = &[
         common_points: true,
         of_distributions: false,
         best: Best::Near(0.0),
-        about: "Rise of the regression line of measured less simulated samples over the section.",
+        about: "Change over the section of the regression line of measured minus simulated samples.",
         source: "definition",
         run: |p| pair::drift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
     },
     ratio!(
         &[Part::Word("misfit")],
         Best::Least(0.0),
-        "Sum of the squared differences over the smaller of the sums of squares.",
+        "Sum of the squared differences divided by the smaller of the sums of squares.",
         "Kraft et al. 2013, as described by Goetz & Polach",
         pair::kraft_misfit
     ),
@@ -277,7 +283,7 @@ pub const METRICS: &[MetricEntry] = &[
         common_points: true,
         of_distributions: false,
         best: Best::Greatest(1.0),
-        about: "Mean coherence of the lines from the one frequency to below the other: Welch, Hann windows of 256 samples, half overlapping.",
+        about: "Mean coherence of the spectral lines from the first frequency to below the second: Welch's method, Hann windows of 256 samples, 50 % overlap.",
         source: "Welch 1967",
         run: |p| {
             let band = p.band.ok_or("the frequencies are missing")?;
@@ -290,7 +296,7 @@ pub const METRICS: &[MetricEntry] = &[
         common_points: false,
         of_distributions: false,
         best: Best::Least(0.0),
-        about: "Largest matching error of the loop the signal draws over another: simulated against measured on the same branch.",
+        about: "Largest difference of the hysteresis loops of the signal over another one: simulated and measured on the same branch.",
         source: "EN 15273-2, stationary sway test",
         run: |p| loop_error(p).map(|error| error.maximum),
     },
@@ -300,22 +306,22 @@ pub const METRICS: &[MetricEntry] = &[
         common_points: false,
         of_distributions: false,
         best: Best::Least(0.0),
-        about: "Mean matching error of the loop the signal draws over another: simulated against measured on the same branch.",
+        about: "Mean difference of the hysteresis loops of the signal over another one: simulated and measured on the same branch.",
         source: "EN 15273-2, stationary sway test",
         run: |p| loop_error(p).map(|error| error.mean),
     },
 ];
 
-/// Of equal counts without a walk through both distributions.
+/// The area metric; for equal numbers of values the faster form.
 fn area(simulated: &[f64], measured: &[f64]) -> Result<f64, pair::Undefined> {
     if simulated.len() == measured.len() { pair::area_metric(simulated, measured) } else { pair::area_between(simulated, measured) }
 }
 
-/// Share of the input's range by which it must turn back to count as a turning point.
+/// Share of the input's range by which it must reverse to count as a turning point.
 const TURNING: f64 = 0.05;
 
 fn loop_error(pair: &Pair<'_>) -> Result<hysteresis::Matching, String> {
-    let (x_simulated, x_measured) = pair.over.ok_or("the signal of the loop's axis is missing")?;
+    let (x_simulated, x_measured) = pair.over.ok_or("the signal for the loop's axis is missing")?;
     let simulated = hysteresis::Loop { x: x_simulated, y: pair.simulated };
     let measured = hysteresis::Loop { x: x_measured, y: pair.measured };
     hysteresis::matching(simulated, measured, TURNING).map_err(|undefined| undefined.to_string())
