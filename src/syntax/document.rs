@@ -1,6 +1,6 @@
-//! A protocol as written: blocks with fields, positions and comments, the same tree for the text form and for YAML.
+//! A protocol as written: blocks with fields, places and comments. The tree is the same for the text form and for YAML.
 //!
-//! What a field means is not known here; which blocks and fields exist stands in [`super::keys`].
+//! The meaning of fields is not known here. [`super::keys`] lists the blocks and fields.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -10,19 +10,19 @@ use crate::source::{Source, Span};
 #[derive(Clone, Debug)]
 pub struct Document {
     pub source: Arc<Source>,
-    /// Comment lines at the top of the file that a blank line sets off from what follows, without the `#`.
+    /// Comment lines at the top of the file that a blank line separates from what follows, without the `#`.
     pub leading: Vec<String>,
     pub blocks: Vec<Block>,
     /// Comment lines after the last block, without the `#`.
     pub trailing: Vec<String>,
 }
 
-/// `quantity Y_max "Guiding force, maximum"` and what is indented below it.
+/// A block such as `quantity Y_max "Guiding force, maximum"`, with the fields indented below it.
 #[derive(Clone, Debug)]
 pub struct Block {
     /// The word of a [`super::keys::Kind`].
     pub kind: Text,
-    /// Absent for blocks of which a protocol has one.
+    /// `None` for blocks that a protocol has only once.
     pub name: Option<Text>,
     pub title: Option<Text>,
     pub fields: Vec<Field>,
@@ -37,32 +37,32 @@ pub struct Field {
     pub comments: Comments,
 }
 
-/// Comments that travel with a block or field when the text is formatted, each without its `#` and leading blank.
+/// Comments that move with a block or field when the text is formatted, each without its `#` and leading blank.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Comments {
     pub before: Vec<String>,
     pub beside: Option<String>,
-    /// Of a block: comment lines below its last field.
+    /// For a block: comment lines below its last field.
     pub after: Vec<String>,
 }
 
-/// A piece of text and where it stands.
+/// A text and its place.
 #[derive(Clone, Debug)]
 pub struct Text {
     pub text: String,
     pub span: Span,
-    /// Whether byte `n` of `text` stands at byte `n` of `span` (not so where YAML or quotes hold escapes or fold lines).
+    /// Whether byte `n` of `text` is byte `n` of `span`. It is not where YAML or quotes contain escapes or folded lines.
     pub exact: bool,
 }
 
 impl Text {
-    /// The place of a part of the text, as narrow as is known.
+    /// The place of a part of the text, as exact as possible.
     pub fn place(&self, range: Range<usize>) -> Span {
         if self.exact { self.span.part(range) } else { self.span.of_which(range) }
     }
 }
 
-/// Meaning of two documents is compared without places and comments.
+/// Documents are compared by meaning: places and comments are ignored.
 impl PartialEq for Text {
     fn eq(&self, other: &Self) -> bool {
         self.text.split_whitespace().eq(other.text.split_whitespace())
@@ -96,12 +96,12 @@ impl Block {
         self.fields.iter().filter(move |field| field.key.text == key)
     }
 
-    /// The name, or an empty text for a block without one.
+    /// The name, or an empty text for a block without a name.
     pub fn name_text(&self) -> &str {
         self.name.as_ref().map_or("", |name| name.text.as_str())
     }
 
-    /// The place to point at when the block as a whole is meant.
+    /// The place for messages about the block as a whole.
     pub fn span(&self) -> &Span {
         self.name.as_ref().map_or(&self.kind.span, |name| &name.span)
     }

@@ -1,11 +1,11 @@
-//! Which blocks and fields a protocol may hold: one table for both surfaces, the JSON Schema and the language reference.
+//! The blocks and fields of a protocol: one table for both forms, the JSON Schema and the language reference.
 
 use super::document::Block;
 
 /// How the value of a field is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sort {
-    /// Prose: quoted in the text form, a plain string in YAML.
+    /// Prose: in quotes in the text form, a plain string in YAML.
     Text,
     /// Words of the language: the same in both forms.
     Phrase,
@@ -16,9 +16,9 @@ pub enum Sort {
 pub struct Key {
     pub word: &'static str,
     pub sort: Sort,
-    /// May stand more than once (a list in YAML).
+    /// Can occur several times (a list in YAML).
     pub many: bool,
-    /// A text in which places of the vehicle stand in braces.
+    /// A text with places of the vehicle in braces.
     pub pattern: bool,
     pub about: &'static str,
     pub example: &'static str,
@@ -27,12 +27,12 @@ pub struct Key {
 /// A kind of block.
 #[derive(Debug)]
 pub struct Kind {
-    /// As in the text form: `quantity`.
+    /// Word in the text form: `quantity`.
     pub word: &'static str,
-    /// As in YAML: `quantities`.
+    /// Key in YAML: `quantities`.
     pub group: &'static str,
     pub named: bool,
-    /// Whether a protocol has at most one such block (in YAML its fields then stand right below the group).
+    /// Whether a protocol has at most one such block. In YAML, its fields are then directly below the group.
     pub single: bool,
     pub about: &'static str,
     pub keys: &'static [Key],
@@ -54,17 +54,18 @@ const fn pattern(key: Key) -> Key {
     Key { pattern: true, ..key }
 }
 
-/// The word of the field that makes a block a family of blocks.
+/// The field that makes a block a family of blocks.
 pub const EACH: &str = "for each";
 
 const FOR_EACH: Key = many(phrase(
     EACH,
-    "Makes the block a family: it stands once for each member, which is put in where `{variable}` stands.",
+    "Makes the block a family: one block for each member, which replaces `{variable}`.",
     "channel in Y, Q and part in magnitude, phase",
 ));
-const CLAUSE: Key = text("clause", "Clause of the standard the rule follows.", "Annex T, T.3");
-const SOURCE: Key = text("source", "Where the rule or number is published.", "Goetz & Polach, Table 1");
-const WORDS: Key = phrase("words", "The two words of the verdict: if it holds, and if it does not.", "accepted, not accepted");
+const CLAUSE: Key = text("clause", "Clause of the standard for the rule.", "Annex T, T.3");
+const SOURCE: Key = text("source", "Publication of the rule or number.", "Goetz & Polach, Table 1");
+const WORDS: Key =
+    phrase("words", "The two words of the verdict: the word if it holds, and the word if it does not.", "accepted, not accepted");
 const NOTE: Key = many(text("note", "A remark printed with the rule.", "Absolute values of simulation and measurement."));
 
 /// Every kind of block, in the order of the canonical text.
@@ -74,19 +75,19 @@ pub const KINDS: &[Kind] = &[
         group: "protocol",
         named: true,
         single: true,
-        about: "What the protocol is. Its name is the name by which others extend it.",
+        about: "The identification of the protocol. Other protocols extend it by its name.",
         keys: &[
             phrase(
                 "extends",
-                "The protocol whose rules hold here unless overridden by name: a shipped name, or a path beside this file in quotes.",
+                "The parent protocol. Its rules apply unless overridden by name. Write the name of a shipped protocol, or a path relative to this file in quotes.",
                 "en14363-2016-annex-t",
             ),
-            text("edition", "The standard and edition it follows.", "EN 14363:2016, Annex T"),
+            text("edition", "The standard and its edition.", "EN 14363:2016, Annex T"),
             SOURCE,
-            text("author", "Who wrote the protocol.", "Working group 10"),
-            text("scope", "What it is for, in a sentence or two.", "Models for on-track tests of vehicles with bogies."),
-            phrase("axis", "The channel along which records run: sections are cut on it, plots are drawn over it.", "distance in m"),
-            phrase("time", "The channel with the time of the samples, which filters need.", "time in s"),
+            text("author", "The author of the protocol.", "Working group 10"),
+            text("scope", "The purpose, in one or two sentences.", "Models for on-track tests of vehicles with bogies."),
+            phrase("axis", "The channel that sections are cut along and plots are drawn over.", "distance in m"),
+            phrase("time", "The channel with the time of the samples. Filters need it.", "time in s"),
             NOTE,
         ],
     },
@@ -95,16 +96,16 @@ pub const KINDS: &[Kind] = &[
         group: "remove",
         named: false,
         single: true,
-        about: "In a variant: what of the parent does not hold here.",
+        about: "In a variant: rules of the parent that do not apply.",
         keys: &[
-            many(phrase("quantity", "A quantity of the parent, a family of them as it is written there, or `every` one.", "az_max")),
-            many(phrase("zone", "A zone of the parent, a family, or `every` one.", "4")),
-            many(phrase("check", "A section check of the parent, a family, or `every` one.", "full_curve")),
-            many(phrase("plausibility", "A plausibility rule of the parent, a family, or `every` one.", "wheel_load")),
-            many(phrase("verdict", "A named verdict of the parent, a family, or `every` one.", "inspection")),
+            many(phrase("quantity", "A quantity of the parent, a family as written there, or `every` for all.", "az_max")),
+            many(phrase("zone", "A zone of the parent, a family, or `every` for all.", "4")),
+            many(phrase("check", "A section check of the parent, a family, or `every` for all.", "full_curve")),
+            many(phrase("plausibility", "A plausibility rule of the parent, a family, or `every` for all.", "wheel_load")),
+            many(phrase("verdict", "A named verdict of the parent, a family, or `every` for all.", "inspection")),
             many(phrase(
                 "limit",
-                "Limits of a quantity of the parent, of a family or of `every` one: the quantity, then the statistic unless all are meant.",
+                "Limits of a quantity of the parent, of a family or of `every` quantity: write the quantity, then the statistic, or no statistic for all limits.",
                 "az_max mean",
             )),
         ],
@@ -114,17 +115,13 @@ pub const KINDS: &[Kind] = &[
         group: "parameters",
         named: true,
         single: false,
-        about: "A number or choice that a campaign, a variant or the command line can set.",
+        about: "A number or a choice that a campaign, a variant or the command line can set.",
         keys: &[
             FOR_EACH,
-            phrase("default", "Its value unless set: a number with its unit, or one of the choices.", "20 Hz"),
-            phrase("one of", "The choices, if it is one.", "oriented, signed, magnitudes"),
-            phrase("range", "The smallest and largest value allowed.", "10 Hz to 40 Hz"),
-            phrase(
-                "at",
-                "The place whose positions it selects, if it is a selection: then its default is a list of positions.",
-                "wheelset",
-            ),
+            phrase("default", "The default value: a number with its unit, or one of the choices.", "20 Hz"),
+            phrase("one of", "The possible words of a choice.", "oriented, signed, magnitudes"),
+            phrase("range", "The smallest and the largest allowed value.", "10 Hz to 40 Hz"),
+            phrase("at", "The place whose positions are selected. The default is then a list of positions.", "wheelset"),
             CLAUSE,
             SOURCE,
             NOTE,
@@ -135,7 +132,7 @@ pub const KINDS: &[Kind] = &[
         group: "places",
         named: true,
         single: false,
-        about: "A set of positions on the vehicle that channels are measured at.",
+        about: "A set of positions on the vehicle at which channels are measured.",
         keys: &[
             phrase("members", "The positions, as they appear in channel names.", "R, L"),
             many(phrase(
@@ -151,16 +148,16 @@ pub const KINDS: &[Kind] = &[
         group: "vehicle data",
         named: true,
         single: false,
-        about: "A value of the vehicle file that rules refer to as `vehicle.<name>`.",
+        about: "A value of the vehicle file. Rules use it as `vehicle.<name>`.",
         keys: &[
             FOR_EACH,
-            phrase("in", "Its unit, if it is a number.", "kN"),
-            phrase("one of", "Its possible words, if it is one.", "passenger, locomotive, freight"),
-            phrase("key", "Where it stands in the vehicle file, if not under its own name.", "static_wheel_load"),
-            phrase("range", "The smallest and largest value allowed, if it is a number.", "10 kN to 200 kN"),
+            phrase("in", "The unit of a number.", "kN"),
+            phrase("one of", "The possible words of a choice.", "passenger, locomotive, freight"),
+            phrase("key", "The key in the vehicle file, if it differs from the name.", "static_wheel_load"),
+            phrase("range", "The smallest and the largest allowed value of a number.", "10 kN to 200 kN"),
             phrase(
                 "default",
-                "Its value where the file has none; without a default it must be there. `not stated`: it may be absent and has no value then.",
+                "The value if the file has none. Without a default, the file must have it. `not stated`: it may be missing and then has no value.",
                 "not stated",
             ),
             NOTE,
@@ -171,13 +168,17 @@ pub const KINDS: &[Kind] = &[
         group: "section data",
         named: true,
         single: false,
-        about: "A column of the table of sections that rules refer to by its name.",
+        about: "A column of the table of sections. Rules use it by its name.",
         keys: &[
             FOR_EACH,
-            phrase("in", "Its unit, if it is a number.", "m"),
-            phrase("one of", "Its possible words, if it is one; `zones` stands for the names of all zones.", "right, left, straight"),
-            text("column", "Its column header without the unit, if not its own name with blanks for underscores.", "cant deficiency"),
-            phrase("default", "Its value where the cell is empty; without a default an empty cell is a missing value.", "0 mm"),
+            phrase("in", "The unit of a number.", "m"),
+            phrase("one of", "The possible words of a choice; `zones` stands for the names of all zones.", "right, left, straight"),
+            text(
+                "column",
+                "The column header without the unit, if it differs from the name with blanks for underscores.",
+                "cant deficiency",
+            ),
+            phrase("default", "The value of an empty cell. Without a default, an empty cell is a missing value.", "0 mm"),
             NOTE,
         ],
     },
@@ -186,13 +187,13 @@ pub const KINDS: &[Kind] = &[
         group: "channels",
         named: true,
         single: false,
-        about: "A measured and simulated signal, one column of the records for each position.",
+        about: "A measured and simulated signal, with one column of the records for each position.",
         keys: &[
             FOR_EACH,
-            phrase("in", "The unit in which its values are printed; columns in other units of the same dimension are converted.", "kN"),
-            phrase("at", "The places it is measured at.", "each wheelset and side"),
-            pattern(text("column", "Its column header without the unit; places in braces.", "Y_{wheelset}{side}")),
-            phrase("record", "The kind of record it stands in, if not in simulation and measurement: `track`.", "track"),
+            phrase("in", "The unit of printed values. Columns in other units of the same dimension are converted.", "kN"),
+            phrase("at", "The places at which it is measured.", "each wheelset and side"),
+            pattern(text("column", "The column header without the unit, with places in braces.", "Y_{wheelset}{side}")),
+            phrase("record", "The kind of record that contains it, if not simulation and measurement: `track`.", "track"),
             NOTE,
         ],
     },
@@ -201,13 +202,13 @@ pub const KINDS: &[Kind] = &[
         group: "signals",
         named: true,
         single: false,
-        about: "A signal computed sample by sample from channels and other signals.",
+        about: "A signal computed from channels and other signals, sample by sample.",
         keys: &[
             FOR_EACH,
             phrase("is", "The expression.", "Y at side R + Y at side L"),
-            phrase("at", "The places it exists at; those the expression fixes are left out.", "each wheelset"),
-            phrase("in", "The unit in which its values are printed.", "kN"),
-            pattern(text("named", "How one of its positions is called in tables; places in braces.", "SigmaY_{wheelset}")),
+            phrase("at", "The places at which it exists, without those that the expression fixes.", "each wheelset"),
+            phrase("in", "The unit of printed values.", "kN"),
+            pattern(text("named", "The name of a position in tables, with places in braces.", "SigmaY_{wheelset}")),
             CLAUSE,
             SOURCE,
             NOTE,
@@ -249,9 +250,9 @@ pub const KINDS: &[Kind] = &[
         about: "A test zone: a class of sections.",
         keys: &[
             FOR_EACH,
-            phrase("where", "What a section of the zone must satisfy.", "400 m <= radius <= 600 m"),
-            phrase("minimum sections", "How many used sections the zone needs.", "3"),
-            phrase("minimum length", "How long a section must be.", "250 m when admissible_speed <= 220 km/h, otherwise 500 m"),
+            phrase("where", "The condition that a section of the zone must satisfy.", "400 m <= radius <= 600 m"),
+            phrase("minimum sections", "The number of used sections that the zone needs.", "3"),
+            phrase("minimum length", "The minimum length of a section.", "250 m when admissible_speed <= 220 km/h, otherwise 500 m"),
             CLAUSE,
             SOURCE,
             NOTE,
@@ -262,16 +263,16 @@ pub const KINDS: &[Kind] = &[
         group: "checks",
         named: true,
         single: false,
-        about: "A requirement on every section; a section that fails it is not used.",
+        about: "A requirement on every section. A section that does not meet it is not used.",
         keys: &[
             FOR_EACH,
             phrase(
                 "require",
-                "The condition on the section's data and on reduced signals of its records.",
+                "The condition on the data of the section and on values of its signals.",
                 "range of curvature <= 5 % * |mean of curvature|",
             ),
-            phrase("unless", "Sections that need not satisfy it.", "direction is straight"),
-            phrase("otherwise", "What happens to a section that fails: `not used` (the default), `note` or `stop`.", "note"),
+            phrase("unless", "Sections that do not need to satisfy it.", "direction is straight"),
+            phrase("otherwise", "The treatment of a section that does not meet it: `not used` (the default), `note` or `stop`.", "note"),
             CLAUSE,
             SOURCE,
             NOTE,
@@ -282,32 +283,28 @@ pub const KINDS: &[Kind] = &[
         group: "plausibility",
         named: true,
         single: false,
-        about: "What sound data satisfy. What does not is told as a finding, with the number found and what it should be near.",
+        about: "A condition that sound data satisfy. A violation is reported as a finding, with the value and the expected value.",
         keys: &[
             FOR_EACH,
             many(phrase(
                 "of",
-                "Signals and the positions at which it is looked at; positions that are not recorded are passed over.",
+                "Signals and the positions at which the rule is checked. Positions that were not recorded are skipped.",
                 "SigmaQ at each wheelset",
             )),
             phrase("filter", "Filters in order, as in a quantity.", "BP"),
             phrase(
                 "require",
-                "The condition, for simulation and measurement each by itself, or for both where it names a metric or a side.",
+                "The condition. It is checked for simulation and measurement separately, or for both together where it names a metric or a side.",
                 "median near 2 * Q0 within a factor of 1.4",
             ),
-            phrase(
-                "distinct",
-                "In place of a condition: among what no two of the signals may be the same samples.",
-                "channels, sections, sides",
-            ),
-            phrase("unless", "Sections that need not satisfy it.", "direction is straight"),
+            phrase("distinct", "In place of a condition: signals that must not have the same samples.", "channels, sections, sides"),
+            phrase("unless", "Sections that do not need to satisfy it.", "direction is straight"),
             phrase(
                 "otherwise",
-                "What a finding does: `note` (the default), `not used` (its section), `not assessable` (the campaign) or `stop`.",
+                "The consequence of a finding: `note` (the default), `not used` (the section), `not assessable` (the campaign) or `stop`.",
                 "not used",
             ),
-            text("cause", "The likely cause of a finding, in words.", "the load of an axle in place of that of a wheel"),
+            text("cause", "The probable cause of a finding.", "the load of an axle in place of that of a wheel"),
             CLAUSE,
             SOURCE,
             NOTE,
@@ -318,14 +315,14 @@ pub const KINDS: &[Kind] = &[
         group: "sections",
         named: false,
         single: true,
-        about: "How sections are treated.",
+        about: "The treatment of sections.",
         keys: &[
             phrase("use", "`sections` (cut from the records by the table of sections) or `whole records` (no sections).", "sections"),
             phrase("zone", "The section column with the zone, if there are zones.", "zone"),
-            phrase("where", "Only sections that satisfy this are used.", "speed >= 60 km/h"),
-            phrase("faulty", "What a faulty record does: `not used` (its section, with the reason) or `stop`.", "not used"),
-            phrase("minimum", "How many used sections the campaign needs in all.", "12"),
-            phrase("percentiles", "How percentiles are read between samples: a rule of Hyndman & Fan by name.", "linear"),
+            phrase("where", "Only sections that satisfy this condition are used.", "speed >= 60 km/h"),
+            phrase("faulty", "The consequence of a faulty record: `not used` (the section, with the reason) or `stop`.", "not used"),
+            phrase("minimum", "The total number of used sections that the campaign needs.", "12"),
+            phrase("percentiles", "The interpolation rule of percentiles, by the name of Hyndman & Fan.", "linear"),
             NOTE,
         ],
     },
@@ -334,34 +331,34 @@ pub const KINDS: &[Kind] = &[
         group: "quantities",
         named: true,
         single: false,
-        about: "A validation quantity: which signals, how processed, how compared, within which limits.",
+        about: "A validation quantity: its signals, their processing, the comparison and the limits.",
         keys: &[
             FOR_EACH,
-            text("symbol", "As printed in tables.", "(Y/Q)max"),
+            text("symbol", "The symbol in tables.", "(Y/Q)max"),
             many(phrase(
                 "of",
-                "The signal and the positions at which it is evaluated, `when` the section is so; more than one of them where that differs.",
+                "The signal and the positions at which it is evaluated, with `when` for a condition on the section. Several fields are possible.",
                 "Y at wheelsets 1, 3",
             )),
-            phrase("filter", "Filters in order: names, or steps.", "LP20, then sliding mean 2 m every 0.5 m"),
-            phrase("from", "In place of a comparison: the record whose values are assessed by themselves.", "measured"),
+            phrase("filter", "Filters in order: names or steps.", "LP20, then sliding mean 2 m every 0.5 m"),
+            phrase("from", "In place of a comparison: the record whose values are assessed.", "measured"),
             many(phrase(
                 "value",
-                "The number taken from the filtered signal of a section, of each record alike. More than one of them: those whose case applies.",
+                "The value taken from the filtered signal of a section, for each record alike. Of several values, those whose case applies are used.",
                 "larger of |p0.15|, |p99.85|",
             )),
             phrase(
                 "compare",
-                "Which records are compared: `simulated with measured` (the default), each with the mean or median of all (`simulated with mean of simulated`), or `repeats with originals`.",
+                "The records that are compared: `simulated with measured` (the default), each record with the mean or median of all (`simulated with mean of simulated`), or `repeats with originals`.",
                 "simulated with mean of simulated",
             ),
-            phrase("difference", "How the two numbers are compared.", "|simulated| - |measured|"),
-            phrase("metric", "In place of value and difference: one number from the two signals.", "sprague-geers magnitude"),
+            phrase("difference", "The difference of the two values.", "|simulated| - |measured|"),
+            phrase("metric", "In place of value and difference: one number computed from both signals.", "sprague-geers magnitude"),
             many(phrase("limit", "A statistic or estimate over all values, or over those of each group, and its limit.", "std 9 kN")),
-            phrase("minimum signals", "How many signals it needs.", "2"),
-            phrase("minimum pairs", "How many section x signal pairs it needs.", "24"),
-            phrase("in", "The unit in which its values are printed, if not that of its signal.", "kN"),
-            phrase("where", "Only sections that satisfy this are used for it.", "direction is not straight"),
+            phrase("minimum signals", "The number of signals that it needs.", "2"),
+            phrase("minimum pairs", "The number of section x signal pairs that it needs.", "24"),
+            phrase("in", "The unit of printed values, if it is not that of the signal.", "kN"),
+            phrase("where", "Only sections that satisfy this condition are used.", "direction is not straight"),
             CLAUSE,
             SOURCE,
             NOTE,
@@ -372,7 +369,7 @@ pub const KINDS: &[Kind] = &[
         group: "estimates",
         named: true,
         single: false,
-        about: "A name for what is estimated from the values of a group: an expression of statistics, regressions, shares.",
+        about: "A name for an estimate from the values of a group: an expression of statistics, regressions and shares.",
         keys: &[phrase("is", "The expression.", "mean + 3 * std"), CLAUSE, SOURCE, NOTE],
     },
     Kind {
@@ -380,7 +377,7 @@ pub const KINDS: &[Kind] = &[
         group: "verdict",
         named: false,
         single: true,
-        about: "When a model is validated, and how quantities are counted.",
+        about: "The rule of the overall verdict, and how quantities are counted.",
         keys: &[
             phrase(
                 "validated",
@@ -388,12 +385,12 @@ pub const KINDS: &[Kind] = &[
                 "when every limit holds",
             ),
             WORDS,
-            phrase("minimum signals", "How many signals a quantity needs unless it says so itself.", "2"),
-            phrase("minimum pairs", "How many section x signal pairs a quantity needs unless it says so itself.", "24"),
+            phrase("minimum signals", "The number of signals that a quantity needs, unless the quantity states it.", "2"),
+            phrase("minimum pairs", "The number of section x signal pairs that a quantity needs, unless the quantity states it.", "24"),
             phrase("standard deviation", "Divisor of the variance: `n-1` or `n`.", "n-1"),
             phrase(
                 "independent",
-                "What is independent of each other: `site` (the default), `section`, or a section column. Counts, n and intervals are of it.",
+                "The independent unit: `site` (the default), `section`, or a section column. It is used for counts, for n and for confidence intervals.",
                 "site",
             ),
             NOTE,
@@ -404,12 +401,12 @@ pub const KINDS: &[Kind] = &[
         group: "verdicts",
         named: true,
         single: false,
-        about: "A verdict with a name: on some quantities, over other verdicts, or left to a person.",
+        about: "A verdict with a name: from limits of quantities, from other verdicts, or by a person.",
         keys: &[
             FOR_EACH,
             phrase(
                 "of",
-                "The quantities whose limits count: names, or `measured`, `simulated` or `compared` for all of that kind. All without it.",
+                "The quantities whose limits count: names, or `measured`, `simulated` or `compared` for all of a kind. Without this field, all quantities.",
                 "SigmaY, YQ, Q",
             ),
             phrase(
@@ -419,7 +416,7 @@ pub const KINDS: &[Kind] = &[
             ),
             text(
                 "judged by",
-                "In place of `holds`: who decides. The program never does; the report has lines for the judgement.",
+                "In place of `holds`: the person who decides. The program gives no verdict; the report has lines for the judgement.",
                 "the responsible test engineer",
             ),
             WORDS,
@@ -430,28 +427,28 @@ pub const KINDS: &[Kind] = &[
     },
 ];
 
-/// The kind of block a word of the text form names; of two with the same word, the one without a name.
+/// The kind of block of a word of the text form; of two with the same word, the one without a name.
 pub fn kind(word: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.word == word)
 }
 
-/// The kind of a block: a `verdict` with a name has other fields than the one without.
+/// The kind of a block. A `verdict` with a name has other fields than the one without.
 pub fn of_block(block: &Block) -> Option<&'static Kind> {
     kind(&block.kind.text).map(|kind| kind.with_name(block.name.is_some()))
 }
 
-/// The kind of block a top-level key of the YAML form names.
+/// The kind of block of a top-level key of the YAML form.
 pub fn group(word: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.group == word)
 }
 
 impl Kind {
-    /// Whether one block of this kind can stand for a family of them.
+    /// Whether a block of this kind can be a family.
     pub fn has_families(&self) -> bool {
         self.key(EACH).is_some()
     }
 
-    /// The kind of the same word that has a name or has none; this one if there is only one of the word.
+    /// The kind with the same word that has a name or has none; this kind if there is only one.
     pub fn with_name(&'static self, named: bool) -> &'static Self {
         KINDS.iter().find(|kind| kind.word == self.word && kind.named == named).unwrap_or(self)
     }

@@ -1,13 +1,12 @@
-//! What both printed forms share: the canonical order, blanks inside phrases, and where long values break.
+//! Common layout of both printed forms: canonical order, blanks inside phrases, line breaks of long values.
 
 use super::document::{Block, Document, Field};
 use super::keys::{self, KINDS, Kind, Sort};
 
-/// Columns a printed line keeps within where it can.
+/// Preferred largest width of a printed line, in columns.
 pub const WIDTH: usize = 110;
 
-/// The document with blocks in the order of [`KINDS`] and fields in the order of their kind's keys; what is equal in
-/// that stays as it was.
+/// The document with blocks in the order of [`KINDS`] and fields in the order of the keys of their kind. The sort is stable.
 pub fn in_order(document: &Document) -> Document {
     let mut document = document.clone();
     let place = |kind: &Kind| KINDS.iter().position(|known| known.group == kind.group);
@@ -20,7 +19,7 @@ pub fn in_order(document: &Document) -> Document {
     document
 }
 
-/// Place of a word in a table; words that are not in it come last.
+/// Index of a word in a table; words that are not in it come last.
 fn rank<'a>(table: impl Iterator<Item = &'a str>, word: &str) -> usize {
     table.into_iter().position(|known| known == word).unwrap_or(usize::MAX)
 }
@@ -29,7 +28,7 @@ pub fn sort(kind: Option<&Kind>, field: &Field) -> Sort {
     kind.and_then(|kind| kind.key(&field.key.text)).map_or(Sort::Phrase, |key| key.sort)
 }
 
-/// Whether nothing stands below the first line of a block.
+/// Whether a block has only its first line.
 pub fn is_bare(block: &Block) -> bool {
     block.fields.is_empty() && block.comments.after.is_empty()
 }
@@ -47,7 +46,7 @@ pub fn phrase(text: &str) -> String {
         let inside = quoted.inside;
         quoted.pass(c);
         if matches!(c, '\n' | '\r') || is_blank(c) && !inside {
-            // A line break inside quotes parts words as a blank does.
+            // A line break inside quotes separates words like a blank.
             if !out.ends_with(' ') {
                 out.push(' ');
             }
@@ -58,7 +57,7 @@ pub fn phrase(text: &str) -> String {
     out
 }
 
-/// Whether a place in a phrase is inside quotes.
+/// Tracks whether a place in a phrase is inside quotes.
 #[derive(Debug, Default)]
 pub struct Quotes {
     pub inside: bool,
@@ -77,9 +76,8 @@ impl Quotes {
     }
 }
 
-/// Breaks a phrase in which blanks are single, after commas and before joining words, into lines of at most `width`
-/// characters where that is possible; cases that do not fit on one line have a line each. Joined by blanks the lines are the phrase
-/// again.
+/// Breaks a phrase with single blanks into lines of at most `width` characters where possible, after commas and before joining
+/// words. Cases that do not fit on one line have a line each. Joined by blanks, the lines give the phrase again.
 pub fn wrap_phrase(phrase: &str, width: usize) -> Vec<String> {
     if columns(phrase) <= width {
         return vec![phrase.to_owned()];
@@ -118,7 +116,7 @@ fn arms(phrase: &str) -> Vec<String> {
     arms
 }
 
-/// What stands in parentheses stays together where it fits on a line.
+/// Text in parentheses stays together if it fits on a line.
 fn wrap_arm(phrase: &str, width: usize) -> Vec<String> {
     let mut segments: Vec<String> = Vec::new();
     let (mut quotes, mut depth) = (Quotes::default(), 0_usize);
@@ -137,7 +135,7 @@ fn wrap_arm(phrase: &str, width: usize) -> Vec<String> {
             quotes.pass(c);
             match c {
                 '(' if !quotes.inside => {
-                    // Of parentheses that are too long for a line, those inside are looked at.
+                    // If parentheses are too long for a line, the inner ones are tried.
                     let fits = depth > 0 || parens_fit(&phrase[start + at..], width);
                     depth += usize::from(fits);
                 }
@@ -151,7 +149,7 @@ fn wrap_arm(phrase: &str, width: usize) -> Vec<String> {
     fill(segments, width)
 }
 
-/// Whether the parentheses that a text begins with have no more columns than these.
+/// Whether the parentheses at the start of a text have at most `width` columns.
 fn parens_fit(text: &str, width: usize) -> bool {
     let (mut quotes, mut depth) = (Quotes::default(), 0_usize);
     for c in text.chars().take(width) {
@@ -168,12 +166,12 @@ fn parens_fit(text: &str, width: usize) -> bool {
     false
 }
 
-/// Breaks prose at single blanks. Joined by blanks the lines are the prose again.
+/// Breaks prose at single blanks. Joined by blanks, the lines give the prose again.
 pub fn wrap_prose(text: &str, width: usize) -> Vec<String> {
     let mut segments: Vec<String> = Vec::new();
     for word in text.split(' ') {
         match segments.last_mut() {
-            // Two blanks in a row, or a line break beside one, must not be torn.
+            // Two blanks in a row, or a line break next to a blank, are kept together.
             Some(last)
                 if word.is_empty() || word.starts_with(char::is_whitespace) || last.ends_with(char::is_whitespace) || last.is_empty() =>
             {
@@ -205,7 +203,8 @@ pub fn columns(text: &str) -> usize {
     text.chars().count()
 }
 
-/// A comment line or the end of a line. What YAML allows nowhere (YAML 1.2.2, section 5.1) is replaced in both forms.
+/// A comment for its own line or the end of a line. Characters that YAML does not allow (YAML 1.2.2, section 5.1) are replaced in
+/// both forms.
 pub fn comment(text: &str) -> String {
     let shown = |c: char| match c {
         '\n' | '\r' => ' ',

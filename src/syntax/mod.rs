@@ -1,4 +1,4 @@
-//! From text to [`document::Document`], and back: the text form and YAML are two surfaces of one language.
+//! From text to [`document::Document`] and back: the text form and YAML are two forms of one language.
 
 pub mod document;
 pub mod families;
@@ -36,8 +36,8 @@ pub fn is_yaml(name: &str) -> bool {
     extension.is_some_and(|extension| extension.eq_ignore_ascii_case("yaml") || extension.eq_ignore_ascii_case("yml"))
 }
 
-/// Reads a protocol in the form its file name tells: `.yaml` and `.yml` are YAML, all else is the text form. Something
-/// always comes back; where it is not the whole protocol, problems say what is left out and why.
+/// Reads a protocol in the form given by its file name: YAML for `.yaml` and `.yml`, the text form otherwise. A document is always
+/// returned. If parts are missing, problems state which and why.
 pub fn read(source: &Arc<Source>, problems: &mut Problems) -> Document {
     if is_yaml(&source.name) { read_yaml(source, problems) } else { read_text(source, problems) }
 }

@@ -1,6 +1,6 @@
-//! The meaning-free tree of what stands in a field: expressions, selections, chains, limits.
+//! The tree of a field's phrase, without its meaning: expressions, selections, chains, limits.
 //!
-//! Every node has the byte range it came from, counted in the field's text; [`super::document::Text::place`] turns it into a place in the file.
+//! Every node has its byte range in the field's text. [`super::document::Text::place`] turns it into a place in the file.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ pub struct At<T> {
     pub range: Range<usize>,
 }
 
-/// Places in the text do not belong to the meaning.
+/// Nodes are compared without their places.
 impl<T: PartialEq> PartialEq for At<T> {
     fn eq(&self, other: &Self) -> bool {
         self.node == other.node
@@ -40,12 +40,12 @@ pub enum Operator {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {
-    /// A number as written and its unit: the value is in SI.
+    /// A number with its unit; the value is in SI.
     Number {
         value: f64,
         unit: Option<Unit>,
     },
-    /// `p99.85`: the value below which so many per cent of the samples lie.
+    /// `p99.85`: the value below which 99.85 % of the samples lie.
     Percentile(f64),
     /// `vehicle.category`, `Y`, `LP20`.
     Path(String),
@@ -69,12 +69,12 @@ pub enum Node {
     PlaceOf(At<String>, Vec<At<String>>),
     /// `Y through LP20`.
     Through(Box<Phrase>, At<String>),
-    /// `slope over cant_angle`: a value taken from a signal over another one in place of the axis.
+    /// `slope over cant_angle`: a value of a signal over another signal in place of the axis.
     Over(Box<Phrase>, Box<Phrase>),
-    /// `upper 95 % of std`: an end of the confidence interval of what is estimated.
+    /// `upper 95 % of std`: an end of the confidence interval of an estimate.
     Bound {
         upper: bool,
-        /// From 0 to 1, as a share.
+        /// Confidence level, from 0 to 1.
         confidence: f64,
         of: Box<Phrase>,
         bootstrap: bool,
@@ -90,14 +90,14 @@ pub enum Node {
     Cases(Vec<(Phrase, Phrase)>, Option<Box<Phrase>>),
 }
 
-/// A regression of the values of a group over data of their sections, and where it is read.
+/// A regression of the values of a group over data of their sections, and the point at which it is evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// `prediction`: a bound is one of a further value; else of the mean of values.
+    /// `prediction`: a bound is that of a further value; otherwise that of the mean.
     pub prediction: bool,
     pub over: Vec<Phrase>,
     pub at: Vec<Phrase>,
-    /// Without one, the fitted value itself.
+    /// Confidence level of the bound; without one, the fitted value itself.
     pub confidence: Option<At<f64>>,
     pub one_sided: bool,
     pub lower: bool,
@@ -130,7 +130,7 @@ pub struct Alias {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
     pub parts: Vec<Vec<At<Item>>>,
-    /// The step is left out unless this holds.
+    /// The step is used only if this holds.
     pub when: Option<Phrase>,
 }
 
@@ -142,9 +142,9 @@ pub enum Item {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
-    /// What is limited, as written: `std`, `p95`, `(mean + 3 * std)`.
+    /// The estimate as written: `std`, `p95`, `(mean + 3 * std)`.
     pub statistic: At<String>,
-    /// The same as an expression.
+    /// The estimate as an expression.
     pub estimate: Phrase,
     pub at_least: bool,
     pub bound: Phrase,
@@ -153,7 +153,7 @@ pub struct Limit {
     pub scope: At<Scope>,
 }
 
-/// Which values a limit is about, and how they are grouped. Without anything: all together.
+/// The values that a limit applies to, and their groups. By default, all values form one group.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scope {
     pub zones: Vec<At<String>>,
@@ -185,7 +185,7 @@ pub enum OverVerdicts {
 }
 
 impl Phrase {
-    /// The phrase without places and ways of writing: equal for `0.40 m/s^2`, `0.4 m/s²` and `400 mm/s^2`.
+    /// The phrase without places and spelling variants: equal for `0.40 m/s^2`, `0.4 m/s²` and `400 mm/s^2`.
     pub fn meaning(&self) -> String {
         match &self.node {
             Node::Number { value, unit } => number(*value, unit.as_ref()),
@@ -221,7 +221,7 @@ impl Phrase {
 }
 
 impl Limit {
-    /// As [`Phrase::meaning`]; conditions and factors may stand in any order.
+    /// As [`Phrase::meaning`]; conditions and factors can be in any order.
     pub fn meaning(&self) -> String {
         let mut factors: Vec<String> =
             self.factors.iter().map(|(factor, condition)| format!("{}?{}", factor.meaning(), condition.meaning())).collect();
@@ -230,7 +230,7 @@ impl Limit {
         format!("{} {} * [{}] only {only} {}", self.bounds(), self.bound.meaning(), factors.join(", "), self.scope.node.meaning())
     }
 
-    /// What it is a limit of: `std`, `p95 at least`.
+    /// The estimate and the direction of the limit: `std`, `p95 at least`.
     pub fn bounds(&self) -> String {
         format!("{}{}", self.estimate.meaning(), if self.at_least { " at least" } else { "" })
     }
@@ -315,7 +315,7 @@ fn joined<T>(items: &[T], between: &str, one: impl Fn(&T) -> String) -> String {
     items.iter().map(one).collect::<Vec<_>>().join(between)
 }
 
-/// To twelve digits, so that the last bit of a conversion makes no difference.
+/// With twelve digits, so that rounding of a conversion makes no difference.
 fn number(value: f64, unit: Option<&Unit>) -> String {
     let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
     match unit {

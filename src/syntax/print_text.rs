@@ -7,7 +7,7 @@ use super::rules::quoted;
 
 const INDENT: &str = "  ";
 
-/// Writes the canonical text. Reading it gives the same document in canonical order, and printing that the same text.
+/// Writes the canonical text. Reading it gives the same document in canonical order, and printing that gives the same text.
 pub fn print_text(document: &Document) -> String {
     let document = layout::in_order(document);
     let mut out = String::new();
@@ -65,7 +65,7 @@ fn print_field(block: &Block, field: &Field, column: usize, out: &mut String) {
     let room = WIDTH.saturating_sub(2 * INDENT.len() + column);
     let lines: Vec<String> = match layout::sort(keys::of_block(block), field) {
         Sort::Phrase => layout::wrap_phrase(&layout::phrase(&field.value.text), room),
-        // Quotes take two columns; escapes are rare enough to be let over the edge.
+        // Quotes take two columns. Escapes are rare and may exceed the width.
         Sort::Text => layout::wrap_prose(&field.value.text, room.saturating_sub(2)).iter().map(|piece| quoted(piece)).collect(),
     };
     let mut head = format!("{:column$}", field.key.text);

@@ -4,7 +4,7 @@ use super::document::{Block, Document, Field};
 use super::keys::{self, KINDS, Kind, Sort};
 use super::layout::{self, WIDTH, columns, comment};
 
-/// Writes the canonical YAML. Reading it gives the same document in canonical order, and printing that the same YAML.
+/// Writes the canonical YAML. Reading it gives the same document in canonical order, and printing that gives the same YAML.
 pub fn print_yaml(document: &Document) -> String {
     let document = layout::in_order(document);
     let mut out = Page { text: String::new() };
@@ -45,7 +45,7 @@ struct Page {
 }
 
 impl Page {
-    /// A group with the fields of its one block right below it.
+    /// A group whose fields are directly below it, as it has a single block.
     fn single(&mut self, kind: &Kind, block: &Block) {
         self.comments(0, &block.comments.before);
         if block.name.is_none() && block.title.is_none() && block.fields.is_empty() {
@@ -96,7 +96,7 @@ impl Page {
         self.value(indent, &format!("{key}:"), sort, text, beside);
     }
 
-    /// A scalar after `key:` or `-`, folded where it is too long for its line.
+    /// A scalar after `key:` or `-`, folded if it is too long for its line.
     fn value(&mut self, indent: usize, head: &str, sort: Sort, text: &str, beside: Option<&str>) {
         let text = if sort == Sort::Phrase { layout::phrase(text) } else { text.to_owned() };
         let written = scalar(&text, sort);
@@ -126,7 +126,7 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// One blank line, none at the top and none after another.
+    /// A blank line, except at the top and after another blank line.
     fn blank(&mut self) {
         if !self.text.is_empty() && !self.text.ends_with("\n\n") {
             self.text.push('\n');
@@ -134,22 +134,22 @@ impl Page {
     }
 }
 
-/// Whether a text can stand in a folded block scalar: no line breaks, no blanks at its ends, nothing to escape.
+/// Whether a text can be written as a folded block scalar: no line breaks, no leading or trailing blanks, nothing to escape.
 fn folds(text: &str) -> bool {
     text.trim() == text && text.chars().all(printable)
 }
 
 fn key(name: &str) -> String {
-    // A number with a point or an exponent would be another number to a YAML reader.
+    // A YAML reader can change a number with a point or an exponent: 1.50 becomes 1.5.
     if looks_typed(name) && !is_whole(name) { single_quoted(name) } else { scalar(name, Sort::Phrase) }
 }
 
-/// The shortest way to write a text that reads as this text in YAML 1.2.
+/// The shortest form of a text that YAML 1.2 reads as this text.
 fn scalar(text: &str, sort: Sort) -> String {
     if !text.chars().all(printable) {
         return double_quoted(text);
     }
-    // Of a phrase the text counts as it is written: its numbers need no quotes.
+    // A phrase is used as it is written, so its numbers need no quotes.
     let typed = looks_typed(text) && !(sort == Sort::Phrase && is_decimal(text));
     if typed || !is_plain(text) { single_quoted(text) } else { text.to_owned() }
 }
@@ -158,7 +158,7 @@ fn printable(c: char) -> bool {
     !c.is_control() && !matches!(c, '\u{feff}' | '\u{2028}' | '\u{2029}' | '\u{fffe}' | '\u{ffff}')
 }
 
-/// Whether a text can stand without quotes in a block collection.
+/// Whether a text can be written without quotes in a block collection.
 fn is_plain(text: &str) -> bool {
     let mut chars = text.chars();
     let Some(first) = chars.next() else { return false };
@@ -177,9 +177,9 @@ fn is_plain(text: &str) -> bool {
         && !text.starts_with("...")
 }
 
-/// Whether a YAML reader would take the plain text for something other than a text.
+/// Whether a YAML reader would read the plain text as something other than a text.
 fn looks_typed(text: &str) -> bool {
-    // Numbers in any base, dates and times; taken widely, since a quote too many does no harm.
+    // Numbers in any base, dates and times. Unnecessary quotes do no harm.
     let number = || {
         let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
         digits.starts_with(|c: char| c.is_ascii_digit() || c == '.')
@@ -192,7 +192,7 @@ fn is_whole(text: &str) -> bool {
     text.bytes().all(|byte| byte.is_ascii_digit()) && (text == "0" || !text.starts_with('0')) && text.len() < 16
 }
 
-/// `2`, `-1.50`
+/// Decimal numbers such as `2` and `-1.50`.
 fn is_decimal(text: &str) -> bool {
     let text = text.strip_prefix('-').unwrap_or(text);
     let (whole, fraction) = text.split_once('.').unwrap_or((text, "0"));
@@ -224,7 +224,7 @@ fn double_quoted(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Checked against an independent YAML reader: what is written loads as the text.
+    /// Checked with an independent YAML reader: each written scalar is read as the text.
     #[test]
     fn scalars_load_as_their_text() {
         let texts = [

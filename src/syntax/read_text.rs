@@ -1,5 +1,5 @@
-//! The text form: blocks told apart by indentation, then each header and field read on its own, so that a broken line
-//! hides no other.
+//! Reads the text form. Blocks are found by indentation, then each header and field is parsed separately, so that an error in one
+//! line hides no other.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,8 +12,8 @@ use super::split::{Item, RawBlock, split};
 use crate::problem::{Problem, Problems};
 use crate::source::Source;
 
-/// Reads the text form. Blocks and fields that are unknown or doubled are left out, beside a problem; one whose word is
-/// nearly right is taken for what it is near to.
+/// Reads the text form. Unknown or duplicate blocks and fields are left out after a problem. One with a slightly misspelt word is
+/// read as the similar one.
 pub fn read_text(source: &Arc<Source>, problems: &mut Problems) -> Document {
     let earlier = problems.0.len();
     let parts = split(source, problems);
@@ -40,14 +40,14 @@ fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
     let word = rules::exact(place(&header.kind, &raw.header));
     let Some(kind) = reader.kind(&word.text, &word.span) else { return };
     match fault {
-        // A word that should be the name and goes on with what no name may hold: the whole word is judged as one.
+        // If the name continues with characters that a name cannot contain, the whole word is reported.
         Some(fault) if header.name.as_ref().map_or(kind.named && header.title.is_none(), |name| name.end == fault.at.start) => {
             header.name = Some(header.name.map_or(fault.at.start, |name| name.start)..fault.at.end);
         }
         Some(mut fault) => {
             let rest = text[fault.at.start..].trim();
             if fault.help.is_none() && header.title.is_none() && !rest.contains('"') {
-                fault.help = Some(format!("a title stands in quotes: {} {}", &text[..fault.at.start].trim_end(), rules::quoted(rest)));
+                fault.help = Some(format!("write the title in quotes: {} {}", &text[..fault.at.start].trim_end(), rules::quoted(rest)));
             }
             report(reader, source, raw.header.range.start, fault);
         }
@@ -95,7 +95,7 @@ fn read_field(source: &Arc<Source>, item: &Item, kind: &'static Kind, reader: &m
     value += blanks(&text[value..]);
     if text[value..].starts_with([':', '=']) {
         reader.problems.push(
-            Problem::error("unexpected-text", format!("`{}` is followed by its value, nothing between", &text[head.clone()]))
+            Problem::error("unexpected-text", format!("`{}` must be followed directly by its value", &text[head.clone()]))
                 .at(&source.span(start + value..start + value + 1)),
         );
         value += 1;
@@ -114,7 +114,7 @@ fn blanks(text: &str) -> usize {
     text.len() - text.trim_start().len()
 }
 
-/// The value of a text field: quoted pieces, one after the other.
+/// The value of a text field: quoted pieces in a row.
 fn read_prose(from: usize, text: &str, item: &Item, source: &Arc<Source>, key: &Key, reader: &mut Reader<'_>) -> Text {
     let rest = &text[from..];
     let at = source.span(item.range.start + from..item.range.end);
@@ -145,7 +145,7 @@ fn read_prose(from: usize, text: &str, item: &Item, source: &Arc<Source>, key: &
     }
 }
 
-/// Text without quotes and escapes; pieces are joined by a blank.
+/// The text without quotes and escapes; pieces are joined by a blank.
 fn unquote(pieces: &[Range<usize>], text: &str, item: &Item, source: &Arc<Source>, reader: &mut Reader<'_>) -> Text {
     let start = item.range.start;
     let mut out = String::new();
@@ -169,9 +169,9 @@ fn unquote(pieces: &[Range<usize>], text: &str, item: &Item, source: &Arc<Source
                     let c = other.map(|(_, c)| c);
                     let from = start + inner.start + at;
                     reader.problems.push(
-                        Problem::error("unknown-escape", "a backslash in quotes stands before `\"`, `\\` or `n`")
+                        Problem::error("unknown-escape", "in quotes, a backslash must be followed by `\"`, `\\` or `n`")
                             .at(&source.span(from..from + 1 + c.map_or(0, char::len_utf8)))
-                            .help("a backslash itself is written \\\\"),
+                            .help("write a backslash as \\\\"),
                     );
                     out.push('\\');
                     out.extend(c);

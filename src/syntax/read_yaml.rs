@@ -1,4 +1,4 @@
-//! The YAML form: the same blocks and fields as maps.
+//! Reads the YAML form: the same blocks and fields as maps.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span};
 use crate::yaml::{self, Node, Value};
 
-/// Reads the YAML form, with the same problems as [`super::read_text`] finds in the text form.
+/// Reads the YAML form, with the same problems as [`super::read_text`] reports for the text form.
 pub fn read_yaml(source: &Arc<Source>, problems: &mut Problems) -> Document {
     let earlier = problems.0.len();
     let mut document = Document { source: Arc::clone(source), leading: Vec::new(), blocks: Vec::new(), trailing: Vec::new() };
@@ -34,7 +34,7 @@ struct YamlReader<'a> {
 
 impl YamlReader<'_> {
     fn read_root(&mut self, root: &Node) {
-        if root.value == Value::Null || !self.is_map(root, "a protocol is a map with the keys `protocol`, `quantities` and so on") {
+        if root.value == Value::Null || !self.is_map(root, "a protocol must be a map with the keys `protocol`, `quantities` and so on") {
             return;
         }
         let mut groups = root.entries().iter().peekable();
@@ -43,7 +43,7 @@ impl YamlReader<'_> {
             self.remarks.pass(key.span.start);
             let margin = nesting::block_at_margin(&key.text, node).filter(|_| rules::meant_kind(Form::Yaml, &key.text).is_none());
             if let Some(help) = margin {
-                let says = format!("`{}` is no block of a protocol", key.text);
+                let says = format!("`{}` is not a block of a protocol", key.text);
                 self.reader.problems.push(Problem::error("unknown-block", says).at(&key.span).help(help));
                 self.remarks.pass(end);
                 continue;
@@ -62,17 +62,13 @@ impl YamlReader<'_> {
         }
     }
 
-    /// Blocks of one kind by their names.
+    /// Blocks of one kind, by name.
     fn read_group(&mut self, kind: &'static Kind, word: &Text, node: &Node, end: usize) {
         if node.value == Value::Null {
-            self.wrong_shape(
-                &word.span,
-                format!("`{}` is empty", kind.group),
-                "it holds blocks by their names; without any, the line is left out",
-            );
+            self.wrong_shape(&word.span, format!("`{}` is empty", kind.group), "write blocks by their names below it, or remove the line");
             return;
         }
-        if !self.is_map(node, &format!("`{}` is a map from names to their fields", kind.group)) {
+        if !self.is_map(node, &format!("`{}` must be a map from names to fields", kind.group)) {
             return;
         }
         let mut blocks = node.entries().iter().peekable();
@@ -80,7 +76,7 @@ impl YamlReader<'_> {
             let end = blocks.peek().map_or(end, |(next, _)| next.span.start);
             self.remarks.pass(key.span.start);
             if let Some(help) = nesting::too_deep(&key.text, node) {
-                self.wrong_shape(&key.span, format!("`{}` stands among the names of `{}`", key.text, kind.group), &help);
+                self.wrong_shape(&key.span, format!("`{}` is written among the names of `{}`", key.text, kind.group), &help);
                 self.remarks.pass(end);
                 continue;
             }
@@ -96,7 +92,7 @@ impl YamlReader<'_> {
         let kind_place = if nameless { Text { span: head.clone(), ..word } } else { word };
         let mut block = Block { kind: kind_place, name: name.filter(|_| !nameless), title: None, fields: Vec::new(), comments };
         let what =
-            if kind.single { format!("`{}` is a map of fields", kind.group) } else { format!("a `{}` is a map of fields", kind.word) };
+            if kind.single { format!("`{}` is a map of fields", kind.group) } else { format!("a `{}` must be a map of fields", kind.word) };
         if node.value != Value::Null && !matches!(node.value, Value::Map(_)) {
             let help = block.name.as_ref().and_then(|name| nesting::field_among_names(kind, &name.text)).unwrap_or_default();
             self.wrong_shape(&node.span, format!("{what}, not {}", node.kind_in_words()), &help);
@@ -104,7 +100,7 @@ impl YamlReader<'_> {
             return;
         }
         if node.value == Value::Null && kind.single {
-            self.wrong_shape(&head, format!("`{}` is empty", kind.group), "it holds fields; without any, the line is left out");
+            self.wrong_shape(&head, format!("`{}` is empty", kind.group), "write fields below it, or remove the line");
         }
         for (key, node) in node.entries() {
             self.remarks.pass(key.span.start);
@@ -125,19 +121,19 @@ impl YamlReader<'_> {
         self.reader.block(kind, block);
     }
 
-    /// A text that is no field: a name or title. Its comments are those of the block.
+    /// A text that is not a field: a name or title. Its comments belong to the block.
     fn plain(&mut self, key: &Text, node: &Node, first: Option<&Text>, comments: &mut Comments) -> Option<Text> {
         comments.before.extend(self.remarks.above());
         if let Some(beside) = self.remarks.beside(node.span.end) {
             comments.before.extend(comments.beside.replace(beside));
         }
         if let Some(first) = first {
-            let says = format!("a block has one `{}`, here is another", key.text);
+            let says = format!("a block can have only one `{}`", key.text);
             self.reader.problems.push(Problem::error("duplicate-field", says).at(&key.span).also(&first.span, "the first"));
         } else if node.is_scalar() {
             return Some(text(node));
         } else {
-            self.wrong_shape(&node.span, format!("the {} is {}", key.text, node.kind_in_words()), "one text is expected");
+            self.wrong_shape(&node.span, format!("the {} is {}", key.text, node.kind_in_words()), "expected one text");
         }
         None
     }
@@ -177,7 +173,7 @@ impl YamlReader<'_> {
         if !node.is_scalar() {
             let help = match known.sort {
                 Sort::Phrase => format!("for example: {}: {}", known.word, known.example),
-                Sort::Text => "one text is expected".to_owned(),
+                Sort::Text => "expected one text".to_owned(),
             };
             let help = nesting::field_below_field(kind, known.word, node).unwrap_or(help);
             self.wrong_shape(&node.span, format!("`{}` is {}", known.word, node.kind_in_words()), &help);
@@ -195,10 +191,10 @@ impl YamlReader<'_> {
         self.reader.field(kind, known, block, Field { key: key.clone(), value, comments });
     }
 
-    /// A phrase must be one in the text form too: quotes close, and `#` outside them would begin a comment.
+    /// Checks that a phrase is also one in the text form: quotes are closed, and `#` outside them would begin a comment.
     fn check_phrase(&mut self, phrase: &Text) {
         if phrase.text.starts_with([':', '=']) {
-            self.reader.problems.push(Problem::error("unexpected-text", "no phrase begins with this sign").at(&phrase.place(0..1)));
+            self.reader.problems.push(Problem::error("unexpected-text", "a phrase cannot begin with this sign").at(&phrase.place(0..1)));
         }
         let mut quotes = Quotes::default();
         let mut opened = 0;
@@ -210,7 +206,7 @@ impl YamlReader<'_> {
             }
             if c == '#' && !inside {
                 self.reader.problems.push(
-                    Problem::error("unexpected-text", "`#` has no meaning outside quotes")
+                    Problem::error("unexpected-text", "`#` is not allowed outside quotes")
                         .at(&phrase.place(at..at + 1))
                         .help("in the text form it begins a comment"),
                 );
@@ -236,7 +232,7 @@ impl YamlReader<'_> {
     }
 }
 
-/// A scalar as written; nothing where it is null.
+/// A scalar as written; empty for null.
 fn text(node: &Node) -> Text {
     if node.value == Value::Null { nothing(node) } else { Text { text: node.raw.clone(), span: node.span.clone(), exact: node.exact } }
 }

@@ -1,4 +1,4 @@
-//! The comments of a YAML text, handed out in reading order to the blocks and fields they belong to.
+//! The comments of a YAML text, assigned in reading order to blocks and fields.
 
 use std::iter::Peekable;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::yaml::{self, Remark};
 pub struct Remarks {
     source: Arc<Source>,
     ahead: Peekable<IntoIter<Remark>>,
-    /// Passed, and waiting for what they stand above.
+    /// Comments that belong to the next block or field.
     waiting: Vec<String>,
 }
 
@@ -20,7 +20,7 @@ impl Remarks {
         Self { source: Arc::clone(source), ahead: yaml::remarks(source).into_iter().peekable(), waiting: Vec::new() }
     }
 
-    /// Those at the top that a blank line sets off from the first key.
+    /// Comments at the top that a blank line separates from the first key.
     pub fn leading(&mut self, first: usize) -> Vec<String> {
         let mut leading = Vec::new();
         while let Some(remark) = self.ahead.next_if(|remark| remark.span.start < first) {
@@ -35,15 +35,15 @@ impl Remarks {
         leading
     }
 
-    /// Moves on to a place: what stands before it belongs to what comes there.
+    /// Moves on to a place: comments before it belong to what begins there.
     pub fn pass(&mut self, to: usize) {
         while let Some(remark) = self.ahead.next_if(|remark| remark.span.start < to) {
             self.waiting.push(remark.text);
         }
     }
 
-    /// As [`Self::pass`] for a list item; gives back the comment on the line right above where its text begins, which
-    /// is beside the `- >` of a folded text.
+    /// As [`Self::pass`], for a list item. Returns the comment on the line directly above the start of its text, which is next to
+    /// the `- >` of a folded text.
     pub fn pass_to_item(&mut self, to: usize) -> Option<String> {
         let mut beside = None;
         while let Some(remark) = self.ahead.next_if(|remark| remark.span.start < to) {
@@ -57,13 +57,13 @@ impl Remarks {
         beside
     }
 
-    /// Lets the comment beside something wait for what comes below.
+    /// Assigns the comment next to something to what follows below.
     pub fn pass_beside(&mut self, end: usize) {
         let beside = self.beside(end);
         self.waiting.extend(beside);
     }
 
-    /// Comments passed and not yet taken.
+    /// Comments that were passed and not yet assigned.
     pub fn above(&mut self) -> Vec<String> {
         std::mem::take(&mut self.waiting)
     }
@@ -71,7 +71,7 @@ impl Remarks {
     /// The comment on the line on which something ends.
     pub fn beside(&mut self, end: usize) -> Option<String> {
         let text = &self.source.text;
-        // A block scalar ends where the next line begins, and nothing there is beside it.
+        // A block scalar ends where the next line begins; no comment is next to it.
         if text.get(..end)?.trim_end_matches(' ').ends_with('\n') {
             return None;
         }
@@ -79,7 +79,7 @@ impl Remarks {
         self.ahead.next_if(on_line).map(|remark| remark.text)
     }
 
-    /// Comment lines before a place that are indented deeper than the head of a block.
+    /// Comment lines before a place with a deeper indentation than the head of a block.
     pub fn deeper(&mut self, head: &Span, end: usize) -> Vec<String> {
         let mut deeper = Vec::new();
         let source = Arc::clone(&self.source);
@@ -92,7 +92,7 @@ impl Remarks {
         deeper
     }
 
-    /// All that is left.
+    /// All remaining comments.
     pub fn rest(mut self) -> Vec<String> {
         self.pass(usize::MAX);
         self.waiting

@@ -1,4 +1,4 @@
-//! What holds for blocks and fields in either form: they are known, named, filled and given once.
+//! Rules for blocks and fields in both forms: known, named, not empty, given once.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use super::lines;
 use crate::problem::{Problem, Problems, nearest};
 use crate::source::Span;
 
-/// No key has more words.
+/// Largest number of words of a key.
 const LONGEST: usize = 3;
 
-/// The form a document is read from: it decides which words messages propose.
+/// The form a document is read from; it decides the spelling in messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     Lines,
@@ -27,7 +27,7 @@ impl Form {
     }
 }
 
-/// The kind a word names, or the other form's word for it, or the one it is near to.
+/// The kind of a word, of the other form's word for it, or of a similar word.
 pub fn meant_kind(form: Form, word: &str) -> Option<&'static Kind> {
     let named = |name: &str| KINDS.iter().find(|kind| form.spelling(kind) == name);
     named(word)
@@ -35,13 +35,13 @@ pub fn meant_kind(form: Form, word: &str) -> Option<&'static Kind> {
         .or_else(|| near(word, KINDS.iter().map(|kind| form.spelling(kind))).and_then(named))
 }
 
-/// Takes in blocks as they are read and notes what is wrong with them.
+/// Collects blocks as they are read and reports problems.
 #[derive(Debug)]
 pub struct Reader<'a> {
     pub problems: &'a mut Problems,
     form: Form,
     blocks: Vec<Block>,
-    /// Where each kind and name was first written.
+    /// The first place of each kind and name.
     seen: BTreeMap<(&'static str, String), Span>,
 }
 
@@ -54,7 +54,7 @@ impl<'a> Reader<'a> {
         self.blocks
     }
 
-    /// The kind of block a word names, or the nearest one beside a problem.
+    /// The kind of block of a word, or the most similar one after a problem.
     pub fn kind(&mut self, word: &str, at: &Span) -> Option<&'static Kind> {
         let form = self.form;
         let spelt = |kind: &Kind| form.spelling(kind);
@@ -63,14 +63,14 @@ impl<'a> Reader<'a> {
             return Some(kind);
         }
         let owners = owners(&[word]);
-        let problem = Problem::error("unknown-block", format!("`{word}` is no block of a protocol")).at(at);
+        let problem = Problem::error("unknown-block", format!("`{word}` is not a block of a protocol")).at(at);
         self.problems.push(match (near, owners.is_empty()) {
             (Some(near), _) => problem.help(format!("did you mean `{}`?", spelt(near))),
             (None, false) if self.form == Form::Lines => {
                 problem.help(format!("`{word}` is a field of {}; fields are indented below their block", listed(&owners)))
             }
             (None, false) => {
-                problem.help(format!("`{word}` is a field of {}; fields stand below the name of their block, indented", listed(&owners)))
+                problem.help(format!("`{word}` is a field of {}; fields are indented below the name of their block", listed(&owners)))
             }
             (None, true) => {
                 let mut known: Vec<&str> = KINDS.iter().map(spelt).collect();
@@ -81,19 +81,19 @@ impl<'a> Reader<'a> {
         near
     }
 
-    /// A problem for words that begin no field of the kind, and the field most likely meant with its number of words.
+    /// Reports words that begin no field of the kind. Returns the field that is most likely meant, with its number of words.
     pub fn unknown_field(&mut self, kind: &'static Kind, words: &[&str], at: &Span) -> Option<(&'static Key, usize)> {
         let other =
             (1..=words.len().min(LONGEST)).rev().map(|count| (owners(&words[..count]), count)).find(|(owners, _)| !owners.is_empty());
-        // `minimum signal` is rather a slip for `minimum signals` than the `minimum` of another kind.
+        // `minimum signal` is a misspelling of `minimum signals` rather than the `minimum` of another kind.
         let near = near_key(kind, words).filter(|(_, count)| other.as_ref().is_none_or(|(_, other)| count > other));
-        // A key of YAML is one as a whole.
+        // In YAML, a key is compared as a whole.
         let near = near.filter(|(_, count)| self.form == Form::Lines || *count == words.len());
-        // `minimum total length` of a zone, which has a `minimum length`, is not the `minimum` of `sections`.
+        // `minimum total length` in a zone, which has `minimum length`, is not the `minimum` of `sections`.
         let begins = |key: &Key| words.len() > 1 && key.word.split(' ').count() > 1 && key.word.split(' ').next() == words.first().copied();
         let other = other.filter(|(_, count)| *count > 1 || !kind.keys.iter().any(begins)).map(|(owners, _)| owners).unwrap_or_default();
         let count = near.map_or(1, |(_, count)| count);
-        // A field of the same block with a name, or without one.
+        // A field of the block with the same word that has a name, or has none.
         let twin = kind.with_name(!kind.named);
         let of_twin = (1..=words.len().min(LONGEST)).rev().find(|&count| twin.key(&words[..count].join(" ")).is_some());
         let count = of_twin.unwrap_or(count);
@@ -114,7 +114,7 @@ impl<'a> Reader<'a> {
             return None;
         }
         self.problems.push(if written == "title" {
-            problem.help("a title stands in quotes on the first line of its block")
+            problem.help("write the title in quotes on the first line of its block")
         } else if let Some((near, _)) = near {
             problem.help(format!("did you mean `{}`?", near.word))
         } else if !other.is_empty() {
@@ -125,7 +125,7 @@ impl<'a> Reader<'a> {
         near
     }
 
-    /// Adds a field to its block unless it is empty or there already.
+    /// Adds a field to its block unless it is empty or already there.
     pub fn field(&mut self, kind: &Kind, key: &Key, block: &mut Block, field: Field) {
         if field.value.text.trim().is_empty() {
             let example = match (key.sort, self.form) {
@@ -141,7 +141,7 @@ impl<'a> Reader<'a> {
         }
         if let Some(first) = block.field(key.word).filter(|_| !key.many) {
             self.problems.push(
-                Problem::error("duplicate-field", format!("a `{}` has one `{}`, here is another", kind.word, key.word))
+                Problem::error("duplicate-field", format!("a `{}` can have only one `{}`", kind.word, key.word))
                     .at(&field.key.span)
                     .also(&first.key.span, "the first"),
             );
@@ -150,24 +150,26 @@ impl<'a> Reader<'a> {
         block.fields.push(field);
     }
 
-    /// Adds a block unless one of its kind and name is there already.
+    /// Adds a block unless there is one with its kind and name.
     pub fn block(&mut self, kind: &'static Kind, block: Block) {
         match &block.name {
             None if kind.named => self.problems.push(
                 Problem::error("missing-name", format!("this `{}` has no name", kind.word)).at(&block.kind.span).help(match self.form {
-                    Form::Lines => format!("a name follows the word: {} some_name", kind.word),
-                    Form::Yaml if kind.single => "it needs an entry `name`".to_owned(),
-                    Form::Yaml => "the key above its fields is its name".to_owned(),
+                    Form::Lines => format!("write a name after the word: {} some_name", kind.word),
+                    Form::Yaml if kind.single => "add an entry `name`".to_owned(),
+                    Form::Yaml => "write its name as the key above its fields".to_owned(),
                 }),
             ),
             Some(name) if !kind.named => self.problems.push(
-                Problem::error("unexpected-name", format!("`{}` takes no name", kind.word))
+                Problem::error("unexpected-name", format!("a `{}` block has no name", kind.word))
                     .at(&name.span)
                     .help(format!("there is one `{}` block in a protocol", kind.word)),
             ),
             Some(name) if kind.has_families() && lines::is_family_name(&name.text) => {}
             Some(name) if !lines::is_name(&name.text) => self.problems.push(match lines::is_family_name(&name.text) {
-                true => bad_name(&name.text, &name.span).help(format!("there are no families of `{}`: its name has no braces", kind.word)),
+                true => {
+                    bad_name(&name.text, &name.span).help(format!("a `{}` cannot be a family: write its name without braces", kind.word))
+                }
                 false => bad_name(&name.text, &name.span),
             }),
             _ => {}
@@ -175,12 +177,12 @@ impl<'a> Reader<'a> {
         if let Some(title) = block.title.as_ref().filter(|title| title.text.trim().is_empty()) {
             self.problems.push(Problem::error("missing-value", "the title is empty").at(&title.span));
         }
-        // A block that should have a name and has none is nobody's double.
+        // A block without its required name is not compared with others.
         if !kind.named || kind.single || block.name.is_some() {
             let name = if kind.single { String::new() } else { block.name_text().to_owned() };
             if let Some(first) = self.seen.get(&(kind.word, name.clone())) {
                 let says = if kind.single {
-                    format!("a protocol has one `{}` block, here is another", kind.word)
+                    format!("a protocol can have only one `{}` block", kind.word)
                 } else {
                     format!("there are two blocks `{} {name}`", kind.word)
                 };
@@ -195,22 +197,20 @@ impl<'a> Reader<'a> {
 }
 
 pub fn unterminated(at: &Span) -> Problem {
-    Problem::error("unterminated-quote", "a quote opens and does not close on its line")
-        .at(at)
-        .help("a quote inside a text is written \\\"")
+    Problem::error("unterminated-quote", "a quote is not closed on its line").at(at).help("write a quote inside a text as \\\"")
 }
 
 pub fn bad_name(name: &str, at: &Span) -> Problem {
     let made_of = if name.contains('{') {
-        "in the name of a family, a variable stands in braces without blanks: `Y_{part}`"
+        "in the name of a family, write a variable in braces without blanks: `Y_{part}`"
     } else {
-        "names are made of letters a to z, digits, `_`, `-` and `.`"
+        "use letters a to z, digits, `_`, `-` and `.`"
     };
     let help = lines::slip(name).unwrap_or_else(|| made_of.to_owned());
     Problem::error("bad-name", format!("`{name}` cannot be a name")).at(at).help(help)
 }
 
-/// The key that the first of some words are, the longest if several fit, and its number of words.
+/// The longest key that the first words form, and its number of words.
 pub fn key(kind: &'static Kind, words: &[&str]) -> Option<(&'static Key, usize)> {
     (1..=words.len().min(LONGEST)).rev().find_map(|count| kind.key(&words[..count].join(" ")).map(|key| (key, count)))
 }
@@ -222,12 +222,12 @@ fn near_key(kind: &'static Kind, words: &[&str]) -> Option<(&'static Key, usize)
     })
 }
 
-/// The nearest candidate, if so near that the word can be read as it: at most a third of the letters differ.
+/// The most similar candidate, if at most a third of the letters differ.
 fn near<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     nearest(word, candidates).filter(|near| 3 * strsim::damerau_levenshtein(word, near) <= word.chars().count().max(near.chars().count()))
 }
 
-/// The kinds that have a field of these words.
+/// The kinds that have a field with these words.
 fn owners(words: &[&str]) -> Vec<&'static str> {
     let word = words.join(" ");
     let mut owners: Vec<&str> = KINDS.iter().filter(|kind| kind.key(&word).is_some()).map(|kind| kind.word).collect();
@@ -244,19 +244,19 @@ fn listed(words: &[&str]) -> String {
     }
 }
 
-/// Puts the problems from the given one on in the order of their places.
+/// Sorts the problems from the given index on by their places.
 pub fn in_reading_order(problems: &mut Problems, from: usize) {
     if let Some(new) = problems.0.get_mut(from..) {
         new.sort_by_key(|problem| problem.at.as_ref().map_or(0, |at| at.start));
     }
 }
 
-/// Prose as the text form writes it.
+/// Prose in quotes, as in the text form.
 pub fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n"))
 }
 
-/// A text at a place where it stands as written.
+/// A text that is exactly the text of its place.
 pub fn exact(span: Span) -> Text {
     Text { text: span.text().to_owned(), span, exact: true }
 }

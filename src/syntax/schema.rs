@@ -1,10 +1,10 @@
-//! The JSON Schema of the YAML form, with which editors complete and check protocols as they are typed.
+//! The JSON Schema of the YAML form. Editors use it to complete and check protocols.
 
 use serde_json::{Map, Value, json};
 
 use super::keys::{KINDS, Key, Kind, Sort};
 
-/// The schema (draft 2020-12), made from [`KINDS`].
+/// The schema (draft 2020-12), generated from [`KINDS`].
 pub fn json_schema() -> Value {
     let groups: Map<String, Value> = KINDS.iter().map(|kind| (kind.group.to_owned(), group(kind))).collect();
     json!({
@@ -33,7 +33,7 @@ fn group(kind: &Kind) -> Value {
                 fields.shift_insert(
                     0,
                     "name".into(),
-                    json!({ "$ref": "#/$defs/name", "description": "The name by which others refer to it." }),
+                    json!({ "$ref": "#/$defs/name", "description": "The name that other protocols use." }),
                 );
             }
             block.insert("required".into(), json!(["name"]));
@@ -48,10 +48,10 @@ fn group(kind: &Kind) -> Value {
     })
 }
 
-/// The fields of one block; a block without any may be left empty.
+/// The fields of one block; a block without fields can be empty.
 fn block(kind: &Kind) -> Map<String, Value> {
     let mut fields = Map::new();
-    fields.insert("title".into(), json!({ "$ref": "#/$defs/text", "description": "What it is called in reports." }));
+    fields.insert("title".into(), json!({ "$ref": "#/$defs/text", "description": "The title in reports." }));
     fields.extend(kind.keys.iter().map(|key| (key.word.to_owned(), field(key))));
     let mut block = Map::new();
     block.insert("description".into(), json!(kind.about));

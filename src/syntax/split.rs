@@ -1,4 +1,4 @@
-//! Cuts the text form into blocks and fields by indentation, with the comments that belong to each.
+//! Splits the text form into blocks and fields by indentation, with their comments.
 
 use std::mem::take;
 use std::ops::Range;
@@ -14,12 +14,12 @@ use crate::source::Source;
 /// A header or a field with its continuation lines.
 #[derive(Debug)]
 pub struct Item {
-    /// From its first to its last character in the source.
+    /// From the first to the last character in the source.
     pub range: Range<usize>,
     pub comments: Comments,
-    /// A quote in it does not close, which has been reported.
+    /// Whether a quote in it is not closed; this has been reported.
     pub unclosed: bool,
-    /// Stretches between its lines, which may hold comments.
+    /// Ranges between its lines, which may contain comments.
     holes: Vec<Range<usize>>,
 }
 
@@ -30,14 +30,14 @@ pub struct RawBlock {
     /// Comments below the last field.
     pub after: Vec<String>,
     kind: Option<&'static Kind>,
-    /// Indentation of its fields, from the first of them on.
+    /// Indentation of its fields, known from the first field on.
     column: Option<usize>,
 }
 
-/// A source cut up.
+/// A source split into its parts.
 #[derive(Debug)]
 pub struct Parts {
-    /// Comments at the top, set off by a blank line.
+    /// Comments at the top, separated by a blank line.
     pub leading: Vec<String>,
     pub blocks: Vec<RawBlock>,
     /// Comments after the last block.
@@ -66,9 +66,9 @@ struct Splitter<'a> {
     problems: &'a mut Problems,
     leading: Vec<String>,
     blocks: Vec<RawBlock>,
-    /// Comment lines that wait for what they precede, each with its indentation.
+    /// Comment lines that belong to the next item, each with its indentation.
     comments: Vec<(usize, String)>,
-    /// Indentations that hold a tab.
+    /// Indentations that contain a tab.
     tabs: Vec<Range<usize>>,
 }
 
@@ -102,9 +102,9 @@ impl Splitter<'_> {
         if indent == 0 && kind.is_none() && self.blocks.last().is_some_and(|block| block.may_hold(word)) {
             self.problem(
                 "indentation",
-                &format!("`{word}` is a field and is not indented"),
+                &format!("`{word}` is a field but is not indented"),
                 word_at,
-                "two blanks before the fields of a block",
+                "indent the fields of a block by two blanks",
             );
             self.add(above.unwrap_or(2), rest);
         } else if indent == 0 {
@@ -112,12 +112,17 @@ impl Splitter<'_> {
         } else if above.is_some_and(|column| indent > column) {
             self.carry_on(rest);
         } else if kind.is_some() && self.blocks.last().is_none_or(|block| block.kind.is_some() && !block.may_hold(word)) {
-            self.problem("indentation", &format!("`{word}` begins a block and is indented"), word_at, "blocks begin in the first column");
+            self.problem(
+                "indentation",
+                &format!("`{word}` begins a block and is indented"),
+                word_at,
+                "write blocks from the first column on",
+            );
             self.begin(kind, rest);
         } else {
             if let Some(column) = above.filter(|column| *column != indent) {
-                let help = format!("the fields of a block stand in one column, here in column {}", column + 1);
-                self.problem("indentation", "the field does not line up with those above", word_at, &help);
+                let help = format!("align the fields of a block; here they begin in column {}", column + 1);
+                self.problem("indentation", "the field is not aligned with those above", word_at, &help);
             }
             self.add(indent, rest);
         }
@@ -138,14 +143,14 @@ impl Splitter<'_> {
             }
             None => self.problem(
                 "field-outside-block",
-                "a field stands before the first block",
+                "there is a field before the first block",
                 line.body,
-                "blocks begin in the first column, the first of them with `protocol`",
+                "write blocks from the first column on, the first one with `protocol`",
             ),
         }
     }
 
-    /// Takes a continuation line into the last field. One comment can stay beside the field, others move above it.
+    /// Adds a continuation line to the last field. One comment can stay next to the field, others move above it.
     fn carry_on(&mut self, line: Rest) {
         let before = self.waiting();
         let Some(field) = self.blocks.last_mut().and_then(|block| block.fields.last_mut()) else { return };
@@ -160,7 +165,7 @@ impl Splitter<'_> {
         }
     }
 
-    /// Indented comments at the end of a block belong to it, not to the next.
+    /// Indented comments at the end of a block belong to it and not to the next block.
     fn close(&mut self) {
         if let Some(block) = self.blocks.last_mut() {
             let inside = self.comments.iter().take_while(|(indent, _)| *indent > 0).count();
@@ -182,7 +187,7 @@ impl Splitter<'_> {
                 0 => "a line is indented with a tab".to_owned(),
                 more => format!("lines are indented with tabs, this one and {more} more"),
             };
-            self.problem("tab-indentation", &says, first.clone(), "two blanks before a field, more where its value goes on");
+            self.problem("tab-indentation", &says, first.clone(), "indent fields by two blanks, and continuation lines by more");
         }
         self.close();
         let trailing = self.waiting();
@@ -191,7 +196,7 @@ impl Splitter<'_> {
 }
 
 impl RawBlock {
-    /// Whether a field of the block can begin with a word.
+    /// Whether a field of the block can begin with this word.
     fn may_hold(&self, word: &str) -> bool {
         let holds = |kind: &Kind| kind.keys.iter().any(|key| key.word.split(' ').next() == Some(word));
         self.kind.is_some_and(|kind| [true, false].into_iter().any(|named| holds(kind.with_name(named))))
@@ -204,7 +209,7 @@ impl Item {
         Self { range: line.body, comments, unclosed: line.unclosed, holes: Vec::new() }
     }
 
-    /// The text with blanks in place of comments: every byte stays where it stands in the source.
+    /// The text with comments replaced by blanks, so that every byte keeps its place in the source.
     pub fn text(&self, source: &Source) -> String {
         let mut text = source.text[self.range.clone()].to_owned();
         for hole in &self.holes {
@@ -216,7 +221,7 @@ impl Item {
     }
 }
 
-/// Columns of an indentation; a tab, an error anyway, counts to the next multiple of four.
+/// Columns of an indentation. A tab, which is an error, counts up to the next multiple of four.
 fn width(indent: &str) -> usize {
     indent.chars().fold(0, |width, c| if c == '\t' { width / 4 * 4 + 4 } else { width + 1 })
 }

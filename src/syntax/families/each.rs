@@ -1,4 +1,4 @@
-//! What stands in `for each`: variables and the members they take, one after the other.
+//! The field `for each`: variables and their members.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -10,10 +10,10 @@ use crate::syntax::document::Text;
 use crate::syntax::keys::EACH;
 use crate::syntax::layout::Quotes;
 
-/// A member as it is put in for one variable, and where it was written.
+/// The word of a member for one variable, with its place.
 pub type Word = Arc<Spanned<String>>;
 
-/// Variables that take their members together: `band, name in (0.4 Hz to 2 Hz, low), (2 Hz to 10 Hz, high)`.
+/// Variables whose members belong together: `band, name in (0.4 Hz to 2 Hz, low), (2 Hz to 10 Hz, high)`.
 #[derive(Debug)]
 pub struct Group {
     pub variables: Vec<Spanned<String>>,
@@ -21,7 +21,7 @@ pub struct Group {
     pub rows: Vec<Vec<Word>>,
 }
 
-/// Reads one field `for each`; groups are parted by `and`.
+/// Reads a field `for each`; groups are separated by `and`.
 pub fn read(text: &Text, places: &Places, problems: &mut Problems) -> Option<Vec<Group>> {
     let mut heads: Vec<Head> = Vec::new();
     let open = open_places(&text.text);
@@ -33,8 +33,8 @@ pub fn read(text: &Text, places: &Places, problems: &mut Problems) -> Option<Vec
         heads.push(head);
     }
     if heads.first().is_none_or(|head| head.at != first(&text.text)) {
-        let problem = Problem::error("syntax", format!("`{EACH}` begins with a variable, `in` and its members")).at(&text.span);
-        problems.push(problem.help(format!("write `{EACH}  part in magnitude, phase`, and `{{part}}` where a member is put in")));
+        let problem = Problem::error("syntax", format!("`{EACH}` needs a variable, `in` and members")).at(&text.span);
+        problems.push(problem.help(format!("write `{EACH}  part in magnitude, phase`, and `{{part}}` where a member is inserted")));
         return None;
     }
     let ends = heads.iter().skip(1).map(|head| head.at).chain([text.text.len()]);
@@ -42,7 +42,7 @@ pub fn read(text: &Text, places: &Places, problems: &mut Problems) -> Option<Vec
     groups.into_iter().collect()
 }
 
-/// `band, name in`
+/// The start of a group: `band, name in`.
 struct Head {
     at: usize,
     variables: Vec<Range<usize>>,
@@ -53,7 +53,7 @@ fn first(text: &str) -> usize {
     text.len() - text.trim_start().len()
 }
 
-/// For each byte, whether it stands in quotes or parentheses.
+/// For each byte, whether it is inside quotes or parentheses.
 fn open_places(text: &str) -> Vec<bool> {
     let (mut quotes, mut depth) = (Quotes::default(), 0_usize);
     let mut open = Vec::with_capacity(text.len());
@@ -100,7 +100,7 @@ fn head(text: &str, from: usize) -> Option<Head> {
         }
     }
     let rest = text[at..].strip_prefix("in").filter(|rest| !rest.starts_with(is_word))?;
-    // `and` and the first variable, or a variable and `in`, are words of their own.
+    // `and`, the first variable and `in` are separate words.
     let apart = |at: usize| text[..at].ends_with(char::is_whitespace);
     let begins = variables.first().is_some_and(|first| from == first.start || apart(first.start));
     (begins && apart(at)).then(|| Head { at: from, variables, end: text.len() - rest.len() })
@@ -115,15 +115,15 @@ fn group(text: &Text, head: &Head, end: usize, open: &[bool], places: &Places, p
         && only.is_empty()
     {
         let problem = Problem::error("no-members", format!("`{}` has no members", variables[0].value)).at(&at);
-        problems.push(problem.help("members follow `in`, parted by commas; or the name of a place, for all its members"));
+        problems.push(problem.help("write members after `in`, separated by commas, or the name of a place for all its members"));
         return None;
     }
     let mut rows = Vec::new();
     for item in &items {
         if item.is_empty() {
             let place = text.place(item.start.saturating_sub(1)..item.start);
-            let problem = Problem::error("no-members", "a member is missing beside this comma").at(&place);
-            problems.push(problem.help("leave the comma out, or write the member"));
+            let problem = Problem::error("no-members", "a member is missing at this comma").at(&place);
+            problems.push(problem.help("remove the comma or write the member"));
             return None;
         }
         rows.push(match variables.len() {
@@ -140,7 +140,7 @@ fn group(text: &Text, head: &Head, end: usize, open: &[bool], places: &Places, p
     Some(Group { variables, rows })
 }
 
-/// The pieces between commas, without blanks around them.
+/// The pieces between commas, without leading and trailing blanks.
 fn items(text: &str, within: Range<usize>, open: &[bool]) -> Vec<Range<usize>> {
     let commas = text[within.clone()].bytes().enumerate().map(|(at, byte)| (within.start + at, byte));
     let mut ends: Vec<usize> = commas.filter(|(at, byte)| *byte == b',' && !open[*at]).map(|(at, _)| at).collect();
@@ -156,7 +156,7 @@ fn items(text: &str, within: Range<usize>, open: &[bool]) -> Vec<Range<usize>> {
     found
 }
 
-/// `(0.4 Hz to 2 Hz, low)`: as many words as there are variables.
+/// The words of a member in parentheses: `(0.4 Hz to 2 Hz, low)`, one for each variable.
 fn row(text: &Text, item: Range<usize>, count: usize, open: &[bool], problems: &mut Problems) -> Option<Vec<Word>> {
     let written = &text.text[item.clone()];
     let inside = item.start + 1..item.end.saturating_sub(1).max(item.start + 1);
@@ -170,15 +170,15 @@ fn row(text: &Text, item: Range<usize>, count: usize, open: &[bool], problems: &
     };
     if !whole || words.len() != count {
         let here = if words.len() == 1 { "is one word".to_owned() } else { format!("are {} words", words.len()) };
-        let says = format!("{count} variables stand together, and here {here}");
+        let says = format!("{count} variables belong together, but here {here}");
         let problem = Problem::error("member-count", says).at(&text.place(item));
-        problems.push(problem.help("words that belong together stand in parentheses: `(Y, kN), (az, m/s^2)`"));
+        problems.push(problem.help("write words that belong together in parentheses: `(Y, kN), (az, m/s^2)`"));
         return None;
     }
     words.into_iter().map(|part| word(text, part, false, problems)).collect()
 }
 
-/// A member as written, or what stands in quotes. Where it stands `alone`, an `and` in it was meant to join something.
+/// A member as written, without its quotes. A single member (`alone`) with `and` outside quotes is an error.
 fn word(text: &Text, range: Range<usize>, alone: bool, problems: &mut Problems) -> Option<Word> {
     let written = &text.text[range.clone()];
     let place = text.place(range.clone());
@@ -186,15 +186,15 @@ fn word(text: &Text, range: Range<usize>, alone: bool, problems: &mut Problems) 
         let value = unescaped(inside);
         if value.trim().is_empty() {
             let problem = Problem::error("no-members", "the quotes are empty").at(&place);
-            problems.push(problem.help("write the member in them"));
+            problems.push(problem.help("write the member inside the quotes"));
             return None;
         }
         return Some(Arc::new(Spanned::new(value, place)));
     }
     if let Some(at) = joined(written).filter(|_| alone) {
-        let problem =
-            Problem::error("syntax", "`and` is followed by a variable and `in`").at(&text.place(range.start + at..range.start + at + 3));
-        problems.push(problem.help("members are parted by commas; one with `and` in it stands in quotes"));
+        let problem = Problem::error("syntax", "`and` must be followed by a variable and `in`")
+            .at(&text.place(range.start + at..range.start + at + 3));
+        problems.push(problem.help("separate members by commas; write a member that contains `and` in quotes"));
         return None;
     }
     Some(Arc::new(Spanned::new(written.split_whitespace().collect::<Vec<_>>().join(" "), place)))
@@ -214,14 +214,14 @@ fn unescaped(quoted: &str) -> String {
     value
 }
 
-/// Where `and` stands in a member outside parentheses and quotes.
+/// The position of an `and` in a member, outside parentheses and quotes.
 fn joined(written: &str) -> Option<usize> {
     let open = open_places(written);
     let is_and = |at: &usize| written[*at..].strip_prefix("and").is_some_and(|rest| !rest.starts_with(is_word));
     word_starts(written).filter(|at| !open[*at]).find(is_and)
 }
 
-/// The members of a place, if one is named.
+/// The members of a place, if the word is the name of one.
 fn of_place(word: &Word, places: &Places, problems: &mut Problems) -> Option<Vec<Vec<Word>>> {
     let name = word.value.replace(' ', "_");
     let known = || places.keys().map(String::as_str);
@@ -229,10 +229,10 @@ fn of_place(word: &Word, places: &Places, problems: &mut Problems) -> Option<Vec
         let put_in = |member: &String| vec![Arc::new(Spanned::new(member.clone(), word.span.clone()))];
         return Some(members.iter().map(put_in).collect());
     }
-    // One word by itself would be a family of one.
+    // A word similar to the name of a place is probably a misspelling of it.
     if let Some(near) = nearest(&name, known()) {
         let problem = Problem::error("unknown-place", format!("no place is called `{}`", word.value)).at(&word.span);
-        problems.push(problem.help(format!("did you mean `{near}`? A single member that is no place stands in quotes")));
+        problems.push(problem.help(format!("did you mean `{near}`? Write a single member that is not a place in quotes")));
         return None;
     }
     Some(vec![vec![Arc::clone(word)]])

@@ -1,4 +1,4 @@
-//! Texts of a family with `{variable}` in them, and what they become for a member.
+//! Texts of a family with `{variable}`, and their form for each member.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -8,19 +8,19 @@ use crate::problem::{Problem, Problems, nearest};
 use crate::source::{Filled, Member, Piece, Span, Spanned};
 use crate::syntax::document::Text;
 
-/// What a text is, which decides how a member is put in.
+/// Kind of a text. It decides how a member is inserted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
-    /// The name of a block: what a name may not hold becomes `_`.
+    /// The name of a block: characters that a name cannot contain become `_`.
     Name,
-    /// Words of the language. Braces that touch a name are a part of it.
+    /// Words of the language. Braces next to a name are part of the name.
     Phrase,
     Prose,
-    /// Prose in which places of the vehicle stand in braces too.
+    /// Prose in which places of the vehicle are also written in braces.
     Pattern,
 }
 
-/// A text taken apart once for all members.
+/// A text split at its variables once for all members.
 #[derive(Debug)]
 pub struct Template<'a> {
     text: &'a Text,
@@ -34,7 +34,7 @@ struct Braces {
 }
 
 impl<'a> Template<'a> {
-    /// Finds the variables in a text; `None` after a problem if braces stand for nothing.
+    /// Finds the variables in a text; `None` after a problem if braces contain no variable.
     pub fn new(text: &'a Text, of: Use, variables: &[Spanned<String>], problems: &mut Problems) -> Option<Self> {
         let written = text.text.as_str();
         let mut pieces: Vec<(Range<usize>, Option<Braces>)> = Vec::new();
@@ -69,7 +69,7 @@ impl<'a> Template<'a> {
         self.pieces.iter().map(|(range, braces)| self.piece(range, *braces, words).0).collect()
     }
 
-    /// About how many bytes [`Self::fill`] takes.
+    /// Approximate number of bytes that [`Self::fill`] uses.
     pub fn cost(&self, words: &[Word]) -> usize {
         self.pieces.iter().map(|(range, braces)| size_of::<Piece>() + self.piece(range, *braces, words).0.len()).sum()
     }
@@ -95,13 +95,13 @@ impl<'a> Template<'a> {
     }
 }
 
-/// Whether a name goes on before or behind: `{part}_limit`, `{channel}_{part}`.
+/// Whether the braces are next to a part of a name: `{part}_limit`, `{channel}_{part}`.
 fn touches(text: &str, braces: Range<usize>) -> bool {
     let name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     text[..braces.start].ends_with(|c| name(c) || c == '}') || text[braces.end..].starts_with(|c| name(c) || c == '{')
 }
 
-/// `0.4_Hz_to_2_Hz`
+/// The form of a word in a name: `0.4_Hz_to_2_Hz`.
 fn in_name(word: &str) -> String {
     let mut name = String::with_capacity(word.len());
     for c in word.chars() {
@@ -116,11 +116,13 @@ fn in_name(word: &str) -> String {
 
 fn stands_for_nothing(inside: Option<&str>, variables: &[Spanned<String>], at: &Span) -> Problem {
     let Some(inside) = inside else {
-        return Problem::error("unknown-variable", "this brace has no partner").at(at).help("braces hold the name of a variable: `{part}`");
+        return Problem::error("unknown-variable", "this brace has no partner")
+            .at(at)
+            .help("write the name of a variable in braces: `{part}`");
     };
     let names = || variables.iter().map(|variable| variable.value.as_str());
     let word = inside.trim();
-    let problem = Problem::error("unknown-variable", format!("`{{{inside}}}` stands for nothing")).at(at);
+    let problem = Problem::error("unknown-variable", format!("`{{{inside}}}` is not a variable")).at(at);
     match names().find(|name| *name == word).or_else(|| nearest(word, names())) {
         Some(near) => problem.help(format!("did you mean `{{{near}}}`?")),
         None => problem.help(format!("variables here: {}", names().map(|name| format!("`{{{name}}}`")).collect::<Vec<_>>().join(", "))),
@@ -170,9 +172,9 @@ mod tests {
         assert_eq!(
             said,
             [
-                ("`{y}` stands for nothing", "variables here: `{x}`"),
-                ("`{ x }` stands for nothing", "did you mean `{x}`?"),
-                ("this brace has no partner", "braces hold the name of a variable: `{part}`"),
+                ("`{y}` is not a variable", "variables here: `{x}`"),
+                ("`{ x }` is not a variable", "did you mean `{x}`?"),
+                ("this brace has no partner", "write the name of a variable in braces: `{part}`"),
             ]
         );
     }

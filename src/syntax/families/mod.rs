@@ -1,7 +1,7 @@
 //! Families of blocks: a block with `for each` stands for one block for each member.
 //!
-//! They are written out on the document, member by member, before anything is checked: all later stages see plain blocks.
-//! Printing keeps the document as written.
+//! Families are expanded on the document before it is checked, so that all later stages have plain blocks. Printing keeps the
+//! document as written.
 
 mod each;
 mod fill;
@@ -21,17 +21,17 @@ use crate::source::{Filled, Member, Span, Spanned};
 use each::{Group, Word};
 use fill::{Template, Use};
 
-/// Most members of a family: more are a slip in a list, or want another way of saying.
+/// Largest number of members of a family. More are probably a mistake in a list.
 const MOST_MEMBERS: usize = 1000;
-/// Most blocks of all families of a protocol: merging compares each with each by name.
+/// Largest number of blocks of all families of a protocol. Merging compares blocks in pairs by name.
 const MOST_BLOCKS: usize = 10_000;
-/// Most bytes of all families written out: ten times the longest protocol that is read.
+/// Largest size of all expanded families, in bytes: ten times the largest protocol that is read.
 const MOST_BYTES: usize = 20 << 20;
 
 /// Places by name, each with its positions.
 pub type Places = IndexMap<String, Vec<String>>;
 
-/// A family of an ancestor, which a variant may override or remove by its name as written.
+/// A family of an ancestor. A variant can override or remove it by its name as written.
 #[derive(Clone, Debug)]
 pub struct Known {
     pub kind: String,
@@ -41,13 +41,13 @@ pub struct Known {
     pub members: Vec<String>,
 }
 
-/// Writes out the families of a document. `before` is what its ancestors come to, `known` their families, to which those of the
-/// document are added. Gives back whether every family could be written out.
+/// Expands the families of a document. `before` is the merged document of its ancestors, `known` contains their families; those of
+/// the document are added to it. Returns whether every family could be expanded.
 pub fn expand(document: &Document, before: Option<&Document>, known: &mut Vec<Known>, problems: &mut Problems) -> (Document, bool) {
     let mut places = Places::new();
     let blocks = before.into_iter().chain([document]).flat_map(|document| &document.blocks);
     for block in blocks.filter(|block| block.kind.text == "place") {
-        // What is wrong with a place is told where it is checked.
+        // Errors of a place are reported where the place is checked.
         let members = block.field("members").and_then(|field| from_pest::list(&field.value, &mut Problems::default()));
         if let Some(members) = members {
             places.insert(block.name_text().to_owned(), members.into_iter().map(|member| member.node).collect());
@@ -61,7 +61,7 @@ pub fn expand(document: &Document, before: Option<&Document>, known: &mut Vec<Kn
     (Document { blocks, ..document.clone() }, sound)
 }
 
-/// The place of a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`, `bodies`.
+/// The place with a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`, `bodies`.
 pub fn place_called<'a>(word: &str, names: impl Iterator<Item = &'a str> + Clone) -> Option<&'a str> {
     let plural = |name: &str| {
         [format!("{name}s"), format!("{name}es")].contains(&word.to_string())
@@ -76,7 +76,7 @@ struct Writer<'a> {
     known: &'a mut Vec<Known>,
     problems: &'a mut Problems,
     blocks: Vec<Block>,
-    /// Kind and name of each block, and whether a family brought it.
+    /// Kind and name of each block, and whether it is from a family.
     seen: BTreeMap<(String, String), (Span, bool)>,
     count: usize,
     bytes: usize,
@@ -100,12 +100,12 @@ impl Writer<'_> {
             return;
         }
         if let Some(family) = self.known.iter().find(|family| family.kind == of && family.name == name).cloned() {
-            // The fields are the variant's, the members the parent's: those that it still has.
+            // The fields are those of the variant. The members are those of the parent that still exist.
             let left: Vec<String> = family.members.into_iter().filter(|member| self.parent_has(of, member)).collect();
             return self.family(kind, block, &family.each, Some(&left));
         }
         self.sound = false;
-        let says = format!("`{name}` has braces as the name of a family, and no `{EACH}`");
+        let says = format!("`{name}` has braces like the name of a family, but the block has no `{EACH}`");
         let problem = Problem::error("unknown-variable", says).at(block.span());
         let families: Vec<&str> = self.known.iter().filter(|family| family.kind == of).map(|family| family.name.as_str()).collect();
         self.problems.push(match crate::problem::nearest(name, families) {
@@ -118,7 +118,7 @@ impl Writer<'_> {
         self.before.is_some_and(|before| before.blocks.iter().any(|block| block.kind.text == kind && block.name_text() == name))
     }
 
-    /// Words of a block that is no family.
+    /// Reports braces in a block that is not a family.
     fn no_braces(&mut self, kind: &Kind, block: &Block) {
         for field in block.fields.iter().filter(|field| kind.key(&field.key.text).is_some_and(|key| key.sort == Sort::Phrase)) {
             let mut quotes = Quotes::default();
@@ -129,14 +129,14 @@ impl Writer<'_> {
             });
             let Some((at, _)) = brace else { continue };
             let end = text[at..].find('}').map_or(at + 1, |end| at + end + 1);
-            let says = format!("`{}` stands for nothing: the block has no `{EACH}`", &text[at..end]);
+            let says = format!("`{}` is not a variable: the block has no `{EACH}`", &text[at..end]);
             let problem = Problem::error("unknown-variable", says).at(&field.value.place(at..end));
             self.problems.push(problem.help(format!("add a line `{EACH}  variable in one, another`, and `{{variable}}` to the name")));
             self.sound = false;
         }
     }
 
-    /// Adds a block unless there is one of its name.
+    /// Adds a block unless there is one with its name.
     fn add(&mut self, block: Block, of_family: bool) {
         let key = (block.kind.text.clone(), block.name_text().to_owned());
         if let Some((first, other)) = self.seen.get(&key)
@@ -144,14 +144,14 @@ impl Writer<'_> {
         {
             let says = format!("there are two blocks `{} {}`", key.0, key.1);
             let problem = Problem::error("duplicate-name", says).at(block.span()).also(first, "the first");
-            self.problems.push(problem.help("what differs from member to member is put in with a variable, or overridden in a variant"));
+            self.problems.push(problem.help("write what differs between members with a variable, or override it in a variant"));
             return;
         }
         self.seen.insert(key, (block.span().clone(), of_family));
         self.blocks.push(block);
     }
 
-    /// Writes out a family: with `only`, the members of these names.
+    /// Expands a family; with `only`, just the members with these names.
     fn family(&mut self, kind: &Kind, block: &Block, each: &[Field], only: Option<&[String]>) {
         let Some(groups) = self.groups(block, each) else {
             self.sound = false;
@@ -164,9 +164,10 @@ impl Writer<'_> {
         };
         if only.is_none() {
             for (_, variable) in variables.iter().enumerate().filter(|(index, _)| !parts.uses(*index)) {
-                let says = format!("`{}` is put in nowhere", variable.value);
+                let says = format!("the variable `{}` is not used", variable.value);
                 let problem = Problem::error("unused-variable", says).at(&variable.span);
-                self.problems.push(problem.help(format!("write `{{{}}}` where its members belong, or leave it out", variable.value)));
+                self.problems
+                    .push(problem.help(format!("write `{{{}}}` where its members are inserted, or remove the variable", variable.value)));
             }
         }
         let mut names: IndexMap<String, Vec<Word>> = IndexMap::new();
@@ -184,11 +185,11 @@ impl Writer<'_> {
             self.bytes += parts.cost(&words);
             if self.count > MOST_BLOCKS || self.bytes > MOST_BYTES {
                 let says = if self.count > MOST_BLOCKS {
-                    format!("the families of the protocol have more than {MOST_BLOCKS} members in all")
+                    format!("the families of the protocol have more than {MOST_BLOCKS} members in total")
                 } else {
-                    format!("the families of the protocol are longer than {} megabytes when written out", MOST_BYTES >> 20)
+                    format!("the families of the protocol are longer than {} megabytes when expanded", MOST_BYTES >> 20)
                 };
-                self.problems.push(Problem::error("too-large", says).at(block.span()).help("give fewer members, or shorter texts"));
+                self.problems.push(Problem::error("too-large", says).at(block.span()).help("use fewer members or shorter texts"));
                 self.sound = false;
                 return;
             }
@@ -198,7 +199,7 @@ impl Writer<'_> {
                 && let Some(text) = &filled.name
             {
                 let problem = Problem::error("bad-name", format!("`{name}` cannot be a name")).at(&text.span);
-                self.problems.push(problem.help("names are made of letters a to z, digits, `_`, `-` and `.`"));
+                self.problems.push(problem.help("use letters a to z, digits, `_`, `-` and `.`"));
             }
             self.add(filled, true);
             names.insert(name, words);
@@ -229,12 +230,12 @@ impl Writer<'_> {
         for variable in groups.iter().flat_map(|group| &group.variables) {
             let name = &variable.value;
             if let Some(first) = seen.iter().find(|known| known.value == *name) {
-                let says = format!("`{name}` is a variable of this family twice");
+                let says = format!("`{name}` is declared twice as a variable of this family");
                 self.problems.push(Problem::error("duplicate-name", says).at(&variable.span).also(&first.span, "the first"));
                 sound = false;
             } else if self.places.contains_key(name) {
-                let problem = Problem::error("name-clash", format!("`{name}` is a place, and a variable here")).at(&variable.span);
-                self.problems.push(problem.help(format!("give the variable a name of its own: `{EACH}  x in {name}`")));
+                let problem = Problem::error("name-clash", format!("`{name}` is both a place and a variable")).at(&variable.span);
+                self.problems.push(problem.help(format!("give the variable another name: `{EACH}  x in {name}`")));
                 sound = false;
             }
             seen.push(variable);
@@ -243,14 +244,14 @@ impl Writer<'_> {
         if count > MOST_MEMBERS {
             let says = format!("the family `{}` has {count} members; there can be at most {MOST_MEMBERS}", block.name_text());
             let at = each.first().map_or(block.span(), |field| &field.value.span);
-            self.problems.push(Problem::error("too-large", says).at(at).help("split it, or give fewer members"));
+            self.problems.push(Problem::error("too-large", says).at(at).help("split it or use fewer members"));
             sound = false;
         }
         sound.then_some(groups)
     }
 }
 
-/// The words of each member, in the order of the lists: the last variables change first.
+/// The words of each member, in the order of the lists; the last variables change fastest.
 fn product(groups: &[Group]) -> impl Iterator<Item = Vec<Word>> {
     let count: usize = groups.iter().map(|group| group.rows.len()).product();
     (0..count).map(|number| {
@@ -264,7 +265,7 @@ fn product(groups: &[Group]) -> impl Iterator<Item = Vec<Word>> {
     })
 }
 
-/// The texts of a family, taken apart.
+/// The texts of a family, split at their variables.
 struct Parts<'a> {
     name: Template<'a>,
     title: Option<Template<'a>>,
@@ -272,7 +273,7 @@ struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    /// All braces that stand for nothing are told.
+    /// Reports all braces that contain no variable.
     fn new(kind: &Kind, block: &'a Block, variables: &[Spanned<String>], problems: &mut Problems) -> Option<Self> {
         let name = Template::new(block.name.as_ref()?, Use::Name, variables, problems);
         let title = block.title.as_ref().map(|title| Template::new(title, Use::Prose, variables, problems));
@@ -324,7 +325,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// Two members of a family with one name.
+/// Reports two members of a family with the same name.
 fn same_name(block: &Block, name: &str, first: &[Word], second: &[Word], variables: &[Spanned<String>], written: &Template<'_>) -> Problem {
     let differs: Vec<usize> = (0..variables.len()).filter(|index| first[*index].value != second[*index].value).collect();
     let repeated = variables.iter().enumerate().find(|(index, _)| first[*index].span != second[*index].span && !differs.contains(index));
@@ -334,9 +335,9 @@ fn same_name(block: &Block, name: &str, first: &[Word], second: &[Word], variabl
     }
     let problem = Problem::error("duplicate-name", format!("two members of the family are called `{name}`")).at(block.span());
     match differs.iter().find(|index| !written.uses(**index)) {
-        Some(index) => problem.help(format!("put `{{{}}}` into the name", variables[*index].value)),
+        Some(index) => problem.help(format!("write `{{{}}}` in the name", variables[*index].value)),
         None => problem.help(
-            "their names differ in signs that a name does not hold; give them words for it: `band, name in (1 Hz, low), (2 Hz, high)`",
+            "the names differ only in characters that a name cannot contain; add a variable for the name: `band, name in (1 Hz, low), (2 Hz, high)`",
         ),
     }
 }

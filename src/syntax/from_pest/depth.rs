@@ -1,22 +1,22 @@
-//! Refuses what could overflow the stack of those who read it, before it is read.
+//! Refuses texts that could overflow the stack of the parser, before they are parsed.
 
 use crate::problem::Problem;
 use crate::syntax::document::Text;
 
-/// Parentheses, magnitudes, `not`, signs and `of` inside each other: no rule that a person wrote is deeper.
+/// Largest nesting of parentheses, magnitudes, `not`, signs and `of`. Rules in use are far below it.
 const DEEPEST: usize = 30;
-/// So many operators between two commas: of a sum, each term lies one deeper than the next.
+/// Largest number of operators between two commas. Each operator of a sum adds a level to the tree.
 const MOST_OPERATORS: usize = 60;
-/// Words, numbers and signs.
+/// Largest number of words, numbers and signs.
 const LONGEST: usize = 2000;
 
-/// What may lie inside each other at one level of parentheses.
+/// Counts at one level of parentheses.
 #[derive(Clone, Copy, Debug, Default)]
 struct Level {
-    /// Signs, `not` and `of` since the last word or comma that ends what they stand before.
+    /// Signs, `not` and `of` since the last word or comma that ends their operand.
     prefixes: usize,
     bars: usize,
-    /// `larger of a, larger of b, c`: the comma does not end it.
+    /// Open `larger of` and `smaller of`, as in `larger of a, larger of b, c`: a comma does not end them.
     extremes: usize,
     operators: usize,
 }
@@ -26,12 +26,12 @@ impl Level {
         self.prefixes + self.bars.div_ceil(2) + self.extremes
     }
 
-    /// What `and`, `is` and the like end.
+    /// After `and`, `is` and the like.
     fn separate(&mut self) {
         *self = Self { extremes: self.extremes, operators: self.operators, ..Self::default() };
     }
 
-    /// What a comma, `when` and `otherwise` end.
+    /// After a comma, `when` or `otherwise`.
     fn finish(&mut self) {
         self.separate();
         self.operators = 0;
@@ -44,7 +44,7 @@ struct Measured {
     deepest: usize,
     most_operators: usize,
     tokens: usize,
-    /// Whether an operand stood last: a minus after it is a subtraction, not a sign.
+    /// Whether the last item was an operand: a minus after it is a subtraction, not a sign.
     operand: bool,
 }
 
@@ -94,7 +94,7 @@ impl Measured {
     }
 }
 
-/// A problem if the text could overflow the stack of those who read it, or take long.
+/// A problem if parsing the text could overflow the stack or take too long.
 pub(super) fn too_deep(text: &Text) -> Option<Problem> {
     let mut found = Measured { levels: vec![Level::default()], deepest: 0, most_operators: 0, tokens: 0, operand: false };
     let mut word = String::new();
@@ -120,10 +120,10 @@ pub(super) fn too_deep(text: &Text) -> Option<Problem> {
     } else if found.tokens > LONGEST {
         format!("this phrase has more than {LONGEST} words, numbers and signs")
     } else if found.most_operators > MOST_OPERATORS {
-        format!("there are {} operators in a row, and {MOST_OPERATORS} are the most a rule may have", found.most_operators)
+        format!("there are {} operators in a row; a rule can have at most {MOST_OPERATORS}", found.most_operators)
     } else {
         return None;
     };
     let end = text.text.char_indices().map(|(at, _)| at).nth(40).unwrap_or(text.text.len());
-    Some(Problem::error("too-deep", says).at(&text.place(0..end)).help("name parts of it with `define`"))
+    Some(Problem::error("too-deep", says).at(&text.place(0..end)).help("give names to parts of it with `define`"))
 }

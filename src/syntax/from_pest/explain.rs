@@ -1,4 +1,4 @@
-//! What is wrong with a phrase, in the words of its author rather than of the grammar.
+//! Messages for syntax errors, in the words of the language and not of the grammar.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use crate::syntax::document::Text;
 use crate::units::Unit;
 
 pub(super) fn twice(what: &str, text: &Text, range: Range<usize>) -> Problem {
-    Problem::error("syntax", format!("a limit has one `{what}`, here is another"))
+    Problem::error("syntax", format!("a limit can have only one `{what}`"))
         .at(&text.place(range))
         .help("write two limits, or join the conditions with `and`")
 }
@@ -28,14 +28,14 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     if let Some(problem) = unknown_unit(before, found, at, text) {
         return problem;
     }
-    // Pasted text brings blanks that look like a space, or like nothing.
+    // Pasted text can contain blanks that look like a space or are invisible.
     let odd_blank = found.chars().next().filter(|c| c.is_whitespace() || matches!(c, '\u{200b}' | '\u{feff}'));
     let says = if found.is_empty() {
         format!("{} ends too early", in_words(rule))
     } else if let Some(blank) = odd_blank {
-        format!("the blank U+{:04X} does not fit here in {}", u32::from(blank), in_words(rule))
+        format!("the special blank U+{:04X} is not allowed in {}", u32::from(blank), in_words(rule))
     } else {
-        format!("`{found}` does not fit here in {}", in_words(rule))
+        format!("`{found}` is not allowed here in {}", in_words(rule))
     };
     let mut expected: Vec<&str> = Vec::new();
     if let ErrorVariant::ParsingError { positives, .. } = &error.variant {
@@ -46,11 +46,11 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
             }
         }
     }
-    // Where an operator can follow, `at`, `through` and `over` can, and help little.
+    // Where an operator is possible, `at`, `through` and `over` are possible as well, but seldom meant.
     if expected.contains(&OPERATOR) {
         expected.retain(|word| ![Rule::kw_at, Rule::kw_through, Rule::kw_over].map(in_words).contains(word));
     }
-    // An error in an exact text is underlined at the word; at its end, the last word is.
+    // In an exact text, the error is underlined at the word, or at the last word if the text ends too early.
     let end = text.text.trim_end().len();
     let last = text.text[..end].rfind(char::is_whitespace).map_or(0, |at| at + 1);
     let range = if found.is_empty() { last..end } else { at..at + found.len() };
@@ -59,10 +59,10 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
         return problem.help("write an ordinary space");
     }
     if rule == Rule::expression && joins_places(before) {
-        return problem.help("in an expression places follow one another without `and`: `Y at wheelset 1 side R`");
+        return problem.help("in an expression, write places without `and`: `Y at wheelset 1 side R`");
     }
     if rule == Rule::limit && ["+", "-", "*", "/"].contains(&found) && before.split_whitespace().count() == 1 {
-        return problem.help("an estimate of several statistics stands in parentheses: `limit (mean + 3 * std) 60 kN`");
+        return problem.help("write an estimate of several statistics in parentheses: `limit (mean + 3 * std) 60 kN`");
     }
     match expected.as_slice() {
         [] => problem,
@@ -71,11 +71,11 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     }
 }
 
-/// `0,5`: a comma between two digits where none can stand.
+/// A decimal comma, such as `0,5`: a comma between two digits where no comma is possible.
 fn decimal_comma(at: usize, text: &Text) -> Option<Problem> {
     let bytes = text.text.as_bytes();
     let digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
-    // The comma itself, or, where one could stand, what follows it.
+    // The comma itself or, where a comma is possible, the text after it.
     let comma = [Some(at), at.checked_sub(1)].into_iter().flatten().find(|&at| bytes.get(at) == Some(&b','))?;
     if comma == 0 || !digit(comma - 1) || !digit(comma + 1) {
         return None;
@@ -87,7 +87,7 @@ fn decimal_comma(at: usize, text: &Text) -> Option<Problem> {
     Some(problem.help(format!("write numbers with a point: `{}`", number.replace(',', "."))))
 }
 
-/// `4 kn`: what follows a number and is no word of the language was meant as its unit.
+/// An unknown unit, such as `4 kn`: a word after a number that is not a word of the language.
 fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Problem> {
     const FOLLOW: [&str; 21] = [
         "and",
@@ -117,14 +117,14 @@ fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Pro
         return None;
     }
     let unknown = Unit::parse(found).err()?;
-    let problem = Problem::error("unknown-unit", format!("`{}` is no unit", unknown.word)).at(&text.place(at..at + found.len()));
+    let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&text.place(at..at + found.len()));
     Some(match unknown.near {
         Some(near) => problem.help(format!("did you mean `{near}`?")),
         None => problem.help("units are written like kN, m/s^2, km/h, mrad"),
     })
 }
 
-/// `Y at wheelset 1 and side`, before `R`.
+/// Whether the text ends as `Y at wheelset 1 and side`, before `R`.
 fn joins_places(before: &str) -> bool {
     let words: Vec<&str> = before.split_whitespace().collect();
     matches!(words.as_slice(), [.., "and", _]) && words.contains(&"at")
@@ -134,7 +134,7 @@ fn after_blanks(text: &str) -> &str {
     text.trim_start_matches([' ', '\t', '\r', '\n'])
 }
 
-/// The word or sign a text begins with, after blanks of the grammar; a blank that the grammar does not know is such a sign.
+/// The first word or sign of a text, after blanks of the grammar. Other blanks count as a sign.
 fn first_word(text: &str) -> &str {
     let text = after_blanks(text);
     let of_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '/' | '^' | '-');
@@ -154,7 +154,7 @@ fn one_of(words: &[&str]) -> String {
     }
 }
 
-/// Words that hold a phrase together and say nothing by themselves.
+/// Words that hold a phrase together and have no value.
 pub(super) fn is_keyword(rule: Rule) -> bool {
     matches!(
         rule,
@@ -191,7 +191,7 @@ pub(super) fn is_keyword(rule: Rule) -> bool {
 
 const OPERATOR: &str = "an operator";
 
-/// What a rule is called in a message; empty where naming it would not help.
+/// Name of a grammar rule in messages; empty where it would not help.
 fn in_words(rule: Rule) -> &'static str {
     match rule {
         Rule::expression | Rule::cases | Rule::either | Rule::both | Rule::negation | Rule::comparison => "an expression",

@@ -1,4 +1,4 @@
-//! From field text to [`super::phrase`]: the only place that names the rules of `phrase.pest`.
+//! From the text of a field to [`super::phrase`]: the only module that uses the rules of `phrase.pest`.
 
 mod depth;
 mod explain;
@@ -52,7 +52,7 @@ pub fn alias(text: &Text, problems: &mut Problems) -> Option<Alias> {
     Some(Alias { name, cases })
 }
 
-/// `distance in m`: the name and the unit text.
+/// Name and unit of an axis such as `distance in m`.
 pub fn axis(text: &Text, problems: &mut Problems) -> Option<(At<String>, At<String>)> {
     let mut inner = parts(parse(Rule::axis, text, problems)?);
     Some((named(&inner.next()?), named(&inner.next()?)))
@@ -176,7 +176,7 @@ fn over_verdicts(pair: Pair<'_, Rule>) -> Option<OverVerdicts> {
     }
 }
 
-/// Runs one rule over a field; a syntax error becomes a problem at the word where it stands.
+/// Parses a field with one rule. A syntax error becomes a problem at its word.
 fn parse<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Pair<'t, Rule>> {
     if let Some(problem) = depth::too_deep(text) {
         problems.push(problem);
@@ -191,7 +191,7 @@ fn parse<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Pair
     }
 }
 
-/// What stands inside, without the words that only hold it together.
+/// The inner pairs, without keywords.
 fn parts(pair: Pair<'_, Rule>) -> impl Iterator<Item = Pair<'_, Rule>> {
     pair.into_inner().filter(|pair| !explain::is_keyword(pair.as_rule()))
 }
@@ -222,11 +222,11 @@ mod tests {
             assert!(expression(&text(words), &mut problems).is_none(), "{words:?}");
             let at = problems.0[0].at.as_ref().expect("a place");
             assert_eq!((at.start..at.end, problems.0[0].help.as_deref()), (place, Some("write an ordinary space")), "{words:?}");
-            assert!(problems.0[0].says.starts_with("the blank U+"), "{}", problems.0[0].says);
+            assert!(problems.0[0].says.starts_with("the special blank U+"), "{}", problems.0[0].says);
         }
     }
 
-    /// The numbers alone, which are in SI.
+    /// The numbers only, which are in SI.
     fn without_units(meaning: &str) -> String {
         meaning
             .split('{')
@@ -295,6 +295,6 @@ mod tests {
         let mut problems = Problems::default();
         assert!(expression(&text("4 kN * * 3"), &mut problems).is_none());
         let shown = problems.render(false);
-        assert!(shown.contains("`*` does not fit here"), "{shown}");
+        assert!(shown.contains("`*` is not allowed here"), "{shown}");
     }
 }

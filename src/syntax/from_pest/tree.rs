@@ -131,7 +131,7 @@ fn comparison(pair: Pair<'_, Rule>) -> Option<Phrase> {
     Some(all.unwrap_or(left))
 }
 
-/// `near b within c` after a value.
+/// The condition `near b within c` after a value.
 fn near(value: Phrase, pair: Pair<'_, Rule>) -> Option<Phrase> {
     let range = value.range.start..bytes(&pair).end;
     let mut inner = parts(pair);
@@ -221,7 +221,8 @@ fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
     Some(phrase)
 }
 
-/// What a limit is of: the name of a statistic or estimate, a percentile, an end of an interval, or an expression in parentheses.
+/// The estimate of a limit: the name of a statistic or estimate, a percentile, the end of an interval, or an expression in
+/// parentheses.
 pub(super) fn estimate(pair: Pair<'_, Rule>) -> Option<Phrase> {
     let inner = parts(pair).next()?;
     let range = bytes(&inner);
@@ -233,7 +234,7 @@ pub(super) fn estimate(pair: Pair<'_, Rule>) -> Option<Phrase> {
     Some(At { node, range })
 }
 
-/// `upper 95 % of std by bootstrap`.
+/// The end of a confidence interval: `upper 95 % of std by bootstrap`.
 fn bound_of(pair: Pair<'_, Rule>) -> Option<Node> {
     let mut inner = parts(pair).filter(|pair| pair.as_rule() != Rule::of);
     let upper = inner.next()?.as_str().trim() == "upper";
@@ -244,7 +245,7 @@ fn bound_of(pair: Pair<'_, Rule>) -> Option<Node> {
     Some(Node::Bound { upper, confidence, of: Box::new(At { node, range }), bootstrap: inner.next().is_some() })
 }
 
-/// `prediction over radius, speed at 300 m, 80 km/h, confidence 99 %`.
+/// A regression: `prediction over radius, speed at 300 m, 80 km/h, confidence 99 %`.
 fn fit(pair: Pair<'_, Rule>) -> Option<Fit> {
     let mut inner = parts(pair);
     let prediction = inner.next()?.as_str().trim() == "prediction";
