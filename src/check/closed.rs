@@ -1,4 +1,4 @@
-//! Checks parts that no quantity uses: a mistake in them would show on the day they are used.
+//! Checks the parts of a protocol that no quantity uses, so that a mistake in them is reported now and not at their first use.
 
 use std::collections::BTreeSet;
 
@@ -33,7 +33,7 @@ impl Checker<'_> {
             if self.used_defines.contains(&format!("estimate {name}")) {
                 continue;
             }
-            // The dimension of the values is not known of one that is not used: units that do not agree are not told.
+            // The dimension of the values of an unused estimate is not known. Mismatches of units are therefore not reported.
             let before = self.problems.0.len();
             let mut scope = Scope { group: Some(Group { values: Some(Dimension::ONE), taken: Vec::new() }), ..Scope::vehicle() };
             self.inside("estimate", &name, &written.text.span, |checker| checker.expr(&written.phrase, &written.text, &mut scope));
@@ -64,12 +64,12 @@ impl Checker<'_> {
         places.iter().filter_map(first).collect()
     }
 
-    /// What a definition can be checked as by itself.
+    /// How a definition can be checked without the place where it is used.
     fn stands_for(&self, phrase: &Phrase, seen: &mut BTreeSet<String>) -> Meaning {
         let mut of = |phrase: &Phrase| self.stands_for(phrase, seen);
         match &phrase.node {
             Node::Number { .. } => Meaning::Closed,
-            // Values of a signal, of a side or of other limits mean nothing before they are used.
+            // Values of a signal, of one side or of other limits have no meaning before they are used.
             Node::Percentile(_) | Node::Reduced(..) | Node::Over(..) | Node::Bound { .. } | Node::Share { .. } | Node::Fit(_) => {
                 Meaning::Open
             }

@@ -1,17 +1,17 @@
-//! What can be told of conditions before a campaign is known: whether they exclude each other, whether they leave a case out.
+//! What is known of conditions without a campaign: whether they exclude each other, and whether one of them always holds.
 
 use super::evaluate::shape;
 use super::plan::{Expr, Kind, Operator, Scalar, Type};
 
-/// More combinations than this are not looked through.
+/// Largest number of combinations of tests that are examined.
 const MOST: usize = 256;
 
-/// Whether it is certain that these conditions never hold together; with `false` beside it, that a condition does not hold.
+/// Whether these conditions can certainly never hold together. With `false` beside it, a condition is taken as not satisfied.
 pub(super) fn impossible(conditions: &[(&Expr, bool)]) -> bool {
     let mut all: Vec<Vec<Test>> = vec![Vec::new()];
     for (condition, holds) in conditions {
         let Some(alternatives) = alternatives(condition, !holds) else { continue };
-        // A condition left out makes the rest weaker: what is impossible without it is so with it.
+        // A condition that is left out weakens the rest: a contradiction without it is a contradiction with it.
         if all.len() * alternatives.len() <= MOST {
             all = product(&all, &alternatives);
         }
@@ -23,7 +23,7 @@ fn product(left: &[Vec<Test>], right: &[Vec<Test>]) -> Vec<Vec<Test>> {
     left.iter().flat_map(|a| right.iter().map(move |b| a.iter().chain(b).cloned().collect())).collect()
 }
 
-/// Something about one value, which is named by its structure.
+/// A test of one value. The value is identified by the structure of its expression.
 #[derive(Clone, Debug)]
 struct Test {
     what: String,
@@ -32,13 +32,13 @@ struct Test {
 
 #[derive(Clone, Debug)]
 enum Is {
-    /// One of these words is it.
+    /// The value is one of these words.
     Words(Vec<String>),
     Flag(bool),
     Number(Operator, f64),
 }
 
-/// A condition as alternatives of tests that hold together; `None` where there are too many.
+/// A condition as alternatives, each a list of tests that hold together; `None` where there are too many.
 fn alternatives(expr: &Expr, negated: bool) -> Option<Vec<Vec<Test>>> {
     match &expr.kind {
         Kind::Constant(Scalar::Flag(flag)) => Some(if *flag == negated { Vec::new() } else { vec![Vec::new()] }),
@@ -55,7 +55,7 @@ fn alternatives(expr: &Expr, negated: bool) -> Option<Vec<Vec<Test>>> {
     }
 }
 
-/// `None` for what nothing is known about.
+/// `None` where the condition gives no test of a single value.
 fn test(operator: Operator, left: &Expr, right: &Expr, negated: bool) -> Option<Test> {
     let (what, constant, operator) = match (&left.kind, &right.kind) {
         (_, Kind::Constant(constant)) => (left, constant, operator),

@@ -1,4 +1,5 @@
-//! Blocks that declare what records, vehicle and sections hold: places, data, channels, signals.
+//! Checks blocks that declare the content of records, of the vehicle file and of the table of sections: places, data, channels,
+//! signals.
 
 use super::Checker;
 use super::names::{Channel, Place, SignalDef, normalised};
@@ -9,9 +10,10 @@ use crate::syntax::document::{Block, Field};
 use crate::syntax::phrase::{At, Pick};
 use crate::syntax::{families, from_pest};
 
-/// Most positions of a place: the wheels of a train of sixty vehicles. Signals at several places have as many positions as their product.
+/// Largest number of positions of a place: the wheels of a train of sixty vehicles. A signal at several places has the product of
+/// their numbers.
 const MOST_MEMBERS: usize = 500;
-/// In place of the default of a vehicle datum: the file may be without it.
+/// Written as the default of a vehicle datum that the vehicle file may omit.
 const NOT_STATED: &str = "not stated";
 
 impl Checker<'_> {
@@ -21,14 +23,15 @@ impl Checker<'_> {
         if written.len() > MOST_MEMBERS {
             let says = format!("`{name}` has {} positions; there can be at most {MOST_MEMBERS}", written.len());
             let problem = Problem::error("too-large", says).at(&field.value.span);
-            self.problems.push(problem.help("name those at which something is compared; others can go to a place of their own"));
+            self.problems.push(problem.help("declare the positions that are compared; put the others into another place"));
             return None;
         }
         let mut members: Vec<String> = Vec::new();
         for member in written {
             let place = field.value.place(member.range);
             if let Some(sign) = member.node.chars().find(|c| matches!(c, '-' | '.')) {
-                let says = format!("`{}` cannot be a {name}: in expressions `{sign}` would not be read as part of it", member.node);
+                let says =
+                    format!("`{}` cannot be a position of `{name}`: in an expression, `{sign}` is not read as part of a name", member.node);
                 self.problems.push(Problem::error("bad-name", says).at(&place));
             } else if members.contains(&member.node) {
                 self.problems.push(Problem::error("duplicate-name", format!("`{}` is named twice", member.node)).at(&place));
@@ -40,7 +43,7 @@ impl Checker<'_> {
         for field in block.fields_named("alias") {
             let Some(alias) = from_pest::alias(&field.value, self.problems) else { continue };
             if members.contains(&alias.name.node) {
-                let says = format!("`{}` is a {name} and an alias for one", alias.name.node);
+                let says = format!("`{}` is both a position of `{name}` and an alias", alias.name.node);
                 self.problems.push(
                     Problem::error("name-clash", says)
                         .at(&field.value.place(alias.name.range.clone()))
@@ -50,7 +53,7 @@ impl Checker<'_> {
             for (member, _) in &alias.cases {
                 if !members.contains(&member.node) {
                     self.problems.push(
-                        Problem::error("unknown-place", format!("`{}` is no {name}", member.node))
+                        Problem::error("unknown-place", format!("`{}` is not a position of `{name}`", member.node))
                             .at(&field.value.place(member.range.clone()))
                             .suggest(&member.node, members.iter().map(String::as_str)),
                     );
@@ -67,7 +70,7 @@ impl Checker<'_> {
             (Some(unit), None) => DatumKind::Number(self.unit(&unit.value)?),
             (None, Some(words)) => {
                 let mut words: Vec<String> = from_pest::list(&words.value, self.problems)?.into_iter().map(|word| word.node).collect();
-                // The names of the zone blocks, so that a further zone is one block and no list need follow it.
+                // The names of the zone blocks. A further zone then needs one block and no change of a list.
                 if words == ["zones"] {
                     words.clone_from(&self.zone_names);
                 }
@@ -79,7 +82,7 @@ impl Checker<'_> {
             }
             _ => {
                 self.problems.push(
-                    Problem::error("missing-field", format!("{} `{name}` needs either `in` or `one of`", block.kind.text))
+                    Problem::error("missing-field", format!("{} `{name}` needs a field `in` or `one of`", block.kind.text))
                         .at(block.span())
                         .help("`in kN` for a number, `one of right, left` for a word"),
                 );
@@ -94,20 +97,20 @@ impl Checker<'_> {
     /// The range of a number of the vehicle, in its unit.
     fn datum_range(&mut self, name: &str, kind: &DatumKind, field: &Field) -> Option<DatumRange> {
         let DatumKind::Number(unit) = kind else {
-            let says = format!("`{name}` is a choice of words and has no range");
+            let says = format!("`{name}` is a choice of words and cannot have a range");
             self.problems.push(Problem::error("unknown-field", says).at(&field.key.span));
             return None;
         };
         let [low, high] = self.range_ends(name, unit.dimension, field, None)?;
         if low > high {
-            let says = format!("the range of `{name}` ends before it begins");
+            let says = format!("the range of `{name}` has its upper end below its lower end");
             self.problems.push(Problem::error("out-of-range", says).at(&field.value.span));
             return None;
         }
         Some(DatumRange { low, high, words: normalised(&field.value.text), span: field.value.span.clone() })
     }
 
-    /// Range and default of a datum, once everything has a name.
+    /// Range and default of a datum, after all names are known.
     pub(super) fn datum_default(&mut self, name: &str, block: &Block) -> Option<()> {
         let data = if block.kind.text == "vehicle" { &self.names.vehicle } else { &self.names.columns };
         let Some(index) = data.iter().position(|datum| datum.name == name) else { return Some(()) };
@@ -147,7 +150,7 @@ impl Checker<'_> {
             kind => {
                 let words = if let DatumKind::Words(words) = kind { words } else { vec!["true".into(), "false".into()] };
                 self.problems.push(
-                    Problem::error("unknown-choice", format!("`{word}` is none of the words of `{name}`"))
+                    Problem::error("unknown-choice", format!("`{word}` is not one of the words of `{name}`"))
                         .at(&field.value.span)
                         .suggest(word, words.iter().map(String::as_str)),
                 );
@@ -159,20 +162,21 @@ impl Checker<'_> {
         Some(())
     }
 
-    /// Whether a word is a choice parameter that stands for one of these.
+    /// Whether a word is a choice parameter whose value is one of `words`.
     fn stands_for_one_of(&mut self, word: &str, words: &[String], span: &Span) -> bool {
         self.names.parameter_blocks.contains_key(word) && self.choice_word(word, span).is_some_and(|choice| words.contains(&choice))
     }
 
-    /// A vehicle datum without a default that may be absent. An empty cell of the table of sections needs no such word.
+    /// Accepts `not stated` for a vehicle datum without a default. The table of sections does not need it: an empty cell is a
+    /// missing value.
     fn may_be_absent(&mut self, index: usize, block: &Block, field: &Field) -> Option<()> {
         if block.kind.text == "vehicle" {
             self.names.vehicle[index].may_be_absent = true;
             return Some(());
         }
-        let says = format!("`{NOT_STATED}` is for vehicle data");
+        let says = format!("`{NOT_STATED}` can only be written for vehicle data");
         let problem = Problem::error("unknown-choice", says).at(&field.value.span);
-        self.problems.push(problem.help("leave the line out: without a default, an empty cell is a missing value"));
+        self.problems.push(problem.help("remove the line: without a default, an empty cell is a missing value"));
         None
     }
 
@@ -187,9 +191,9 @@ impl Checker<'_> {
             Some(("track", _)) => true,
             Some((other, field)) => {
                 self.problems.push(
-                    Problem::error("unknown-record", format!("`{other}` is no kind of record of its own"))
+                    Problem::error("unknown-record", format!("`{other}` is not a kind of record"))
                         .at(&field.value.span)
-                        .help("`record track` for the track file; without `record` a channel stands in simulation and measurement"),
+                        .help("write `record track` for the track file; without `record`, the channel is in the records of simulation and measurement"),
                 );
                 false
             }
@@ -213,21 +217,21 @@ impl Checker<'_> {
         Some(())
     }
 
-    /// `ay_{running_gear}`
+    /// Default pattern of the column names, such as `ay_{running_gear}`.
     fn standard_pattern(&self, name: &str, places: &[String]) -> String {
         let braces: String = places.iter().map(|place| format!("{{{place}}}")).collect();
         if braces.is_empty() { name.to_string() } else { format!("{name}_{braces}") }
     }
 
-    /// Every place must appear, or two positions would share a column.
+    /// Every place must occur in the pattern; otherwise two positions would have the same column.
     fn check_pattern(&mut self, pattern: &str, places: &[String], block: &Block, key: &str) {
         let span = block.field(key).map_or_else(|| block.span().clone(), |field| field.value.span.clone());
         for place in places {
             if !pattern.contains(&format!("{{{place}}}")) {
                 self.problems.push(
-                    Problem::error("pattern", format!("`{pattern}` names the same column for every {place}"))
+                    Problem::error("pattern", format!("`{pattern}` gives the same column for every {place}"))
                         .at(&span)
-                        .help(format!("put {{{place}}} where it stands in the name")),
+                        .help(format!("write {{{place}}} where the column name contains it")),
                 );
             }
         }
@@ -235,7 +239,7 @@ impl Checker<'_> {
             let inside = part.split('}').next().unwrap_or("");
             if !places.iter().any(|place| place == inside) {
                 self.problems.push(
-                    Problem::error("pattern", format!("`{{{inside}}}` in `{pattern}` is none of its places"))
+                    Problem::error("pattern", format!("`{{{inside}}}` in `{pattern}` is not a place of this channel"))
                         .at(&span)
                         .suggest(inside, places.iter().map(String::as_str)),
                 );
@@ -243,7 +247,7 @@ impl Checker<'_> {
         }
     }
 
-    /// `each wheelset and side` into place names.
+    /// The place names of a field such as `each wheelset and side`.
     fn place_names(&mut self, field: &Field) -> Option<Vec<String>> {
         let picks = from_pest::places(&field.value, self.problems)?;
         let mut found = Vec::new();
@@ -266,7 +270,7 @@ impl Checker<'_> {
         Some(found)
     }
 
-    /// The place of a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`, `bodies`.
+    /// The place with a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`, `bodies`.
     pub(super) fn place_called(&self, word: &str) -> Option<String> {
         families::place_called(word, self.names.places.keys().map(String::as_str)).map(str::to_owned)
     }

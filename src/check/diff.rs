@@ -1,4 +1,4 @@
-//! What differs in meaning between two protocols, rule by rule.
+//! Differences in meaning between two protocols, rule by rule.
 
 use crate::problem::Problems;
 use crate::result::Deviation;
@@ -11,7 +11,7 @@ use crate::units::Unit;
 use super::family::slot;
 use super::names::normalised;
 
-/// Rules that are new, gone or changed from the first document to the second, in the order of the second.
+/// Rules added, removed or changed from the first document to the second, in the order of the second.
 pub fn diff(before: &Document, after: &Document) -> Vec<Deviation> {
     let mut found = Vec::new();
     for block in &after.blocks {
@@ -43,7 +43,7 @@ fn in_words(block: &Block) -> String {
 
 fn fields(old: &Block, new: &Block, found: &mut Vec<Deviation>) {
     if old.kind.text == "protocol" {
-        // Name, title and scope differ between any two protocols and rule nothing.
+        // Name, title and scope always differ and are not rules.
         for key in ["axis", "time", "edition"] {
             one(old, key, old.field(key), new.field(key), found);
         }
@@ -64,8 +64,8 @@ fn fields(old: &Block, new: &Block, found: &mut Vec<Deviation>) {
     }
 }
 
-/// Fields of which there may be several: those that are equal are put aside, then limits are compared with the one of the same
-/// statistic and zones, others in the order they stand.
+/// Compares fields that may occur several times. Equal ones are removed first. A limit is then compared with the one of the same
+/// statistic and zones; other fields in their order.
 fn many(block: &Block, olds: &[&Field], news: &[&Field], found: &mut Vec<Deviation>) {
     let kind = &block.kind.text;
     let mut left: Vec<&Field> = olds.to_vec();
@@ -93,7 +93,7 @@ fn rule(field: &Field) -> String {
     format!("{} {}", field.key.text, statistic(field)).trim().to_string()
 }
 
-/// What a limit is of, as written.
+/// The statistic of a limit, as written.
 fn statistic(field: &Field) -> String {
     if field.key.text != "limit" {
         return String::new();
@@ -118,7 +118,7 @@ fn equal(kind: &str, a: &Field, b: &Field) -> bool {
     normalised(&a.value.text) == normalised(&b.value.text) || meaning(kind, a).is_some_and(|meant| meaning(kind, b) == Some(meant))
 }
 
-/// What a field says apart from the way it is written; `None` for prose and for what cannot be read.
+/// What a field means, independent of how it is written; `None` for prose and for text that cannot be parsed.
 fn meaning(kind: &str, field: &Field) -> Option<String> {
     let kind_of = keys::kind(kind)?;
     let key = [true, false].into_iter().find_map(|named| kind_of.with_name(named).key(&field.key.text))?;
@@ -163,7 +163,7 @@ fn unit_meaning(unit: &Unit) -> String {
     format!("{:e} {}", unit.factor, unit.dimension)
 }
 
-/// `at wheelsets 1, 3 and side L`; singular and plural mean the same.
+/// Positions such as `at wheelsets 1, 3 and side L`; singular and plural have the same meaning.
 fn picks(picks: &[Pick]) -> String {
     let one = |pick: &Pick| {
         let words = pick.words.iter().chain(&pick.more).map(|word| word.node.as_str());

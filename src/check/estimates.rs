@@ -1,4 +1,4 @@
-//! Checks estimates: expressions over the values of a group and over the data of its sections.
+//! Checks estimates: expressions over the values of a group of rows and over the data of its sections.
 
 use super::Checker;
 use super::names::normalised;
@@ -11,19 +11,19 @@ use crate::syntax::document::{Block, Text};
 use crate::syntax::phrase::{At, Fit as WrittenFit, Limit as Written, Node, Phrase};
 use crate::units::Dimension;
 
-/// Most regressors: more say nothing of the numbers of sections that tests have.
+/// Largest number of regressors. With more, the number of sections of usual tests is too small for a regression.
 const MOST_REGRESSORS: usize = 8;
 
-/// Confidence that draws of a bootstrap can tell: 10 of 2000 lie beyond.
+/// Confidence levels that a bootstrap of 2000 draws can resolve: 10 draws lie beyond each of these limits.
 const DRAWN: (f64, f64) = (0.005, 0.995);
 
-/// The number of independent units of a group.
+/// Name of the number of independent units of a group.
 const COUNT: &str = "n";
 
-/// What an expression over a group may use.
+/// What an expression over a group can use.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
-    /// Dimension of the values; `None` where only data of the sections are at hand.
+    /// Dimension of the values; `None` where only data of the sections are available.
     pub values: Option<Dimension>,
     pub taken: Vec<Taking>,
 }
@@ -35,7 +35,7 @@ impl Group {
     }
 }
 
-/// `p95`, `mean`
+/// The name of a statistic as written: `p95`, `mean`.
 fn reducer_name(reducer: &Phrase) -> String {
     match &reducer.node {
         Node::Percentile(percent) => format!("p{percent}"),
@@ -45,7 +45,7 @@ fn reducer_name(reducer: &Phrase) -> String {
 }
 
 impl Checker<'_> {
-    /// What a limit is of; of values that were not understood (no dimension), names alone are looked at.
+    /// The estimate of a limit. Without a dimension (values that have an error), only names are checked.
     pub(super) fn estimate(&mut self, written: &Written, text: &Text, dimension: Option<Dimension>) -> Option<Estimate> {
         let name = written.statistic.node.clone();
         let plain = bare(&name);
@@ -82,12 +82,12 @@ impl Checker<'_> {
         Estimate { name: statistic.name(), title: statistic.title(self.ddof), kind, of_scatter: statistic.of_scatter(), unit: None }
     }
 
-    /// An expression over the values of a group, which must have their dimension.
+    /// An expression over the values of a group. It must have the dimension of the values.
     fn of_values(&mut self, phrase: &Phrase, text: &Text, dimension: Dimension) -> Option<OfGroup> {
         let found = self.of_group(phrase, text, Some(dimension), &Scope::vehicle())?;
         if found.taken.is_empty() {
             self.problems.push(
-                Problem::error("estimate-of-nothing", "this takes nothing from the values of a group")
+                Problem::error("estimate-of-nothing", "this expression uses no statistic of the values")
                     .at(&found.expr.span)
                     .help("for instance `mean + 3 * std`"),
             );
@@ -97,7 +97,7 @@ impl Checker<'_> {
         Some(found)
     }
 
-    /// An expression over a group, with the names that the given scope has.
+    /// An expression over a group; the scope `with` gives the other names it can use.
     pub(super) fn of_group(&mut self, phrase: &Phrase, text: &Text, values: Option<Dimension>, with: &Scope) -> Option<OfGroup> {
         let group = Some(Group { values, taken: Vec::new() });
         let mut scope = Scope { zone: with.zone.clone(), limits: with.limits.clone(), group, ..Scope::vehicle() };
@@ -111,13 +111,11 @@ impl Checker<'_> {
             let span = text.place(written.range.clone());
             let percent: Option<f64> = written.node.strip_prefix('p').and_then(|percent| percent.parse().ok());
             self.problems.push(match percent {
-                Some(percent) => {
-                    Problem::error("out-of-range", format!("a percentile lies between 0 and 100, this is {percent}")).at(&span)
-                }
+                Some(percent) => Problem::error("out-of-range", format!("a percentile must be from 0 to 100, this is {percent}")).at(&span),
                 None => {
                     let estimates: Vec<String> = self.names.estimates.keys().cloned().collect();
                     let known = STATISTICS.iter().map(|entry| entry.name).chain(["each"]).chain(estimates.iter().map(String::as_str));
-                    Problem::error("unknown-statistic", format!("`{}` is no statistic", written.node))
+                    Problem::error("unknown-statistic", format!("`{}` is not a statistic", written.node))
                         .at(&span)
                         .suggest(&written.node, known)
                 }
@@ -126,7 +124,7 @@ impl Checker<'_> {
         found
     }
 
-    /// A name that means something over a group: a statistic, `n`, an estimate.
+    /// A name with a meaning in a group: a statistic, `n`, an estimate.
     pub(super) fn group_path(&mut self, path: &str, span: &Origin, scope: &mut Scope) -> Option<Option<Expr>> {
         let dimension = scope.group.as_ref()?.values?;
         let ddof = self.ddof;
@@ -143,7 +141,8 @@ impl Checker<'_> {
         }
         match Statistic::named(path)? {
             Statistic::Each => {
-                self.problems.push(Problem::error("each-value", "`each` is every value by itself and no number of a group").at(span));
+                self.problems
+                    .push(Problem::error("each-value", "`each` stands for every single value and is not a statistic of a group").at(span));
                 Some(None)
             }
             statistic => {
@@ -153,12 +152,12 @@ impl Checker<'_> {
         }
     }
 
-    /// `p95` over a group.
+    /// A percentile of the values of a group, such as `p95`.
     pub(super) fn group_percentile(&mut self, percent: f64, span: &Origin, scope: &mut Scope) -> Option<Option<Expr>> {
         let group = scope.group.as_mut()?;
         let Some(dimension) = group.values else { return Some(self.no_values(span)) };
         if !(0.0..=100.0).contains(&percent) {
-            let says = format!("a percentile lies between 0 and 100, this is {percent}");
+            let says = format!("a percentile must be from 0 to 100, this is {percent}");
             self.problems.push(Problem::error("out-of-range", says).at(span));
             return Some(None);
         }
@@ -166,7 +165,7 @@ impl Checker<'_> {
         Some(Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() }))
     }
 
-    /// `mean of radius`, `total of length`: over the sections of a group.
+    /// A number of the sections of a group: `mean of radius`, `total of length`.
     pub(super) fn group_data(&mut self, reducer: &Phrase, of: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let name = reducer_name(reducer);
         let found = match (name.as_str(), Statistic::named(&name)) {
@@ -176,15 +175,15 @@ impl Checker<'_> {
         };
         let Some(reducer_found) = found else {
             let known = STATISTICS.iter().map(|entry| entry.name).chain(["total"]);
-            let says = format!("`{name} of` is nothing that is taken from the sections of a group");
+            let says = format!("`{name} of` cannot be computed over the sections of a group");
             self.problems.push(Problem::error("unknown-statistic", says).at(&text.place(reducer.range.clone())).suggest(&name, known));
             return None;
         };
         if let Node::Path(signal) = &of.node
             && (self.names.channels.contains_key(signal) || self.names.signals.contains_key(signal))
         {
-            let says = format!("`{name} of {signal}` is taken from the records of a section, which are not at hand here");
-            let help = "here it can be taken of section data: `mean of radius`";
+            let says = format!("`{name} of {signal}` needs the records of a section, which are not available here");
+            let help = "here only section data can be used: `mean of radius`";
             self.problems.push(Problem::error("no-records", says).at(span).help(help));
             return None;
         }
@@ -194,8 +193,8 @@ impl Checker<'_> {
         Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
     }
 
-    /// The quantity that `NAME` in `p80 of NAME` is, where the rows of a group are at hand: its number and its block. Data of sections go
-    /// before it.
+    /// The quantity `NAME` in `p80 of NAME`, as its index and the index of its block. Only where the rows of a group are available.
+    /// A section datum of the same name has priority.
     pub(super) fn other_quantity(&self, of: &Phrase, scope: &Scope) -> Option<(usize, usize)> {
         let Node::Path(name) = &of.node else { return None };
         if scope.group.is_none() && scope.value.is_none() || self.names.defines.contains_key(name) {
@@ -210,7 +209,7 @@ impl Checker<'_> {
         named.next().map(|(number, (at, _))| (number, at))
     }
 
-    /// Whether a limit or an estimate takes a number from the quantity: then it decides something without a limit of its own.
+    /// Whether a limit or an estimate uses a value of the quantity. The quantity then has an effect without a limit of its own.
     pub(super) fn is_referred_to(&self, quantity: &str) -> bool {
         let refers = |text: &Text| {
             let words: Vec<&str> =
@@ -224,30 +223,31 @@ impl Checker<'_> {
         self.blocks.iter().any(of_block)
     }
 
-    /// In a condition on one value, `p80 of ...` can only be of another quantity.
+    /// In a condition on one value, `p80 of ...` must name another quantity.
     pub(super) fn no_such_quantity(&mut self, of: &Phrase, text: &Text, span: &Span) -> Option<Expr> {
         let name = text.text.get(of.range.clone()).unwrap_or_default().trim().to_string();
-        let problem = Problem::error("no-such-quantity", format!("`{name}` is no quantity of which something could be taken here"));
+        let problem = Problem::error("no-such-quantity", format!("`{name}` is not a quantity that can be used here"));
         let quantities: Vec<String> =
             self.blocks.iter().filter(|block| block.kind.text == "quantity").map(|block| block.name_text().to_string()).collect();
         self.problems.push(problem.at(span).suggest(&name, quantities.iter().map(String::as_str)));
         None
     }
 
-    /// `p80 of misfit_of_repeats`: a statistic of all rows of another quantity. It needs no estimate of that quantity, so that no two can
-    /// need each other.
+    /// A statistic of all rows of another quantity: `p80 of misfit_of_repeats`. Estimates of the other quantity cannot be used, so
+    /// no two quantities can depend on each other.
     pub(super) fn of_other(&mut self, reducer: &Phrase, of: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let (quantity, block) = self.other_quantity(of, scope)?;
         let (name, range) = (reducer_name(reducer), reducer.range.clone());
         if self.names.estimates.contains_key(&name) {
-            let says = format!("`{name}` is an estimate of this quantity's own values");
-            let help = "of another quantity a statistic can be taken: `p80 of ...`, `mean of ...`";
+            let says = format!("`{name}` is an estimate and can only be applied to the values of this quantity");
+            let help = "use a statistic of the other quantity: `p80 of ...`, `mean of ...`";
             self.problems.push(Problem::error("unknown-statistic", says).at(&text.place(range)).help(help));
             return None;
         }
         let statistic = self.statistic(&At { node: name, range }, text)?;
         if statistic == Statistic::Each {
-            self.problems.push(Problem::error("each-value", "`each` is every value by itself and no number of a quantity").at(span));
+            self.problems
+                .push(Problem::error("each-value", "`each` stands for every single value and is not a statistic of a quantity").at(span));
             return None;
         }
         let block = self.blocks.get(block)?.clone();
@@ -257,14 +257,14 @@ impl Checker<'_> {
             Some(group) => group.take(taking),
             None => {
                 scope.others.push(taking);
-                // The value itself is input 0.
+                // Input 0 is the value itself.
                 Kind::Input(scope.others.len())
             }
         };
         Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
     }
 
-    /// `upper 95 % of std`.
+    /// An end of a confidence interval: `upper 95 % of std`.
     pub(super) fn group_bound(
         &mut self,
         (upper, confidence, bootstrap): (bool, f64, bool),
@@ -284,15 +284,18 @@ impl Checker<'_> {
         let estimate = if plain {
             let statistic = self.statistic(&At { node: name, range: of.range.clone() }, text)?;
             if statistic == Statistic::Each {
-                self.problems.push(Problem::error("each-value", "`each` is every value by itself and no number of a group").at(span));
+                self.problems
+                    .push(Problem::error("each-value", "`each` stands for every single value and is not a statistic of a group").at(span));
                 return None;
             }
             self.of_statistic(statistic)
         } else {
             let kind = self.of_values(of, text, dimension)?;
             if kind.taken.iter().any(|taking| matches!(taking, Taking::Bound { .. })) {
-                self.problems
-                    .push(Problem::error("interval-of-interval", "a confidence interval has no confidence interval itself").at(span));
+                self.problems.push(
+                    Problem::error("interval-of-interval", "the end of a confidence interval has no confidence interval of its own")
+                        .at(span),
+                );
                 return None;
             }
             Estimate { title: name.clone(), name, kind: EstimateKind::Of(Box::new(kind)), of_scatter: false, unit: None }
@@ -302,7 +305,7 @@ impl Checker<'_> {
             _ => false,
         });
         if (bootstrap || !closed) && !(DRAWN.0..=DRAWN.1).contains(&confidence) {
-            let says = "a bootstrap of 2000 draws says nothing of a bound beyond 0.5 % to 99.5 %";
+            let says = "a bootstrap of 2000 draws cannot give a bound outside 0.5 % to 99.5 %";
             self.problems.push(Problem::error("out-of-range", says).at(span));
             return None;
         }
@@ -314,7 +317,7 @@ impl Checker<'_> {
         Some(Expr { kind, ty, span: span.clone() })
     }
 
-    /// `share where value <= 1`.
+    /// A share of the values: `share where value <= 1`.
     pub(super) fn group_share(
         &mut self,
         of_sections: bool,
@@ -324,7 +327,7 @@ impl Checker<'_> {
         scope: &mut Scope,
     ) -> Option<Expr> {
         let Some(group) = &scope.group else {
-            self.problems.push(Problem::error("no-group", "a share is one of the values of a group, and there is none here").at(span));
+            self.problems.push(Problem::error("no-group", "a share needs the values of a group, which are not available here").at(span));
             return None;
         };
         let value = group.values.filter(|_| !of_sections);
@@ -338,17 +341,21 @@ impl Checker<'_> {
         Some(Expr { kind, ty: Type::Number(Dimension::ONE), span: span.clone() })
     }
 
-    /// `prediction over cant_deficiency at 143 mm, confidence 99 %`.
+    /// A regression or prediction: `prediction over cant_deficiency at 143 mm, confidence 99 %`.
     pub(super) fn group_fit(&mut self, written: &WrittenFit, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let Some(dimension) = scope.group.as_ref().and_then(|group| group.values) else { return self.no_values(span) };
         if written.over.len() > MOST_REGRESSORS {
-            let says = format!("{} regressors, and {MOST_REGRESSORS} are the most", written.over.len());
+            let says = format!("{} regressors; there can be at most {MOST_REGRESSORS}", written.over.len());
             self.problems.push(Problem::error("too-large", says).at(span));
             return None;
         }
         if written.over.len() != written.at.len() {
-            let says = format!("a regression over {} is read at as many values, here at {}", written.over.len(), written.at.len());
-            self.problems.push(Problem::error("arguments", says).at(span).help("`prediction over a, b at 1, 2`"));
+            let says = format!(
+                "a regression over {} regressors needs as many values after `at`; there are {}",
+                written.over.len(),
+                written.at.len()
+            );
+            self.problems.push(Problem::error("arguments", says).at(span).help("write for instance `prediction over a, b at 1, 2`"));
             return None;
         }
         let confidence = written.confidence.as_ref().map(|share| (share.node, text.place(share.range.clone())));
@@ -356,7 +363,7 @@ impl Checker<'_> {
             self.confidence(*share, place)?;
         }
         if written.prediction && confidence.is_none() {
-            let problem = Problem::error("missing-confidence", "a prediction is a bound, and needs its confidence").at(span);
+            let problem = Problem::error("missing-confidence", "a prediction bound needs a confidence level").at(span);
             self.problems.push(problem.help("add `, confidence 99 %`; the fitted value itself is `regression over ... at ...`"));
             return None;
         }
@@ -373,7 +380,7 @@ impl Checker<'_> {
                 continue;
             };
             if of != read {
-                let says = format!("the regression runs over {}, and is read at {}", of.in_words(), in_words(&target.expr.ty));
+                let says = format!("the regressor is {}, the value after `at` is {}", of.in_words(), in_words(&target.expr.ty));
                 let problem = Problem::error("unit-mismatch", says).at(&target.expr.span).also(&regressor.span, of.in_words());
                 self.problems.push(problem);
                 ok = false;
@@ -400,22 +407,22 @@ impl Checker<'_> {
         if share > 0.0 && share < 1.0 {
             return Some(());
         }
-        let problem = Problem::error("out-of-range", "a confidence lies between 0 and 100 %").at(at);
-        self.problems.push(problem.help("write it with its sign: `95 %`"));
+        let problem = Problem::error("out-of-range", "a confidence level must be between 0 and 100 %").at(at);
+        self.problems.push(problem.help("write it as a percentage: `95 %`"));
         None
     }
 
     fn no_values(&mut self, span: &Span) -> Option<Expr> {
         self.problems.push(
-            Problem::error("no-group", "this is estimated from values, and no values are at hand here")
+            Problem::error("no-group", "this estimate needs values of a group, which are not available here")
                 .at(span)
-                .help("what is limited stands before its bound: `limit (mean + 3 * std) 60 kN`"),
+                .help("write the estimate before its bound: `limit (mean + 3 * std) 60 kN`"),
         );
         None
     }
 }
 
-/// Without the parentheses that only hold it together.
+/// The words without an outer pair of parentheses.
 fn bare(words: &str) -> String {
     let inside = words.strip_prefix('(').and_then(|rest| rest.strip_suffix(')'));
     let whole = |inside: &&str| {

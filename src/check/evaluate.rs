@@ -1,11 +1,12 @@
-//! The value of a checked expression, given what its names stand for.
+//! Evaluates a checked expression, given the values of its names.
 
 use std::cell::RefCell;
 
 use super::plan::{Expr, Kind, Operator, Scalar};
 use super::possible::possible;
 
-/// What the names of an expression stand for. Each answer may be missing, with the reason; what is not answered is not known.
+/// Values of the names in an expression. Each method may return an error that states why the value is missing; by default it is
+/// missing.
 pub trait Values {
     fn vehicle(&self, _: usize) -> Result<Scalar, String> {
         Err("vehicle data are not known here".into())
@@ -20,7 +21,7 @@ pub trait Values {
     fn input(&self, _: usize) -> Result<f64, String> {
         Err("there is no signal here".into())
     }
-    /// Simulated and measured value of a pair.
+    /// Simulated and measured value of a pair, in this order.
     fn sides(&self) -> Result<(f64, f64), String> {
         Err("there is no pair of values here".into())
     }
@@ -29,13 +30,13 @@ pub trait Values {
     }
 }
 
-/// Nothing is known: what constants alone amount to.
+/// No name has a value: only constants can be evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Nothing;
 
 impl Values for Nothing {}
 
-/// The same values, and which columns of the section were asked for on the way.
+/// Passes values on and records which section columns were used.
 #[derive(Debug)]
 pub struct Watched<'a, V: Values> {
     values: &'a V,
@@ -47,7 +48,7 @@ impl<'a, V: Values> Watched<'a, V> {
         Self { values, columns: RefCell::default() }
     }
 
-    /// Indices of the columns asked for, in the order they were first.
+    /// Indices of the columns used, in the order of first use.
     pub fn columns(&self) -> Vec<usize> {
         self.columns.borrow().clone()
     }
@@ -78,13 +79,14 @@ impl<V: Values> Values for Watched<'_, V> {
     }
 }
 
-/// The value of an expression. Where names have no value, it is that which the expression has whatever they are.
+/// The value of an expression. Where names have no value, the result is the value that the expression has for every value of them,
+/// if there is one.
 ///
 /// # Errors
-/// The name that has no value, or the operation that is not defined (a division by zero).
+/// The name that has no value, or the operation that is not defined (such as a division by zero).
 pub fn evaluate(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
     match exactly(expr, values) {
-        // A leaf that has no value cannot be decided by the others.
+        // The other operands cannot decide a leaf without a value.
         Err(reason) if matches!(expr.kind, Kind::Binary(..) | Kind::Not(_) | Kind::Cases(..)) => possible(expr, values).one().ok_or(reason),
         found => found,
     }
@@ -143,7 +145,7 @@ pub fn flag(expr: &Expr, values: &dyn Values) -> Result<bool, String> {
 
 fn binary(operator: Operator, left: &Expr, right: &Expr, values: &dyn Values) -> Result<Scalar, String> {
     Ok(match operator {
-        // A side that decides alone spares the other, which may be missing: `direction is straight or radius > 600 m`.
+        // If one side decides the result, the other may be missing: `direction is straight or radius > 600 m`.
         Operator::And => Scalar::Flag(flag(left, values)? && flag(right, values)?),
         Operator::Or => Scalar::Flag(flag(left, values)? || flag(right, values)?),
         Operator::Is => Scalar::Flag(evaluate(left, values)? == evaluate(right, values)?),
@@ -159,12 +161,13 @@ fn binary(operator: Operator, left: &Expr, right: &Expr, values: &dyn Values) ->
     })
 }
 
-/// The source text of an expression, blanks normalised.
+/// The source text of an expression, with normalised blanks.
 pub fn words(expr: &Expr) -> String {
     expr.span.words.to_string()
 }
 
-/// The structure of an expression without places: equal for two expressions that always have the same value.
+/// The structure of an expression without its place in the source. Two expressions with the same structure always have the same
+/// value.
 pub fn shape(expr: &Expr) -> String {
     match &expr.kind {
         Kind::Constant(Scalar::Number(value)) => format!("{value:e}"),

@@ -1,4 +1,4 @@
-//! A protocol and those it extends, merged by name into one document.
+//! A protocol and the protocols it extends, merged by name into one document.
 
 use std::sync::Arc;
 
@@ -11,25 +11,25 @@ use crate::syntax::document::{Block, Document, Field};
 use crate::syntax::families::{self, Known};
 use crate::syntax::{from_pest, keys};
 
-/// In `remove`, in place of a name: all there are.
+/// Written in `remove` in place of a name: all blocks of the kind.
 const EVERY: &str = "every";
-/// How deep protocols may extend each other.
+/// Largest number of protocols that extend each other in a chain.
 const DEEPEST: usize = 8;
 
-/// A protocol as merged with its ancestors.
+/// A protocol merged with its ancestors.
 #[derive(Clone, Debug)]
 pub struct Family {
     pub merged: Document,
-    /// The parent as merged with its own ancestors.
+    /// The parent, merged with its own ancestors.
     pub parent: Option<Document>,
-    /// The protocol's own text first, then its parent's, and so on.
+    /// The text of the protocol first, then that of its parent, and so on.
     pub sources: Vec<Arc<Source>>,
-    /// Whether every ancestor was found and every family of blocks could be written out: if not, nothing can be told of names that
-    /// may stand there.
+    /// Whether every ancestor was found and every family of blocks could be expanded. If not, names may be missing and are not
+    /// reported as unknown.
     pub whole: bool,
 }
 
-/// Finds the text of a protocol by name or path, seen from the text that names it.
+/// Finds the text of a protocol by name or path, relative to the text that names it.
 pub type Find<'a> = &'a dyn Fn(&str, &Source) -> Result<Arc<Source>, Box<Problem>>;
 
 /// Reads a protocol and its ancestors.
@@ -52,7 +52,7 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
                     let says = if chain.len() == 1 {
                         "this protocol extends itself".into()
                     } else {
-                        format!("`{name}` extends this protocol in turn")
+                        format!("`{name}` extends this protocol again")
                     };
                     problems.push(Problem::error("extends-loop", says).at(&field.value.span));
                     whole = false;
@@ -89,13 +89,14 @@ fn extends(document: &Document) -> Option<&Field> {
     document.blocks.iter().find(|block| block.kind.text == "protocol").and_then(|block| block.field("extends"))
 }
 
-/// The parent without what the variant removes. Nothing of the variant is in it yet, so that what is removed is the parent's
-/// wherever `remove` stands.
+/// The parent without the blocks that the variant removes. Blocks of the variant are not in it yet, so `remove` only concerns the
+/// parent.
 fn without_removed(parent: &Document, variant: &Document, families: &[Known], problems: &mut Problems) -> Document {
     let mut left = parent.clone();
     let removals = || variant.blocks.iter().filter(|block| block.kind.text == "remove").flat_map(|block| &block.fields);
     let every = |field: &Field| words(field).first() == Some(&EVERY);
-    // What is named goes before every one of a kind, and limits before their quantities: else they were told to be gone already.
+    // Single names are removed before `every`, and limits before their quantities. Otherwise they would be reported as removed
+    // already.
     let mut fields: Vec<&Field> = removals().collect();
     fields.sort_by_key(|field| (every(field), field.key.text != "limit"));
     for field in fields {
@@ -104,7 +105,7 @@ fn without_removed(parent: &Document, variant: &Document, families: &[Known], pr
     left
 }
 
-/// The parent's blocks with the variant's put over them: same kind and name means override field by field.
+/// The blocks of the parent, overridden field by field by blocks of the variant with the same kind and name.
 fn merge(parent: Document, variant: &Document) -> Document {
     let mut blocks = parent.blocks;
     for block in variant.blocks.iter().filter(|block| block.kind.text != "remove") {
@@ -122,7 +123,7 @@ fn merge(parent: Document, variant: &Document) -> Document {
     Document { source: Arc::clone(&variant.source), leading: Vec::new(), blocks, trailing: Vec::new() }
 }
 
-/// Who a protocol is, is the variant's own; how records run and what standard it follows are inherited unless said.
+/// The protocol block of the variant. Axis, time, edition and source are inherited unless the variant states them.
 fn succeed(parent: &Block, variant: &Block) -> Block {
     let mut own = variant.clone();
     for field in parent.fields.iter().filter(|field| matches!(field.key.text.as_str(), "axis" | "time" | "edition" | "source")) {
@@ -133,7 +134,7 @@ fn succeed(parent: &Block, variant: &Block) -> Block {
     own
 }
 
-/// Fields of the variant in place of those of the parent with the same slot; the rest stays.
+/// Puts fields of the variant in place of fields of the parent with the same slot; other fields stay.
 fn overlay(parent: &mut Block, variant: &Block) {
     parent.name.clone_from(&variant.name);
     if variant.title.is_some() {
@@ -141,12 +142,12 @@ fn overlay(parent: &mut Block, variant: &Block) {
     }
     let says = |key: &str| variant.field(key).is_some();
     let replaced = |field: &Field| match field.key.text.as_str() {
-        // A metric stands in place of value and difference, a number's unit in place of words, and the other way round.
+        // A metric replaces value and difference, a unit replaces a choice of words, and the other way round.
         "value" | "difference" => says("metric"),
         "metric" => says("value") || says("difference"),
         "in" => says("one of"),
         "one of" => says("in"),
-        // So do a rule and a person's judgement.
+        // A rule and the judgement of a person replace each other, too.
         "holds" | "of" => says("judged by"),
         "judged by" => says("holds"),
         _ => false,
@@ -159,7 +160,7 @@ fn overlay(parent: &mut Block, variant: &Block) {
     let mut fields = Vec::new();
     for field in parent.fields.drain(..) {
         let slot = slot(&field);
-        // The first of a slot makes room for all of the variant's, so that they stand where the author of the parent had them.
+        // The first field of a slot is replaced by all of the variant's, so that the order of the parent is kept.
         fields.extend(new.shift_remove(&slot).unwrap_or_default());
         if !taken.contains(&slot) && !replaced(&field) {
             fields.push(field);
@@ -169,7 +170,7 @@ fn overlay(parent: &mut Block, variant: &Block) {
     parent.fields = fields;
 }
 
-/// What a field is overridden by: its key; for a limit also what it bounds and where.
+/// What identifies a field when it is overridden: its key; for a limit also its statistic and its scope.
 pub(super) fn slot(field: &Field) -> String {
     if field.key.text != "limit" {
         return field.key.text.clone();
@@ -184,7 +185,7 @@ fn words(field: &Field) -> Vec<&str> {
     field.value.text.split_whitespace().collect()
 }
 
-/// Takes away what a field of `remove` names: a block, those of a family, or every one of its kind; or limits of these.
+/// Removes what a field of `remove` names: a block, a family of blocks, or all of its kind; or limits of these.
 fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: &mut Problems) {
     let words = words(field);
     let is_limit = field.key.text == "limit";
@@ -192,11 +193,11 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: 
     let family = families.iter().find(|family| family.kind == kind && family.name == name);
     let meant = |block: &Block| {
         let named = || block.name_text() == name || family.is_some_and(|family| family.members.iter().any(|one| one == block.name_text()));
-        // The verdict without a name is no block that can be removed.
+        // The verdict without a name cannot be removed.
         block.kind.text == kind && block.name.is_some() && (name == EVERY || named())
     };
     if !blocks.iter().any(meant) {
-        let says = if name == EVERY { format!("the parent has no {kind}") } else { format!("the parent has no {kind} `{name}`") };
+        let says = if name == EVERY { format!("the parent has no {kind}") } else { format!("the parent has no {kind} called `{name}`") };
         let mut known: Vec<&str> =
             blocks.iter().filter(|block| block.kind.text == kind && block.name.is_some()).map(Block::name_text).collect();
         let here = families.iter().filter(|family| family.kind == kind && family.members.iter().any(|one| known.contains(&one.as_str())));
@@ -209,19 +210,19 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: 
         (false, [_]) => blocks.retain(|block| !meant(block)),
         (true, [_, limit @ ..]) => remove_limits(blocks.iter_mut().filter(|block| meant(block)), name, limit, field, problems),
         _ => {
-            let problem = Problem::error("remove", format!("what is to be removed is one {}", field.key.text)).at(&field.value.span);
-            problems.push(problem.help("write one name in each line, or `every` for all"));
+            let problem = Problem::error("remove", format!("`remove` needs the name of one {}", field.key.text)).at(&field.value.span);
+            problems.push(problem.help("write one name on each line, or `every` for all"));
         }
     }
 }
 
-/// Takes away the limits of a statistic and scope, or all of them, from some quantities.
+/// Removes limits from quantities: those of a statistic and scope, or all.
 fn remove_limits<'a>(quantities: impl Iterator<Item = &'a mut Block>, name: &str, words: &[&str], field: &Field, problems: &mut Problems) {
     let wanted = |other: &Field| {
         if words.is_empty() {
             return true;
         }
-        // What a limit is of may be several words: an estimate in parentheses.
+        // The estimate of a limit may have several words, in parentheses.
         let wanted = words.join(" ");
         let limit = from_pest::limit(&other.value, &mut Problems::default());
         limit.is_some_and(|limit| {

@@ -1,4 +1,4 @@
-//! Checks limits: statistic, bound, factors, conditions, and to which sections each applies.
+//! Checks limits: statistic, bound, factors, conditions and scope.
 
 use super::evaluate::{Values, number, words};
 use super::names::normalised;
@@ -18,18 +18,18 @@ use crate::units::{Dimension, Unit};
 /// What all limits of a quantity have in common.
 struct Common<'a> {
     block: &'a Block,
-    /// Unit of the compared values and where their dimension comes from, if these were understood.
+    /// Unit of the compared values and the text that decides their dimension; `None` where the values have an error.
     unit: Option<(&'a Unit, &'a Span)>,
-    /// Which values are good and what says so, where that can be told.
+    /// Best value and the text that decides it, where it is known.
     best: Option<&'a (Best, Span)>,
-    /// Statistics that have a limit.
+    /// Names of the statistics that have a limit.
     names: Vec<String>,
-    /// Places of its signals.
+    /// Places of the signals of the quantity.
     places: &'a [String],
 }
 
 impl Checker<'_> {
-    /// The limits of a quantity; of values that were not understood (no `unit`), all but the dimension is checked.
+    /// The limits of a quantity. Where the values have an error (no `unit`), everything but the dimension is checked.
     pub(super) fn limits(
         &mut self,
         block: &Block,
@@ -38,7 +38,7 @@ impl Checker<'_> {
         places: &[String],
     ) -> Option<Vec<Limit>> {
         let fields: Vec<&Field> = block.fields_named("limit").collect();
-        // A quiet first look for the names that other limits may refer to.
+        // First pass, without messages: the names that other limits can refer to.
         let mut names = Vec::new();
         for field in &fields {
             if let Some(limit) = from_pest::limit(&field.value, &mut Problems::default()) {
@@ -63,7 +63,7 @@ impl Checker<'_> {
         ok.then_some(limits)
     }
 
-    /// A choice parameter stands for the statistic that it names.
+    /// Replaces a choice parameter by the statistic that it names.
     fn with_statistic(&mut self, mut limit: Written, text: &Text) -> Written {
         let At { node: word, range } = &limit.statistic;
         let named = Statistic::named(word).is_some() || self.names.estimates.contains_key(word);
@@ -81,7 +81,7 @@ impl Checker<'_> {
         limit
     }
 
-    /// One limit, or one for every zone.
+    /// The limits of a field: one, or one for every zone.
     fn limit(&mut self, text: &Text, common: &Common<'_>) -> Option<Vec<Limit>> {
         let written = from_pest::limit(text, self.problems)?;
         let written = self.with_statistic(written, text);
@@ -112,7 +112,7 @@ impl Checker<'_> {
         let dimension = estimate.unit.as_ref().or(common.unit.map(|(unit, _)| unit)).map(|unit| unit.dimension);
         let names = common.names.iter().filter(|name| **name != written.statistic.node).cloned().collect();
         let scope = || Scope {
-            // Every value by itself may have a limit that depends on its section; a statistic over many has one limit.
+            // A limit of every single value may depend on its section; a limit of a statistic has one bound.
             section: matches!(estimate.kind, EstimateKind::Each),
             zone: zone.clone(),
             ..Scope::vehicle()
@@ -162,7 +162,7 @@ impl Checker<'_> {
         })
     }
 
-    /// The words of a limit with the values of parameters in place of their names: `2/3 of std`, not `share of std`.
+    /// The words of a limit with parameters replaced by their values: `2/3 of std` for `share of std`.
     pub(super) fn with_values(&self, words: &str) -> String {
         let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
         let mut out = String::new();
@@ -176,7 +176,7 @@ impl Checker<'_> {
                 continue;
             }
             let word = &rest[..name];
-            // Right after a number it is a unit.
+            // After a number, the name is a unit.
             let unit = out.trim_end().ends_with(|c: char| c.is_ascii_digit());
             match self.names.parameters.get(word).filter(|_| !unit) {
                 Some(parameter) if parameter.value_words.contains([' ', '+']) && matches!(parameter.ty, Type::Number(Dimension::ONE)) => {
@@ -197,13 +197,13 @@ impl Checker<'_> {
             let of_values = common.unit.is_some_and(|(of, _)| of == unit);
             let what = if of_values { format!("the values of `{}` are", common.block.name_text()) } else { "this estimate is".into() };
             let says = format!("{what} {wanted}, this limit is {}", found.in_words());
-            let help = if unit.text == "-" { "write the limit without a unit".into() } else { format!("write the limit in {unit}") };
+            let help = if unit.text == "-" { "write the limit without unit".into() } else { format!("write the limit in {unit}") };
             self.problems.push(Problem::error("unit-mismatch", says).at(&bound.span).label(found.in_words()).also(from, wanted).help(help));
             return None;
         }
         match bound.kind {
             Kind::Constant(Scalar::Number(value)) if value <= 0.0 && !at_least => {
-                let says = format!("a limit is above zero, `{}` is not", words(&bound));
+                let says = format!("a limit must be above zero; `{}` is not", words(&bound));
                 self.problems.push(Problem::error("out-of-range", says).at(&bound.span));
                 None
             }
@@ -211,7 +211,7 @@ impl Checker<'_> {
         }
     }
 
-    /// A limit leaves the best value in, and what it keeps out is worse.
+    /// Checks that the limit admits the best value and excludes worse ones.
     fn on_its_side(&mut self, bound: Expr, written: &Written, estimate: &Estimate, text: &Text, common: &Common<'_>) -> Option<Expr> {
         let scatter = estimate.of_scatter;
         let of_values = matches!(estimate.kind, EstimateKind::Each) || estimate.statistic().is_some();
@@ -235,22 +235,22 @@ impl Checker<'_> {
         } else {
             (format!("the values of `{}`", common.block.name_text()), best.in_words())
         };
-        let says = format!("this limit is on the wrong side: of {of}, the best is {is}");
+        let says = format!("this limit is on the wrong side: for {of}, the best value is {is}");
         let problem = Problem::error("wrong-side", says).at(&text.place(written.statistic.range.start..written.bound.range.end));
         let problem = match from {
             Some(from) => problem.also(from, format!("best value {is}")),
             None => problem,
         };
         self.problems.push(match (best, written.at_least) {
-            (Best::Greatest(best), true) => problem.help(format!("no value is above {best}: the limit must not be")),
+            (Best::Greatest(best), true) => problem.help(format!("no value is above {best}, so the limit must not be either")),
             (Best::Greatest(_), false) => problem.help(format!("write `limit {name} at least {words}`")),
-            (Best::Least(_), _) => problem.help(format!("write `limit {name} {words}`: values up to it hold")),
+            (Best::Least(_), _) => problem.help(format!("write `limit {name} {words}`: values up to it are accepted")),
             (Best::Near(best), true) if constant.is_some_and(|value| value > 0.0) && best == 0.0 => {
-                problem.help(format!("write `limit {name} {words}`: magnitudes up to it hold"))
+                problem.help(format!("write `limit {name} {words}`: magnitudes up to it are accepted"))
             }
             (Best::Near(best), at_least) => {
                 let side = if at_least { "not above" } else { "not below" };
-                problem.help(format!("the best value must hold too: let the limit be {side} {best}"))
+                problem.help(format!("the limit must admit the best value: write a limit {side} {best}"))
             }
         });
         None
@@ -262,12 +262,12 @@ impl Checker<'_> {
             return Some(factor);
         }
         self.problems.push(
-            Problem::error("unit-mismatch", format!("a factor is a plain number, this is {}", in_words(&factor.ty))).at(&factor.span),
+            Problem::error("unit-mismatch", format!("a factor must be a plain number, this is {}", in_words(&factor.ty))).at(&factor.span),
         );
         None
     }
 
-    /// Which rows the limit is about, and whether it is one for every zone.
+    /// The rows that the limit applies to, and whether there is one limit for every zone.
     fn limit_scope(&mut self, scope: &At<WrittenScope>, text: &Text, common: &Common<'_>) -> Option<(LimitScope, bool)> {
         let written = &scope.node;
         let zones = self.limit_zones(&written.zones, text);
@@ -313,7 +313,7 @@ impl Checker<'_> {
                 self.problems.push(if known.is_empty() {
                     problem.help("the protocol has no zones")
                 } else {
-                    problem.help(format!("zones: {}", known.join(", ")))
+                    problem.help(format!("known zones: {}", known.join(", ")))
                 });
                 ok = false;
             } else if !found.contains(&zone.node) {
@@ -323,7 +323,7 @@ impl Checker<'_> {
         ok.then_some(found)
     }
 
-    /// By what values are grouped: the section, its site, the record, a place of the signal, a section column of words.
+    /// A key by which rows are grouped: section, site, record, a place of the signal, or a section column of words.
     fn key(&mut self, name: &str, span: &Span, common: &Common<'_>) -> Option<Key> {
         match name {
             "section" => return Some(Key::Section),
@@ -337,8 +337,8 @@ impl Checker<'_> {
         let column = self.names.columns.iter().position(|datum| datum.name == name);
         if let Some(index) = column {
             if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
-                let says = format!("`{name}` is a number, and groups are told apart by words");
-                let help = "let the column be `one of ...`, or use it in an estimate: `mean of ...`";
+                let says = format!("`{name}` is a number; only a column of words can form groups");
+                let help = "declare the column with `one of ...`, or use it in an estimate: `mean of ...`";
                 self.problems.push(Problem::error("not-a-word", says).at(span).help(help));
                 return None;
             }
@@ -348,14 +348,14 @@ impl Checker<'_> {
         let known = ["zone", "section", "site", "record"].into_iter().chain(common.places.iter().map(String::as_str));
         let known = known.chain(columns.iter().map(String::as_str));
         self.problems.push(
-            Problem::error("unknown-key", format!("the values of `{}` are not told apart by `{name}`", common.block.name_text()))
+            Problem::error("unknown-key", format!("the values of `{}` cannot be grouped by `{name}`", common.block.name_text()))
                 .at(span)
                 .suggest(name, known),
         );
         None
     }
 
-    /// A limit that refers to others and follows from constants must come to something above zero.
+    /// A limit that refers to other limits and is a constant must be above zero.
     fn amounts(&mut self, limits: &[Limit], unit: Option<&Unit>) {
         for limit in limits.iter().filter(|limit| !limit.at_least) {
             let mut names = Vec::new();
@@ -366,13 +366,13 @@ impl Checker<'_> {
                 continue;
             }
             let shown = unit.map_or_else(|| value.to_string(), |unit| format!("{}{}", rounded(unit.from_si(value)), unit.suffix()));
-            let says = format!("a limit is above zero, `{}` comes to {shown}", words(&limit.bound.expr));
-            let help = format!("in a limit, `{name}` stands for the limit of the {name}, not for the value that is found");
+            let says = format!("a limit must be above zero; `{}` is {shown}", words(&limit.bound.expr));
+            let help = format!("in a limit, `{name}` stands for the limit of the {name}, not for its value");
             self.problems.push(Problem::error("out-of-range", says).at(&limit.bound.expr.span).also(place, "a limit").help(help));
         }
     }
 
-    /// Every limit that a limit refers to must be there for the same sections, and none may refer to itself in the end.
+    /// Every limit that a limit refers to must apply to the same sections. A limit must not depend on itself.
     fn references(&mut self, limits: &[Limit]) {
         let refers = |limit: &Limit| {
             let mut names = Vec::new();
@@ -388,7 +388,7 @@ impl Checker<'_> {
                     let problem = Problem::error("no-such-limit", format!("no limit of `{name}` applies to the same sections")).at(&span);
                     let other = limits.iter().find(|other| other.estimate.name == name);
                     self.problems.push(match other {
-                        Some(other) => problem.also(&other.span, "this one applies to others"),
+                        Some(other) => problem.also(&other.span, "this one applies to other sections"),
                         None => problem,
                     });
                 }
@@ -405,7 +405,7 @@ impl Checker<'_> {
             let others: Vec<&Span> = way.iter().map(|&other| &limits[other].span).collect();
             let mut problem = Problem::error("limit-loop", "this limit depends on itself").at(&limit.span);
             for other in &others {
-                problem = problem.also(other, "by way of this one");
+                problem = problem.also(other, "through this one");
             }
             told.extend(others);
             told.push(&limit.span);
@@ -414,7 +414,7 @@ impl Checker<'_> {
     }
 }
 
-/// Limits that others refer to, as far as they follow from constants.
+/// Limits that others refer to, where they are constants.
 struct Others<'a> {
     limits: &'a [Limit],
     of: &'a Limit,
@@ -425,7 +425,7 @@ impl Values for Others<'_> {
     fn limit_of(&self, statistic: &str) -> Result<f64, String> {
         let unknown = || format!("the limit of {statistic} is not known here");
         let mut found = self.limits.iter().filter(|limit| limit.estimate.name == statistic && same_sections(&limit.scope, &self.of.scope));
-        // Of several, or of one with a factor or a condition, the vehicle decides.
+        // With several limits, or a factor or condition, the value depends on the vehicle.
         let (Some(limit), None) = (found.next(), found.next()) else { return Err(unknown()) };
         if self.depth > self.limits.len() || !limit.factors.is_empty() || limit.only_when.is_some() {
             return Err(unknown());
@@ -434,12 +434,12 @@ impl Values for Others<'_> {
     }
 }
 
-/// Whether a limit of the first scope is one for the rows of the second, too.
+/// Whether a limit of the first scope also applies to the rows of the second.
 fn same_sections(a: &LimitScope, b: &LimitScope) -> bool {
     a.is_all() || a.same(b)
 }
 
-/// The limits between one and itself, if it can be reached from itself.
+/// The limits on a path from one limit back to itself, if there is one.
 fn way_back(from: usize, next: &[Vec<usize>]) -> Option<Vec<usize>> {
     let mut before: Vec<Option<usize>> = vec![None; next.len()];
     let mut open = vec![from];
@@ -464,7 +464,7 @@ fn way_back(from: usize, next: &[Vec<usize>]) -> Option<Vec<usize>> {
     None
 }
 
-/// The statistics whose limits an expression refers to, and where.
+/// The statistics whose limits an expression refers to, with their places.
 fn referred(expr: &Expr, names: &mut Vec<(String, Span)>) {
     expr.visit(&mut |part| {
         if let Kind::LimitOf(name) = &part.kind {

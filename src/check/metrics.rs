@@ -1,4 +1,4 @@
-//! Checks the `metric` of a quantity: a wording of the registry, or an expression of metrics and of both sides' signals.
+//! Checks the `metric` of a quantity: a wording of the registry, or an expression of metrics and of the signals of both sides.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,7 @@ use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Item, Node, Phrase, Step as WrittenStep};
 use crate::units::Dimension;
 
-/// Points of a distribution: one has no scatter, and with more than that a record has samples they only cost time.
+/// Smallest number of points of a distribution: one point has no scatter.
 const LEAST_POINTS: f64 = 2.0;
 const MOST_POINTS: f64 = 10_000.0;
 
@@ -46,7 +46,7 @@ impl Checker<'_> {
         Some(compared)
     }
 
-    /// Whether a field is to be read as the wording of a metric, rather than as an expression.
+    /// Whether a field is a wording of a metric, and not an expression.
     fn is_wording(&mut self, text: &Text) -> bool {
         let mut unheard = Problems::default();
         let step = from_pest::step_alone(text, &mut unheard);
@@ -57,7 +57,7 @@ impl Checker<'_> {
             }
         }
         match from_pest::expression(text, &mut unheard) {
-            // A word that is nothing here is a metric that does not exist.
+            // A word without another meaning is reported as an unknown metric.
             Some(At { node: Node::Path(word), .. }) => {
                 let named = self.names.defines.contains_key(&word) || self.names.parameter_blocks.contains_key(&word);
                 !named && MetricEntry::called(&word).is_none()
@@ -72,7 +72,7 @@ impl Checker<'_> {
         self.by_one(metric, over, field, positions?, chain?)
     }
 
-    /// One metric by itself.
+    /// A single metric.
     fn by_one(
         &mut self,
         metric: Metric,
@@ -118,7 +118,7 @@ impl Checker<'_> {
         None
     }
 
-    /// An expression; which of its values are good is not known, unless it is one metric.
+    /// An expression. Its best value is known only if it is a single metric.
     fn by_expression(&mut self, field: &Field, positions: Option<&[(Position, Assignment)]>, chain: Option<&[Step]>) -> Option<Compared> {
         let phrase = self.metric_expression(&field.value)?;
         let (positions, chain) = (positions?, chain?);
@@ -127,7 +127,7 @@ impl Checker<'_> {
         for input in inputs {
             if let (Taken::Reduced(reducer), InputSide::Own) = (input.taken, input.side) {
                 let words = normalised(input.span.text());
-                let problem = Problem::error("side", format!("`{words}` is not said of which side")).at(&input.span);
+                let problem = Problem::error("side", format!("`{words}` does not say which side it is computed from")).at(&input.span);
                 let simple = reducer.in_words() == words;
                 self.problems.push(if simple {
                     problem.help(format!("write `{words} of measured` or `{words} of simulated`"))
@@ -152,7 +152,7 @@ impl Checker<'_> {
         })
     }
 
-    /// The expression in a field; where it cannot be read because a metric is written in words, that is said.
+    /// The expression in a field. If it cannot be parsed because a metric is written in words, the message says so.
     fn metric_expression(&mut self, text: &Text) -> Option<Phrase> {
         let mut problems = Problems::default();
         let found = from_pest::expression(text, &mut problems);
@@ -167,7 +167,7 @@ impl Checker<'_> {
         found
     }
 
-    /// A metric and the signal its wording names, at given positions.
+    /// A metric and the signal that its wording names, at given positions.
     fn metric(&mut self, text: &Text) -> Option<(Metric, Option<Written>)> {
         let step = from_pest::step_alone(text, self.problems)?;
         let span = text.place(step.range.clone());
@@ -175,7 +175,7 @@ impl Checker<'_> {
         let index = self.find_form(&step.node, &span, "metric", METRICS.iter().map(|entry| &entry.form))?;
         let entry = &METRICS[index];
         if let Some(extra) = step.node.parts.get(1).and_then(|part| part.first()).filter(|_| entry.form.numbers.is_empty()) {
-            self.problems.push(Problem::error("unknown-option", "this metric has no options").at(&text.place(extra.range.clone())));
+            self.problems.push(Problem::error("unknown-option", "this metric has no option").at(&text.place(extra.range.clone())));
             return None;
         }
         if let Some(condition) = &step.node.when {
@@ -186,7 +186,7 @@ impl Checker<'_> {
         self.metric_filled(entry, &step.node, text, &span)
     }
 
-    /// A metric whose slots and options are filled.
+    /// A metric with its slots and options filled.
     fn metric_filled(
         &mut self,
         entry: &'static MetricEntry,
@@ -206,7 +206,7 @@ impl Checker<'_> {
         let filled = self.fill_form(&entry.form, step, text, span)?;
         let points = filled.options.first().copied().flatten().map(|(points, _)| points);
         if let Some(points) = points.filter(|points| points.fract() != 0.0 || !(LEAST_POINTS..=MOST_POINTS).contains(points)) {
-            let says = format!("the points are a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}");
+            let says = format!("the number of points must be a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}");
             self.problems.push(Problem::error("out-of-range", says).at(span));
             return None;
         }
@@ -215,12 +215,12 @@ impl Checker<'_> {
             let in_time = self.has_time || self.axis.as_ref().is_some_and(|axis| axis.unit.dimension == Dimension::TIME);
             let wanted = if in_time { Dimension::FREQUENCY } else { Dimension::ONE / Dimension::LENGTH };
             for (found, at) in [(of_low, at_low), (of_high, at_high)] {
-                let of = if in_time { "a frequency, in Hz" } else { "a frequency in cycles per length, for want of a time" };
+                let of = if in_time { "a frequency in Hz" } else { "a frequency in cycles per length, as records have no time" };
                 self.suits("frequency", *found == wanted, of, *found, at)?;
             }
             if low >= high {
                 let (low, high) = (show_number(*low, wanted), show_number(*high, wanted));
-                self.problems.push(Problem::error("out-of-range", format!("no frequency lies from {low} to {high}")).at(at_high));
+                self.problems.push(Problem::error("out-of-range", format!("the band from {low} to {high} is empty")).at(at_high));
                 return None;
             }
             asked.band = Some((*low, *high));
@@ -228,12 +228,13 @@ impl Checker<'_> {
         Some((Metric(entry, asked), over))
     }
 
-    /// Whether a call is one of a metric.
+    /// Whether a call is that of a metric.
     pub(super) fn metric_called(&self, name: &At<String>, scope: &Scope) -> bool {
         scope.reduce.is_some_and(|reduce| reduce.metrics) && MetricEntry::called(&name.node).is_some()
     }
 
-    /// `coherence(1 Hz, 3 Hz)`, `matching_probability(50)`: what the wording has between its words, then its options.
+    /// A metric in an expression: `coherence(1 Hz, 3 Hz)`, `matching_probability(50)`. The arguments are the slots of its wording,
+    /// then its options.
     pub(super) fn metric_call(
         &mut self,
         name: &At<String>,
@@ -255,7 +256,7 @@ impl Checker<'_> {
         let options = entry.form.numbers.iter().zip(&mut rest).map(|(option, value)| vec![item(value), word(option.name)]);
         let parts = head.map(|head| std::iter::once(head).chain(options).collect::<Vec<_>>());
         let (Some(parts), None) = (parts, rest.next()) else {
-            let says = format!("`{}` is called `{}`, there are {}", name.node, entry.call_in_words(), given.len());
+            let says = format!("`{}` is written `{}`; number of arguments: {}", name.node, entry.call_in_words(), given.len());
             self.problems.push(Problem::error("arguments", says).at(&text.place(name.range.clone())));
             return None;
         };
@@ -268,10 +269,10 @@ impl Checker<'_> {
         self.metric_input(metric, over, span, scope)
     }
 
-    /// A metric that takes nothing.
+    /// A metric without arguments.
     pub(super) fn metric_named(&mut self, entry: &'static MetricEntry, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         if entry.form.head.iter().any(|part| !matches!(part, Part::Word(_))) {
-            let says = format!("`{}` does not say what it is taken over", entry.function_name());
+            let says = format!("`{}` needs arguments", entry.function_name());
             self.problems.push(Problem::error("arguments", says).at(span).help(format!("write `{}`", entry.call_in_words())));
             return None;
         }
@@ -291,13 +292,13 @@ impl Checker<'_> {
         Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
     }
 
-    /// `slope over cant_angle`: of the own signal.
+    /// The slope of the own signal: `slope over cant_angle`.
     pub(super) fn slope_over(&mut self, value: &Phrase, over: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let place = text.place(value.range.clone());
         let reducer = bare_word(value).and_then(Reducer::named);
         let Some(reducer) = reducer else {
-            let problem = Problem::error("unknown-reducer", "only a slope is taken over another signal").at(&place);
-            self.problems.push(problem.help("`slope over SIGNAL`, or `slope of SIGNAL over SIGNAL`"));
+            let problem = Problem::error("unknown-reducer", "only a slope can be computed over another signal").at(&place);
+            self.problems.push(problem.help("write `slope over SIGNAL` or `slope of SIGNAL over SIGNAL`"));
             return None;
         };
         let at = scope.at.clone();
@@ -310,17 +311,17 @@ impl Checker<'_> {
         Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
     }
 
-    /// The signal that a slope is taken over.
+    /// The signal that a slope is computed over.
     pub(super) fn slope_axis(&mut self, reducer: Reducer, over: &Phrase, place: &Span, text: &Text, at: &Assignment) -> Option<Signal> {
         if reducer.in_words() != "slope" {
-            let says = format!("`{}` is not taken over another signal, only a slope is", reducer.in_words());
-            self.problems.push(Problem::error("unknown-reducer", says).at(place).help("`slope over SIGNAL`"));
+            let says = format!("`{}` cannot be computed over another signal; only a slope can", reducer.in_words());
+            self.problems.push(Problem::error("unknown-reducer", says).at(place).help("write `slope over SIGNAL`"));
             return None;
         }
         self.signal(over, text, at)
     }
 
-    /// Whether an expression names the samples of a side: `simulated - measured`.
+    /// Whether an expression uses the samples of a side: `simulated - measured`.
     pub(super) fn names_side(&self, phrase: &Phrase, seen: &mut BTreeSet<String>) -> bool {
         let mut any = |phrase: &Phrase| self.names_side(phrase, seen);
         match &phrase.node {
@@ -339,12 +340,12 @@ impl Checker<'_> {
         }
     }
 
-    /// `rms of (simulated - measured)`.
+    /// A value taken from the samples of both sides: `rms of (simulated - measured)`.
     pub(super) fn of_both(&mut self, reducer: Reducer, signal: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let Reduce { own, axis, metrics, side } = scope.reduce?;
         if metrics && side != InputSide::Own {
-            let problem = Problem::error("side", format!("`{}` says its sides itself", span.words)).at(span);
-            self.problems.push(problem.help("leave the outer `measured(...)` or `simulated(...)` out"));
+            let problem = Problem::error("side", format!("`{}` names its sides already", span.words)).at(span);
+            self.problems.push(problem.help("remove the outer `measured(...)` or `simulated(...)`"));
             return None;
         }
         let at = scope.at.clone();
@@ -353,10 +354,10 @@ impl Checker<'_> {
         self.own_of_both = outer;
         let signal = found?;
         if let Some(other) = not_of_both(&signal) {
-            let says = "samples of both sides are combined with numbers alone: other signals and filters have their own samples";
+            let says = "samples of both sides can only be combined with numbers: other signals and filters have other samples";
             let problem = Problem::error("mixed-records", says).at(&other);
             self.problems
-                .push(problem.help("filters stand in the field `filter`; only `simulated` and `measured` themselves can be `shifted`"));
+                .push(problem.help("write filters in the field `filter`; `shifted` can only be applied to `simulated` and `measured`"));
             return None;
         }
         let ty = Type::Number(reducer.gives(signal.dimension, axis));
@@ -366,7 +367,7 @@ impl Checker<'_> {
     }
 }
 
-/// The part of an expression over both sides that has no place in it.
+/// The first part of an expression over both sides that is not allowed in it.
 fn not_of_both(signal: &Signal) -> Option<Span> {
     use super::plan::AxisOperation;
     match &signal.kind {

@@ -1,6 +1,7 @@
-//! From a document to a [`plan::Plan`]: names resolved, dimensions right, parameters put in, contradictions found.
+//! Checks a document and turns it into a [`plan::Plan`]: resolves names, checks dimensions, inserts parameters, finds
+//! contradictions.
 //!
-//! Every problem is noted and checking goes on, so that an author sees all of them in one go.
+//! Checking goes on after an error, so that an author sees all of them in one run.
 
 mod closed;
 mod conditions;
@@ -50,9 +51,10 @@ pub struct Override {
 
 pub type Overrides = IndexMap<String, Override>;
 
-/// How deep expressions, definitions and signals may lie inside each other, all together: what the stack surely holds.
+/// Largest depth of nested expressions, definitions and signals together. The stack is large enough for it.
 const DEEPEST: usize = 80;
-/// How many parts of expressions are looked at before a protocol is refused whose definitions double each other up.
+/// Largest number of parts of expressions that are checked. Definitions that use each other twice double at every level and would
+/// exceed it.
 const MOST_WORK: usize = 200_000;
 
 struct Checker<'a> {
@@ -64,22 +66,22 @@ struct Checker<'a> {
     zone_names: Vec<String>,
     /// The zone of a section, where there are zones.
     zone: Option<Expr>,
-    /// Kind and name of the parent's blocks, to tell a misspelt override from a new rule.
+    /// Kind and name of the parent's blocks, to distinguish a misspelt override from a new rule.
     parent_names: Vec<(String, String)>,
     filter_steps: IndexMap<String, Option<Vec<Step>>>,
-    /// Named parts being looked into, innermost last: one that comes up again is made of itself.
+    /// Named parts being checked, innermost last. One that occurs again is defined by itself.
     open: Vec<String>,
-    /// Named parts that were found to be made of themselves.
+    /// Named parts found to be defined by themselves.
     looped: BTreeSet<String>,
     used_defines: BTreeSet<String>,
-    /// Conditions that hold wherever the expression in hand is evaluated.
+    /// Conditions that hold wherever the present expression is evaluated.
     assumed: Vec<Expr>,
     in_quantity: bool,
     /// Whether records have a time.
     has_time: bool,
-    /// The dimension of the own signal, where `simulated` and `measured` stand for its samples.
+    /// Dimension of the own signal, where `simulated` and `measured` stand for its samples.
     own_of_both: Option<Dimension>,
-    /// What is looked at is one of several values, of which those apply whose cases do.
+    /// The present expression is one of several values; each applies only in its own cases.
     partial: bool,
     depth: usize,
     work: usize,
@@ -88,7 +90,7 @@ struct Checker<'a> {
     minimum_pairs: usize,
 }
 
-/// The plan of a protocol with its parameters set, or `None` after problems of severity error were noted.
+/// The plan of a protocol with its parameters set; `None` after a problem of severity error.
 pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Problems) -> Option<Plan> {
     if !family.whole {
         return None;
@@ -128,11 +130,11 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
     if plan.is_some() && !problems.any_error() {
         let checked = plan.as_ref().map_or(0, rule_count);
         let written = document.blocks.iter().map(written_rules).sum::<usize>();
-        // No rule may get lost without a word: the verdict would rest on the others.
+        // A rule that is lost would change the verdict without a message.
         if checked < written {
             problems.push(Problem::error(
                 "internal",
-                format!("{written} rules are written and {checked} were understood; this is a fault of the program"),
+                format!("the text has {written} rules and {checked} were checked; this is an error of the program"),
             ));
         }
     }
@@ -140,7 +142,7 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
     if problems.any_error() { None } else { plan }
 }
 
-/// Puts the problems from the given one on in the order of their places, those of each text together.
+/// Sorts the problems from the given index on by their places, text by text.
 fn in_reading_order(problems: &mut Problems, from: usize) {
     let mut sources: Vec<String> = Vec::new();
     for problem in &problems.0[from..] {
@@ -177,7 +179,7 @@ fn rule_count(plan: &Plan) -> usize {
 }
 
 impl Checker<'_> {
-    /// One level deeper into what is written; `None` after a problem if that is too deep or too much.
+    /// Checks one level deeper; `None` after a problem if that is too deep or too much.
     fn deeper<T>(&mut self, at: &Span, look: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         if self.work > MOST_WORK {
             return None;
@@ -185,14 +187,14 @@ impl Checker<'_> {
         self.work += 1;
         if self.work > MOST_WORK {
             self.problems.push(
-                Problem::error("too-large", "definitions and signals use each other so often that the rules become too large")
+                Problem::error("too-large", "definitions and signals use each other too often: the rules become too large")
                     .at(at)
-                    .help("let each part be used once or twice, not twice at every level"),
+                    .help("use each part once or twice, not twice at every level"),
             );
             return None;
         }
         if self.depth >= DEEPEST {
-            self.problems.push(Problem::error("too-deep", "definitions and signals lie too deep inside each other").at(at));
+            self.problems.push(Problem::error("too-deep", "definitions and signals are nested too deeply").at(at));
             return None;
         }
         self.depth += 1;
@@ -201,7 +203,7 @@ impl Checker<'_> {
         found
     }
 
-    /// Looks into a named part; `None` after a problem if it is being looked into already.
+    /// Checks a named part; `None` after a problem if it is already being checked.
     fn inside<T>(&mut self, kind: &str, name: &str, at: &Span, look: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         let key = format!("{kind} {name}");
         if self.looped.contains(&key) {
@@ -218,9 +220,9 @@ impl Checker<'_> {
                 _ => "define-loop",
             };
             let says = if round.len() > 2 {
-                format!("{kind} `{name}` is made of itself: {}", round.join(", then "))
+                format!("{kind} `{name}` is defined by itself: {}", round.join(", then "))
             } else {
-                format!("{kind} `{name}` is made of itself")
+                format!("{kind} `{name}` is defined by itself")
             };
             let mut problem = Problem::error(code, says).at(at);
             if let Some(block) = self.blocks.iter().find(|block| block.kind.text == kind && block.name_text() == name) {
@@ -240,12 +242,12 @@ impl Checker<'_> {
         let blocks = self.blocks.clone();
         let of = |kind: &'static str| blocks.iter().filter(move |block| block.kind.text == kind);
         let Some(head) = of("protocol").next() else {
-            // Of a text that could not be read, nothing more is known.
+            // Of a text that could not be parsed, nothing more is known.
             if self.problems.0.iter().any(|problem| problem.code == "yaml-syntax") {
                 return None;
             }
             self.problems.push(
-                Problem::error("no-protocol", "the text does not say which protocol it is")
+                Problem::error("no-protocol", "the text has no `protocol` block")
                     .at(&document.source.span(0..0))
                     .help("begin with `protocol name-of-it \"Title\"`"),
             );
@@ -273,7 +275,7 @@ impl Checker<'_> {
         let filters = of("filter").filter_map(|block| self.named_filter(block)).collect();
         let quantities: Vec<plan::Quantity> = of("quantity").filter_map(|block| self.quantity(block)).collect();
         if of("quantity").next().is_none() {
-            self.problems.push(Problem::error("no-quantity", "the protocol has no quantity: nothing would be compared").at(head.span()));
+            self.problems.push(Problem::error("no-quantity", "the protocol has no quantity, so nothing would be compared").at(head.span()));
         }
         self.unused_parts();
         let verdicts = self.verdicts(verdict_block, head, &quantities);
@@ -331,7 +333,7 @@ impl Checker<'_> {
                     .at(&given.text.span);
                 let datum = self.names.vehicle.iter().find(|datum| datum.name == *name);
                 self.problems.push(match datum {
-                    Some(datum) => problem.help(format!("it is a value of the vehicle: write `{}` in the vehicle file", datum.key)),
+                    Some(datum) => problem.help(format!("this is a vehicle datum: write `{}` in the vehicle file", datum.key)),
                     None => problem.suggest(name, known.iter().map(String::as_str)),
                 });
             }

@@ -1,4 +1,4 @@
-//! What the names of a protocol stand for: gathered first, so that rules may refer to what stands further down.
+//! The names of a protocol and their meanings, gathered first, so that rules can refer to blocks further down.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use crate::syntax::from_pest;
 use crate::syntax::phrase::{Alias, Node, Phrase};
 use crate::units::{SYMBOLS, Unit};
 
-/// A phrase and the field it stands in, which knows its place.
+/// A phrase and the field it is written in.
 #[derive(Clone, Debug)]
 pub struct Written {
     pub phrase: Phrase,
@@ -29,7 +29,7 @@ pub struct ParameterDef {
     pub value_words: String,
     pub default_words: String,
     pub set_by: SetBy,
-    /// The place and its positions that it selects, where it is a selection.
+    /// The place and the positions selected, where the parameter is a selection.
     pub selects: Option<(String, Vec<String>)>,
 }
 
@@ -59,7 +59,7 @@ pub struct SignalDef {
 
 #[derive(Clone, Debug, Default)]
 pub struct Names {
-    /// Those looked into so far.
+    /// Parameters checked so far.
     pub parameters: IndexMap<String, ParameterDef>,
     pub parameter_blocks: IndexMap<String, Block>,
     pub places: IndexMap<String, Place>,
@@ -69,13 +69,13 @@ pub struct Names {
     pub signals: IndexMap<String, SignalDef>,
     pub defines: IndexMap<String, Written>,
     pub estimates: IndexMap<String, Written>,
-    /// Filters: the block they stand in.
+    /// Blocks of the filters.
     pub filters: IndexMap<String, Block>,
-    /// Names whose block has a fault of its own: that they are not known needs no further words.
+    /// Names whose block has an error. They are not reported as unknown.
     pub failed: BTreeSet<String>,
 }
 
-/// Which position of each place is meant.
+/// The position chosen of each place.
 pub type Assignment = IndexMap<String, String>;
 
 impl Checker<'_> {
@@ -130,7 +130,7 @@ impl Checker<'_> {
         self.clashes(&blocks);
     }
 
-    /// A name that expressions could not use, or would read as something else.
+    /// Reports a name that an expression could not use or would read as something else.
     fn usable_name(&mut self, block: &Block) {
         const IN_EXPRESSIONS: [&str; 9] = ["parameter", "place", "vehicle", "section", "channel", "signal", "filter", "define", "estimate"];
         const WORDS: [&str; 25] = [
@@ -179,29 +179,26 @@ impl Checker<'_> {
         };
         if let Some(what) = taken {
             self.problems.push(
-                Problem::error("reserved-name", format!("`{name}` is {what} and cannot be the name of this {kind}"))
+                Problem::error("reserved-name", format!("`{name}` is {what}, so this {kind} needs another name"))
                     .at(block.span())
                     .help(format!("for instance `{name}_1`, or a longer name")),
             );
         } else if let Some(sign) =
             name.chars().find(|c| !c.is_ascii_alphanumeric() && *c != '_').or_else(|| name.chars().next().filter(char::is_ascii_digit))
         {
-            let says = format!("a {kind} cannot be called `{name}`: in expressions `{sign}` would not be read as part of a name");
-            self.problems.push(
-                Problem::error("bad-name", says)
-                    .at(block.span())
-                    .help("names used in expressions are made of letters, digits and `_`, a letter first"),
-            );
+            let says = format!("a {kind} cannot be called `{name}`: in an expression, `{sign}` is not read as part of a name");
+            self.problems
+                .push(Problem::error("bad-name", says).at(block.span()).help("use letters, digits and `_`, and begin with a letter"));
         } else if let Some(unit) = SYMBOLS.iter().find(|unit| unit.symbol == name && kind != "filter" && kind != "place") {
             self.problems.push(
-                Problem::warning("unit-name", format!("`{name}` is also a unit, {}", unit.name))
+                Problem::warning("unit-name", format!("`{name}` is also a unit ({})", unit.name))
                     .at(block.span())
-                    .help(format!("right after a number `{name}` is the unit, elsewhere the {kind}; a longer name is clearer")),
+                    .help(format!("after a number, `{name}` is read as the unit, elsewhere as the {kind}; a longer name is clearer")),
             );
         }
     }
 
-    /// A name in two roles would make `radius` mean whichever the checker looks at first.
+    /// Reports names with two roles: an expression could not tell which is meant.
     fn clashes(&mut self, blocks: &[Block]) {
         const ROLES: [&str; 8] = ["parameter", "channel", "signal", "filter", "define", "estimate", "section", "vehicle"];
         let mut seen: IndexMap<&str, &Block> = IndexMap::new();
@@ -209,7 +206,7 @@ impl Checker<'_> {
             let name = block.name_text();
             if let Some(first) = seen.get(name) {
                 let (a, b) = (first.kind.text.as_str(), block.kind.text.as_str());
-                // `vehicle.speed` and `section.speed` tell these apart.
+                // `vehicle.speed` and `section.speed` distinguish these.
                 if a != b && !(matches!(a, "vehicle" | "section") && matches!(b, "vehicle" | "section")) {
                     self.problems.push(
                         Problem::error("name-clash", format!("`{name}` is a {a} and a {b}"))
@@ -228,13 +225,13 @@ impl Checker<'_> {
         Some(Written { phrase, text: field.value.clone() })
     }
 
-    /// A field that must be there.
+    /// A required field.
     pub(super) fn required<'b>(&mut self, block: &'b Block, key: &str) -> Option<&'b Field> {
         self.all_required(block, &[key]);
         block.field(key)
     }
 
-    /// One problem for all fields that must be there and are not.
+    /// Reports all missing required fields in one problem.
     pub(super) fn all_required(&mut self, block: &Block, keys: &[&str]) {
         let missing: Vec<String> = keys.iter().filter(|key| block.field(key).is_none()).map(|key| format!("`{key}`")).collect();
         let Some(first) = missing.first() else { return };
@@ -243,7 +240,7 @@ impl Checker<'_> {
             Some((last, before)) if !before.is_empty() => format!("{} and no {last}", before.join(", no ")),
             _ => first.clone(),
         };
-        // A variant that names a quantity its parent lacks most likely misspelt it.
+        // A variant that names a quantity its parent lacks has most likely misspelt it.
         let siblings = self.parent_names.iter().filter(|(of, _)| of == kind).map(|(_, name)| name.as_str());
         let help = match crate::problem::nearest(block.name_text(), siblings) {
             Some(near) => format!("the parent has `{near}`: to override it, use that name"),
@@ -262,7 +259,7 @@ impl Checker<'_> {
         match Unit::parse(&text.text) {
             Ok(unit) => Some(unit),
             Err(unknown) => {
-                let problem = Problem::error("unknown-unit", format!("`{}` is no unit", unknown.word)).at(&text.span);
+                let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&text.span);
                 self.problems.push(match unknown.near {
                     Some(near) => problem.help(format!("did you mean `{near}`?")),
                     None => problem.help("units are written like kN, m/s^2, km/h, mrad, `-` for a plain number"),
@@ -277,7 +274,7 @@ pub fn normalised(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Whether a phrase is one bare word, such as the name of a choice.
+/// The word, where a phrase is one word only, such as a choice.
 pub fn bare_word(phrase: &Phrase) -> Option<&str> {
     match &phrase.node {
         Node::Path(path) if !path.contains('.') => Some(path),

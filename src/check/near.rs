@@ -1,4 +1,4 @@
-//! `a near b within c`: the condition it stands for, and what is compared with what.
+//! Conditions of nearness: `a near b within c` as a comparison, and the two numbers that it compares.
 
 use super::Checker;
 use super::plan::{Expr, Kind, Operator, Scalar, Type};
@@ -8,7 +8,7 @@ use crate::syntax::document::Text;
 use crate::syntax::phrase::{Node, Phrase};
 use crate::units::Dimension;
 
-/// What a condition compares: the value found, and what it should be near or the bound it should not pass.
+/// The two numbers that a condition compares: the value, and its target or bound.
 #[derive(Clone, Debug)]
 pub(super) struct Near {
     pub holds: Expr,
@@ -17,8 +17,8 @@ pub(super) struct Near {
 }
 
 impl Checker<'_> {
-    /// `a near b within c` is `|a - b| <= c`; where `c` is a plain number and `a` is not, it is a share of `|b|`. `a near b within a
-    /// factor of c` asks for equal signs and for magnitudes of which neither is more than `c` times the other.
+    /// `a near b within c` means `|a - b| <= c`. If `c` is a plain number and `a` is not, `c` is a share of `|b|`. `a near b within
+    /// a factor of c` means equal signs and a ratio of magnitudes from `1/c` to `c`.
     pub(super) fn near(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Near> {
         let Node::Near { value, target, tolerance, by_factor } = &phrase.node else { return None };
         let (value, target, tolerance) = (self.expr(value, text, scope), self.expr(target, text, scope), self.expr(tolerance, text, scope));
@@ -39,7 +39,8 @@ impl Checker<'_> {
         if (*by_factor && c != Dimension::ONE) || (!by_factor && c != a && c != Dimension::ONE) {
             let wanted = if *by_factor { Dimension::ONE.in_words() } else { format!("{}, or a share such as `10 %`", a.in_words()) };
             self.problems.push(
-                Problem::error("unit-mismatch", format!("this tolerance is {}; {wanted} is needed", c.in_words())).at(&tolerance.span),
+                Problem::error("unit-mismatch", format!("expected a tolerance that is {wanted}; this is {}", c.in_words()))
+                    .at(&tolerance.span),
             );
             return None;
         }
@@ -50,7 +51,7 @@ impl Checker<'_> {
             if let Kind::Constant(Scalar::Number(factor)) = tolerance.kind
                 && factor < 1.0
             {
-                self.problems.push(Problem::error("out-of-range", "a factor is 1 or more").at(&tolerance.span));
+                self.problems.push(Problem::error("out-of-range", "the factor must be 1 or more").at(&tolerance.span));
                 return None;
             }
             let times = |of: &Expr| pair(Operator::Multiply, &tolerance, &size(of), number.clone());
@@ -67,7 +68,7 @@ impl Checker<'_> {
         Some(Near { holds: pair(Operator::LessEqual, &off, &room, Type::Flag), found, expected })
     }
 
-    /// What a condition compares with what, where it is one comparison: `a near b within c`, `a <= b`.
+    /// The two numbers compared, where the condition is one comparison: `a near b within c`, `a <= b`.
     pub(super) fn compared(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<(Expr, Option<(Expr, Expr)>)> {
         if let Node::Near { .. } = &phrase.node {
             return self.near(phrase, text, scope).map(|near| (near.holds, Some((near.found, near.expected))));

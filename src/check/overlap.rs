@@ -1,16 +1,16 @@
-//! Finds two limits that would both apply to one statistic of a quantity in one section.
+//! Finds two limits that apply to the same statistic of a quantity in the same section.
 
 use super::conditions::impossible;
 use super::plan::{Expr, Kind, Limit, Operator, Scalar, Scope, Type};
 use crate::problem::{Problem, Problems};
 use crate::syntax::document::Block;
 
-/// `zone`: the expression for the zone of a section, where there are zones.
+/// `zone`: the expression of the zone of a section, where there are zones.
 pub(super) fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problems: &mut Problems) {
     let mut said = Vec::new();
     for (index, limit) in limits.iter().enumerate() {
         for other in &limits[..index] {
-            // The parts of one `for each zone` are one limit; a pair of limits that meet in several zones is named once.
+            // The limits made by `for each zone` count as one. A pair that meets in several zones is reported once.
             let pair = (other.span.start, limit.span.start);
             let alike =
                 other.estimate.name == limit.estimate.name && other.at_least == limit.at_least && other.scope.each == limit.scope.each;
@@ -46,7 +46,7 @@ pub(super) fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problem
     }
 }
 
-/// What the section must satisfy for the limit to apply; `None` for all sections.
+/// The condition on the section under which the limit applies; `None` for all sections.
 fn scope_condition(scope: &Scope, zone: Option<&Expr>) -> Option<Expr> {
     let joined = |operator: Operator, a: Expr, b: Expr| Expr {
         span: a.span.clone(),
@@ -65,7 +65,7 @@ fn scope_condition(scope: &Scope, zone: Option<&Expr>) -> Option<Expr> {
     }
 }
 
-/// Where both apply, in words.
+/// Where both limits apply, in words.
 fn shared(a: &Scope, b: &Scope) -> String {
     if a.is_all() && b.is_all() {
         return String::new();

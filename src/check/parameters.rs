@@ -1,4 +1,4 @@
-//! Parameters: their values from default, campaign or command line, and numbers that follow from constants alone.
+//! Parameters: values from defaults, campaign or command line; numbers that follow from constants only.
 
 use super::evaluate::words;
 use super::names::{ParameterDef, normalised};
@@ -12,7 +12,7 @@ use crate::syntax::phrase::Phrase;
 use crate::units::Dimension;
 
 impl Checker<'_> {
-    /// The parameter of a name, looked into when it is first asked for: its default may use parameters that stand below it.
+    /// The parameter of a name. It is checked when it is first used, as its default may use parameters further down.
     pub(super) fn parameter(&mut self, name: &str, at: &crate::source::Span) -> Option<ParameterDef> {
         if let Some(found) = self.names.parameters.get(name) {
             return Some(found.clone());
@@ -41,8 +41,8 @@ impl Checker<'_> {
         let (value, ty) = match block.field("one of") {
             Some(choices) => {
                 if let Some(range) = block.field("range") {
-                    let problem =
-                        Problem::error("unknown-field", format!("`{name}` is a choice of words and has no range")).at(&range.key.span);
+                    let problem = Problem::error("unknown-field", format!("`{name}` is a choice of words and cannot have a range"))
+                        .at(&range.key.span);
                     self.problems.push(problem.also(&choices.key.span, "the choice"));
                 }
                 self.choice(name, choices, &default.value, &source)?
@@ -59,7 +59,7 @@ impl Checker<'_> {
             let word = text.text.trim();
             if !choices.iter().any(|choice| choice == word) {
                 self.problems.push(
-                    Problem::error("unknown-choice", format!("`{word}` is none of the choices of `{name}`"))
+                    Problem::error("unknown-choice", format!("`{word}` is not one of the choices of `{name}`"))
                         .at(&text.span)
                         .suggest(word, choices.iter().map(String::as_str)),
                 );
@@ -69,12 +69,12 @@ impl Checker<'_> {
         ok.then(|| (Scalar::Word(source.text.trim().to_string()), Type::Word(choices)))
     }
 
-    /// A list of positions of a place: of the default and of what is set.
+    /// Positions of a place: checks the default and the given value.
     fn selection(&mut self, name: &str, place: &Field, default: &Text, source: &Text) -> Option<(String, Vec<String>)> {
         let written = normalised(&place.value.text);
         let Some(place_name) = self.place_called(&written) else {
             let known: Vec<String> = self.names.places.keys().cloned().collect();
-            let problem = Problem::error("unknown-place", format!("`{written}` is no place")).at(&place.value.span);
+            let problem = Problem::error("unknown-place", format!("`{written}` is not a place")).at(&place.value.span);
             self.problems.push(problem.suggest(&written, known.iter().map(String::as_str)));
             return None;
         };
@@ -84,7 +84,7 @@ impl Checker<'_> {
             let mut positions: Vec<String> = Vec::new();
             for word in from_pest::list(text, self.problems)? {
                 if !members.contains(&word.node) {
-                    let says = format!("`{}` is no {place_name}, and `{name}` selects of these", word.node);
+                    let says = format!("`{}` is not a position of `{place_name}`; `{name}` selects such positions", word.node);
                     let problem = Problem::error("unknown-place", says).at(&text.place(word.range.clone()));
                     self.problems.push(problem.suggest(&word.node, members.iter().map(String::as_str)));
                     return None;
@@ -109,10 +109,13 @@ impl Checker<'_> {
         let (value, found) = set?;
         if found != dimension {
             self.problems.push(
-                Problem::error("unit-mismatch", format!("parameter `{name}` is {}, this is {}", dimension.in_words(), found.in_words()))
-                    .at(&text.span)
-                    .label(found.in_words())
-                    .also(&default.span, "its default"),
+                Problem::error(
+                    "unit-mismatch",
+                    format!("parameter `{name}` is {}, the given value is {}", dimension.in_words(), found.in_words()),
+                )
+                .at(&text.span)
+                .label(found.in_words())
+                .also(&default.span, "its default"),
             );
             return None;
         }
@@ -134,7 +137,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Both ends of a range in SI; they must have the dimension of what it is the range of.
+    /// Both ends of a range in SI. They must have the dimension of the value that the range is of.
     pub(super) fn range_ends(&mut self, name: &str, dimension: Dimension, range: &Field, of_value: Option<&Text>) -> Option<[f64; 2]> {
         let (low, high) = from_pest::range(&range.value, self.problems)?;
         let mut ends = [0.0; 2];
@@ -155,7 +158,7 @@ impl Checker<'_> {
         Some(ends)
     }
 
-    /// A number that follows from constants alone, with its dimension.
+    /// A number that follows from constants only, with its dimension.
     pub(super) fn constant(&mut self, text: &Text) -> Option<(f64, Dimension)> {
         let phrase = from_pest::expression(text, self.problems)?;
         self.constant_phrase(&phrase, text)
@@ -168,9 +171,9 @@ impl Checker<'_> {
             return Some((value, dimension));
         }
         self.problems.push(
-            Problem::error("not-constant", format!("`{}` is not a number known beforehand", words(&expr)))
+            Problem::error("not-constant", format!("`{}` is not a constant", words(&expr)))
                 .at(&expr.span)
-                .help("write a number with its unit, a parameter, or an expression of these"),
+                .help("write a number with its unit, a parameter or an expression of these"),
         );
         None
     }

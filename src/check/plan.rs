@@ -1,4 +1,4 @@
-//! The checked protocol: every name resolved, every number SI, every dimension right, parameters put in.
+//! The checked protocol: names resolved, numbers in SI, dimensions checked, parameters inserted.
 
 use std::ops::Deref;
 use std::sync::Arc;
@@ -30,22 +30,22 @@ pub struct Plan {
     pub sections: SectionRules,
     pub quantities: Vec<Quantity>,
     pub independent: Independent,
-    /// The overall one first, the others as they are written.
+    /// The overall verdict first, the others in the order of the text.
     pub verdicts: Vec<VerdictRule>,
 }
 
 impl Plan {
-    /// Whether some quantity needs records of this side.
+    /// Whether a quantity needs records of this side.
     pub fn reads(&self, side: Side) -> bool {
         self.quantities.iter().any(|quantity| quantity.evaluation.reads(side))
     }
 
-    /// The verdict of the protocol as a whole: the one without a name, or the first.
+    /// The verdict of the protocol as a whole: the one without a name, else the first.
     pub fn overall(&self) -> &VerdictRule {
         &self.verdicts[0]
     }
 
-    /// The same rules, with findings that are told and change nothing: for who asks what is wrong, and not whether it may be used.
+    /// The same plan, with all plausibility findings as notes: they are reported and exclude no section.
     #[must_use]
     pub fn only_telling(&self) -> Self {
         let mut plan = self.clone();
@@ -54,7 +54,7 @@ impl Plan {
     }
 }
 
-/// A column that records run along.
+/// A column that records are sampled along: distance or time.
 #[derive(Clone, Debug)]
 pub struct Axis {
     pub column: String,
@@ -68,7 +68,7 @@ pub struct Parameter {
     pub value: String,
     pub default: String,
     pub set_by: SetBy,
-    /// Its words, where it is a choice of words.
+    /// The words of a choice; empty otherwise.
     pub choices: Vec<String>,
 }
 
@@ -79,23 +79,23 @@ pub enum SetBy {
     CommandLine,
 }
 
-/// A value that the vehicle file or the table of sections must hold.
+/// A value that the vehicle file or the table of sections must contain.
 #[derive(Clone, Debug)]
 pub struct Datum {
     pub name: String,
     pub title: String,
-    /// Path in the vehicle file, or column header without its unit.
+    /// Path in the vehicle file, or column header without unit.
     pub key: String,
     pub kind: DatumKind,
     pub default: Option<Scalar>,
-    /// The vehicle file may be without it; rules that depend on it are then decided as far as they hold whatever its value.
+    /// Whether the vehicle file may omit it. Rules that depend on it then apply as far as they hold for every value.
     pub may_be_absent: bool,
-    /// What a number may be; none where the protocol does not say.
+    /// Allowed values of a number; `None` where the protocol states none.
     pub range: Option<DatumRange>,
     pub span: Span,
 }
 
-/// The least and the largest value of a datum, both allowed.
+/// The least and the greatest value of a datum, both allowed.
 #[derive(Clone, Debug)]
 pub struct DatumRange {
     /// In SI.
@@ -131,7 +131,7 @@ pub struct NamedFilter {
     pub source: Option<String>,
 }
 
-/// Where an expression was written, and its words: in YAML the place of a part of a field is not always known, its words are.
+/// Where an expression is written, and its words. In YAML, the place of a part of a field is not always known, but its words are.
 #[derive(Clone, Debug)]
 pub struct Origin {
     pub span: Span,
@@ -156,7 +156,7 @@ pub struct Expr {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Type {
     Number(Dimension),
-    /// One of these words; empty for a word that stands by itself.
+    /// One of these words; empty for a word by itself.
     Word(Vec<String>),
     Flag,
 }
@@ -171,7 +171,7 @@ pub enum Kind {
     /// Start, end or length of the section on the axis.
     Start,
     End,
-    /// A reduced signal, or a number taken from a group: index into the list that stands beside the expression.
+    /// A value taken from a signal or from a group: index into the list stored with the expression.
     Input(usize),
     Simulated,
     Measured,
@@ -182,12 +182,12 @@ pub enum Kind {
     Power(Box<Expr>, i8),
     Binary(Operator, Box<Expr>, Box<Expr>),
     Call(&'static Function, Vec<Expr>),
-    /// The first whose condition holds, else the last.
+    /// The value of the first condition that holds, else the last value.
     Cases(Vec<(Expr, Expr)>, Option<Box<Expr>>),
 }
 
 impl Expr {
-    /// Shows every part, the whole first.
+    /// Visits every part, the whole expression first.
     pub fn visit(&self, see: &mut impl FnMut(&Expr)) {
         see(self);
         match &self.kind {
@@ -213,24 +213,24 @@ impl Expr {
 
 pub use crate::syntax::phrase::Operator;
 
-/// A signal expression: what a channel of one position is computed from.
+/// A signal expression: how the signal of one position is computed from channels.
 #[derive(Clone, Debug)]
 pub struct Signal {
     pub kind: SignalKind,
     pub dimension: Dimension,
-    /// Whether it comes from the track record.
+    /// Whether it is read from the track record.
     pub track: bool,
     pub span: Span,
 }
 
 #[derive(Clone, Debug)]
 pub enum SignalKind {
-    /// A column of the records, and the channel it is a position of.
+    /// A column of the records, with the channel it belongs to.
     Column {
         column: String,
         channel: String,
     },
-    /// A number that does not change along the record.
+    /// A number that is constant along the record.
     Scalar(Expr),
     Binary(Operator, Box<Signal>, Box<Signal>),
     Negative(Box<Signal>),
@@ -238,16 +238,16 @@ pub enum SignalKind {
     Call(&'static Function, Vec<Signal>),
     Filtered(Box<Signal>, Vec<Step>),
     OverAxis(AxisOperation, Box<Signal>),
-    /// The own processed signal of this side, on the points at which both sides have one. Only in what is taken from both sides.
+    /// The own processed signal of this side, at the points where both sides have one. Only in values taken from both sides.
     Side(Side),
-    /// The first whose condition on the section holds.
+    /// The signal of the first condition on the section that holds.
     Select(Vec<(Expr, Signal)>, Option<Box<Signal>>),
 }
 
 /// An operation on a signal along its axis.
 #[derive(Clone, Debug)]
 pub enum AxisOperation {
-    /// Forward by this distance.
+    /// Shifted forward by this distance.
     Shifted(Expr),
     Derivative {
         over_time: bool,
@@ -262,14 +262,14 @@ pub struct Step {
     pub kind: StepSpec,
     /// As printed: `low-pass 20 Hz, order 4, zero-phase, as-applied`.
     pub words: String,
-    /// Whether its frequencies are cycles per length, so that it can only follow a resampling over a length.
+    /// Whether its frequencies are in cycles per length, so that it must follow a resampling over a length.
     pub per_length: bool,
-    /// Of what comes out over what goes in.
+    /// Dimension of the output divided by that of the input.
     pub factor: Dimension,
     pub span: Span,
 }
 
-/// Numbers in SI; a length or time step says which axis it runs over.
+/// Steps with numbers in SI. A length or time step states the axis it is used over.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StepSpec {
     Butterworth { band: Band, order: usize, phase: Phase, cutoff: Cutoff },
@@ -308,18 +308,18 @@ pub enum OnFault {
     NotUsed,
     Note,
     Stop,
-    /// The campaign is not assessable. Only of a plausibility rule.
+    /// The campaign is not assessable. Only for plausibility rules.
     NotAssessable,
 }
 
-/// What sound data satisfy, looked at in every section and at every position. What does not is told as a finding.
+/// A condition that sound data satisfy, checked in every section and at every position. A violation is reported as a finding.
 ///
-/// A block with several fields `of` is one rule for each of them.
+/// A block with several fields `of` gives one rule for each of them.
 #[derive(Clone, Debug)]
 pub struct Plausibility {
     pub name: String,
     pub title: String,
-    /// Each position with the name of its signal; empty where the rule is about data or named signals alone.
+    /// Each position with the name of its signal; empty where the rule uses only data or named signals.
     pub signals: Vec<(String, Signal)>,
     pub chain: Vec<Step>,
     pub test: Test,
@@ -335,30 +335,30 @@ pub enum Test {
     Distinct(Distinct),
 }
 
-/// A condition on data and reduced signals.
+/// A condition on data and on values taken from signals.
 #[derive(Clone, Debug)]
 pub struct Requirement {
     pub holds: Expr,
     pub inputs: Vec<Input>,
     pub of: Looks,
-    /// Where the condition is one comparison: what is compared with what, and the unit both are printed in.
+    /// The two numbers compared and the unit in which both are printed, where the condition is one comparison.
     pub compared: Option<(Expr, Expr, Unit)>,
     pub words: String,
 }
 
-/// Which record a requirement looks at.
+/// The records that a requirement uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Looks {
-    /// Section and vehicle data alone.
+    /// No record: section and vehicle data only.
     Data,
     Track,
-    /// Simulation and measurement, each by itself.
+    /// Simulation and measurement, each separately.
     EachSide,
-    /// Both at once: metrics, `simulated(...)`, `measured(...)`.
+    /// Both together: metrics, `simulated(...)`, `measured(...)`.
     BothSides,
 }
 
-/// Among what no two signals may be the same.
+/// Between which signals equality is reported.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Distinct {
     /// Channels of one record.
@@ -372,7 +372,7 @@ pub struct Distinct {
 #[derive(Clone, Debug)]
 pub struct SectionRules {
     pub whole_records: bool,
-    /// Index of the column with the zone.
+    /// Index of the column of the zone.
     pub zone: Option<usize>,
     pub only: Option<Expr>,
     pub only_words: String,
@@ -381,13 +381,13 @@ pub struct SectionRules {
     pub percentiles: Method,
 }
 
-/// A number taken from signals that an expression uses.
+/// A number that an expression takes from signals.
 #[derive(Clone, Debug)]
 pub struct Input {
     pub taken: Taken,
     /// `None`: the quantity's own processed signal.
     pub signal: Option<Signal>,
-    /// The signal that a slope or a metric runs over, in place of the axis.
+    /// The signal that a slope or a metric uses in place of the axis.
     pub over: Option<Signal>,
     pub side: InputSide,
     pub span: Span,
@@ -399,12 +399,12 @@ pub enum Taken {
     Reduced(Reducer),
     /// From the simulated and the measured signal.
     Compared(Metric),
-    /// From an expression over the samples of both.
+    /// From an expression over the samples of both sides.
     OfBoth(Reducer),
 }
 
 impl Taken {
-    /// Whether it is taken from samples on common points, which are not there after a window or resampling.
+    /// Whether it needs samples at common points. These are not available after a window or resampling.
     pub fn needs_samples(self) -> bool {
         match self {
             Self::Reduced(_) => false,
@@ -438,9 +438,9 @@ pub struct Quantity {
     pub clause: Option<String>,
     pub source: Option<String>,
     pub notes: Vec<String>,
-    /// Unit in which values are printed.
+    /// Unit in which the values are printed.
     pub unit: Unit,
-    /// Unit in which its signals are plotted.
+    /// Unit in which the signals are plotted.
     pub signal_unit: Unit,
     pub positions: Vec<Position>,
     pub chain: Vec<Step>,
@@ -453,13 +453,13 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// Whether the samples of the record are still there after its filter.
+    /// Whether the samples of the record are still available after the filter.
     pub fn keeps_samples(&self) -> bool {
         self.chain.iter().all(|step| step.kind.keeps_samples())
     }
 }
 
-/// The quantity's rules as printed.
+/// The rules of the quantity, as printed.
 #[derive(Clone, Debug)]
 pub struct QuantityWords {
     pub of: String,
@@ -474,21 +474,22 @@ pub struct Position {
     /// As printed: `Y_1R`.
     pub name: String,
     pub signal: Signal,
-    /// Each place with its member: `wheelset` `1`.
+    /// Each place with its member, such as `wheelset` and `1`.
     pub places: Vec<(String, String)>,
-    /// In which sections it is evaluated.
+    /// The condition on the sections in which it is evaluated; `None` for all.
     pub only: Option<Expr>,
 }
 
-/// What the rows of the table of values are.
+/// How the rows of the table of values are computed.
 #[derive(Clone, Debug)]
 pub enum Evaluation {
-    /// Numbers of each record, by themselves or compared.
+    /// Numbers of each record, assessed or compared.
     Values { values: Vec<Valued>, records: Records },
-    /// One number of the two signals; `over` is the other signal its wording names, one for each position, with its name and unit.
-    /// With `repeats`, of a repeated section and its original.
+    /// One number of the two signals. `over` is the other signal that the wording names, one for each position, with its name and
+    /// unit. With `repeats`, the signals are those of a repeated section and its original.
     Metric { metric: Metric, over: Vec<Signal>, over_axis: Option<Axis>, repeats: bool },
-    /// One number of metrics, of numbers of one side, and of numbers of both sides' samples; `repeats` as of a metric.
+    /// One number computed from metrics, from values of one side and from values of the samples of both sides; `repeats` as for a
+    /// metric.
     Combined { of: Valued, repeats: bool },
 }
 
@@ -496,21 +497,21 @@ pub enum Evaluation {
 #[derive(Clone, Debug)]
 pub struct Valued {
     pub expr: Expr,
-    /// For each position of the quantity: a named signal is that of the same wheelset or side.
+    /// For each position of the quantity: a named signal is taken at the same wheelset or side.
     pub inputs: Vec<Vec<Input>>,
 }
 
-/// Which records give the rows.
+/// The records that give the rows.
 #[derive(Clone, Debug)]
 pub enum Records {
-    /// One row for each record of this side: an assessment.
+    /// One row for each record of this side, without comparison.
     Of(Side),
     /// One row for each simulated and measured record of a section.
     Compared { difference: Expr },
-    /// One row for each record of this side, compared with what is central of all of them.
+    /// One row for each record of this side, compared with the mean or median of all of them.
     Spread { side: Side, center: Center, difference: Expr },
-    /// One row for each measured record of a section that repeats another, compared with that of its original, which stands in the place of
-    /// the measurement.
+    /// One row for each measured record of a section that repeats another. It is compared with the record of the original section,
+    /// which takes the place of the measurement.
     Repeats { difference: Expr },
 }
 
@@ -548,11 +549,11 @@ impl Evaluation {
         }
     }
 
-    /// The words of one of several values.
+    /// The words of one of several values of a record.
     pub fn value_in_words(&self, which: usize) -> Option<String> {
         match self {
             Self::Values { values, .. } if values.len() > 1 => {
-                // Without the case that it applies in.
+                // Without the condition of its case.
                 let words = &values.get(which)?.expr.span.words;
                 Some(words.split_once(" when ").map_or(words.as_ref(), |(value, _)| value).to_string())
             }
@@ -560,7 +561,7 @@ impl Evaluation {
         }
     }
 
-    /// Whether rows are values of one record, compared with no other.
+    /// Whether rows are values of one record, without comparison.
     pub fn assesses(&self) -> bool {
         matches!(self, Self::Values { records: Records::Of(_), .. })
     }
@@ -570,7 +571,7 @@ impl Evaluation {
         matches!(self, Self::Values { records: Records::Compared { .. } | Records::Spread { .. } | Records::Repeats { .. }, .. })
     }
 
-    /// Whether repeats of sections are compared with their originals.
+    /// Whether repeated sections are compared with their originals.
     pub fn of_repeats(&self) -> bool {
         matches!(
             self,
@@ -586,7 +587,7 @@ pub struct Limit {
     pub estimate: Estimate,
     pub at_least: bool,
     pub bound: OfGroup,
-    /// Factor and when it applies.
+    /// Each factor with the condition under which it applies.
     pub factors: Vec<(Expr, Expr)>,
     pub only_when: Option<Expr>,
     pub scope: Scope,
@@ -598,31 +599,31 @@ pub struct Limit {
 /// What is estimated from the rows of a group.
 #[derive(Clone, Debug)]
 pub struct Estimate {
-    /// As in result files: `mean`, `p95`, the name of an estimate, or an expression as written.
+    /// Name in result files: `mean`, `p95`, the name of an estimate, or an expression as written.
     pub name: String,
     /// As printed: `standard deviation (n-1)`.
     pub title: String,
     pub kind: EstimateKind,
-    /// Tells how far values differ from each other, so that 0 is best whatever they are.
+    /// Whether it measures scatter. The best value is then 0 for every quantity.
     pub of_scatter: bool,
-    /// In which it is printed, where that is not the unit of the values: of a share, of a length.
+    /// Unit in which it is printed, where it differs from that of the values: for a share or a length.
     pub unit: Option<Unit>,
 }
 
 #[derive(Clone, Debug)]
 pub enum EstimateKind {
-    /// Every value by itself: the worst decides.
+    /// Every value separately; the worst decides.
     Each,
     Of(Box<OfGroup>),
 }
 
 impl Estimate {
-    /// As [`OfGroup::others`].
+    /// See [`OfGroup::others`].
     pub fn others(&self) -> Vec<usize> {
         if let EstimateKind::Of(of) = &self.kind { of.others() } else { Vec::new() }
     }
 
-    /// The statistic that it is and nothing more, with the divisor's n - `ddof`.
+    /// The statistic and `ddof` (divisor n - `ddof`), where the estimate is one statistic only.
     pub fn statistic(&self) -> Option<(Statistic, usize)> {
         match &self.kind {
             EstimateKind::Each => Some((Statistic::Each, 0)),
@@ -634,7 +635,7 @@ impl Estimate {
     }
 }
 
-/// An expression over what is taken from the rows of a group; [`Kind::Input`] is an index into `taken`.
+/// An expression over numbers taken from the rows of a group; [`Kind::Input`] is an index into `taken`.
 #[derive(Clone, Debug)]
 pub struct OfGroup {
     pub expr: Expr,
@@ -642,7 +643,7 @@ pub struct OfGroup {
 }
 
 impl OfGroup {
-    /// The quantities whose rows it needs beside those of the group.
+    /// Indices of the other quantities whose rows it needs.
     pub fn others(&self) -> Vec<usize> {
         fn of(taking: &Taking) -> Vec<usize> {
             match taking {
@@ -660,9 +661,9 @@ impl OfGroup {
 /// A number taken from the rows of a group.
 #[derive(Clone, Debug)]
 pub enum Taking {
-    /// Of the values, with the divisor's n - `ddof`.
+    /// A statistic of the values, with divisor n - `ddof`.
     Statistic(Statistic, usize),
-    /// Number of units that are independent of each other.
+    /// Number of independent units.
     Count,
     /// An end of the confidence interval of an estimate.
     Bound {
@@ -671,8 +672,8 @@ pub enum Taking {
         confidence: f64,
         bootstrap: bool,
     },
-    /// Part of the rows, or of the sections, that satisfy a condition; [`Kind::Input`] 0 is the value of a row.
-    /// Beside it `others`, inputs from 1 on: estimates of other quantities.
+    /// Share of the rows, or of the sections, that satisfy a condition. [`Kind::Input`] 0 is the value of a row; inputs from 1 on
+    /// are `others`, statistics of other quantities.
     Share {
         condition: Expr,
         of_sections: bool,
@@ -685,7 +686,7 @@ pub enum Taking {
         statistic: Statistic,
         ddof: usize,
     },
-    /// Of data of the group's sections, each section once.
+    /// A number from data of the group's sections, each section counted once.
     Data {
         reducer: DataReducer,
         of: Expr,
@@ -702,20 +703,20 @@ pub enum DataReducer {
 /// A regression of the values over data of their sections.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// A bound is one of a further value; else of the mean of values.
+    /// Whether the bound is that of a further value (prediction); otherwise that of the mean.
     pub prediction: bool,
     pub over: Vec<Expr>,
     pub at: Vec<OfGroup>,
-    /// Without one, the fitted value itself.
+    /// Confidence level of the bound; without one, the fitted value itself.
     pub confidence: Option<f64>,
     pub one_sided: bool,
     pub lower: bool,
 }
 
-/// Which rows a limit is about, and how they are grouped. A limit `for each zone` is one limit for every zone.
+/// The rows that a limit applies to, and their groups. A limit `for each zone` gives one limit for every zone.
 #[derive(Clone, Debug, Default)]
 pub struct Scope {
-    /// Only rows of these zones; of all where there are none.
+    /// Only rows of these zones; all rows if empty.
     pub zones: Vec<String>,
     pub each: Vec<Key>,
     pub condition: Option<(Expr, String)>,
@@ -726,14 +727,14 @@ impl Scope {
         self.zones.is_empty() && self.each.is_empty() && self.condition.is_none()
     }
 
-    /// Whether both are about the same rows, grouped alike.
+    /// Whether both have the same rows and the same groups.
     pub fn same(&self, other: &Self) -> bool {
         let words = |scope: &Self| scope.condition.as_ref().map(|(_, words)| words.clone());
         self.zones == other.zones && self.each == other.each && words(self) == words(other)
     }
 }
 
-/// By what rows are grouped.
+/// A key by which rows are grouped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Key {
     Section,
@@ -745,7 +746,7 @@ pub enum Key {
     Column(usize),
 }
 
-/// What is independent of each other.
+/// What counts as one independent unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Independent {
     #[default]
@@ -755,18 +756,18 @@ pub enum Independent {
     Column(usize),
 }
 
-/// A verdict: what decides it, and in which words.
+/// A verdict: its rule and its words.
 #[derive(Clone, Debug)]
 pub struct VerdictRule {
-    /// `None` for the verdict without a name, which is then the overall one.
+    /// `None` for the verdict without a name, which is the overall one.
     pub name: Option<String>,
     pub title: String,
     pub decision: Decision,
-    /// If it holds, and if it does not.
+    /// The word if it holds, and the word if it does not.
     pub words: [String; 2],
     /// Whether the protocol states the words.
     pub own_words: bool,
-    /// `validated when every limit holds`
+    /// The rule in words: `validated when every limit holds`.
     pub criterion: String,
     pub clause: Option<String>,
     pub source: Option<String>,
@@ -776,19 +777,19 @@ pub struct VerdictRule {
 
 #[derive(Clone, Debug)]
 pub enum Decision {
-    /// By the limits of some quantities, by index.
+    /// By the limits of quantities, given by index.
     Limits { rule: Rule, quantities: Vec<usize> },
     /// By other verdicts.
     Verdicts(Over),
-    /// By a person, named here.
+    /// By a person.
     Person(String),
 }
 
-/// A condition on other verdicts, by their index in [`Plan::verdicts`].
+/// A condition on other verdicts, given by their index in [`Plan::verdicts`].
 #[derive(Clone, Debug)]
 pub enum Over {
     Holds(usize),
-    /// Both hold, or neither does.
+    /// Both hold, or neither holds.
     Same(usize, usize),
     AtLeast(usize, Vec<usize>),
     Not(Box<Over>),
@@ -797,7 +798,7 @@ pub enum Over {
 }
 
 impl Over {
-    /// The verdicts that it is about, each once.
+    /// The verdicts that the condition uses, each once.
     pub fn verdicts(&self) -> Vec<usize> {
         let all = match self {
             Self::Holds(one) => vec![*one],

@@ -1,4 +1,4 @@
-//! Checks plausibility rules: what sound data satisfy, at which positions, on which record.
+//! Checks plausibility rules: their condition, positions and records.
 
 use super::Checker;
 use super::names::normalised;
@@ -10,22 +10,22 @@ use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
 use crate::units::{Dimension, Unit};
 
-/// What `distinct` can be asked of.
+/// Words of the field `distinct`.
 const AMONG: [&str; 3] = ["channels", "sections", "sides"];
 
-/// Signals with their names, and the unit of what is taken from them.
+/// Signals with their names, and the unit of values taken from them.
 type Of = (Vec<(String, Signal)>, Option<Unit>);
 
 impl Checker<'_> {
-    /// A rule for each signal that the block is about.
+    /// One rule for each field `of` of the block.
     pub(super) fn plausibility(&mut self, block: &Block) -> Option<Vec<Plausibility>> {
         let (require, distinct) = (block.field("require"), block.field("distinct"));
         if let (Some(first), Some(second)) = (require, distinct) {
             self.problems.push(
-                Problem::error("require-and-distinct", "a plausibility rule has either a condition, or signals that are to differ")
+                Problem::error("require-and-distinct", "a plausibility rule has either `require` or `distinct`")
                     .at(&second.key.span)
                     .also(&first.key.span, "the condition")
-                    .help("make two rules of it"),
+                    .help("write two rules"),
             );
             return None;
         }
@@ -64,7 +64,7 @@ impl Checker<'_> {
                 && requirement.inputs.iter().any(|input| input.taken.needs_samples())
             {
                 self.problems.push(
-                    Problem::error("metric-of-window", "a metric that compares samples cannot follow a window or resampling")
+                    Problem::error("metric-of-window", "this metric compares samples and cannot follow a window or resampling")
                         .at(&requirement.holds.span)
                         .also(&step.span, "this step"),
                 );
@@ -112,7 +112,7 @@ impl Checker<'_> {
         Some(Requirement { holds, inputs: scope.inputs, of, compared, words: normalised(&field.value.text) })
     }
 
-    /// The unit a value is printed in: that of the rule's own signal, of the axis, or SI.
+    /// The unit in which a value is printed: that of the rule's own signal, of the axis, or SI.
     fn unit_of(&self, found: &Expr, expected: &Expr, inputs: &[Input], dimension: Dimension, own: Option<&Unit>) -> Unit {
         let named = inputs.iter().find_map(|input| {
             let name = input.signal.as_ref()?.span.text();
@@ -136,7 +136,7 @@ impl Checker<'_> {
                 "sides" => distinct.sides = true,
                 other => {
                     self.problems.push(
-                        Problem::error("unknown-choice", format!("`{other}` is not among what signals can differ between"))
+                        Problem::error("unknown-choice", format!("`distinct` cannot be `{other}`"))
                             .at(&field.value.place(word.range.clone()))
                             .suggest(other, AMONG),
                     );

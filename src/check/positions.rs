@@ -11,7 +11,7 @@ use crate::source::Span;
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase, Pick};
 
-/// Most positions of one quantity: each is a column of every record, and a signal in memory.
+/// Largest number of positions of one quantity. Each is a column of every record and a signal in memory.
 const MOST_POSITIONS: usize = 2000;
 
 impl Place {
@@ -21,10 +21,10 @@ impl Place {
 }
 
 impl Checker<'_> {
-    /// `Y at side R`, or at an alias that the section decides.
+    /// A signal at a position such as `Y at side R`, or at an alias that depends on the section.
     pub(super) fn placed(&mut self, name: &At<String>, words: &[At<String>], text: &Text, span: &Span, at: &Assignment) -> Option<Signal> {
         let bare = At { node: Node::Path(name.node.clone()), range: name.range.clone() };
-        // Words come as place, member, place, member, ...; place names of several words are joined by `_`.
+        // Words alternate: place, member, place, member, ... A place name of several words is joined by `_`.
         let mut assignment = at.clone();
         let mut from = 0;
         while from < words.len() {
@@ -32,7 +32,7 @@ impl Checker<'_> {
             let Some((place, member_at)) = named else {
                 if let Some(place) = self.place_called(&joined(&words[from..])) {
                     self.problems.push(
-                        Problem::error("open-place", format!("which {place} is not said"))
+                        Problem::error("open-place", format!("the {place} is not stated"))
                             .at(&self.span_of(&words[from..], text))
                             .help(self.members_help(&place)),
                     );
@@ -54,7 +54,7 @@ impl Checker<'_> {
         Some(Signal { span: span.clone(), ..found })
     }
 
-    /// A signal at positions of which some may be aliases: then the section decides.
+    /// A signal at positions that may be aliases. The position then depends on the section.
     pub(super) fn signal_where(&mut self, phrase: &Phrase, text: &Text, at: &Assignment, span: &Span) -> Option<Signal> {
         let mut cases: Vec<(Option<Expr>, Assignment)> = vec![(None, at.clone())];
         for (place, member) in at {
@@ -85,7 +85,8 @@ impl Checker<'_> {
         self.select(arms, None, span)
     }
 
-    /// In a quantity, sections in which an alias names nothing cannot be used; a warning unless they are left out anyway.
+    /// In a quantity, sections in which an alias has no position cannot be used. This is a warning unless a condition excludes
+    /// them.
     fn alias_covers(&mut self, alias: &str, place: &str, conditions: &[Expr], span: &Span) {
         if !self.in_quantity {
             return;
@@ -94,9 +95,12 @@ impl Checker<'_> {
         all.extend(conditions.iter().map(|condition| (condition, false)));
         if !super::conditions::impossible(&all) {
             self.problems.push(
-                Problem::warning("alias-gap", format!("there are sections in which `{alias}` is no {place}: they cannot be used"))
-                    .at(span)
-                    .help("leave them out of this quantity: `where ...`"),
+                Problem::warning(
+                    "alias-gap",
+                    format!("in some sections `{alias}` stands for no position of `{place}`; they cannot be used"),
+                )
+                .at(span)
+                .help("exclude them from this quantity with `where ...`"),
             );
         }
     }
@@ -109,7 +113,7 @@ impl Checker<'_> {
         let names: Vec<String> = self.names.places.keys().map(|place| place.replace('_', " ")).collect();
         let shown = name.replace('_', " ");
         self.problems.push(
-            Problem::error("unknown-place", format!("`{shown}` is no place"))
+            Problem::error("unknown-place", format!("`{shown}` is not a place"))
                 .at(&self.span_of(words, text))
                 .suggest(&shown, names.iter().map(String::as_str)),
         );
@@ -126,7 +130,7 @@ impl Checker<'_> {
         let Some(known) = self.names.places.get(place) else { return };
         let aliases = known.aliases.iter().map(|(alias, _)| alias.name.node.as_str());
         let all: Vec<&str> = known.members.iter().map(String::as_str).chain(aliases).collect();
-        let problem = Problem::error("unknown-place", format!("`{}` is no {}", member.node, place.replace('_', " ")))
+        let problem = Problem::error("unknown-place", format!("`{}` is not a position of `{}`", member.node, place.replace('_', " ")))
             .at(&text.place(member.range.clone()));
         self.problems.push(problem.suggest(&member.node, all));
     }
@@ -136,7 +140,7 @@ impl Checker<'_> {
         format!("one of {members}")
     }
 
-    /// All positions of a selection, in the order of the places of the signal, each with its assignment.
+    /// All positions of a selection, in the order of the signal's places.
     pub(super) fn positions(&mut self, signal: &At<String>, picks: &[Pick], text: &Text) -> Option<Vec<Assignment>> {
         let places = match (self.names.channels.get(&signal.node), self.names.signals.get(&signal.node)) {
             (Some(channel), _) => channel.places.clone(),
@@ -161,7 +165,7 @@ impl Checker<'_> {
                 None => self.names.places.get(place)?.members.clone(),
             };
             if all.len().saturating_mul(members.len()) > MOST_POSITIONS {
-                let says = format!("`{}` is asked for at more than {MOST_POSITIONS} positions", signal.node);
+                let says = format!("`{}` has more than {MOST_POSITIONS} positions here", signal.node);
                 let problem = Problem::error("too-large", says).at(&text.place(signal.range.clone()));
                 self.problems.push(problem.help("choose positions: `at wheelset 1 and side R`"));
                 return None;
@@ -176,7 +180,7 @@ impl Checker<'_> {
         Some(all)
     }
 
-    /// The positions that a parameter of this name selects of the place.
+    /// The positions of the place that a parameter of this name selects.
     fn selected(&mut self, name: &str, place: &str, at: &Span) -> Option<Vec<String>> {
         let (of, positions) = self.parameter(name, at)?.selects?;
         (of == place).then_some(positions)
@@ -194,13 +198,13 @@ impl Checker<'_> {
             pick.words.iter().filter(|word| !matches!(word.node.as_str(), "each" | "every" | "all")).cloned().collect();
         let named = (1..=words.len()).rev().find_map(|end| self.place_called(&joined(&words[..end])).map(|place| (place, end)));
         let Some((place, end)) = named else {
-            // The last word is a member, unless it is the only one.
+            // The last word is a member, unless it is the only word.
             let of_place = if words.is_empty() { &pick.words[..] } else { &words[..(words.len().max(2) - 1).min(words.len())] };
             self.unknown_place(of_place, text);
             return None;
         };
         if !places.contains(&place) {
-            let says = format!("`{}` is not measured at a {}", signal.node, place.replace('_', " "));
+            let says = format!("`{}` has no place `{}`", signal.node, place.replace('_', " "));
             let problem = Problem::error("unknown-place", says).at(&self.span_of(&words[..end], text));
             let help = if places.is_empty() {
                 "it has no places".to_string()
@@ -214,7 +218,7 @@ impl Checker<'_> {
         let members: Vec<&At<String>> = words[end..].iter().chain(&pick.more).collect();
         let found = chosen.entry(place.clone()).or_default();
         if members.is_empty() {
-            // `at wheelsets` and `at each wheelset` mean all of them.
+            // `at wheelsets` and `at each wheelset` select all members.
             found.clone_from(&known.members);
         }
         let mut ok = true;

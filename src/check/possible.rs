@@ -1,7 +1,8 @@
-//! What an expression can come to while some of its names have no value: decided as far as it holds whatever they are.
+//! Possible values of an expression while some of its names have no value. A result is decided if it is the same for every value of
+//! them.
 //!
-//! Numbers are bounded by intervals and conditions have three values, after Kleene. Bounds are never too narrow; they may be too
-//! wide where one unknown name stands twice.
+//! Numbers are bounded by intervals (interval arithmetic); conditions have three truth values (Kleene logic). The bounds are never
+//! too narrow. They may be too wide where an unknown name occurs twice.
 
 use super::evaluate::{Values, evaluate};
 use super::plan::{Expr, Kind, Operator, Scalar, Type};
@@ -10,13 +11,13 @@ use crate::catalog::Function;
 /// All values that an expression may have.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Possible {
-    /// Between these two, SI.
+    /// From the first to the second, in SI.
     Number(f64, f64),
     Flag {
         can_hold: bool,
         can_fail: bool,
     },
-    /// One of these; `None` where any word may come.
+    /// One of these; `None` where any word is possible.
     Words(Option<Vec<String>>),
 }
 
@@ -41,7 +42,7 @@ impl Possible {
         }
     }
 
-    /// The one value, if there is no other.
+    /// The only possible value, if there is just one.
     pub fn one(&self) -> Option<Scalar> {
         match self {
             Self::Number(low, high) if low == high && low.is_finite() => Some(Scalar::Number(*low)),
@@ -72,13 +73,13 @@ impl Possible {
         if let Self::Number(low, high) = self { (*low, *high) } else { (f64::NEG_INFINITY, f64::INFINITY) }
     }
 
-    /// Whether it can hold, and whether it can fail.
+    /// Whether it can be true, and whether it can be false.
     fn holds(&self) -> (bool, bool) {
         if let Self::Flag { can_hold, can_fail } = self { (*can_hold, *can_fail) } else { (true, true) }
     }
 }
 
-/// The values that an expression may have, given what is known. A name without a value may have any of its type.
+/// The values that an expression may have. A name without a value may have any value of its type.
 pub fn possible(expr: &Expr, values: &dyn Values) -> Possible {
     let of = |part: &Expr| possible(part, values);
     match &expr.kind {
@@ -122,7 +123,7 @@ pub fn possible(expr: &Expr, values: &dyn Values) -> Possible {
             }
             match otherwise {
                 Some(value) if open => add(of(value)),
-                // Where no case applies there is no value at all.
+                // Where no case applies, there is no value.
                 None if open => return Possible::anything(&expr.ty),
                 _ => {}
             }
@@ -132,7 +133,7 @@ pub fn possible(expr: &Expr, values: &dyn Values) -> Possible {
     }
 }
 
-/// An interval that an operation made; what is not a number may be anything.
+/// An interval from an operation; it is unbounded where an end is not a number.
 fn interval(low: f64, high: f64) -> Possible {
     if low.is_nan() || high.is_nan() { Possible::Number(f64::NEG_INFINITY, f64::INFINITY) } else { Possible::Number(low, high) }
 }
@@ -179,7 +180,7 @@ fn call(function: &Function, arguments: &[(f64, f64)]) -> Possible {
     let known = arguments.iter().all(|(low, high)| low == high);
     match function.name {
         _ if known => interval(low, high),
-        // These never fall while an argument rises.
+        // These functions are monotonically increasing in every argument.
         "larger" | "smaller" | "sign" | "floor" | "exp" => interval(low, high),
         "sqrt" | "ln" | "log10" if arguments[0].0 >= 0.0 => interval(low, high),
         "magnitude" if arguments[0].0 <= 0.0 && arguments[0].1 >= 0.0 => interval(0.0, low.max(high)),
@@ -188,7 +189,7 @@ fn call(function: &Function, arguments: &[(f64, f64)]) -> Possible {
     }
 }
 
-/// Whether two values can be the same, and whether they can differ.
+/// Whether two values can be equal, and whether they can differ.
 fn equal(left: &Possible, right: &Possible) -> (bool, bool) {
     if let (Some(left), Some(right)) = (left.one(), right.one()) {
         return (left == right, left != right);
@@ -251,7 +252,7 @@ mod tests {
         }
     }
 
-    /// Each operation over intervals holds every value that the operation has inside them: a grid of points is the independent source.
+    /// The interval of each operation contains all its values: compared with a grid of points.
     #[test]
     fn no_bound_is_too_narrow() {
         let intervals = [(-2.0, -0.5), (-1.0, 2.0), (0.0, 0.0), (0.5, 3.0)];

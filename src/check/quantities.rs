@@ -1,4 +1,4 @@
-//! Checks quantities: positions, chain, value, difference or metric, limits.
+//! Checks quantities: positions, filter, value, difference or metric, limits.
 
 use std::sync::Arc;
 
@@ -19,25 +19,25 @@ use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::{Dimension, Unit};
 
-/// What a quantity's value and difference, or its metric, come to.
+/// The result of checking value and difference, or the metric, of a quantity.
 pub(super) struct Compared {
     pub evaluation: Evaluation,
     pub dimension: Dimension,
     pub processing: String,
     pub comparison: String,
-    /// Which values are good and what says so, where that can be told.
+    /// Best value and the text that decides it, where it is known.
     pub best: Option<(Best, Span)>,
-    /// What the dimension comes from, where it is not that of the signal.
+    /// The text that decides the dimension, where it is not that of the signal.
     pub from: Option<Span>,
 }
 
-/// Which records are compared.
+/// The records that are compared.
 #[derive(Clone, Copy, Debug)]
 enum Compare {
     Sides,
-    /// Each record of a side with what is central of all.
+    /// Each record of a side with the mean or median of all.
     With(Side, Center),
-    /// Sections measured again with what they repeat.
+    /// Sections measured again with their originals.
     Repeats,
 }
 
@@ -52,7 +52,7 @@ impl Checker<'_> {
         found
     }
 
-    /// Of its values, for who refers to them. What is wrong is told where the quantity itself is looked at.
+    /// Dimension of its values, for other quantities. Errors are reported only where the quantity itself is checked.
     pub(super) fn dimension_of(&mut self, block: &Block) -> Option<Dimension> {
         let problems = self.problems.0.len();
         let (assumed, partial) = (std::mem::take(&mut self.assumed), self.partial);
@@ -74,7 +74,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Everything is looked at, whatever fails: an author wants all faults in one go.
+    /// Checks all fields even after an error, so that an author sees all errors in one run.
     fn quantity_where(&mut self, block: &Block, only: Option<Option<Expr>>) -> Option<Quantity> {
         let metric = block.field("metric");
         let assessed = block.field("from");
@@ -86,17 +86,17 @@ impl Checker<'_> {
         self.all_required(block, needed);
         if let (Some(metric), Some(other)) = (metric, block.field("value").or(block.field("difference"))) {
             self.problems.push(
-                Problem::error("metric-and-value", "a quantity has either a metric, or a value and a difference")
+                Problem::error("metric-and-value", "a quantity has either `metric`, or `value` and `difference`")
                     .at(&other.key.span)
                     .also(&metric.key.span, "the metric"),
             );
         }
         if let (Some(from), Some(other)) = (assessed, block.field("difference").or(metric).or(block.field("compare"))) {
             self.problems.push(
-                Problem::error("from-and-compared", "values of one record are not compared")
+                Problem::error("from-and-compared", "values of one record cannot be compared")
                     .at(&other.key.span)
                     .also(&from.key.span, "the record")
-                    .help(format!("leave `from` or `{}` out", other.key.text)),
+                    .help(format!("remove `from` or `{}`", other.key.text)),
             );
         }
         let chain = block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
@@ -113,18 +113,17 @@ impl Checker<'_> {
         let limits = self.limits(block, unit.as_ref().zip(from), best, &places);
         if block.field("limit").is_none() && !self.is_referred_to(block.name_text()) {
             self.problems.push(
-                Problem::warning("no-limit", format!("quantity `{}` has no limit: it is reported, and decides nothing", block.name_text()))
-                    .at(block.span()),
+                Problem::warning(
+                    "no-limit",
+                    format!("quantity `{}` has no limit: it is reported and has no effect on a verdict", block.name_text()),
+                )
+                .at(block.span()),
             );
         }
         if let (Some(only), None, 2..) = (block.field("where"), block.field("minimum pairs"), self.minimum_pairs) {
-            let says = format!(
-                "quantity `{}` takes only some of the sections and needs {} pairs all the same",
-                block.name_text(),
-                self.minimum_pairs
-            );
+            let says = format!("quantity `{}` uses only some of the sections but needs {} pairs", block.name_text(), self.minimum_pairs);
             let problem = Problem::warning("minimum-inherited", says).at(&only.value.span);
-            self.problems.push(problem.help("say how many it needs itself: `minimum pairs ...`"));
+            self.problems.push(problem.help("state the number for this quantity: `minimum pairs ...`"));
         }
         let minimum_signals = self.count(block, "minimum signals", self.minimum_signals);
         let minimum_pairs = self.count(block, "minimum pairs", self.minimum_pairs);
@@ -159,7 +158,7 @@ impl Checker<'_> {
         })
     }
 
-    /// The positions of all fields `of`: signals of one dimension at the same places.
+    /// The positions of all fields `of`. Their signals must have the same dimension and places.
     fn positions_of_quantity(&mut self, block: &Block) -> Option<Vec<(Position, Assignment)>> {
         let mut found: Vec<(Position, Assignment)> = Vec::new();
         let mut ok = true;
@@ -185,15 +184,18 @@ impl Checker<'_> {
                 if let Some((first, _)) = found.first()
                     && first.signal.dimension != signal.dimension
                 {
-                    let says = format!("the signals of one quantity are alike: one is {}", first.signal.dimension.in_words());
+                    let says = format!(
+                        "the signals of one quantity must have the same dimension: another is {}",
+                        first.signal.dimension.in_words()
+                    );
                     self.problems.push(Problem::error("unit-mismatch", says).at(&field.value.span).label(signal.dimension.in_words()));
                     return None;
                 }
                 let again = found.iter().find(|(known, _)| known.name == name && both_apply(&known.only, &only));
                 if again.is_some() {
-                    let says = format!("`{name}` is evaluated twice: its values would count double");
+                    let says = format!("`{name}` is evaluated twice, so its values would count twice");
                     let problem = Problem::error("position-twice", says).at(&field.value.span);
-                    self.problems.push(problem.help("give the fields `of` conditions that exclude each other: `when ...`"));
+                    self.problems.push(problem.help("add conditions that exclude each other to the fields `of`: `when ...`"));
                     return None;
                 }
                 let places = at.iter().map(|(place, member)| (place.clone(), member.clone())).collect();
@@ -203,7 +205,7 @@ impl Checker<'_> {
         (ok && !found.is_empty()).then_some(found)
     }
 
-    /// Every position with its name, its signal and its assignment.
+    /// Every position with its name, signal and assignment.
     pub(super) fn signals_of(&mut self, of: &Text) -> Option<Vec<(String, Signal, Assignment)>> {
         let written = from_pest::of_places(of, self.problems)?;
         let positions = self.positions(&written.signal, &written.picks, of)?;
@@ -232,7 +234,7 @@ impl Checker<'_> {
         Some(found)
     }
 
-    /// Numbers of each record: assessed by themselves, or compared.
+    /// Numbers of each record, assessed or compared.
     fn by_values(&mut self, block: &Block, positions: Option<&[(Position, Assignment)]>, chain: &[Step]) -> Option<Compared> {
         let first = positions.and_then(|positions| positions.first());
         let dimension = first.map(|(position, _)| after(chain, position.signal.dimension));
@@ -244,14 +246,15 @@ impl Checker<'_> {
         for (field, (_, other)) in fields.iter().zip(&values).filter_map(|(field, value)| Some((field, value.as_ref()?))) {
             if Some(*other) != result {
                 let wanted = result.map_or_else(String::new, Dimension::in_words);
-                let says = format!("the values of one quantity are alike: the first is {wanted}, this is {}", other.in_words());
+                let says =
+                    format!("the values of one quantity must have the same dimension: the first is {wanted}, this is {}", other.in_words());
                 self.problems.push(Problem::error("unit-mismatch", says).at(&field.value.span).also(&fields[0].value.span, wanted));
                 return None;
             }
         }
         for (at, field) in fields.iter().enumerate() {
             if let Some(first) = fields[..at].iter().find(|first| normalised(&first.value.text) == normalised(&field.value.text)) {
-                let problem = Problem::error("value-twice", "this value stands twice and would count double").at(&field.value.span);
+                let problem = Problem::error("value-twice", "this value is written twice and would count twice").at(&field.value.span);
                 self.problems.push(problem.also(&first.value.span, "the same value"));
                 return None;
             }
@@ -271,7 +274,7 @@ impl Checker<'_> {
             let side = from??;
             let other = if side == Side::Measured { InputSide::Simulated } else { InputSide::Measured };
             if let Some(input) = values.iter().flat_map(|value| value.inputs.iter().flatten()).find(|input| input.side == other) {
-                let says = format!("the values are {}, and the other record is not read", side.in_words());
+                let says = format!("the values are {}; the other record is not read", side.in_words());
                 self.problems.push(Problem::error("record-not-read", says).at(&input.span));
                 return None;
             }
@@ -304,32 +307,33 @@ impl Checker<'_> {
         Some(Compared { evaluation, dimension: compared, processing, comparison, best, from })
     }
 
-    /// `from measured`
+    /// The side in a field such as `from measured`.
     fn side(&mut self, field: &Field) -> Option<Side> {
         let word = self.choice_field(field)?;
         let found = Side::ALL.into_iter().find(|side| side.in_words() == word);
         if found.is_none() {
-            let problem = Problem::error("unknown-record", format!("`{word}` is no record of a campaign")).at(&field.value.span);
+            let problem = Problem::error("unknown-record", format!("`{word}` is not a record of a campaign")).at(&field.value.span);
             self.problems.push(problem.suggest(&word, Side::ALL.map(Side::in_words)));
         }
         found
     }
 
-    /// Which records a metric takes its two signals of: whether a repeat and its original.
+    /// Whether a metric compares a repeated section with its original; otherwise simulation with measurement.
     pub(super) fn of_metric(&mut self, field: &Field, metric: &Span) -> Option<bool> {
         match self.compare(field)? {
             Compare::Sides => Some(false),
             Compare::Repeats => Some(true),
             Compare::With(..) => {
-                let problem = Problem::error("metric-and-spread", "a metric compares two signals, and there is no mean of signals");
-                let help = "take a `value` and a `difference`, or compare `simulated with measured` or `repeats with originals`";
+                let problem =
+                    Problem::error("metric-and-spread", "a metric compares two signals; a mean of several signals is not available");
+                let help = "use `value` and `difference`, or compare `simulated with measured` or `repeats with originals`";
                 self.problems.push(problem.at(&field.value.span).also(metric, "the metric").help(help));
                 None
             }
         }
     }
 
-    /// `simulated with measured`, `simulated with mean of simulated`, `repeats with originals`.
+    /// What is compared: `simulated with measured`, `simulated with mean of simulated`, `repeats with originals`.
     fn compare(&mut self, field: &Field) -> Option<Compare> {
         let words = normalised(&field.value.text);
         let all: Vec<&str> = words.split(' ').collect();
@@ -346,7 +350,7 @@ impl Checker<'_> {
         }
         let problem =
             Problem::error("unknown-comparison", format!("`{words}` does not say which records are compared")).at(&field.value.span);
-        let help = "`simulated with measured`; `simulated with mean of simulated` where there are several; `repeats with originals`";
+        let help = "write `simulated with measured`, `simulated with mean of simulated` (for several records) or `repeats with originals`";
         self.problems.push(problem.help(help));
         None
     }
@@ -356,7 +360,7 @@ impl Checker<'_> {
         self.valued(&phrase, field, positions?, chain, Scope::reducing)
     }
 
-    /// An expression of what is taken from the own and from named signals, at every position.
+    /// An expression of values taken from the own signal and from named signals, at every position.
     pub(super) fn valued(
         &mut self,
         phrase: &Phrase,
@@ -375,7 +379,7 @@ impl Checker<'_> {
         let result = self.number_type(&expr)?;
         if scope.inputs.is_empty() {
             self.problems.push(
-                Problem::error("value-of-nothing", "this takes nothing from the signal")
+                Problem::error("value-of-nothing", "this expression uses no value of the signal")
                     .at(&field.value.span)
                     .help("for instance `median`, `rms`, `|p99.85|`"),
             );
@@ -383,7 +387,7 @@ impl Checker<'_> {
         }
         let mut inputs = vec![scope.inputs];
         for (position, at) in &positions[1..] {
-            // Only a named signal differs from position to position.
+            // Only named signals differ between positions.
             if inputs[0].iter().all(|input| input.signal.is_none() && input.over.is_none()) {
                 inputs.push(inputs[0].clone());
                 continue;
@@ -395,7 +399,7 @@ impl Checker<'_> {
         Some((Valued { expr, inputs }, result))
     }
 
-    /// A value at a position, in sections in which the position is evaluated.
+    /// A value at one position, in the sections in which the position is evaluated.
     fn value_at(&mut self, phrase: &Phrase, field: &Field, only: &Option<Expr>, scope: &mut Scope) -> Option<Expr> {
         let known = self.assumed.len();
         self.assumed.extend(only.clone());
@@ -404,7 +408,8 @@ impl Checker<'_> {
         found
     }
 
-    /// A named difference, a choice parameter that names one, or an expression; of values of unknown dimension, only its name is looked at.
+    /// A named difference, a choice parameter that names one, or an expression. If the dimension of the values is not known, only
+    /// the name is checked.
     fn difference(&mut self, field: &Field, dimension: Option<Dimension>) -> Option<(Expr, Dimension)> {
         let written = from_pest::expression(&field.value, self.problems)?;
         let mut phrase = written.clone();
@@ -420,7 +425,7 @@ impl Checker<'_> {
             {
                 let differences = DIFFERENCES.iter().map(|(name, _)| *name);
                 let problem =
-                    Problem::error("unknown-difference", format!("`{choice}` is no way to compare two values")).at(&field.value.span);
+                    Problem::error("unknown-difference", format!("`{choice}` is not a difference of two values")).at(&field.value.span);
                 self.problems.push(problem.suggest(&choice, differences));
                 return None;
             }
@@ -430,7 +435,7 @@ impl Checker<'_> {
         Some((expr, dimension))
     }
 
-    /// The unit values are printed in: said, or that of the signal, or SI.
+    /// The unit in which values are printed: as stated, else that of the signal, else SI.
     fn quantity_unit(&mut self, block: &Block, of: &Text, dimension: Dimension) -> Option<Unit> {
         if let Some(field) = block.field("in") {
             let unit = self.unit(&field.value)?;
@@ -438,7 +443,7 @@ impl Checker<'_> {
                 self.problems.push(
                     Problem::error(
                         "unit-mismatch",
-                        format!("the values are {}, the unit is one of {}", dimension.in_words(), unit.dimension.in_words()),
+                        format!("the values are {}; the unit is that of {}", dimension.in_words(), unit.dimension.in_words()),
                     )
                     .at(&field.value.span)
                     .also(&of.span, dimension.in_words()),
@@ -451,7 +456,7 @@ impl Checker<'_> {
         Some(self.own_unit(&signal, dimension))
     }
 
-    /// The unit that a column of sections or a vehicle datum is declared in, of the first in an expression that has a dimension.
+    /// The declared unit of the first section column or vehicle datum in an expression that has this dimension.
     pub(super) fn datum_unit(&self, expr: &Expr, dimension: Dimension) -> Option<Unit> {
         let datum = match &expr.kind {
             Kind::Column(index) => self.names.columns.get(*index)?,
@@ -467,7 +472,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The unit of a channel or signal if it suits, else that of SI.
+    /// The unit of a channel or signal if its dimension agrees, else the SI unit.
     pub(super) fn own_unit(&self, name: &str, dimension: Dimension) -> Unit {
         let channel = self.names.channels.get(name).map(|channel| channel.unit.clone());
         let own = channel.or_else(|| self.names.signals.get(name).and_then(|signal| signal.unit.clone()));
@@ -484,13 +489,13 @@ impl Checker<'_> {
         Some(expr)
     }
 
-    /// A whole number that constants decide.
+    /// A whole number that follows from constants.
     pub(super) fn count(&mut self, block: &Block, key: &str, default: usize) -> Option<usize> {
         let Some(field) = block.field(key) else { return Some(default) };
         let (value, dimension) = self.constant(&field.value)?;
         if dimension != Dimension::ONE || value.fract() != 0.0 || !(0.0..=1e6).contains(&value) {
             self.problems.push(
-                Problem::error("not-a-count", format!("`{key}` is a whole number, this is {}", normalised(&field.value.text)))
+                Problem::error("not-a-count", format!("`{key}` must be a whole number, this is {}", normalised(&field.value.text)))
                     .at(&field.value.span),
             );
             return None;
@@ -499,22 +504,22 @@ impl Checker<'_> {
     }
 }
 
-/// Whether there may be sections in which two positions are evaluated.
+/// Whether there may be sections in which both positions are evaluated.
 fn both_apply(a: &Option<Expr>, b: &Option<Expr>) -> bool {
     let conditions: Vec<(&Expr, bool)> = a.iter().chain(b).map(|condition| (condition, true)).collect();
     !impossible(&conditions)
 }
 
-/// What a comparison comes to where both sides are alike: 0 of a difference, 1 of a ratio; `None` where that depends on the side.
+/// The value of a comparison where both sides are equal: 0 for a difference, 1 for a ratio; `None` where it depends on the value.
 fn of_equal_sides(difference: &Expr) -> Option<f64> {
-    /// Values of both signs and of no round ratio.
+    /// Values of both signs, without a simple ratio.
     const TRIED: [f64; 3] = [1.0, -1.7, 2.9];
     let mut found = TRIED.iter().map(|&side| number(difference, &Alike(side)));
     let first = found.next()?.ok()?;
     found.all(|other| other == Ok(first)).then_some(first)
 }
 
-/// Both sides of a pair have this value, and nothing else is known.
+/// Both sides of a pair have this value; nothing else is known.
 struct Alike(f64);
 
 impl Values for Alike {

@@ -1,4 +1,4 @@
-//! Checks what stands beside quantities: axis, zones, section checks, treatment of sections, what is independent.
+//! Checks the rules that belong to no quantity: axis, zones, section checks, treatment of sections, independent units.
 
 use super::Checker;
 use super::names::normalised;
@@ -19,7 +19,7 @@ impl Checker<'_> {
             self.problems.push(
                 Problem::error("unit-mismatch", format!("`{}` cannot be {}", field.key.text, unit.dimension.in_words()))
                     .at(&text.span)
-                    .help("`axis distance in m` or `axis time in s`; `time time in s`"),
+                    .help("write for instance `axis distance in m` or `axis time in s`; `time time in s`"),
             );
             return None;
         }
@@ -45,7 +45,7 @@ impl Checker<'_> {
                     self.problems.push(
                         Problem::error(
                             "unit-mismatch",
-                            format!("sections are {} long, this is {}", axis.in_words(), super::scalars::in_words(&expr.ty)),
+                            format!("the length of a section is {}, this is {}", axis.in_words(), super::scalars::in_words(&expr.ty)),
                         )
                         .at(&field.value.span),
                     );
@@ -91,21 +91,21 @@ impl Checker<'_> {
         })
     }
 
-    /// The track record is read for its own: a check cannot weigh it against simulation or measurement.
+    /// The track record has samples of its own: a check cannot combine it with simulation or measurement.
     pub(super) fn inputs_of_one_record(&mut self, inputs: &[Input]) -> Option<()> {
         let track = |input: &Input| input.signal.as_ref().is_some_and(|signal| signal.track);
         let Some(first) = inputs.first() else { return Some(()) };
         let Some(other) = inputs.iter().find(|input| track(input) != track(first)) else { return Some(()) };
         self.problems.push(
-            Problem::error("mixed-records", "a check uses either the track record, or simulation and measurement")
+            Problem::error("mixed-records", "a check uses either the track record or the records of simulation and measurement")
                 .at(&other.span)
                 .also(&first.span, "the other record")
-                .help("make two checks of it"),
+                .help("write two checks"),
         );
         None
     }
 
-    /// What is done with a fault, of the treatments that a field may name; by default the section is not used.
+    /// What is done with a fault: one of the treatments that the field allows; by default the section is not used.
     pub(super) fn on_fault(&mut self, block: &Block, key: &str, treatments: &[&str]) -> Option<OnFault> {
         let Some(field) = block.field(key) else { return Some(OnFault::NotUsed) };
         let word = self.choice_field(field)?;
@@ -117,7 +117,7 @@ impl Checker<'_> {
             _ => return Some(OnFault::Stop),
         }
         self.problems.push(
-            Problem::error("unknown-choice", format!("`{word}` is no treatment"))
+            Problem::error("unknown-choice", format!("`{word}` is not a treatment of faults"))
                 .at(&field.value.span)
                 .suggest(&word, treatments.iter().copied()),
         );
@@ -140,7 +140,7 @@ impl Checker<'_> {
                 "sections" => {}
                 "whole records" => rules.whole_records = true,
                 other => {
-                    let problem = Problem::error("unknown-choice", format!("`{other}` is not what can be used")).at(&field.value.span);
+                    let problem = Problem::error("unknown-choice", format!("`use` cannot be `{other}`")).at(&field.value.span);
                     self.problems.push(problem.suggest(other, ["sections", "whole records"]));
                 }
             }
@@ -169,7 +169,7 @@ impl Checker<'_> {
             match Method::from_name(&word) {
                 Some(method) => rules.percentiles = method,
                 None => {
-                    let problem = Problem::error("unknown-choice", format!("`{word}` is no percentile rule")).at(&field.value.span);
+                    let problem = Problem::error("unknown-choice", format!("`{word}` is not a percentile rule")).at(&field.value.span);
                     self.problems.push(problem.suggest(&word, Method::ALL.iter().map(|method| method.name())));
                 }
             }
@@ -177,7 +177,7 @@ impl Checker<'_> {
         rules
     }
 
-    /// A word, or the value of the choice parameter it names.
+    /// A word, or the value of the choice parameter of this name.
     pub(super) fn choice_field(&mut self, field: &Field) -> Option<String> {
         self.choice_word(&normalised(&field.value.text), &field.value.span)
     }
@@ -188,14 +188,14 @@ impl Checker<'_> {
             "n-1" => 1,
             "n" => 0,
             other => {
-                let problem = Problem::error("unknown-choice", format!("`{other}` is no divisor of the variance")).at(&field.value.span);
-                self.problems.push(problem.help("`n-1` or `n`"));
+                let problem = Problem::error("unknown-choice", format!("`{other}` is not a divisor of the variance")).at(&field.value.span);
+                self.problems.push(problem.help("write `n-1` or `n`"));
                 1
             }
         }
     }
 
-    /// What is independent of each other, by which n and intervals are counted.
+    /// What counts as an independent unit, for n and for confidence intervals.
     pub(super) fn independent(&mut self, block: Option<&Block>) -> Independent {
         let Some(field) = block.and_then(|block| block.field("independent")) else { return Independent::Site };
         let Some(word) = self.choice_field(field) else { return Independent::Site };
@@ -214,21 +214,20 @@ impl Checker<'_> {
         }
     }
 
-    /// The zones of the protocol and the words of the zone column must be the same, or sections would fall between them.
+    /// The zones of the protocol and the words of the zone column must agree; otherwise some sections would have no zone.
     pub(super) fn zones_match(&mut self, rules: &SectionRules) {
         let Some(index) = rules.zone else {
             if let Some(block) = self.blocks.iter().find(|block| block.kind.text == "zone") {
-                let problem =
-                    Problem::error("no-zone-column", "there are zones, but no section column says which section belongs to which")
-                        .at(block.span());
+                let problem = Problem::error("no-zone-column", "there are zones, but no section column states the zone of a section")
+                    .at(block.span());
                 self.problems.push(problem.help("add to `sections`: `zone zone`"));
             }
             return;
         };
         let datum = self.names.columns[index].clone();
         let DatumKind::Words(words) = &datum.kind else {
-            let problem = Problem::error("zone-column", "the column that tells the zone holds words").at(&datum.span);
-            self.problems.push(problem.help("`one of zones`, the names of the zone blocks"));
+            let problem = Problem::error("zone-column", "the zone column must be a choice of words").at(&datum.span);
+            self.problems.push(problem.help("write `one of zones`, which stands for the names of the zone blocks"));
             return;
         };
         self.zone = Some(Expr {
@@ -237,8 +236,8 @@ impl Checker<'_> {
             span: Origin { span: datum.span.clone(), words: datum.name.as_str().into() },
         });
         for word in words.iter().filter(|word| !self.zone_names.contains(word)) {
-            let problem = Problem::error("unknown-zone", format!("sections may be of zone {word}, which is not described")).at(&datum.span);
-            self.problems.push(problem.help(format!("add a block `zone {word}`, or let the column be `one of zones`")));
+            let problem = Problem::error("unknown-zone", format!("sections may be of zone {word}, which has no block")).at(&datum.span);
+            self.problems.push(problem.help(format!("add a block `zone {word}`, or declare the column with `one of zones`")));
         }
         let strangers: Vec<Block> = self
             .blocks
@@ -251,7 +250,7 @@ impl Checker<'_> {
                 Problem::error("unknown-zone", format!("no section can be of zone {}", block.name_text()))
                     .at(block.span())
                     .also(&datum.span, "its words are those of the zone column")
-                    .help("let the column be `one of zones`"),
+                    .help("declare the column with `one of zones`"),
             );
         }
     }

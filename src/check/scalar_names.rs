@@ -1,4 +1,4 @@
-//! What a name in an expression over numbers, words and conditions stands for.
+//! Resolves names in expressions over numbers, words and conditions.
 
 use std::collections::BTreeSet;
 
@@ -13,17 +13,17 @@ use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Unit;
 
-/// What the names of statistics are in the bound of a limit, and how to limit an expression of their values.
+/// The meaning of a statistic's name in the bound of a limit, and how to limit an expression of values instead.
 pub(super) const LIMITS_NOT_VALUES: &str = "in a limit, the name of a statistic stands for the limit of that statistic, not for its \
     value; an expression of values stands before the limit: `limit (mean + 3 * std) 60 kN`";
 
 impl Checker<'_> {
-    /// A value taken from the quantity's own signal.
+    /// A value taken from the own signal of the quantity.
     pub(super) fn own_reducer(&mut self, reducer: Reducer, span: Origin, scope: &mut Scope) -> Option<Expr> {
         self.percentile_range(reducer, &span)?;
         let Some(Reduce { own: Some(dimension), axis, side, .. }) = scope.reduce else {
             let what = reducer.in_words();
-            let problem = Problem::error("no-signal", format!("`{what}` is taken from a signal, and there is none here")).at(&span);
+            let problem = Problem::error("no-signal", format!("`{what}` needs a signal, and there is none here")).at(&span);
             self.problems.push(if scope.reduce.is_some() { problem.help(format!("name the signal: `{what} of ...`")) } else { problem });
             return None;
         };
@@ -39,14 +39,14 @@ impl Checker<'_> {
         match reducer {
             Reducer::Percentile(percent) if !(0.0..=100.0).contains(&percent) => {
                 self.problems
-                    .push(Problem::error("out-of-range", format!("a percentile lies between 0 and 100, this is {percent}")).at(span));
+                    .push(Problem::error("out-of-range", format!("a percentile must be from 0 to 100, this is {percent}")).at(span));
                 None
             }
             _ => Some(()),
         }
     }
 
-    /// `range of curvature`: a value taken from a named signal.
+    /// A value taken from a named signal: `range of curvature`.
     pub(super) fn reduced(&mut self, reducer: &Phrase, signal: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let place = text.place(reducer.range.clone());
         let found = match &reducer.node {
@@ -64,7 +64,7 @@ impl Checker<'_> {
                 } else {
                     numbers.iter().map(String::as_str).collect()
                 };
-                let says = format!("`{word} of` is neither a value taken from a signal nor a share of a number");
+                let says = format!("`{word} of` is neither a value of a signal nor a share of a number");
                 self.problems.push(Problem::error("unknown-reducer", says).at(&place).suggest(word, known));
             }
             return None;
@@ -74,7 +74,7 @@ impl Checker<'_> {
             self.problems.push(
                 Problem::error(
                     "no-records",
-                    format!("`{} of ...` is taken from the records of a section, which are not at hand here", found.in_words()),
+                    format!("`{} of ...` needs the records of a section, which are not available here", found.in_words()),
                 )
                 .at(span),
             );
@@ -84,7 +84,7 @@ impl Checker<'_> {
             return self.of_both(found, signal, text, span, scope);
         }
         let at = scope.at.clone();
-        // `slope of A over B` reads as `slope of (A over B)`.
+        // `slope of A over B` is parsed as `slope of (A over B)`.
         let (signal, over) = match &signal.node {
             Node::Over(signal, over) => (signal.as_ref(), Some(over.as_ref())),
             _ => (signal, None),
@@ -101,7 +101,7 @@ impl Checker<'_> {
         Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
     }
 
-    /// `measured(p99.85)`: the value of that side, whichever side is evaluated.
+    /// The value of a fixed side, such as `measured(p99.85)`, whichever side is evaluated.
     pub(super) fn on_side(
         &mut self,
         name: &At<String>,
@@ -111,7 +111,8 @@ impl Checker<'_> {
         scope: &mut Scope,
     ) -> Option<Expr> {
         let (Some(reduce), [argument]) = (scope.reduce, arguments) else {
-            let says = format!("`{}(...)` holds one value taken from a signal, in the value of a quantity or in a check", name.node);
+            let says =
+                format!("`{}(...)` must contain one value of a signal; it can be used in the value of a quantity or in a check", name.node);
             self.problems.push(Problem::error("side", says).at(span));
             return None;
         };
@@ -192,7 +193,7 @@ impl Checker<'_> {
         }
     }
 
-    /// `vehicle.category`, `section.radius`, or the name alone.
+    /// A datum: `vehicle.category`, `section.radius`, or the name without prefix.
     fn datum_path(&mut self, path: &str, span: &Origin, scope: &Scope) -> Option<Option<Expr>> {
         let (role, name) = path.split_once('.').map_or(("", path), |(role, name)| (role, name));
         let of = |data: &[super::plan::Datum], wanted: &str| {
@@ -201,7 +202,7 @@ impl Checker<'_> {
         let (column, vehicle) = (of(&self.names.columns, "section"), of(&self.names.vehicle, "vehicle"));
         if column.is_some() && vehicle.is_some() {
             self.problems.push(
-                Problem::error("ambiguous", format!("`{name}` is given for the vehicle and for each section"))
+                Problem::error("ambiguous", format!("`{name}` is both a vehicle datum and a section column"))
                     .at(span)
                     .help(format!("write `vehicle.{name}` or `section.{name}`")),
             );
@@ -216,13 +217,13 @@ impl Checker<'_> {
             if scope.section {
                 return Some(Some(Expr { kind: Kind::Column(index), ty, span: span.clone() }));
             }
-            let says = format!("`{path}` differs from section to section, and this holds for all of them at once");
+            let says = format!("`{path}` differs between sections, but this expression has one value for all sections");
             let problem = Problem::error("no-section", says).at(span);
-            // Only limits know the vehicle and not the section.
+            // Only the scope of limits has the vehicle but no section.
             self.problems.push(match (scope.vehicle, is_zone) {
                 (true, true) => problem.help("a limit that depends on the zone ends with `for each zone`"),
                 (true, false) => problem
-                    .help("a bound may use a mean, such as `mean of radius`; a limit of some sections ends with `for sections where ...`; a limit of `each` value may depend on its section"),
+                    .help("a bound can use a mean, such as `mean of radius`; a limit for some sections ends with `for sections where ...`; a limit of `each` value can depend on its section"),
                 (false, _) => problem,
             });
             return Some(None);
@@ -233,17 +234,14 @@ impl Checker<'_> {
             return Some(Some(Expr { kind: Kind::Vehicle(index), ty, span: span.clone() }));
         }
         self.problems.push(
-            Problem::error(
-                "no-vehicle",
-                format!("`{path}` is known only with a vehicle, and a number fixed by the protocol is needed here"),
-            )
-            .at(span)
-            .help("make it a `parameter`, which a campaign can set"),
+            Problem::error("no-vehicle", format!("`{path}` depends on the vehicle; expected a number that the protocol fixes"))
+                .at(span)
+                .help("make it a `parameter`, which a campaign can set"),
         );
         Some(None)
     }
 
-    /// Whether `word of ...` is a product: a parameter, definition or datum of that name.
+    /// Whether `word of ...` is a product, because a parameter, definition or datum has this name.
     pub(super) fn is_number_name(&self, phrase: &Phrase) -> bool {
         let Node::Path(path) = &phrase.node else { return false };
         let datum = |role: &str, data: &[super::plan::Datum], name: &str| {
@@ -256,7 +254,7 @@ impl Checker<'_> {
                 || datum("vehicle.", &self.names.vehicle, path))
     }
 
-    /// Whether a name is not known because its own block has a fault, which was told already.
+    /// Whether the block of a name has an error that was already reported.
     pub(super) fn is_failed(&self, path: &str) -> bool {
         let name = path.split_once('.').map_or(path, |(_, name)| name);
         self.names.failed.contains(name)
@@ -268,7 +266,7 @@ impl Checker<'_> {
         }
         if self.is_signal(path) {
             self.problems.push(
-                Problem::error("signal-not-number", format!("`{path}` is a signal, and a number is needed"))
+                Problem::error("signal-not-number", format!("expected a number, `{path}` is a signal"))
                     .at(span)
                     .help(format!("take a number from it: `mean of {path}`")),
             );
@@ -276,7 +274,7 @@ impl Checker<'_> {
         }
         let digits = path.find(|c: char| !c.is_ascii_digit()).unwrap_or(0);
         if digits > 0 {
-            let problem = Problem::error("unknown-unit", format!("`{}` is no unit", &path[digits..])).at(span);
+            let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", &path[digits..])).at(span);
             self.problems.push(match Unit::parse(&path[digits..]).err().and_then(|unknown| unknown.near) {
                 Some(near) => problem.help(format!("did you mean `{} {near}`?", &path[..digits])),
                 None => problem,
@@ -319,7 +317,7 @@ impl Checker<'_> {
         );
     }
 
-    /// The choice that a bare word stands for: a word, or the value of the choice parameter of that name.
+    /// The choice that a bare word stands for: the word itself, or the value of the choice parameter of this name.
     pub(super) fn choice_word(&mut self, word: &str, span: &Span) -> Option<String> {
         if !self.names.parameter_blocks.contains_key(word) {
             return Some(word.to_string());
@@ -330,7 +328,7 @@ impl Checker<'_> {
         }
     }
 
-    /// As [`Self::choice_word`], where a phrase is a bare word.
+    /// As [`Self::choice_word`], for a phrase that is a bare word.
     pub(super) fn choice_phrase(&mut self, phrase: &Phrase, text: &Text) -> Option<String> {
         let word = bare_word(phrase)?;
         self.choice_word(word, &text.place(phrase.range.clone()))

@@ -1,4 +1,4 @@
-//! Types expressions over numbers, words and conditions, and folds what is constant.
+//! Determines types of expressions over numbers, words and conditions, and evaluates constants.
 
 use super::Checker;
 use super::conditions::impossible;
@@ -14,39 +14,39 @@ use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Dimension;
 
-/// Which names an expression may use, and the reduced signals found in it.
+/// The names that an expression can use, and the values taken from signals that it contains.
 #[derive(Debug)]
 pub(super) struct Scope {
     pub vehicle: bool,
     pub section: bool,
-    /// Reducers may be used.
+    /// Whether, and from what, values of signals can be taken.
     pub reduce: Option<Reduce>,
-    /// `simulated` and `measured`, of this dimension.
+    /// Dimension of `simulated` and `measured`, where they can be used.
     pub pair: Option<Dimension>,
-    /// Limits of other statistics, of this dimension.
+    /// Dimension of the limits of other statistics, and the names of these.
     pub limits: Option<(Dimension, Vec<String>)>,
-    /// The one zone that the expression is about.
+    /// The zone of the sections, where it is a single one.
     pub zone: Option<String>,
     /// The rows of a group.
     pub group: Option<Group>,
-    /// `value`: that of one row, of this dimension.
+    /// Dimension of `value`, the value of one row, where it can be used.
     pub value: Option<Dimension>,
-    /// Beside a value, what is taken from other quantities.
+    /// Statistics of other quantities that can be used beside `value`.
     pub others: Vec<Taking>,
-    /// The position that named signals are taken at.
+    /// The position at which named signals are taken.
     pub at: Assignment,
-    /// Of the own signal after its filter over before.
+    /// Dimension of the own signal after its filter divided by that before.
     pub factor: Dimension,
     pub inputs: Vec<Input>,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reduce {
-    /// Dimension of the quantity's own processed signal; `None` where there is no such signal.
+    /// Dimension of the own processed signal of the quantity; `None` where there is no such signal.
     pub own: Option<Dimension>,
     pub axis: Dimension,
     pub side: InputSide,
-    /// Whether metrics of the own signal may be used by name.
+    /// Whether metrics of the own signal can be used by name.
     pub metrics: bool,
 }
 
@@ -85,7 +85,7 @@ impl Scope {
         Self { reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: false }), ..Self::new(true, true) }
     }
 
-    /// As [`Self::reducing`], with metrics of both sides' own signal.
+    /// As [`Self::reducing`], with metrics of the own signal.
     pub fn comparing(own: Option<Dimension>, axis: Dimension) -> Self {
         Self { reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: own.is_some() }), ..Self::new(true, true) }
     }
@@ -96,7 +96,7 @@ impl Scope {
 }
 
 impl Checker<'_> {
-    /// A typed expression, or `None` after a problem was noted.
+    /// A typed expression; `None` after a problem.
     pub(super) fn expr(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Expr> {
         let origin = origin(phrase, text);
         let span = origin.span.clone();
@@ -106,7 +106,7 @@ impl Checker<'_> {
     fn expr_inside(&mut self, phrase: &Phrase, text: &Text, span: Origin, scope: &mut Scope) -> Option<Expr> {
         let (kind, ty) = match &phrase.node {
             Node::Number { value, .. } if !value.is_finite() => {
-                let says = format!("`{}` is more than a number can be", span.words);
+                let says = format!("`{}` is too large for a number", span.words);
                 self.problems.push(Problem::error("not-finite", says).at(&span));
                 return None;
             }
@@ -150,7 +150,7 @@ impl Checker<'_> {
                 self.divided_by_zero(*operator, &right, &span)?;
                 let found = self.folded(Expr { kind: Kind::Binary(*operator, Box::new(left), Box::new(right)), ty, span })?;
                 if matches!(found.kind, Kind::Constant(_)) {
-                    // `false and p0.15 > p99.85` asks nothing of the records.
+                    // `false and p0.15 > p99.85` does not need the records.
                     scope.inputs.truncate(inputs);
                 }
                 return Some(found);
@@ -171,7 +171,7 @@ impl Checker<'_> {
                 let dimension = self.function_type(function, &dimensions, &spans)?;
                 (Kind::Call(function, arguments), Type::Number(dimension))
             }
-            // `share of std` with a parameter `share` is a product, `mean of Y` a reduced signal.
+            // `share of std` with a parameter `share` is a product, `mean of Y` a value of a signal.
             Node::Reduced(factor, of) if self.is_number_name(factor) => {
                 let (left, right) = (self.expr(factor, text, scope), self.expr(of, text, scope));
                 let (left, right) = (left?, right?);
@@ -199,7 +199,7 @@ impl Checker<'_> {
 
     fn not_a_number(&mut self, signal: &str, span: &Span) -> Option<Expr> {
         self.problems.push(
-            Problem::error("signal-not-number", format!("`{signal}` is a signal, and a number is needed"))
+            Problem::error("signal-not-number", format!("expected a number, `{signal}` is a signal"))
                 .at(span)
                 .help("take a number from it: `mean of ...`, `range of ...`"),
         );
@@ -209,7 +209,7 @@ impl Checker<'_> {
     pub(super) fn power(&mut self, dimension: Dimension, exponent: i8, span: &Span) -> Option<Dimension> {
         let found = dimension.power(exponent);
         if found.is_none() {
-            self.problems.push(Problem::error("power", "this power is beyond any unit").at(span));
+            self.problems.push(Problem::error("power", "this power gives exponents of units that are too large").at(span));
         }
         found
     }
@@ -222,16 +222,13 @@ impl Checker<'_> {
         None
     }
 
-    /// `2/3 of std` is two thirds of it, but `2/share of std` could be either.
+    /// `2/3 of std` is two thirds of it. `2/share of std` is ambiguous.
     fn divided_by_share(&mut self, operator: Operator, right: &Phrase, span: &Span) -> Option<()> {
         if operator != Operator::Divide || !matches!(&right.node, Node::Reduced(factor, _) if self.is_number_name(factor)) {
             return Some(());
         }
-        self.problems.push(
-            Problem::error("ambiguous", "this can be read as `a / (b of c)` and as `(a / b) of c`")
-                .at(span)
-                .help("put parentheses around what belongs together"),
-        );
+        self.problems
+            .push(Problem::error("ambiguous", "this can be read as `a / (b of c)` and as `(a / b) of c`").at(span).help("use parentheses"));
         None
     }
 
@@ -250,7 +247,7 @@ impl Checker<'_> {
         for (value, condition) in arms {
             let inputs = scope.inputs.len();
             let condition = self.expr(condition, text, scope).filter(|condition| self.flag_type(condition).is_some());
-            // An arm that a parameter rules out is still checked, but asks nothing of the records.
+            // The case of a condition that parameters make false is still checked, but needs no records.
             let value = self.expr(value, text, scope);
             let (Some(value), Some(condition)) = (value, condition) else {
                 ok = false;
@@ -299,20 +296,20 @@ impl Checker<'_> {
         Some(Expr { kind: Kind::Cases(found, last.map(Box::new)), ty, span: span.clone() })
     }
 
-    /// A warning unless one of the conditions certainly holds.
+    /// Warns unless one of the conditions certainly holds.
     pub(super) fn covered(&mut self, conditions: &[&Expr], span: &Span) {
         let mut all: Vec<(&Expr, bool)> = self.assumed.iter().map(|condition| (condition, true)).collect();
         all.extend(conditions.iter().map(|condition| (*condition, false)));
         if !impossible(&all) && !self.partial {
             self.problems.push(
-                Problem::warning("no-otherwise", "where none of these conditions holds, this has no value")
+                Problem::warning("no-otherwise", "if none of these conditions holds, this has no value")
                     .at(span)
                     .help("end it with `, otherwise ...`"),
             );
         }
     }
 
-    /// Both of one type and dimension; a problem pointing at both otherwise.
+    /// Both must have the same type and dimension; otherwise a problem points at both.
     fn alike(&mut self, first: &Expr, other: &Expr) -> Option<()> {
         let same = match (&first.ty, &other.ty) {
             (Type::Word(_), Type::Word(_)) => true,
@@ -340,7 +337,7 @@ impl Checker<'_> {
         scope: &mut Scope,
     ) -> Option<Expr> {
         let Some(left) = self.expr(left, text, scope) else {
-            // What stands on the right is looked at all the same, unless it may be a word of what was not understood.
+            // The right side is checked as well, unless it may be a word of the part with the error.
             if !matches!(right.node, Node::Path(_)) {
                 self.expr(right, text, scope);
             }
@@ -354,21 +351,18 @@ impl Checker<'_> {
                     Node::Number { value, unit: None } => value.to_string(),
                     _ => {
                         self.problems.push(
-                            Problem::error(
-                                "not-a-word",
-                                format!("`{}` is a word, and is compared with something that is none", words(&left)),
-                            )
-                            .at(&right_span)
-                            .also(&left.span, "a word"),
+                            Problem::error("not-a-word", format!("`{}` is a word and can only be compared with a word", words(&left)))
+                                .at(&right_span)
+                                .also(&left.span, "a word"),
                         );
                         return None;
                     }
                 };
-                // A choice stands for its word, unless a word of that name is meant.
+                // A choice parameter stands for its value, unless a word with its name is among the choices.
                 let word = if choices.contains(&word) { word } else { self.choice_word(&word, &right_span)? };
                 if !choices.contains(&word) {
                     self.problems.push(
-                        Problem::error("unknown-choice", format!("`{}` is never `{word}`", words(&left)))
+                        Problem::error("unknown-choice", format!("`{}` cannot be `{word}`", words(&left)))
                             .at(&right_span)
                             .also(&left.span, format!("one of {}", choices.join(", ")))
                             .suggest(&word, choices.iter().map(String::as_str)),
@@ -393,7 +387,7 @@ impl Checker<'_> {
         self.folded(Expr { kind: Kind::Binary(operator, Box::new(left), Box::new(right)), ty: Type::Flag, span: span.clone() })
     }
 
-    /// A constant in place of an expression of constants; a problem where that has no value, such as a division by zero.
+    /// Replaces an expression of constants by its value; a problem where there is none, such as for a division by zero.
     fn folded(&mut self, expr: Expr) -> Option<Expr> {
         if matches!(expr.kind, Kind::Constant(_)) {
             return Some(expr);
@@ -448,7 +442,7 @@ impl Checker<'_> {
         if let Type::Number(dimension) = expr.ty {
             return Some(dimension);
         }
-        self.problems.push(Problem::error("not-a-number", format!("a number is needed, this is {}", in_words(&expr.ty))).at(&expr.span));
+        self.problems.push(Problem::error("not-a-number", format!("expected a number, this is {}", in_words(&expr.ty))).at(&expr.span));
         None
     }
 
@@ -457,7 +451,7 @@ impl Checker<'_> {
             return Some(());
         }
         self.problems.push(
-            Problem::error("not-a-condition", format!("a condition is needed, this is {}", in_words(&expr.ty)))
+            Problem::error("not-a-condition", format!("expected a condition, this is {}", in_words(&expr.ty)))
                 .at(&expr.span)
                 .help("compare it: `... is ...`, `... <= ...`"),
         );
@@ -467,11 +461,11 @@ impl Checker<'_> {
     pub(super) fn function(&mut self, name: &At<String>, count: usize, text: &Text) -> Option<&'static Function> {
         let span = text.place(name.range.clone());
         let Some(found) = function(&name.node) else {
-            let problem = Problem::error("unknown-function", format!("`{}` is no function", name.node)).at(&span);
+            let problem = Problem::error("unknown-function", format!("`{}` is not a function", name.node)).at(&span);
             self.problems.push(if MetricEntry::called(&name.node).is_some() {
-                problem.help("it is a metric, which takes both signals: it stands in the `metric` of a quantity")
+                problem.help("it is a metric, which compares two signals: use it in the `metric` of a quantity")
             } else if is_signal_function(&name.node) {
-                problem.help(format!("it gives a signal, and a number is needed: `rms of {}(...)`", name.node))
+                problem.help(format!("it gives a signal, expected a number: `rms of {}(...)`", name.node))
             } else {
                 problem.suggest(&name.node, FUNCTIONS.iter().map(|function| function.name).chain(SIGNAL_FUNCTIONS.map(|(name, ..)| name)))
             });
@@ -479,13 +473,16 @@ impl Checker<'_> {
         };
         let needed = if found.signature == Signature::PairSame { 2 } else { 1 };
         if count != needed {
-            self.problems.push(Problem::error("arguments", format!("`{}` takes {needed}, there are {count}", found.name)).at(&span));
+            self.problems.push(
+                Problem::error("arguments", format!("wrong number of arguments of `{}`: expected {needed}, found {count}", found.name))
+                    .at(&span),
+            );
             return None;
         }
         Some(found)
     }
 
-    /// The dimension a function gives, or a problem at the argument that does not suit it.
+    /// The dimension of the function's value; a problem at the argument whose dimension does not agree.
     pub(super) fn function_type(&mut self, function: &Function, of: &[Dimension], spans: &[Span]) -> Option<Dimension> {
         let refuse = |checker: &mut Self, says: String, at: usize| {
             let mut problem = Problem::error("unit-mismatch", says).at(&spans[at]);
@@ -500,13 +497,20 @@ impl Checker<'_> {
             Signature::ToPlain => Some(Dimension::ONE),
             Signature::Plain if of[0] == Dimension::ONE => Some(Dimension::ONE),
             Signature::Plain => {
-                refuse(self, format!("`{}` takes a plain number or an angle, this is {}", function.name, of[0].in_words()), 0)
+                refuse(self, format!("`{}` needs a plain number or an angle, this is {}", function.name, of[0].in_words()), 0)
             }
             Signature::Root => of[0].root().or_else(|| refuse(self, format!("{} has no square root", of[0].in_words()), 0)),
             Signature::PairSame if of[0] == of[1] => Some(of[0]),
-            Signature::PairSame => {
-                refuse(self, format!("`{}` takes two alike, these are {} and {}", function.name, of[0].in_words(), of[1].in_words()), 1)
-            }
+            Signature::PairSame => refuse(
+                self,
+                format!(
+                    "`{}` needs two arguments of the same dimension, these are {} and {}",
+                    function.name,
+                    of[0].in_words(),
+                    of[1].in_words()
+                ),
+                1,
+            ),
         }
     }
 }
@@ -515,7 +519,7 @@ pub(super) fn function(name: &str) -> Option<&'static Function> {
     FUNCTIONS.iter().find(|function| function.name == name)
 }
 
-/// Whether all direct parts are constants, which were folded before.
+/// Whether all direct parts are constants. They were folded before.
 fn of_constants(expr: &Expr) -> bool {
     let constant = |part: &Expr| matches!(part.kind, Kind::Constant(_));
     match &expr.kind {

@@ -1,4 +1,4 @@
-//! Types expressions over signals: channels at positions, sample by sample arithmetic, filters inside expressions.
+//! Determines types of expressions over signals: channels at positions, arithmetic sample by sample, filters inside expressions.
 
 use super::Checker;
 use super::names::{Assignment, Channel, SignalDef};
@@ -13,14 +13,14 @@ use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Dimension;
 
 impl Checker<'_> {
-    /// The signal an expression stands for at the given positions.
+    /// The signal that an expression stands for at the given positions.
     pub(super) fn signal(&mut self, phrase: &Phrase, text: &Text, at: &Assignment) -> Option<Signal> {
         let span = text.place(phrase.range.clone());
         let found = self.deeper(&span.clone(), |checker| checker.signal_inside(phrase, text, span, at))?;
         self.finite(&found).then_some(found)
     }
 
-    /// What is made of constants alone must have a value, and nothing may be divided by a constant zero.
+    /// Checks that constants have a value and that nothing is divided by a constant zero.
     fn finite(&mut self, signal: &Signal) -> bool {
         let problem = match &signal.kind {
             SignalKind::Binary(Operator::Divide, _, right) if constant(right) == Some(0.0) => {
@@ -100,7 +100,7 @@ impl Checker<'_> {
                     self.problems.push(
                         Problem::error(
                             "window-in-signal",
-                            "a filter inside a signal must keep its samples, this one has a window or resamples",
+                            "a filter inside a signal must keep the samples; this one has a window or resampling",
                         )
                         .at(&text.place(filter.range.clone()))
                         .also(&window.span, "this step"),
@@ -120,15 +120,15 @@ impl Checker<'_> {
         }
     }
 
-    /// `shifted(X, 2 m)`, `derivative(X)`, `integral(X, time)`.
+    /// An operation along the axis: `shifted(X, 2 m)`, `derivative(X)`, `integral(X, time)`.
     fn over_axis(&mut self, name: &At<String>, arguments: &[Phrase], text: &Text, span: Span, at: &Assignment) -> Option<Signal> {
         let shifted = name.node == "shifted";
         let (of, second) = match arguments {
             [of] if !shifted => (of, None),
             [of, second] => (of, Some(second)),
             _ => {
-                let takes = if shifted { "a signal and a distance" } else { "a signal, and `time` where that is meant" };
-                let says = format!("`{}` takes {takes}, there are {}", name.node, arguments.len());
+                let takes = if shifted { "a signal and a distance" } else { "a signal and optionally `time`" };
+                let says = format!("`{}` needs {takes}; number of arguments: {}", name.node, arguments.len());
                 self.problems.push(Problem::error("arguments", says).at(&text.place(name.range.clone())));
                 return None;
             }
@@ -138,7 +138,7 @@ impl Checker<'_> {
         if let (true, Some(distance)) = (shifted, second) {
             let distance = self.expr(distance, text, &mut Scope::section())?;
             let found = self.number_type(&distance)?;
-            self.suits("distance", found == axis, &format!("one along the axis, {}", axis.in_words()), found, &distance.span)?;
+            self.suits("distance", found == axis, &format!("a distance along the axis ({})", axis.in_words()), found, &distance.span)?;
             let signal = signal?;
             let (dimension, track) = (signal.dimension, signal.track);
             return Some(Signal { dimension, track, kind: SignalKind::OverAxis(AxisOperation::Shifted(distance), Box::new(signal)), span });
@@ -147,7 +147,7 @@ impl Checker<'_> {
         if let Some(second) = second
             && !(matches!(&second.node, Node::Path(path) if path == "time") && (self.has_time || axis == Dimension::TIME))
         {
-            let problem = Problem::error("arguments", format!("`{}` runs over the axis, or over `time`", name.node));
+            let problem = Problem::error("arguments", format!("`{}` is computed over the axis or over `time`", name.node));
             let problem = problem.at(&text.place(second.range.clone()));
             self.problems.push(if self.has_time { problem } else { problem.help("the protocol has no field `time`") });
             return None;
@@ -155,7 +155,7 @@ impl Checker<'_> {
         let signal = signal?;
         if over_time && signal.track {
             let problem = Problem::error("arguments", "the track record has no time").at(&span);
-            self.problems.push(problem.help("leave `time` out: over the axis"));
+            self.problems.push(problem.help("remove `time`: it is then computed over the axis"));
             return None;
         }
         let axis = if over_time { Dimension::TIME } else { axis };
@@ -167,7 +167,7 @@ impl Checker<'_> {
         Some(Signal { dimension, track, kind: SignalKind::OverAxis(operation, Box::new(signal)), span })
     }
 
-    /// A number that stays the same along the record.
+    /// A number that is constant along the record.
     fn scalar_signal(&mut self, phrase: &Phrase, text: &Text, span: Span) -> Option<Signal> {
         let expr = self.expr(phrase, text, &mut Scope::section())?;
         let dimension = self.number_type(&expr)?;
@@ -184,7 +184,7 @@ impl Checker<'_> {
     ) -> Option<Signal> {
         let mut found = Vec::new();
         let mut last = None;
-        // Arms that parameters rule out are checked too.
+        // Cases that parameters exclude are checked too.
         let mut all = Vec::new();
         for (value, condition) in arms {
             let condition = self.expr(condition, text, &mut Scope::section()).filter(|condition| self.flag_type(condition).is_some());
@@ -239,7 +239,7 @@ impl Checker<'_> {
         Some(Signal { dimension, track, kind: SignalKind::Select(arms, otherwise.map(Box::new)), span: span.clone() })
     }
 
-    /// Whether all come from the track record; track and vehicle records have different samples and cannot be mixed.
+    /// Whether all come from the track record. Track and vehicle records have different samples and cannot be combined.
     fn one_record(&mut self, signals: &[&Signal]) -> Option<bool> {
         let of_records: Vec<&&Signal> = signals.iter().filter(|signal| !matches!(signal.kind, SignalKind::Scalar(_))).collect();
         let track = of_records.first().is_some_and(|signal| signal.track);
@@ -287,12 +287,12 @@ impl Checker<'_> {
         self.names.channels.contains_key(name) || self.names.signals.contains_key(name)
     }
 
-    /// `simulated`, `measured`: the samples of one side.
+    /// The samples of one side: `simulated`, `measured`.
     fn side_of_own(&mut self, side: Side, span: &Span) -> Option<Signal> {
         let Some(dimension) = self.own_of_both else {
-            let says = format!("`{}` stands for samples in the `metric` of a quantity and in plausibility rules", side.in_words());
+            let says = format!("`{}` can only be used as samples in the `metric` of a quantity and in plausibility rules", side.in_words());
             let problem = Problem::error("side", says).at(span);
-            self.problems.push(problem.help("elsewhere a signal is the same of simulation and measurement"));
+            self.problems.push(problem.help("elsewhere an expression is evaluated for simulation and measurement alike"));
             return None;
         };
         Some(Signal { dimension, track: false, kind: SignalKind::Side(side), span: span.clone() })
@@ -329,7 +329,7 @@ impl Checker<'_> {
             && unit.dimension != found.dimension
         {
             self.problems.push(
-                Problem::error("unit-mismatch", format!("signal `{name}` is said to be in {unit}, but is {}", found.dimension.in_words()))
+                Problem::error("unit-mismatch", format!("signal `{name}` is declared in {unit}, but is {}", found.dimension.in_words()))
                     .at(&signal.span)
                     .also(&found.span, found.dimension.in_words()),
             );
@@ -338,7 +338,7 @@ impl Checker<'_> {
         Some(found)
     }
 
-    /// The name with its places put in; a problem if one is open.
+    /// The name with its places inserted; a problem if one is not stated.
     pub(super) fn fill(
         &mut self,
         name: &str,
@@ -352,7 +352,7 @@ impl Checker<'_> {
         for place in places {
             let Some(member) = at.get(place) else {
                 self.problems.push(
-                    Problem::error("open-place", format!("`{name}` is measured at each {place}, and which one is not said"))
+                    Problem::error("open-place", format!("`{name}` has a position for each {place}; the {place} is not stated"))
                         .at(used)
                         .also(defined, format!("at each {place}"))
                         .help(format!("write `{name} at {place} ...`")),
@@ -365,7 +365,7 @@ impl Checker<'_> {
     }
 }
 
-/// The value of what is made of constants alone.
+/// The value, where the signal consists of constants only.
 fn constant(signal: &Signal) -> Option<f64> {
     match &signal.kind {
         SignalKind::Scalar(Expr { kind: Kind::Constant(Scalar::Number(value)), .. }) => Some(*value),

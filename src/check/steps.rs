@@ -1,4 +1,4 @@
-//! Checks filter chains: wordings from the registry, numbers with the right dimension, an order of steps that makes sense.
+//! Checks filter chains: wordings of the registry, dimensions of numbers, order of the steps.
 
 use super::Checker;
 use super::plan::{Kind, Scalar, Step, StepSpec};
@@ -13,35 +13,36 @@ use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Item, Node, Phrase, Step as Written_};
 use crate::units::Dimension;
 
-/// Most steps of a chain, those of the filters it names among them. Each is a pass over every record and a signal in memory.
+/// Largest number of steps of a chain, including those of the filters that it names. Each is a pass over every record and a signal
+/// in memory.
 const MOST_STEPS: usize = 32;
-/// Finest step of a grid along a length, in m: a tenth of a millimetre, finer than what a record's distance is written to.
+/// Finest step of a grid along a length, in m. It is finer than the resolution of the distance in a record.
 const FINEST_LENGTH: f64 = 1e-4;
-/// Finest step of a grid along the time, in s: records of test runs have at most some 10 kHz.
+/// Finest step of a grid along the time, in s. Records of test runs have sampling rates up to about 10 kHz.
 const FINEST_TIME: f64 = 1e-5;
 
-/// What the slots and options of a wording were filled with.
+/// The values of the slots and options of a wording.
 #[derive(Debug, Default)]
 pub(super) struct Filled {
     pub numbers: Vec<(f64, Dimension, Span)>,
-    /// In the order of the wording; `None` where neither said nor with a default.
+    /// In the order of the wording; `None` where an option is not stated and has no default.
     pub options: Vec<Option<(f64, Dimension)>>,
     pub choices: Vec<&'static str>,
-    /// What an option was said for, so that it is said once.
+    /// Where each option is stated, to report one that is stated twice.
     said: Vec<(&'static str, Span)>,
 }
 
 impl Filled {
     fn option_said(&mut self, name: &'static str, place: &Span) -> Result<(), Problem> {
         if let Some((_, first)) = self.said.iter().find(|(said, _)| *said == name) {
-            return Err(Problem::error("duplicate-option", format!("the {name} is said twice")).at(place).also(first, "the first"));
+            return Err(Problem::error("duplicate-option", format!("`{name}` is stated twice")).at(place).also(first, "the first"));
         }
         self.said.push((name, place.clone()));
         Ok(())
     }
 }
 
-/// Windows and grids of less [m or s] are slips: no record has so many samples, and no memory so many points.
+/// Smallest extent of a window or grid, in m or s. Smaller ones are mistakes: no record has so many samples.
 const SMALLEST_EXTENT: f64 = 1e-6;
 
 impl StepSpec {
@@ -50,14 +51,14 @@ impl StepSpec {
         self.is_filter() || *self == Self::Magnitude
     }
 
-    /// Whether it passes frequencies, of the time or after resampling of the length.
+    /// Whether it is a filter in the frequency domain, over time or, after resampling, over length.
     pub fn is_filter(&self) -> bool {
         matches!(self, Self::Butterworth { .. } | Self::Transfer { .. })
     }
 }
 
 impl Checker<'_> {
-    /// The chain of a `filter` field, checked for the order of its steps.
+    /// The chain of a `filter` field, with the order of its steps checked.
     pub(super) fn chain(&mut self, text: &Text) -> Option<Vec<Step>> {
         let steps = self.steps(text)?;
         self.step_order(&steps, false)?;
@@ -84,7 +85,7 @@ impl Checker<'_> {
         if count <= MOST_STEPS {
             return Some(());
         }
-        let says = format!("the filter comes to {count} steps; there can be at most {MOST_STEPS}");
+        let says = format!("the filter has {count} steps; there can be at most {MOST_STEPS}");
         self.problems.push(Problem::error("too-large", says).at(at).help("filters that use each other twice double at every level"));
         None
     }
@@ -121,8 +122,9 @@ impl Checker<'_> {
         result
     }
 
-    /// After a window there are no samples of the record left to filter; after resampling over a length, frequencies are cycles per
-    /// length. A filter by itself (`part`) may come after a resampling elsewhere.
+    /// Checks the order of steps. After a window, the samples of the whole record are no longer available for a filter. After
+    /// resampling over a length, frequencies are in cycles per length. A named filter (`part`) may be used after a resampling
+    /// elsewhere.
     pub(super) fn step_order(&mut self, steps: &[Step], part: bool) -> Option<()> {
         let mut window: Option<&Step> = None;
         let mut resampled: Option<&Step> = None;
@@ -175,7 +177,7 @@ impl Checker<'_> {
                 Kind::Constant(_) => {}
                 _ => {
                     self.problems
-                        .push(Problem::error("not-constant", "whether a step is taken can only depend on parameters").at(&condition.span));
+                        .push(Problem::error("not-constant", "the condition of a step can only depend on parameters").at(&condition.span));
                     return None;
                 }
             }
@@ -193,7 +195,7 @@ impl Checker<'_> {
         Some(vec![self.spec(entry, &filled, &span)?])
     }
 
-    /// Where words fit no wording, those that are choice parameters stand for their words.
+    /// Where no wording fits, words that are choice parameters are replaced by their values.
     pub(super) fn with_choices<'f>(&mut self, mut step: Written_, text: &Text, mut forms: impl Iterator<Item = &'f Form>) -> Written_ {
         let Some(items) = step.parts.first_mut() else { return step };
         if forms.any(|form| fits(form, items)) {
@@ -209,7 +211,7 @@ impl Checker<'_> {
         step
     }
 
-    /// Which wording the words fit: as many fixed words in place as possible.
+    /// The wording that fits the words.
     pub(super) fn find_form<'f>(
         &mut self,
         step: &Written_,
@@ -235,7 +237,7 @@ impl Checker<'_> {
             .collect();
         let filters: Vec<String> = self.names.filters.keys().cloned().collect();
         let code = if what == "metric" { "unknown-metric" } else { "unknown-step" };
-        let problem = Problem::error(code, format!("these words are no {what}")).at(span);
+        let problem = Problem::error(code, format!("these words are not a known {what}")).at(span);
         self.problems.push(if wordings.is_empty() {
             let wordings: Vec<String> = all.map(Form::in_words).collect();
             let filters = filters.iter().map(String::as_str).filter(|_| what == "step");
@@ -270,7 +272,7 @@ impl Checker<'_> {
                     self.positive(name, value, &place)?;
                     if value < SMALLEST_EXTENT {
                         let unit = if found == Dimension::TIME { "µs" } else { "µm" };
-                        let says = format!("the {name} is below 1 {unit}, finer than any record");
+                        let says = format!("the {name} is below 1 {unit}, finer than the samples of a record");
                         self.problems.push(Problem::error("out-of-range", says).at(&place));
                         return None;
                     }
@@ -297,7 +299,7 @@ impl Checker<'_> {
         if ok {
             return Some(());
         }
-        self.problems.push(Problem::error("unit-mismatch", format!("the {name} is {needed}, this is {}", found.in_words())).at(place));
+        self.problems.push(Problem::error("unit-mismatch", format!("{name}: expected {needed}, this is {}", found.in_words())).at(place));
         None
     }
 
@@ -309,7 +311,7 @@ impl Checker<'_> {
         None
     }
 
-    /// `order 4`, `50 points`, `zero-phase`, or the name of a choice parameter.
+    /// An option: `order 4`, `50 points`, `zero-phase`, or the name of a choice parameter.
     fn option(&mut self, form: &Form, part: &[At<Item>], text: &Text, span: &Span, filled: &mut Filled) -> Option<()> {
         let place = part.first().map_or_else(|| span.clone(), |first| text.place(first.range.start..part[part.len() - 1].range.end));
         match part {
@@ -339,10 +341,10 @@ impl Checker<'_> {
         known.extend(form.choices.iter().flat_map(|choice| choice.words.iter().map(|word| (*word).to_string())));
         let said = part.first().map_or(String::new(), |item| if let Item::Word(word) = &item.node { word.clone() } else { String::new() });
         let what = if METRICS.iter().any(|entry| entry.form.head == form.head) { "metric" } else { "step" };
-        let problem = Problem::error("unknown-option", format!("this is no option of the {what}")).at(&place);
+        let problem = Problem::error("unknown-option", format!("this is not an option of the {what}")).at(&place);
         self.problems.push(match nearest(&said, known.iter().map(String::as_str)) {
             Some(near) => problem.help(format!("did you mean `{near}`?")),
-            None if known.is_empty() => problem.help("it has no options"),
+            None if known.is_empty() => problem.help("it has no option"),
             None => problem.help(format!("its options: {}", known.join(", "))),
         });
         None
@@ -354,13 +356,13 @@ impl Checker<'_> {
 
     fn not_too_fine(&mut self, (step, dimension, place): &(f64, Dimension, Span)) -> Option<()> {
         let finest = if *dimension == Dimension::TIME { FINEST_TIME } else { FINEST_LENGTH };
-        // Half a part in a billion below is the same number in another unit.
+        // Tolerance for the rounding of a conversion of units.
         if *step >= finest * (1.0 - 1e-9) {
             return Some(());
         }
         let (finest, step) = (show_number(finest, *dimension), show_number(*step, *dimension));
         let problem = Problem::error("out-of-range", format!("the step of {step} is finer than {finest}")).at(place);
-        self.problems.push(problem.help("a step far below the distance of the samples adds points, and no information"));
+        self.problems.push(problem.help("a step far below the sample distance adds points but no information"));
         None
     }
 
@@ -397,7 +399,7 @@ impl Checker<'_> {
                 let (order, _) = filled.options.first().copied().flatten()?;
                 if order.fract() != 0.0 || !(1.0..=20.0).contains(&order) {
                     self.problems.push(
-                        Problem::error("out-of-range", format!("the order is a whole number from 1 to 20, this is {order}")).at(span),
+                        Problem::error("out-of-range", format!("the order must be a whole number from 1 to 20, this is {order}")).at(span),
                     );
                     return None;
                 }
@@ -447,12 +449,12 @@ pub(super) fn phase(word: &str) -> Phase {
     }
 }
 
-/// Dimension of a signal after steps.
+/// Dimension of a signal after the steps.
 pub(super) fn after(steps: &[Step], dimension: Dimension) -> Dimension {
     steps.iter().fold(dimension, |dimension, step| dimension * step.factor)
 }
 
-/// Whether items stand where the wording has its words and slots.
+/// Whether the items agree with the words and slots of the wording.
 pub(super) fn fits(form: &Form, items: &[At<Item>]) -> bool {
     form.head.len() == items.len()
         && form.head.iter().zip(items).all(|(part, item)| match (part, &item.node) {
@@ -469,7 +471,7 @@ pub(super) fn item_phrase(item: &At<Item>) -> Phrase {
     }
 }
 
-/// A number in the unit an engineer would write it in.
+/// A number in an engineering unit.
 pub(super) fn show_number(value: f64, dimension: Dimension) -> String {
     let unit = match dimension {
         Dimension::FREQUENCY => " Hz",
@@ -479,7 +481,7 @@ pub(super) fn show_number(value: f64, dimension: Dimension) -> String {
         _ if dimension == Dimension::ONE / Dimension::LENGTH => " 1/m",
         other => &format!(" {other}"),
     };
-    // Six digits: the third of a metre need not fill the line.
+    // Rounded to six significant digits.
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     format!("{rounded}{unit}")
 }

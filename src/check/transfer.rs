@@ -1,4 +1,4 @@
-//! Checks the step of a transfer function: poles and zeros from the wording.
+//! Checks the step of a transfer function: poles and zeros of the wording.
 
 use super::Checker;
 use super::plan::StepSpec;
@@ -9,11 +9,12 @@ use crate::problem::Problem;
 use crate::source::Span;
 
 impl Checker<'_> {
-    /// `transfer function poles 12.5 Hz quality 0.63 zero 12.5 Hz, gain 2`: each frequency, then its quality if it has one.
+    /// A transfer function: `transfer function poles 12.5 Hz quality 0.63 zero 12.5 Hz, gain 2`. Each frequency may be followed by
+    /// its quality factor.
     pub(super) fn transfer(&mut self, entry: &StepEntry, filled: &Filled, span: &Span) -> Option<StepSpec> {
         let mut numbers = filled.numbers.iter();
         let (_, dimension, _) = filled.numbers.first()?;
-        // Poles, zeros.
+        // Poles and zeros.
         let mut found: [Option<Roots>; 2] = [None, None];
         let (mut which, mut two) = (0, false);
         for part in entry.form.head {

@@ -1,4 +1,4 @@
-//! Checks verdicts: what each is about, what decides it, and in which words.
+//! Checks verdicts: the quantities they use, their rule and their words.
 
 use std::collections::BTreeSet;
 
@@ -16,12 +16,12 @@ use crate::units::Dimension;
 const VALIDATED: [&str; 2] = ["validated", "not validated"];
 /// Words of a verdict with a name.
 const HOLDS: [&str; 2] = ["holds", "does not hold"];
-/// What a report says of a verdict that is neither, which no verdict may have as its word.
+/// Words of a report for a verdict that cannot be given or is not given yet. No verdict may use them.
 const NEITHER: [&str; 2] = ["not assessable", "open"];
-/// What stands in `of` for all quantities of a kind.
+/// Words in `of` that stand for all quantities of a kind.
 const KINDS: [&str; 3] = ["measured", "simulated", "compared"];
 
-/// The verdicts that a rule may be over, and the place of the first of them in the plan.
+/// Names of the verdicts that a rule can use, and the index of the first of them in the plan.
 struct Names {
     names: Vec<String>,
     first: usize,
@@ -87,11 +87,11 @@ impl Checker<'_> {
             }
             (holds, _) => {
                 let says = match holds {
-                    None => format!("verdict `{}` has neither a rule nor a person who decides it", block.name_text()),
-                    Some(_) => format!("verdict `{}` has a rule, and a person who decides it", block.name_text()),
+                    None => format!("verdict `{}` has neither `holds` nor `judged by`", block.name_text()),
+                    Some(_) => format!("verdict `{}` has both `holds` and `judged by`", block.name_text()),
                 };
                 let problem = Problem::error("verdict-rule", says).at(block.span());
-                self.problems.push(problem.help("write either `holds` or `judged by`"));
+                self.problems.push(problem.help("write one of `holds` and `judged by`"));
                 Decision::Limits { rule: Rule::EveryLimit, quantities: about }
             }
         };
@@ -110,29 +110,31 @@ impl Checker<'_> {
         }
     }
 
-    /// The two words of a verdict, and whether it states them.
+    /// The two words of a verdict, and whether the protocol states them.
     fn verdict_words(&mut self, block: &Block, default: [&str; 2]) -> ([String; 2], bool) {
         let Some(field) = block.field("words") else { return (default.map(String::from), false) };
         let parts: Vec<String> = field.value.text.split(',').map(|word| normalised(word.trim().trim_matches('"'))).collect();
         let wrong = match parts.as_slice() {
             [good, bad] if good == bad => Some("the two words of a verdict are the same".to_string()),
-            [good, bad] if good.is_empty() || bad.is_empty() => Some("a word of the verdict is missing".to_string()),
+            [good, bad] if good.is_empty() || bad.is_empty() => Some("one of the two words is missing".to_string()),
             [good, bad] => [good, bad]
                 .into_iter()
                 .find(|word| NEITHER.contains(&word.as_str()))
-                .map(|word| format!("`{word}` is what a report says of a verdict that cannot be given or is not given yet")),
+                .map(|word| format!("`{word}` is reserved for a verdict that cannot be given or is not given yet")),
             _ => Some(format!("a verdict has two words, here {} {}", if parts.len() == 1 { "is" } else { "are" }, parts.len())),
         };
         if let Some(says) = wrong {
             let problem = Problem::error("verdict-words", says).at(&field.value.span);
-            self.problems.push(problem.help("one if it holds and one if it does not, with a comma between: `accepted, not accepted`"));
+            self.problems.push(
+                problem.help("write the word if it holds and the word if it does not, separated by a comma: `accepted, not accepted`"),
+            );
             return (default.map(String::from), false);
         }
         let mut words = parts.into_iter();
         (std::array::from_fn(|_| words.next().unwrap_or_default()), true)
     }
 
-    /// The quantities that a verdict is about, each once, in their order; all where it does not say.
+    /// The quantities that a verdict uses, each once, in their order; all where it has no `of`.
     fn about(&mut self, of: Option<&Field>, quantities: &[Quantity]) -> Vec<usize> {
         let all = || (0..quantities.len()).collect();
         let Some(field) = of else { return all() };
@@ -144,7 +146,7 @@ impl Checker<'_> {
             let name = item.node.as_str();
             let at = field.value.place(item.range.clone());
             if known.iter().any(|known| known == name) {
-                // One that is not among those of the plan has a fault of its own.
+                // A quantity that is not in the plan has an error that is reported elsewhere.
                 found.extend(quantities.iter().position(|quantity| quantity.id == name));
             } else if KINDS.contains(&name) {
                 let before = found.len();
@@ -160,11 +162,11 @@ impl Checker<'_> {
         found.into_iter().collect()
     }
 
-    /// `of` says which limits count: it has no meaning where none do.
+    /// Reports a field `of` where no limits count.
     fn needs_limits(&mut self, of: Option<&Field>, why: &str) {
         if let Some(field) = of {
-            let problem = Problem::error("verdict-of", format!("`of` names quantities whose limits count, and {why}")).at(&field.key.span);
-            self.problems.push(problem.help("leave `of` out"));
+            let problem = Problem::error("verdict-of", format!("`of` names quantities whose limits count, but {why}")).at(&field.key.span);
+            self.problems.push(problem.help("remove `of`"));
         }
     }
 
@@ -174,7 +176,7 @@ impl Checker<'_> {
             None | Some(Written::EveryLimit) => return every(about),
             Some(Written::AtLeast { count, of_limits }) => (count, of_limits),
             Some(Written::Over(over)) => {
-                self.needs_limits(of, "this rule is over other verdicts");
+                self.needs_limits(of, "this rule uses other verdicts");
                 return self.over(&over, field, names).map_or_else(|| every(about), Decision::Verdicts);
             }
         };
@@ -190,23 +192,23 @@ impl Checker<'_> {
         }
     }
 
-    /// A whole number of things, of which there are enough.
+    /// A whole number, not larger than the number of things there are.
     fn how_many(&mut self, count: &Phrase, field: &Field, there: usize, what: &str) -> Option<usize> {
         let place = field.value.place(count.range.clone());
         let (wanted, dimension) = self.constant_phrase(count, &field.value)?;
         if dimension != Dimension::ONE || wanted < 1.0 || wanted.fract() != 0.0 {
-            self.problems.push(Problem::error("not-a-count", "a whole number above zero is needed").at(&place));
+            self.problems.push(Problem::error("not-a-count", "expected a whole number above zero").at(&place));
             return None;
         }
         let wanted = wanted as usize;
         if wanted > there && !self.problems.any_error() {
-            self.problems.push(Problem::error("out-of-range", format!("{wanted} {what} are asked for, there are {there}")).at(&place));
+            self.problems.push(Problem::error("out-of-range", format!("the rule needs {wanted} {what}, there are {there}")).at(&place));
         }
         Some(wanted)
     }
 
     fn over(&mut self, over: &OverVerdicts, field: &Field, names: &Names) -> Option<Over> {
-        // Every name is looked at, so that all that are unknown are told.
+        // All parts are checked, so that all unknown names are reported.
         let all = |checker: &mut Self, parts: &[OverVerdicts]| {
             let found: Vec<Option<Over>> = parts.iter().map(|part| checker.over(part, field, names)).collect();
             found.into_iter().collect::<Option<Vec<_>>>()
@@ -240,7 +242,7 @@ impl Checker<'_> {
         Some(found? + names.first)
     }
 
-    /// Looks for verdicts that rest on themselves.
+    /// Finds verdicts that depend on themselves.
     fn follow(&mut self, at: usize, verdicts: &[VerdictRule], from: &Span, done: &mut BTreeSet<usize>) {
         let verdict = &verdicts[at];
         let (Some(name), Decision::Verdicts(over)) = (&verdict.name, &verdict.decision) else { return };
@@ -256,14 +258,14 @@ impl Checker<'_> {
         done.insert(at);
     }
 
-    /// A limit that no verdict is about decides nothing: its author should know.
+    /// Warns of a limit that no verdict uses, as it has no effect.
     fn without_verdict(&mut self, quantities: &[Quantity], verdicts: &[VerdictRule]) {
         let about = |at: usize| {
             verdicts.iter().any(|verdict| matches!(&verdict.decision, Decision::Limits { quantities, .. } if quantities.contains(&at)))
         };
         for (at, quantity) in quantities.iter().enumerate().filter(|(_, quantity)| !quantity.limits.is_empty()) {
             if !about(at) {
-                let says = format!("no verdict is about quantity `{}`: its limits decide nothing", quantity.id);
+                let says = format!("no verdict uses quantity `{}`: its limits have no effect", quantity.id);
                 self.problems.push(Problem::warning("quantity-without-verdict", says).at(&quantity.span));
             }
         }
@@ -278,7 +280,7 @@ fn notes(block: &Block) -> Vec<String> {
     block.fields_named("note").map(|note| note.value.text.clone()).collect()
 }
 
-/// What stands for a quantity among [`KINDS`].
+/// The word of [`KINDS`] for a quantity.
 fn kind(quantity: &Quantity) -> &'static str {
     match quantity.evaluation.as_ref() {
         Evaluation::Values { records: Records::Of(Side::Measured), .. } => "measured",
