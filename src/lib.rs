@@ -5,8 +5,8 @@
 //! | stage | from | to | folder |
 //! |---|---|---|---|
 //! | syntax | protocol text, YAML or `.fp` | [`syntax::document::Document`] | `syntax` |
-//! | check | document | `check::plan::Plan`: resolved, SI, complete | `check` |
 //! | check | document | `check::plan::Plan`: resolved, SI units, complete | `check` |
+//! | graph | plan | `graph::Graph`: typed operations in the order of execution | `graph` |
 //! | run | graph and campaign | [`result::Certification`] | `run` |
 //! | report | certification | PDF, HTML, JSON, CSV | `report` |
 //!

@@ -28,7 +28,7 @@ pub struct Problem {
     pub also: Vec<(Span, String)>,
     /// The correction.
     pub help: Option<String>,
-    /// In a family of blocks: the other members in which the same place is at fault, with what is said of each.
+    /// For a family of blocks: the other members with the same problem, each with its message.
     pub members: Vec<(String, String)>,
 }
 
@@ -156,7 +156,7 @@ impl Problem {
         Some(format!("in {listed} of the family `{}`", member.family))
     }
 
-    /// Takes in the same fault of another member of the family; gives it back if it is another fault.
+    /// Adds the same problem of another member of the family; returns the other problem if it is a different one.
     fn takes_in(&mut self, other: Problem) -> Option<Problem> {
         let (Some(own), Some(its), Some(at), Some(there)) = (self.member(), other.member(), &self.at, &other.at) else {
             return Some(other);
@@ -180,7 +180,7 @@ impl Problem {
             return Some(other);
         }
         self.members.push((its.name.clone(), other.says));
-        // What differs from member to member is not the fault.
+        // What differs between members is not part of the problem.
         if let Some(filled) = self.at.as_mut().filter(|_| !same_word).and_then(|at| at.filled.as_mut()) {
             Arc::make_mut(filled).pieces.clear();
         }
@@ -188,7 +188,7 @@ impl Problem {
     }
 }
 
-/// Byte range inside the text, never empty at a place where a character can be underlined, on character boundaries.
+/// Byte range inside the text on character boundaries; not empty where a character can be underlined.
 fn range(span: &Span) -> std::ops::Range<usize> {
     let text = &span.source.text;
     let mut start = span.start.min(text.len());
@@ -222,7 +222,7 @@ pub struct Problems(pub Vec<Problem>);
 
 impl Problems {
     pub fn push(&mut self, problem: Problem) {
-        // The same fact at the same place is said once, however often a part is used, and in how many members of a family.
+        // The same problem at the same place is reported once, also for several members of a family.
         if self.0.contains(&problem) {
             return;
         }
@@ -256,7 +256,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         let other = candidate.to_lowercase();
         let longer = word.chars().count().max(candidate.chars().count());
         let distance = strsim::damerau_levenshtein(&lower, &other);
-        // A completely different word is not suggested: zone 7 is no misspelling of zone 1. One letter in three may differ.
+        // A completely different word is not suggested: zone 7 is not a misspelling of zone 1. One letter in three may differ.
         let near = distance <= longer.max(SHORTEST_BEGINNING) / 3 && distance < longer && same_symbol(&lower, &other);
         let alike = lower.chars().zip(other.chars()).take_while(|(a, b)| a == b).count();
         near.then_some((distance, std::cmp::Reverse(alike), *candidate))
@@ -275,8 +275,8 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     }
 }
 
-/// Whether two names may be of one symbol, which stands before the first `_`: `Q_1R` is another force than `Y_1R`, and `az_max` another
-/// acceleration than `ay_max`. A longer symbol may have a slip in it.
+/// Whether two names can have the same symbol, the part before the first `_`. `Q_1R` is another force than `Y_1R`, and `az_max`
+/// another acceleration than `ay_max`. A longer symbol may contain a misspelling.
 fn same_symbol(a: &str, b: &str) -> bool {
     match (a.split_once('_'), b.split_once('_')) {
         (Some((a, _)), Some((b, _))) => strsim::damerau_levenshtein(a, b) <= a.chars().count().max(b.chars().count()) / 3,

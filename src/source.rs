@@ -85,12 +85,12 @@ pub struct Span {
     pub source: Arc<Source>,
     pub start: usize,
     pub end: usize,
-    /// In a block of a family: what stands there with its member put in.
+    /// In a block of a family: the text with the words of its member inserted.
     pub filled: Option<Arc<Filled>>,
 }
 
 impl Span {
-    /// What stands there, with the member put in where it is a block of a family.
+    /// The text of the span, with the words of the member inserted in a block of a family.
     pub fn text(&self) -> &str {
         match &self.filled {
             Some(filled) => &filled.text,
@@ -108,7 +108,7 @@ impl Span {
         Span { source: Arc::clone(&self.source), start, end, filled: None }
     }
 
-    /// The same place, of which only these bytes of its text are meant: which they are in the source is not known.
+    /// The same place, restricted to these bytes of its text. Their place in the source is not known.
     pub fn of_which(&self, range: Range<usize>) -> Span {
         match &self.filled {
             Some(filled) => filled.part(self, range, false),
@@ -140,30 +140,30 @@ impl fmt::Debug for Span {
     }
 }
 
-/// A text of a family of blocks as it stands in one of them.
+/// A text of a family of blocks, as it is for one of its members.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Filled {
     pub text: String,
     pub member: Arc<Member>,
-    /// Of what the text is made, in order and without gaps.
+    /// The pieces of the text, in order and without gaps.
     pub pieces: Vec<Piece>,
 }
 
-/// One block of a family, by the names of the two: `Y_phase` of `Y_{part}`.
+/// One block of a family, by both names: `Y_phase` of `Y_{part}`.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Member {
     pub name: String,
     pub family: String,
 }
 
-/// A stretch of a text of a family.
+/// A part of a text of a family.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Piece {
     /// Bytes of the text.
     pub text: Range<usize>,
-    /// Where they come from, in bytes from the start of the span: as many, or `{part}`.
+    /// Their origin, in bytes from the start of the span: the same bytes, or `{part}`.
     pub from: Range<usize>,
-    /// What was put in for braces, where it was written.
+    /// The word inserted for braces, with its place.
     pub put_in: Option<Arc<Spanned<String>>>,
 }
 
@@ -191,7 +191,7 @@ impl Filled {
         Span { source: Arc::clone(&span.source), start, end, filled: Some(Arc::new(filled)) }
     }
 
-    /// What was put in, if the text has only one such piece.
+    /// The inserted word, if the text has only one.
     pub fn put_in(&self) -> Option<&Spanned<String>> {
         let mut found = self.pieces.iter().filter_map(|piece| piece.put_in.as_deref());
         let first = found.next()?;
@@ -224,7 +224,7 @@ mod tests {
         assert_eq!(source.span(5..6).to_string(), "a.csv:11:1");
     }
 
-    /// `each {part}_limit` with `phase` put in: places in the text lead to what was written.
+    /// In `each {part}_limit` with `phase` inserted, places in the text refer to the source.
     #[test]
     fn places_lead_through_what_is_put_in() {
         let source = Source::new("p.fp", "limit each {part}_limit, phase");

@@ -173,12 +173,12 @@ fn set(name: &str, value: &str) -> Overrides {
 fn parameters_of_a_campaign_are_checked_where_they_stand() {
     let protocol = library::shipped("en14363-2016-annex-t").expect("a shipped protocol");
     for (name, value, code, says) in [
-        ("lowpass_frequency", "20 m", "unit-mismatch", "parameter `lowpass_frequency` is a frequency, this is a length"),
-        ("lowpass_frequency", "25", "unit-mismatch", "parameter `lowpass_frequency` is a frequency, this is a plain number"),
+        ("lowpass_frequency", "20 m", "unit-mismatch", "parameter `lowpass_frequency` is a frequency, the given value is a length"),
+        ("lowpass_frequency", "25", "unit-mismatch", "parameter `lowpass_frequency` is a frequency, the given value is a plain number"),
         ("lowpass_frequency", "90 Hz", "out-of-range", "`90 Hz` is outside the range of `lowpass_frequency`"),
-        ("lowpass_frequency", "20 Herz", "unknown-unit", "`Herz` is no unit"),
+        ("lowpass_frequency", "20 Herz", "unknown-unit", "`Herz` is not a known unit"),
         ("lowpas_frequency", "20 Hz", "unknown-parameter", "protocol `en14363-2016-annex-t` has no parameter `lowpas_frequency`"),
-        ("filter_phase", "zerophase", "unknown-choice", "`zerophase` is none of the choices of `filter_phase`"),
+        ("filter_phase", "zerophase", "unknown-choice", "`zerophase` is not one of the choices of `filter_phase`"),
         ("lowpass_order", "4 +", "syntax", "an expression ends too early"),
     ] {
         let (_, plan, problems) = checked_with(&protocol, &set(name, value));

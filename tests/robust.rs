@@ -24,7 +24,7 @@ fn whole_way(source: &Arc<Source>) -> bool {
         assert!(problems.any_error(), "nothing is said against\n{}", source.text);
     }
     for problem in &problems.0 {
-        assert!(!problem.says.contains("fault of the program"), "{}\n{}", problem.render(false), source.text);
+        assert!(!problem.says.contains("error of the program"), "{}\n{}", problem.render(false), source.text);
         problem.render(false);
     }
     plan.is_some()

@@ -95,8 +95,9 @@ impl Heading {
                 .help(format!("write the unit in square brackets: `{name} [...]`, or `{name} [-]` for a plain number")));
         };
         let unit = Unit::parse(&written.text).map_err(|unknown| {
-            let problem = Problem::error("unknown-unit", format!("the unit of the column `{name}`: `{}` is no known unit", unknown.word))
-                .at(&written.span);
+            let problem =
+                Problem::error("unknown-unit", format!("the unit of the column `{name}`: `{}` is not a known unit", unknown.word))
+                    .at(&written.span);
             match unknown.near {
                 Some(near) => problem.help(format!("did you mean `{near}`?")),
                 None => problem,
@@ -219,7 +220,7 @@ pub(super) fn number(text: &str) -> Result<f64, (&'static str, String)> {
     match fast_float2::parse::<f64, _>(text) {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) => Err(("not-finite", format!("`{text}` is not a finite number"))),
-        Err(_) if text.is_empty() => Err(("not-a-number", "the cell is empty; a number is needed".to_string())),
+        Err(_) if text.is_empty() => Err(("not-a-number", "the cell is empty; expected a number".to_string())),
         Err(_) if text.matches(',').count() == 1 && fast_float2::parse::<f64, _>(text.replace(',', ".")).is_ok() => {
             Err(("decimal-comma", format!("`{text}` has a decimal comma; numbers are written with a point")))
         }

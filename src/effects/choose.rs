@@ -203,7 +203,7 @@ fn number(parameter: &Parameter, written: &str, place: &dyn Fn(&str) -> Span) ->
         return Ok(value);
     }
     let unit = Unit::parse(unit).map_err(|unknown| {
-        let problem = Problem::error("unknown-unit", format!("`{}` is no unit", unknown.word)).at(&place(unit));
+        let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&place(unit));
         Box::new(unknown.near.map_or(problem.clone(), |near| problem.help(format!("did you mean `{near}`?"))))
     })?;
     if unit.dimension != parameter.unit.dimension {

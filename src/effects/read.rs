@@ -365,7 +365,7 @@ impl Reader<'_> {
     pub fn unit(&mut self, text: &str, node: &Node) -> Option<Unit> {
         Unit::parse(text)
             .map_err(|unknown| {
-                let problem = Problem::error("unknown-unit", format!("`{}` is no unit", unknown.word)).at(&node.span);
+                let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&node.span);
                 self.problems.push(match unknown.near {
                     Some(near) => problem.help(format!("did you mean `{near}`?")),
                     None => problem,

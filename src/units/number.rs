@@ -42,7 +42,7 @@ pub fn read(text: &str, expected: &Unit) -> Result<Read, Refused> {
     }
     let unit = Unit::parse(unit).map_err(|unknown| {
         let near = unknown.near.map(|near| format!("did you mean `{near}`?"));
-        refused(format!("`{}` is no known unit", unknown.word), near.or_else(|| Some(format!("it is expected in {expected}"))))
+        refused(format!("`{}` is not a known unit", unknown.word), near.or_else(|| Some(format!("it is expected in {expected}"))))
     })?;
     if unit.dimension != expected.dimension {
         let says = format!("`{text}` is {}, not {}{}", unit.dimension.in_words(), expected.dimension.in_words(), place(expected));
@@ -131,8 +131,8 @@ mod tests {
             ("1e999", "`1e999` is not a number (in kN)", None),
             ("5.4.5", "`5.4.5` is not a number (in kN)", None),
             ("54,5 kN", "`54,5 kN` has a decimal comma; numbers are written with a point", Some("write `54.5 kN`")),
-            ("54.5 kn", "`kn` is no known unit", Some("did you mean `kN`?")),
-            ("54.5 xyz", "`xyz` is no known unit", Some("it is expected in kN")),
+            ("54.5 kn", "`kn` is not a known unit", Some("did you mean `kN`?")),
+            ("54.5 xyz", "`xyz` is not a known unit", Some("it is expected in kN")),
         ] {
             let refused = of(text, "kN").expect_err(text);
             assert_eq!((refused.says.as_str(), refused.help.as_deref()), (says, help), "{text}");

@@ -166,7 +166,7 @@ fn a_table_of_sections_that_cannot_be_read_is_told_once() {
         rows.fold(String::new(), |all, (row, line)| all + &if row == 2 { line.replacen(from, into, 1) } else { line.to_string() } + "\n")
     };
     let cases = [
-        (widened, "`foo` is no known unit", "sections.csv:1:"),
+        (widened, "`foo` is not a known unit", "sections.csv:1:"),
         (second("105.00", "abc"), "`start`: `abc` is not a number", "sections.csv:3:7"),
         (second("105.00", ""), "section `S02` has no start or no end", "sections.csv:3:1"),
     ];
@@ -224,7 +224,7 @@ fn columns_that_are_not_there_and_zones_that_are_none_are_told() {
         assert!(says.contains(&format!("no column `{column}`")) && says.contains(&format!("did you mean `{near}`?")), "{says}");
     }
     // Where the catalogue names the column as well.
-    assert!(says.contains("`zone`: `x` is none of 1, 2, 3, 4") && says.contains("sections.csv:3:5"), "{says}");
+    assert!(says.contains("`zone`: `x` is not one of 1, 2, 3, 4") && says.contains("sections.csv:3:5"), "{says}");
 
     // What is no name, no single column, and no channel.
     let cases = [

@@ -48,7 +48,7 @@ fn speeds() {
     fs::remove_file(place.path("out.csv")).expect("removed");
     refused(&place, &[], 2, &["speed-missing", "--speed 30"]);
     refused(&place, &["--speed", "fast"], 2, &["`fast` is not a number (in m/s)"]);
-    refused(&place, &["--speed", "30 kmh"], 2, &["`kmh` is no known unit"]);
+    refused(&place, &["--speed", "30 kmh"], 2, &["`kmh` is not a known unit"]);
     refused(&place, &["--speed", "30 kN"], 2, &["error[speed]"]);
     refused(&place, &["--speed", "700 km/h"], 2, &["194.4 m/s is outside", "1 to 150 m/s"]);
 }
@@ -62,7 +62,7 @@ fn effects_that_are_none() {
     wrong("friction=2", &["range", "2 is outside the range of `friction`: 0.05 to 0.7"]);
     wrong("payload=20 t", &["range", "0 to 15000 kg"]);
     wrong("payload=3 kN", &["unit-mismatch", "`payload.mass` is in kg, not in kN"]);
-    wrong("payload=3 tonnes", &["unknown-unit", "`tonnes` is no unit"]);
+    wrong("payload=3 tonnes", &["unknown-unit", "`tonnes` is not a known unit"]);
     wrong("friction=much", &["wrong-kind", "`much` is not a number"]);
     wrong("friction=1e999", &["wrong-kind", "too large"]);
     wrong("friction=0.5 on Y_1R", &["acts on the environment, not on channels"]);

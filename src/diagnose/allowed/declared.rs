@@ -64,7 +64,7 @@ fn in_unit(fact: &Fact, wanted: &Unit) -> Result<f64, Problem> {
     })?;
     let text = fact.unit.as_deref().unwrap_or("-");
     let unit = Unit::parse(text).map_err(|unknown| {
-        let problem = Problem::error("unknown-unit", format!("`{}` is no unit", unknown.word));
+        let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word));
         match unknown.near {
             Some(near) => problem.help(format!("did you mean `{near}`?")),
             None => problem,

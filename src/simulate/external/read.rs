@@ -160,7 +160,7 @@ impl Reader<'_> {
                 None
             }
             Err(unknown) => {
-                let problem = Problem::error("unknown-unit", format!("`{}` is no unit", unknown.word)).at(&node.span);
+                let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&node.span);
                 self.problems.push(match unknown.near {
                     Some(near) => problem.help(format!("did you mean `{near}`?")),
                     None => problem,
