@@ -1,5 +1,6 @@
 //! Certification: from a protocol and a campaign to the results of a report.
 
+use indexmap::IndexMap;
 use sha2::{Digest, Sha256};
 
 use crate::check::plan::{DatumKind, Parameter, Plan, Scalar, SetBy};
@@ -79,7 +80,7 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
         domain: outcome.domain,
         traces: outcome.traces,
         findings: outcome.findings,
-        notes: parameters_set(&compiled.plan).into_iter().chain(notes).collect(),
+        notes: parameters_set(&compiled.plan).into_iter().chain(unconfirmed(&compiled.plan)).chain(notes).collect(),
     })
 }
 
@@ -190,6 +191,21 @@ fn parameters_set(plan: &Plan) -> Option<String> {
     (!all.is_empty()).then(|| format!("Parameters not at their default: {}.", all.join("; ")))
 }
 
+/// A note for each reason why numbers are to be confirmed, with these numbers.
+fn unconfirmed(plan: &Plan) -> Vec<String> {
+    let of_parameter = |parameter: &Parameter| {
+        let why = parameter.unconfirmed.clone()?;
+        Some((format!("`{}` {}", parameter.name, parameter.value), why))
+    };
+    let others = plan.unconfirmed.iter().map(|(name, why)| (format!("`{name}`"), why.clone()));
+    let mut by_reason: IndexMap<String, Vec<String>> = IndexMap::new();
+    for (what, why) in plan.parameters.iter().filter_map(of_parameter).chain(others) {
+        by_reason.entry(why).or_default().push(what);
+    }
+    let one = |(why, what): (&String, &Vec<String>)| format!("To be confirmed against the standard: {}. {why}", what.join(", "));
+    by_reason.iter().map(one).collect()
+}
+
 fn parameter_info(parameter: &Parameter) -> ParameterInfo {
     let set_by = match parameter.set_by {
         SetBy::Default => "default",
@@ -202,6 +218,7 @@ fn parameter_info(parameter: &Parameter) -> ParameterInfo {
         value: parameter.value.clone(),
         default: parameter.default.clone(),
         set_by: set_by.into(),
+        unconfirmed: parameter.unconfirmed.clone(),
     }
 }
 

@@ -483,3 +483,27 @@ fn a_warning_is_no_error() {
     assert!(plan.is_some());
     assert_eq!(problems.0.iter().map(|problem| (problem.severity, problem.code)).collect::<Vec<_>>(), [(Severity::Warning, "no-limit")]);
 }
+
+/// A number of no checked source says so beside every limit that it is in, by whatever way, until somebody sets it.
+#[test]
+fn a_number_to_be_confirmed_says_so() {
+    const TEXT: &str = "parameter highest \"Highest\"\n  default      4 kN\n  unconfirmed  \"From memory.\"\n\n\
+        define higher \"Higher\"\n  is           6 kN\n  unconfirmed  \"From memory.\"\n\n\
+        estimate reached \"Reached\"\n  is  mean + 2 * std\n\n\
+        remove\n  limit  Y_max\n  limit  Q_max mean\n\n\
+        quantity Y_max\n  limit  std highest\n  limit  mean 2/3 of std\n  limit  reached 12 kN\n  limit  peak 2 * higher\n\n\
+        quantity Q_max\n  limit        mean 3 kN\n  unconfirmed  \"By eye.\"\n";
+    const MARK: &str = ", to be confirmed against the standard";
+    let words = |text: &str, overrides: &Overrides| {
+        let source = Source::new("variant.fp", format!("protocol variant \"A variant\"\n  extends  en14363-2016-annex-t\n\n{text}"));
+        let (_, plan, problems) = checked_with(&source, overrides);
+        let plan = plan.unwrap_or_else(|| panic!("{}", problems.render(false)));
+        let of = |id: &str| plan.quantities.iter().find(|quantity| quantity.id == id).expect("a quantity").limits.clone();
+        let marked = of("Y_max").iter().chain(&of("Q_max")).map(|limit| limit.words.ends_with(MARK)).collect::<Vec<_>>();
+        (marked, plan.parameters.iter().filter(|parameter| parameter.unconfirmed.is_some()).count(), plan.unconfirmed)
+    };
+    let others = vec![("higher".to_string(), "From memory.".to_string()), ("Q_max".to_string(), "By eye.".to_string())];
+    // Y_max: std, mean, reached, peak; Q_max: the parent's std, mean.
+    assert_eq!(words(TEXT, &Overrides::new()), (vec![true, true, false, true, true, true], 1, others.clone()));
+    assert_eq!(words(TEXT, &set("highest", "5 kN")), (vec![false, false, false, true, true, true], 0, others));
+}

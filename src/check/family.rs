@@ -150,6 +150,8 @@ fn overlay(parent: &mut Block, variant: &Block) {
         // A rule and the judgement of a person replace each other, too.
         "holds" | "of" => says("judged by"),
         "judged by" => says("holds"),
+        // A number of one's own is not the one that was to be confirmed.
+        "unconfirmed" => says("default") || says("is"),
         _ => false,
     };
     let mut new: IndexMap<String, Vec<Field>> = IndexMap::new();

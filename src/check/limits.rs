@@ -54,6 +54,7 @@ impl Checker<'_> {
                 None => ok = false,
             }
         }
+        say_unconfirmed(&mut limits);
         let zone = self.zone.clone();
         overlap::find(&limits, zone.as_ref(), block, self.problems);
         if ok {
@@ -85,6 +86,7 @@ impl Checker<'_> {
     fn limit(&mut self, text: &Text, common: &Common<'_>) -> Option<Vec<Limit>> {
         let written = from_pest::limit(text, self.problems)?;
         let written = self.with_statistic(written, text);
+        self.unconfirmed = common.block.field("unconfirmed").is_some();
         let estimate = self.estimate(&written, text, common.unit.map(|(unit, _)| unit.dimension));
         let scope = self.limit_scope(&written.scope, text, common);
         let (estimate, (scope, each_zone)) = (estimate?, scope?);
@@ -158,6 +160,7 @@ impl Checker<'_> {
             only_when,
             scope: applies,
             words,
+            unconfirmed: self.unconfirmed,
             span: text.span.clone(),
         })
     }
@@ -411,6 +414,22 @@ impl Checker<'_> {
             told.push(&limit.span);
             self.problems.push(problem.help(LIMITS_NOT_VALUES));
         }
+    }
+}
+
+/// Says so behind each limit with a number that is to be confirmed, and behind each that refers to such a limit.
+fn say_unconfirmed(limits: &mut [Limit]) {
+    // As often as there are limits, since one may refer to another by way of all others.
+    for _ in 0..limits.len() {
+        let sources: Vec<String> = limits.iter().filter(|limit| limit.unconfirmed).map(|limit| limit.estimate.name.clone()).collect();
+        for limit in limits.iter_mut() {
+            let mut names = Vec::new();
+            referred(&limit.bound.expr, &mut names);
+            limit.unconfirmed |= names.iter().any(|(name, _)| sources.contains(name));
+        }
+    }
+    for limit in limits.iter_mut().filter(|limit| limit.unconfirmed) {
+        limit.words += ", to be confirmed against the standard";
     }
 }
 

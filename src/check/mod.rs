@@ -77,6 +77,8 @@ struct Checker<'a> {
     /// Conditions that hold wherever the present expression is evaluated.
     assumed: Vec<Expr>,
     in_quantity: bool,
+    /// Whether what was looked at since this was last put to false has a number that is to be confirmed.
+    unconfirmed: bool,
     /// Whether records have a time.
     has_time: bool,
     /// Dimension of the own signal, where `simulated` and `measured` stand for its samples.
@@ -116,6 +118,7 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
         used_defines: BTreeSet::new(),
         assumed: Vec::new(),
         in_quantity: false,
+        unconfirmed: false,
         has_time: false,
         own_of_both: None,
         partial: false,
@@ -291,9 +294,13 @@ impl Checker<'_> {
                 value: found.value_words.clone(),
                 default: found.default_words.clone(),
                 set_by: found.set_by,
+                unconfirmed: found.unconfirmed.clone(),
                 choices: if let plan::Type::Word(choices) = &found.ty { choices.clone() } else { Vec::new() },
             })
             .collect();
+        let why = |block: &Block| Some((block.name_text().to_string(), block.field("unconfirmed")?.value.text.clone()));
+        let quantities_unconfirmed = of("quantity").filter_map(why);
+        let unconfirmed = names.unconfirmed.iter().map(|(name, why)| (name.clone(), why.clone())).chain(quantities_unconfirmed).collect();
         let text = |key: &str| head.field(key).map(|field| field.value.text.clone());
         Some(Plan {
             name: head.name_text().to_string(),
@@ -305,6 +312,7 @@ impl Checker<'_> {
             axis: self.axis.clone()?,
             time,
             parameters,
+            unconfirmed,
             vehicle: self.names.vehicle.clone(),
             columns: self.names.columns.clone(),
             filters,

@@ -29,6 +29,8 @@ pub struct ParameterDef {
     pub value_words: String,
     pub default_words: String,
     pub set_by: SetBy,
+    /// Why its value is to be confirmed.
+    pub unconfirmed: Option<String>,
     /// The place and the positions selected, where the parameter is a selection.
     pub selects: Option<(String, Vec<String>)>,
 }
@@ -68,6 +70,8 @@ pub struct Names {
     pub channels: IndexMap<String, Channel>,
     pub signals: IndexMap<String, SignalDef>,
     pub defines: IndexMap<String, Written>,
+    /// Definitions with a number that is to be confirmed, and why.
+    pub unconfirmed: IndexMap<String, String>,
     pub estimates: IndexMap<String, Written>,
     /// Blocks of the filters.
     pub filters: IndexMap<String, Block>,
@@ -96,7 +100,12 @@ impl Checker<'_> {
                     None => drop(self.names.failed.insert(name)),
                 },
                 "define" => match self.required(block, "is").and_then(|field| self.written(field)) {
-                    Some(is) => drop(self.names.defines.insert(name, is)),
+                    Some(is) => {
+                        if let Some(why) = block.field("unconfirmed") {
+                            self.names.unconfirmed.insert(name.clone(), why.value.text.clone());
+                        }
+                        self.names.defines.insert(name, is);
+                    }
                     None => drop(self.names.failed.insert(name)),
                 },
                 "estimate" => match self.required(block, "is").and_then(|field| self.written(field)) {

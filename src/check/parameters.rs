@@ -14,12 +14,17 @@ use crate::units::Dimension;
 impl Checker<'_> {
     /// The parameter of a name. It is checked when it is first used, as its default may use parameters further down.
     pub(super) fn parameter(&mut self, name: &str, at: &crate::source::Span) -> Option<ParameterDef> {
-        if let Some(found) = self.names.parameters.get(name) {
-            return Some(found.clone());
-        }
-        let block = self.names.parameter_blocks.get(name)?.clone();
-        let found = self.inside("parameter", name, at, |checker| checker.parameter_of(name, &block))?;
-        self.names.parameters.insert(name.to_string(), found.clone());
+        let known = self.names.parameters.get(name).cloned();
+        let found = match known {
+            Some(found) => found,
+            None => {
+                let block = self.names.parameter_blocks.get(name)?.clone();
+                let found = self.inside("parameter", name, at, |checker| checker.parameter_of(name, &block))?;
+                self.names.parameters.insert(name.to_string(), found.clone());
+                found
+            }
+        };
+        self.unconfirmed |= found.unconfirmed.is_some();
         Some(found)
     }
 
@@ -32,11 +37,13 @@ impl Checker<'_> {
             Some(Override { text, set_by }) => (text.clone(), *set_by),
             None => (default.value.clone(), SetBy::Default),
         };
+        // Who sets a value answers for it: the protocol says nothing about that number.
+        let unconfirmed = (set_by == SetBy::Default).then(|| block.field("unconfirmed").map(|why| why.value.text.clone())).flatten();
         if let Some(place) = block.field("at") {
             let selects = self.selection(name, place, &default.value, &source)?;
             let (value, ty) = (Scalar::Word(selects.1.join(", ")), Type::Word(Vec::new()));
             let value_words = normalised(&source.text);
-            return Some(ParameterDef { title, value, ty, value_words, default_words, set_by, selects: Some(selects) });
+            return Some(ParameterDef { title, value, ty, value_words, default_words, set_by, unconfirmed, selects: Some(selects) });
         }
         let (value, ty) = match block.field("one of") {
             Some(choices) => {
@@ -49,7 +56,8 @@ impl Checker<'_> {
             }
             None => self.number(name, block, &default.value, given.is_some().then_some(&source))?,
         };
-        Some(ParameterDef { title, value, ty, value_words: normalised(&source.text), default_words, set_by, selects: None })
+        let value_words = normalised(&source.text);
+        Some(ParameterDef { title, value, ty, value_words, default_words, set_by, unconfirmed, selects: None })
     }
 
     fn choice(&mut self, name: &str, choices: &Field, default: &Text, source: &Text) -> Option<(Scalar, Type)> {

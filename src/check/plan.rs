@@ -21,6 +21,8 @@ pub struct Plan {
     pub axis: Axis,
     pub time: Option<Axis>,
     pub parameters: Vec<Parameter>,
+    /// Definitions and quantities with numbers that are to be confirmed against the standard, and why.
+    pub unconfirmed: Vec<(String, String)>,
     pub vehicle: Vec<Datum>,
     pub columns: Vec<Datum>,
     pub filters: Vec<NamedFilter>,
@@ -68,6 +70,8 @@ pub struct Parameter {
     pub value: String,
     pub default: String,
     pub set_by: SetBy,
+    /// Why its value is to be confirmed against the standard.
+    pub unconfirmed: Option<String>,
     /// The words of a choice; empty otherwise.
     pub choices: Vec<String>,
 }
@@ -593,6 +597,8 @@ pub struct Limit {
     pub scope: Scope,
     /// As written: `2/3 of std`.
     pub words: String,
+    /// A number in it is to be confirmed against the standard.
+    pub unconfirmed: bool,
     pub span: Span,
 }
 

@@ -162,6 +162,7 @@ impl Checker<'_> {
         }
         if let Some(define) = self.names.defines.get(path).cloned() {
             self.used_defines.insert(path.to_string());
+            self.unconfirmed |= self.names.unconfirmed.contains_key(path);
             return self.inside("define", path, span, |checker| checker.expr(&define.phrase, &define.text, scope));
         }
         if matches!(path, "true" | "false") {

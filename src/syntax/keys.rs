@@ -64,6 +64,11 @@ const FOR_EACH: Key = many(phrase(
 ));
 const CLAUSE: Key = text("clause", "Clause of the standard for the rule.", "Annex T, T.3");
 const SOURCE: Key = text("source", "Publication of the rule or number.", "Goetz & Polach, Table 1");
+const UNCONFIRMED: Key = text(
+    "unconfirmed",
+    "Why its number is not from a checked source. The report prints \"to be confirmed against the standard\" beside it.",
+    "Read in a secondary source; the standard was not to hand.",
+);
 const WORDS: Key =
     phrase("words", "The two words of the verdict: the word if it holds, and the word if it does not.", "accepted, not accepted");
 const NOTE: Key = many(text("note", "A remark printed with the rule.", "Absolute values of simulation and measurement."));
@@ -122,6 +127,7 @@ pub const KINDS: &[Kind] = &[
             phrase("one of", "The possible words of a choice.", "oriented, signed, magnitudes"),
             phrase("range", "The smallest and the largest allowed value.", "10 Hz to 40 Hz"),
             phrase("at", "The place whose positions are selected. The default is then a list of positions.", "wheelset"),
+            UNCONFIRMED,
             CLAUSE,
             SOURCE,
             NOTE,
@@ -237,6 +243,7 @@ pub const KINDS: &[Kind] = &[
         keys: &[
             FOR_EACH,
             phrase("is", "The expression.", "vehicle.category is freight or not vehicle.secondary_suspension"),
+            UNCONFIRMED,
             CLAUSE,
             SOURCE,
             NOTE,
@@ -359,6 +366,7 @@ pub const KINDS: &[Kind] = &[
             phrase("minimum pairs", "The number of section x signal pairs that it needs.", "24"),
             phrase("in", "The unit of printed values, if it is not that of the signal.", "kN"),
             phrase("where", "Only sections that satisfy this condition are used.", "direction is not straight"),
+            UNCONFIRMED,
             CLAUSE,
             SOURCE,
             NOTE,

@@ -544,6 +544,7 @@ fn protocol() -> ProtocolInfo {
                 value: "20 Hz".into(),
                 default: "20 Hz".into(),
                 set_by: "default".into(),
+                unconfirmed: Some(HOSTILE.into()),
             },
             ParameterInfo {
                 name: LONG.into(),
@@ -551,6 +552,7 @@ fn protocol() -> ProtocolInfo {
                 value: "2.5 m".into(),
                 default: "2 m".into(),
                 set_by: "command line".into(),
+                unconfirmed: None,
             },
         ],
         filters: vec![

@@ -387,6 +387,7 @@ fn protocol() -> ProtocolInfo {
             value: "2 m".into(),
             default: "3 m".into(),
             set_by: "command line".into(),
+            unconfirmed: None,
         }],
         filters: vec![FilterInfo {
             name: "low".into(),

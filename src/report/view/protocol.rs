@@ -56,6 +56,7 @@ pub struct ParameterView {
     pub set_by: String,
     /// Differs from the default.
     pub changed: bool,
+    pub unconfirmed: Option<String>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -111,6 +112,7 @@ fn parameter(parameter: &ParameterInfo) -> ParameterView {
         default: parameter.default.clone(),
         set_by: parameter.set_by.clone(),
         changed: parameter.value != parameter.default,
+        unconfirmed: parameter.unconfirmed.clone(),
     }
 }
 
