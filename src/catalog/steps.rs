@@ -37,11 +37,18 @@ const BUTTERWORTH_CHOICES: &[Choice] = &[
         about: "Whether the frequencies are the -3 dB points of the filter as applied or of each pass.",
     },
 ];
-const WINDOW_CHOICES: &[Choice] = &[Choice {
-    name: "ends",
-    words: &["samples", "integral"],
-    about: "Mean of the samples a <= x < a + window, or the integral of the linearly interpolated signal over the window, divided by its width.",
-}];
+const WINDOW_CHOICES: &[Choice] = &[
+    Choice {
+        name: "ends",
+        words: &["samples", "integral"],
+        about: "Mean of the samples a <= x < a + window, or the integral of the linearly interpolated signal over the window, divided by its width.",
+    },
+    Choice {
+        name: "short sections",
+        words: &["whole-windows", "short-sections"],
+        about: "Whether a section shorter than the window has no value, or is one window by itself, both ends included.",
+    },
+];
 
 const fn butterworth(kind: StepKind, head: &'static [Part], about: &'static str) -> StepEntry {
     StepEntry { kind, form: Form { head, numbers: BUTTERWORTH_NUMBERS, choices: BUTTERWORTH_CHOICES }, about }

@@ -45,8 +45,14 @@ fn reducer_name(reducer: &Phrase) -> String {
 }
 
 impl Checker<'_> {
-    /// The estimate of a limit. Without a dimension (values that have an error), only names are checked.
-    pub(super) fn estimate(&mut self, written: &Written, text: &Text, dimension: Option<Dimension>) -> Option<Estimate> {
+    /// The estimate of a limit, in one zone if it is for each. Without a dimension (values that have an error), only names are checked.
+    pub(super) fn estimate(
+        &mut self,
+        written: &Written,
+        text: &Text,
+        dimension: Option<Dimension>,
+        zone: Option<&str>,
+    ) -> Option<Estimate> {
         let name = written.statistic.node.clone();
         let plain = bare(&name);
         if let Node::Path(_) | Node::Percentile(_) = written.estimate.node
@@ -56,7 +62,7 @@ impl Checker<'_> {
             let statistic = At { node: plain, range: written.statistic.range.clone() };
             return self.statistic(&statistic, text).map(|statistic| self.of_statistic(statistic));
         }
-        let kind = self.of_values(&written.estimate, text, dimension?)?;
+        let kind = self.of_values(&written.estimate, text, dimension?, zone)?;
         let title = self.blocks.iter().find(|block| block.kind.text == "estimate" && block.name_text() == name);
         let title = title.and_then(|block| block.title.as_ref()).map_or_else(|| self.with_values(&bare(&name)), |title| title.text.clone());
         let of_scatter = matches!(&kind.taken[..], [Taking::Bound { of, .. }] if of.of_scatter && matches!(kind.expr.kind, Kind::Input(0)));
@@ -83,8 +89,9 @@ impl Checker<'_> {
     }
 
     /// An expression over the values of a group. It must have the dimension of the values.
-    fn of_values(&mut self, phrase: &Phrase, text: &Text, dimension: Dimension) -> Option<OfGroup> {
-        let found = self.of_group(phrase, text, Some(dimension), &Scope::vehicle())?;
+    fn of_values(&mut self, phrase: &Phrase, text: &Text, dimension: Dimension, zone: Option<&str>) -> Option<OfGroup> {
+        let with = Scope { zone: zone.map(str::to_string), ..Scope::vehicle() };
+        let found = self.of_group(phrase, text, Some(dimension), &with)?;
         if found.taken.is_empty() {
             self.problems.push(
                 Problem::error("estimate-of-nothing", "this expression uses no statistic of the values")
@@ -136,6 +143,7 @@ impl Checker<'_> {
         }
         if let Some(written) = self.names.estimates.get(path).cloned() {
             self.used_defines.insert(format!("estimate {path}"));
+            self.unconfirmed |= self.names.unconfirmed.contains_key(path);
             let found = self.inside("estimate", path, span, |checker| checker.expr(&written.phrase, &written.text, scope));
             return Some(found);
         }
@@ -290,7 +298,7 @@ impl Checker<'_> {
             }
             self.of_statistic(statistic)
         } else {
-            let kind = self.of_values(of, text, dimension)?;
+            let kind = self.of_values(of, text, dimension, scope.zone.clone().as_deref())?;
             if kind.taken.iter().any(|taking| matches!(taking, Taking::Bound { .. })) {
                 self.problems.push(
                     Problem::error("interval-of-interval", "the end of a confidence interval has no confidence interval of its own")

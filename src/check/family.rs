@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 
+use super::like;
 use crate::problem::{Problem, Problems};
 use crate::source::Source;
 use crate::syntax;
@@ -69,7 +70,7 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
         }
     }
     let mut merged: Option<Document> = None;
-    let mut parent = None;
+    let mut parent: Option<Document> = None;
     let mut known = Vec::new();
     while let Some(written) = chain.pop() {
         let left = merged.as_ref().map(|before| without_removed(before, &written, &known, problems));
@@ -80,8 +81,13 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
             parent = Some(before);
         }
     }
-    let merged =
+    let mut merged =
         merged.unwrap_or_else(|| Document { source: Arc::clone(source), leading: Vec::new(), blocks: Vec::new(), trailing: Vec::new() });
+    like::write_out(&mut merged, whole, problems);
+    if let Some(parent) = &mut parent {
+        // What is wrong in it was told above.
+        like::write_out(parent, false, &mut Problems::default());
+    }
     Family { merged, parent, sources, whole }
 }
 
@@ -135,7 +141,7 @@ fn succeed(parent: &Block, variant: &Block) -> Block {
 }
 
 /// Puts fields of the variant in place of fields of the parent with the same slot; other fields stay.
-fn overlay(parent: &mut Block, variant: &Block) {
+pub(super) fn overlay(parent: &mut Block, variant: &Block) {
     parent.name.clone_from(&variant.name);
     if variant.title.is_some() {
         parent.title.clone_from(&variant.title);
@@ -143,15 +149,19 @@ fn overlay(parent: &mut Block, variant: &Block) {
     let says = |key: &str| variant.field(key).is_some();
     let replaced = |field: &Field| match field.key.text.as_str() {
         // A metric replaces value and difference, a unit replaces a choice of words, and the other way round.
-        "value" | "difference" => says("metric"),
-        "metric" => says("value") || says("difference"),
+        "value" => says("metric"),
+        "difference" => says("metric") || says("from"),
+        "metric" => says("value") || says("difference") || says("from"),
+        // The values of one record are not compared.
+        "compare" => says("from"),
+        "from" => says("difference") || says("metric") || says("compare"),
         "in" => says("one of"),
         "one of" => says("in"),
         // A rule and the judgement of a person replace each other, too.
         "holds" | "of" => says("judged by"),
         "judged by" => says("holds"),
         // A number of one's own is not the one that was to be confirmed.
-        "unconfirmed" => says("default") || says("is"),
+        "unconfirmed" => says("default") || says("is") || parent.kind.text == "zone" && says("where"),
         _ => false,
     };
     let mut new: IndexMap<String, Vec<Field>> = IndexMap::new();

@@ -15,6 +15,9 @@ use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Limit as Written, Node, Scope as WrittenScope};
 use crate::units::{Dimension, Unit};
 
+/// Behind a number that is not from a checked source.
+pub(super) const TO_BE_CONFIRMED: &str = ", to be confirmed against the standard";
+
 /// What all limits of a quantity have in common.
 struct Common<'a> {
     block: &'a Block,
@@ -86,16 +89,24 @@ impl Checker<'_> {
     fn limit(&mut self, text: &Text, common: &Common<'_>) -> Option<Vec<Limit>> {
         let written = from_pest::limit(text, self.problems)?;
         let written = self.with_statistic(written, text);
-        self.unconfirmed = common.block.field("unconfirmed").is_some();
-        let estimate = self.estimate(&written, text, common.unit.map(|(unit, _)| unit.dimension));
+        let dimension = common.unit.map(|(unit, _)| unit.dimension);
+        let unconfirmed = common.block.field("unconfirmed").is_some();
         let scope = self.limit_scope(&written.scope, text, common);
-        let (estimate, (scope, each_zone)) = (estimate?, scope?);
-        if !each_zone {
-            return Some(vec![self.limit_of(&written, &estimate, scope, None, text, common)?]);
+        let zones = match &scope {
+            Some((scope, true)) if !scope.zones.is_empty() => scope.zones.clone(),
+            Some((_, true)) => self.zone_names.clone(),
+            _ => Vec::new(),
+        };
+        if zones.is_empty() {
+            self.unconfirmed = unconfirmed;
+            let estimate = self.estimate(&written, text, dimension, None);
+            return Some(vec![self.limit_of(&written, &estimate?, scope?.0, None, text, common)?]);
         }
+        let (scope, _) = scope?;
         let mut limits = Vec::new();
-        let zones = if scope.zones.is_empty() { self.zone_names.clone() } else { scope.zones.clone() };
         for zone in zones {
+            self.unconfirmed = unconfirmed;
+            let estimate = self.estimate(&written, text, dimension, Some(&zone))?;
             let scope = LimitScope { zones: vec![zone.clone()], ..scope.clone() };
             limits.push(self.limit_of(&written, &estimate, scope, Some(zone), text, common)?);
         }
@@ -429,7 +440,7 @@ fn say_unconfirmed(limits: &mut [Limit]) {
         }
     }
     for limit in limits.iter_mut().filter(|limit| limit.unconfirmed) {
-        limit.words += ", to be confirmed against the standard";
+        limit.words += TO_BE_CONFIRMED;
     }
 }
 

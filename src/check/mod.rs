@@ -10,6 +10,7 @@ pub mod diff;
 mod estimates;
 pub mod evaluate;
 pub mod family;
+mod like;
 mod limits;
 mod metrics;
 mod names;
@@ -299,8 +300,9 @@ impl Checker<'_> {
             })
             .collect();
         let why = |block: &Block| Some((block.name_text().to_string(), block.field("unconfirmed")?.value.text.clone()));
-        let quantities_unconfirmed = of("quantity").filter_map(why);
-        let unconfirmed = names.unconfirmed.iter().map(|(name, why)| (name.clone(), why.clone())).chain(quantities_unconfirmed).collect();
+        let of_zones = of("zone").filter_map(why).map(|(name, why)| (format!("zone {name}"), why));
+        let others = of("quantity").filter_map(why).chain(of_zones);
+        let unconfirmed = names.unconfirmed.iter().map(|(name, why)| (name.clone(), why.clone())).chain(others).collect();
         let text = |key: &str| head.field(key).map(|field| field.value.text.clone());
         Some(Plan {
             name: head.name_text().to_string(),

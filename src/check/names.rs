@@ -109,7 +109,12 @@ impl Checker<'_> {
                     None => drop(self.names.failed.insert(name)),
                 },
                 "estimate" => match self.required(block, "is").and_then(|field| self.written(field)) {
-                    Some(is) => drop(self.names.estimates.insert(name, is)),
+                    Some(is) => {
+                        if let Some(why) = block.field("unconfirmed") {
+                            self.names.unconfirmed.insert(name.clone(), why.value.text.clone());
+                        }
+                        self.names.estimates.insert(name, is);
+                    }
                     None => drop(self.names.failed.insert(name)),
                 },
                 "vehicle" => match self.datum(&name, block, "key", name.clone()) {

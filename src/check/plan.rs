@@ -278,7 +278,7 @@ pub struct Step {
 pub enum StepSpec {
     Butterworth { band: Band, order: usize, phase: Phase, cutoff: Cutoff },
     Transfer { function: TransferFunction, phase: Phase, warping: Warping },
-    Window { rms: bool, width: f64, step: f64, over_time: bool, ends: Ends },
+    Window { rms: bool, width: f64, step: f64, over_time: bool, ends: Ends, short_sections: bool },
     Resample { step: f64, over_time: bool },
     RemoveMean,
     Magnitude,

@@ -83,7 +83,11 @@ impl Checker<'_> {
             (None, Some(_)) => &["of", "value"],
             (None, None) => &["of", "value", "difference"],
         };
-        self.all_required(block, needed);
+        // What it should be like was not found, as was told: its other fields may be there.
+        let incomplete = block.field("like").is_some();
+        if !incomplete {
+            self.all_required(block, needed);
+        }
         if let (Some(metric), Some(other)) = (metric, block.field("value").or(block.field("difference"))) {
             self.problems.push(
                 Problem::error("metric-and-value", "a quantity has either `metric`, or `value` and `difference`")
@@ -111,7 +115,7 @@ impl Checker<'_> {
         let best = compared.as_ref().and_then(|compared| compared.best.as_ref());
         let places: Vec<String> = positions.iter().flatten().next().map_or_else(Vec::new, |(_, at)| at.keys().cloned().collect());
         let limits = self.limits(block, unit.as_ref().zip(from), best, &places);
-        if block.field("limit").is_none() && !self.is_referred_to(block.name_text()) {
+        if block.field("limit").is_none() && !incomplete && !self.is_referred_to(block.name_text()) {
             self.problems.push(
                 Problem::warning(
                     "no-limit",

@@ -1,6 +1,7 @@
 //! Checks the rules that belong to no quantity: axis, zones, section checks, treatment of sections, independent units.
 
 use super::Checker;
+use super::limits::TO_BE_CONFIRMED;
 use super::names::normalised;
 use super::plan::{Axis, Check, DatumKind, Expr, Independent, Input, Kind, OnFault, Origin, SectionRules, Type, Zone};
 use super::scalars::Scope;
@@ -28,7 +29,10 @@ impl Checker<'_> {
 
     pub(super) fn zone(&mut self, block: &Block) -> Option<Zone> {
         let (condition, condition_words) = match block.field("where") {
-            Some(field) => (Some(self.section_condition(field)?), normalised(&field.value.text)),
+            Some(field) => {
+                let unconfirmed = if block.field("unconfirmed").is_some() { TO_BE_CONFIRMED } else { "" };
+                (Some(self.section_condition(field)?), normalised(&field.value.text) + unconfirmed)
+            }
             None => (None, String::new()),
         };
         let minimum_length = match block.field("minimum length") {

@@ -93,6 +93,19 @@ impl Scope {
     pub fn pair(dimension: Dimension) -> Self {
         Self { pair: Some(dimension), ..Self::new(true, true) }
     }
+
+    /// How much is asked of the records and of the group so far.
+    fn asked(&self) -> (usize, usize) {
+        (self.inputs.len(), self.group.as_ref().map_or(0, |group| group.taken.len()))
+    }
+
+    /// Takes back what was asked since.
+    fn forget(&mut self, (inputs, taken): (usize, usize)) {
+        self.inputs.truncate(inputs);
+        if let Some(group) = &mut self.group {
+            group.taken.truncate(taken);
+        }
+    }
 }
 
 impl Checker<'_> {
@@ -245,9 +258,9 @@ impl Checker<'_> {
         let mut values: Vec<Expr> = Vec::new();
         let mut ok = true;
         for (value, condition) in arms {
-            let inputs = scope.inputs.len();
+            let before = scope.asked();
             let condition = self.expr(condition, text, scope).filter(|condition| self.flag_type(condition).is_some());
-            // The case of a condition that parameters make false is still checked, but needs no records.
+            // The case of a condition that parameters or the zone make false is still checked, but needs no records and no values.
             let value = self.expr(value, text, scope);
             let (Some(value), Some(condition)) = (value, condition) else {
                 ok = false;
@@ -255,20 +268,20 @@ impl Checker<'_> {
             };
             values.push(value.clone());
             match condition.kind {
-                _ if last.is_some() => scope.inputs.truncate(inputs),
-                Kind::Constant(Scalar::Flag(false)) => scope.inputs.truncate(inputs),
+                _ if last.is_some() => scope.forget(before),
+                Kind::Constant(Scalar::Flag(false)) => scope.forget(before),
                 Kind::Constant(Scalar::Flag(true)) => last = Some(value),
                 _ => found.push((value, condition)),
             }
         }
         if let Some(otherwise) = otherwise {
-            let inputs = scope.inputs.len();
+            let before = scope.asked();
             match self.expr(otherwise, text, scope) {
                 None => ok = false,
                 Some(value) => {
                     values.push(value.clone());
                     if last.is_some() {
-                        scope.inputs.truncate(inputs);
+                        scope.forget(before);
                     } else {
                         last = Some(value);
                     }

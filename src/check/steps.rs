@@ -419,6 +419,10 @@ impl Checker<'_> {
                 let (_, b, place) = filled.numbers.get(1)?;
                 self.suits("step", a == b, &a.in_words(), *b, place)?;
                 words.push(format!(", {}", filled.choices[0]));
+                let short_sections = filled.choices[1] == "short-sections";
+                if short_sections {
+                    words.push(format!(", {}", filled.choices[1]));
+                }
                 self.not_too_fine(filled.numbers.get(1)?)?;
                 let ends = if filled.choices[0] == "integral" { Ends::Integral } else { Ends::Samples };
                 StepSpec::Window {
@@ -427,6 +431,7 @@ impl Checker<'_> {
                     step: number(1),
                     over_time: *a == Dimension::TIME,
                     ends,
+                    short_sections,
                 }
             }
             StepKind::Resample => {

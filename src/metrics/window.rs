@@ -34,6 +34,8 @@ pub struct Sliding {
     pub step: f64,
     pub kind: Kind,
     pub ends: Ends,
+    /// Whether a section shorter than the window is one window by itself.
+    pub short_sections: bool,
 }
 
 impl Sliding {
@@ -50,6 +52,9 @@ impl Sliding {
             return Err(SlidingError::Section { start, end });
         }
         let steps = ((end - start - width) / step + LAST_STEP).floor();
+        if steps < 0.0 && self.short_sections && end > start {
+            return Ok(vec![start]);
+        }
         if steps < 0.0 {
             return Err(SlidingError::SectionTooShort { length: end - start, width });
         }
@@ -84,13 +89,24 @@ impl Sliding {
         if first > start + ahead + ON_THE_EDGE || last < end - behind - ON_THE_EDGE {
             return Err(SlidingError::Record { first, last, start, end });
         }
+        let fitted = Self { width: self.width_in(start, end), ..*self };
         let averages = match self.ends {
-            Ends::Samples => self.of_samples(axis, signal, &starts)?,
-            Ends::Integral => self.of_integral(axis, signal, &starts),
+            Ends::Samples => fitted.of_samples(axis, signal, &starts)?,
+            Ends::Integral => fitted.of_integral(axis, signal, &starts),
         };
         match averages.iter().zip(&starts).find(|(value, _)| !value.is_finite()) {
             Some((_, &from)) => Err(SlidingError::NotFinite { from }),
             None => Ok(averages),
+        }
+    }
+
+    /// The width of the windows of a section: its length where it is shorter and is taken all the same, with the sample at its end.
+    fn width_in(&self, start: f64, end: f64) -> f64 {
+        let length = end - start;
+        match self.ends {
+            _ if !self.short_sections || length >= self.width - LAST_STEP * self.step => self.width,
+            Ends::Samples => length + 2.0 * ON_THE_EDGE,
+            Ends::Integral => length,
         }
     }
 

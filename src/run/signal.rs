@@ -160,13 +160,14 @@ impl Samples {
                 Ok(self.with(self.values.iter().map(|value| value - mean).collect()))
             }
             StepSpec::Magnitude => self.stepped(spec),
-            StepSpec::Window { rms, width, step, over_time, ends } => {
-                let sliding = Sliding { width: *width, step: *step, kind: if *rms { Kind::Rms } else { Kind::Mean }, ends: *ends };
+            StepSpec::Window { rms, width, step, over_time, ends, short_sections } => {
+                let kind = if *rms { Kind::Rms } else { Kind::Mean };
                 let (over, (start, end)) = self.window_axis(*over_time, extent)?;
+                let sliding = Sliding { width: *width, step: *step, kind, ends: *ends, short_sections: *short_sections };
                 let values =
                     sliding.over(over, &self.values, start, end).map_err(|error| error.in_words(if *over_time { "s" } else { "m" }))?;
                 let starts = sliding.starts(start, end).map_err(|error| error.to_string())?;
-                let middle: Vec<f64> = starts.iter().map(|start| start + width / 2.0).collect();
+                let middle: Vec<f64> = starts.iter().map(|from| from + width.min(end - start) / 2.0).collect();
                 let along = if *over_time {
                     let axis = resample::interpolate(over, &self.along.axis, &middle).map_err(|error| error.to_string())?;
                     Along { axis: Arc::new(axis), time: Some(Arc::new(middle)), rate: Rate::PerTime(1.0 / step), first_row: None }

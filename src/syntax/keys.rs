@@ -260,6 +260,7 @@ pub const KINDS: &[Kind] = &[
             phrase("where", "The condition that a section of the zone must satisfy.", "400 m <= radius <= 600 m"),
             phrase("minimum sections", "The number of used sections that the zone needs.", "3"),
             phrase("minimum length", "The minimum length of a section.", "250 m when admissible_speed <= 220 km/h, otherwise 500 m"),
+            UNCONFIRMED,
             CLAUSE,
             SOURCE,
             NOTE,
@@ -341,6 +342,7 @@ pub const KINDS: &[Kind] = &[
         about: "A validation quantity: its signals, their processing, the comparison and the limits.",
         keys: &[
             FOR_EACH,
+            phrase("like", "Another quantity whose fields hold here, except those that are given.", "SigmaY_max"),
             text("symbol", "The symbol in tables.", "(Y/Q)max"),
             many(phrase(
                 "of",
@@ -378,7 +380,7 @@ pub const KINDS: &[Kind] = &[
         named: true,
         single: false,
         about: "A name for an estimate from the values of a group: an expression of statistics, regressions and shares.",
-        keys: &[phrase("is", "The expression.", "mean + 3 * std"), CLAUSE, SOURCE, NOTE],
+        keys: &[FOR_EACH, phrase("is", "The expression.", "mean + 3 * std"), UNCONFIRMED, CLAUSE, SOURCE, NOTE],
     },
     Kind {
         word: "verdict",

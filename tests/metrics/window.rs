@@ -3,7 +3,7 @@ use fishplate::metrics::window::{Ends, Kind, Sliding, SlidingError};
 use crate::all_close;
 
 fn window(width: f64, step: f64, kind: Kind, ends: Ends) -> Sliding {
-    Sliding { width, step, kind, ends }
+    Sliding { width, step, kind, ends, short_sections: false }
 }
 
 /// Closed form: over a straight line the integral mean is the middle, the mean square that of a uniform distribution.
@@ -59,4 +59,19 @@ fn refuses_with_the_reason() {
     assert!(matches!(window(0.0, 1.0, Kind::Mean, Ends::Samples).starts(0.0, 1.0), Err(SlidingError::Window { .. })));
     assert!(matches!(window(1.0, 1e-12, Kind::Mean, Ends::Samples).starts(0.0, 10.0), Err(SlidingError::Window { .. })));
     assert!(matches!(means.starts(f64::NAN, 1.0), Err(SlidingError::Section { .. })));
+}
+
+/// By hand: a section shorter than the window is one window, with the samples at both of its ends.
+#[test]
+fn a_short_section_is_one_window() {
+    let axis: Vec<f64> = (0..6).map(f64::from).collect();
+    let values = [1.0, 3.0, 5.0, 7.0, 9.0, 11.0];
+    let of = |ends, width| Sliding { short_sections: true, ..window(width, 1.0, Kind::Mean, ends) };
+    assert_eq!(of(Ends::Samples, 10.0).over(&axis, &values, 1.0, 4.0), Ok(vec![6.0]));
+    assert_eq!(of(Ends::Integral, 10.0).over(&axis, &values, 1.0, 4.0), Ok(vec![6.0]));
+    // A section as long as the window, or longer, has the windows that it has anyway.
+    for (ends, width) in [(Ends::Samples, 3.0), (Ends::Samples, 2.0), (Ends::Integral, 3.0)] {
+        assert_eq!(of(ends, width).over(&axis, &values, 1.0, 4.0), window(width, 1.0, Kind::Mean, ends).over(&axis, &values, 1.0, 4.0));
+    }
+    assert!(of(Ends::Samples, 10.0).over(&axis, &values, 4.0, 4.0).is_err());
 }
