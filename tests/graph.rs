@@ -74,7 +74,10 @@ fn common_parts_stand_once() {
         for node in &graph.nodes {
             let what = match &node.operation {
                 // Their expressions hold places; that there is one for each quantity and signal is their meaning.
-                Operation::Value(_) | Operation::Compare(_) | Operation::Estimate(_) | Operation::Limit(_) => continue,
+                // So do verdicts: a person may judge several.
+                Operation::Value(_) | Operation::Compare(_) | Operation::Estimate(_) | Operation::Limit(_) | Operation::Verdict(_) => {
+                    continue;
+                }
                 Operation::Constant(expr) => format!("constant {}", check::evaluate::shape(expr)),
                 Operation::Select(conditions) => format!("select {:?}", conditions.iter().map(check::evaluate::shape).collect::<Vec<_>>()),
                 operation => format!("{operation:?}"),
