@@ -163,10 +163,18 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
         channels: family.merged.blocks.iter().filter(|block| block.kind.text == "channel").map(channel_info).collect(),
         graph_nodes: graph.nodes.len(),
         graph_svg: graph::svg(graph),
-        verdict_rule: match &plan.overall().name {
-            Some(_) => format!("{}: {}", plan.overall().title, plan.overall().criterion),
-            None => plan.overall().criterion.clone(),
-        },
+        verdict_rule: verdict_rule(plan),
+        verdict_words: plan.verdict_words(),
+    }
+}
+
+/// `requirements met when every limit holds`; of a verdict with a name, after its title.
+fn verdict_rule(plan: &Plan) -> String {
+    let rule = plan.overall();
+    match (&rule.name, rule.criterion.strip_prefix(&rule.words[0])) {
+        (Some(_), _) => format!("{}: {}", rule.title, rule.criterion),
+        (None, Some(rest)) => format!("{}{rest}", plan.verdict_words().good),
+        (None, None) => rule.criterion.clone(),
     }
 }
 

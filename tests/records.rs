@@ -126,6 +126,67 @@ fn several_codes_are_compared_with_each_other_and_with_the_measurement() {
     assert_eq!((named, measured.filter(|file| file["record"].get("name").is_none()).count()), (12, 12));
 }
 
+/// The rows of a table in `tables/`, without its head.
+fn rows_of(found: &Certified, table: &str) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(found.folder().join("tables").join(table)).expect("a table");
+    text.lines().skip(1).map(|line| line.split(',').map(str::to_string).collect()).collect()
+}
+
+/// Deviations from the mean of the codes: -2, -1 and 3 kN at every section and signal.
+#[test]
+fn the_spread_of_the_codes_is_a_table() {
+    let folder = three_codes();
+    let protocol = protocol(
+        folder.path(),
+        "quantity Q \"Wheel force\"\n  of  Q at wheelset 1\n  value  mean\n  compare  simulated with mean of simulated\n  \
+         difference  simulated - measured\n  limit  mean 100 kN for each record\n\n\
+         quantity plain \"Plain\"\n  of  Q at wheelset 1\n  value  mean\n  difference  simulated - measured\n  limit  mean 100 kN\n",
+    );
+    let found = certify(folder.path(), &["--protocol", &protocol, "--only", "html"]);
+    assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
+    let near =
+        |text: &str, wanted: f64| assert!((text.parse::<f64>().expect("a number") - wanted).abs() < 1e-9, "{text} in place of {wanted}");
+    let rows = rows_of(&found, "spreads.csv");
+    let all: Vec<&Vec<String>> = rows.iter().filter(|row| row[3].is_empty()).collect();
+    for (row, (name, mean, rank)) in all.iter().zip([("alpha", -2.0, "2"), ("beta", -1.0, "1"), ("gamma", 3.0, "3")]) {
+        assert_eq!((row[0].as_str(), row[4].as_str(), row[5].as_str(), row[12].as_str()), ("Q", name, "24", rank));
+        near(&row[6], mean);
+        near(&row[7], 0.0);
+        near(&row[8], mean);
+        near(&row[11], mean.abs());
+    }
+    assert_eq!(all.len(), 3);
+    let between = rows_of(&found, "spreads_between.csv");
+    let row = between.iter().find(|row| row[3].is_empty()).expect("all sections");
+    assert_eq!((row[2].as_str(), row[4].as_str(), row[5].as_str()), ("mean", "3", "24"));
+    for (cell, wanted) in [(6, 5.0), (7, 7_f64.sqrt()), (8, 5.0), (9, 7_f64.sqrt()), (10, 5.0)] {
+        near(&row[cell], wanted);
+    }
+    let page = fs::read_to_string(found.folder().join("report.html")).expect("a page");
+    // The plot shows all codes, in the section where one is farthest from their mean.
+    assert!(page.contains("Records gamma, alpha, beta: Q_1") && page.matches("class=\"curve other\"").count() == 2);
+    assert_eq!(page.matches("<table class=\"spread\">").count(), 1);
+    for word in
+        ["Spread of the codes in", "deviations from the mean of all codes", "Spread of the codes, largest", "Max. − min. of the codes"]
+    {
+        assert!(page.contains(word), "{word}");
+    }
+}
+
+/// A rule is printed with the values of its parameters.
+#[test]
+fn values_and_metrics_are_printed_with_the_values_of_parameters() {
+    let folder = tiny();
+    let quantities = "parameter factor \"Factor\"\n  default  1.25\n\nparameter weight \"Weight\"\n  default  0.4\n\n\
+                      quantity Q \"Q\"\n  of  Q at wheelset 1\n  value  factor * mean\n  difference  weight * (simulated - measured)\n  \
+                      limit  mean 100 kN\n\n\
+                      quantity rating \"Rating\"\n  of  Q at wheelset 1\n  metric  weight * correlation + 0.6 * (1 - theil_inequality)\n  \
+                      limit  p50 2\n";
+    let found = run(folder.path(), quantities);
+    assert_eq!(found.results()["quantities"][1]["metric"], "0.4 * correlation + 0.6 * (1 - theil_inequality)", "{}", found.ran.stderr);
+    assert_eq!(rows_of(&found, "summary.csv")[0][3], "1.25 * mean");
+}
+
 /// Pairs of site and signal count once, however many codes give them.
 #[test]
 fn several_codes_are_no_further_pairs() {
@@ -253,6 +314,7 @@ fn repeats_are_compared_with_their_originals() {
                 compare  repeats with originals\n  difference  (simulated - measured) / measured\n  limit  mean 1\n";
     let found = run(folder.path(), text);
     assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
+    assert_eq!(found.results()["verdict"], "validated");
     let results = found.results();
     let expected: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("misfit.json")).expect("numbers")).expect("JSON");
     let mut numbers = Vec::new();

@@ -9,7 +9,10 @@ mod common {
 }
 
 use common::{assessment, certification};
+use fishplate::report::figure::figures;
+use fishplate::report::html::html;
 use fishplate::report::view::{ReportData, view};
+use fishplate::result::{Certification, Kind};
 
 fn data() -> ReportData {
     view(&certification::certification())
@@ -109,7 +112,7 @@ fn an_assessment_has_a_row_for_each_limit_and_a_table_for_each_with_groups() {
     let rows: Vec<(&str, &str, &str, &str)> = data
         .estimates
         .iter()
-        .map(|row| (row.holding.as_str(), row.place.as_str(), row.normalised.as_str(), row.holds.word.as_str()))
+        .map(|row| (row.holding.as_str(), row.place.as_str(), row.limited.normalised.as_str(), row.limited.holds.word.as_str()))
         .collect();
     let expected = [
         ("15 of 16", assessment::FAILS, "1.09", "not met"),
@@ -134,7 +137,55 @@ fn values_of_several_records_have_a_row_each() {
     let blocks = &data.quantities[0].values;
     let cells: usize = blocks.iter().flat_map(|block| &block.rows).map(|row| row.cells.len()).sum();
     assert_eq!(cells, found.quantities[0].values.len());
-    assert_eq!([0, 1].map(|at| blocks[0].rows[at].section.as_str()), ["S01, first run", "S01, second run"]);
+    assert_eq!([0, 1].map(|at| blocks[0].rows[at].record.as_str()), ["first run", "second run"]);
+}
+
+/// Signals that are evaluated in different sections have a table each.
+#[test]
+fn a_table_of_values_is_not_half_empty() {
+    let mut found = certification::certification();
+    let quantity = &mut found.quantities[0];
+    let first = quantity.values[0].section.clone();
+    let signals: Vec<String> = quantity.values.iter().filter(|pair| pair.section == first).map(|pair| pair.signal.clone()).collect();
+    let tables = |found: &Certification| view(found).quantities[0].values.iter().map(|block| block.signals.len()).collect::<Vec<_>>();
+    assert_eq!(tables(&found), [signals.len()]);
+    let last = signals.last().expect("a signal");
+    found.quantities[0].values.retain(|pair| (&pair.signal == last) == (pair.section == first));
+    assert_eq!(tables(&found), [1, signals.len() - 1]);
+}
+
+/// Repeats are compared with originals, and nothing says that the one is simulated.
+#[test]
+fn repeats_and_originals_are_called_so() {
+    let mut found = certification::certification();
+    found.quantities.truncate(2);
+    for quantity in &mut found.quantities {
+        quantity.repeats = true;
+        // Notes are words of the protocol.
+        quantity.notes.clear();
+        quantity.comparison = "|repeat| - |original|".into();
+    }
+    found.traces.retain(|trace| trace.quantity == found.quantities[0].id || trace.quantity == found.quantities[1].id);
+    assert_eq!((found.kind(), found.verdict_words()), (Kind::Comparison, "requirements not met"));
+    let data = view(&found);
+    assert_eq!((data.words.over.as_str(), &data.simulation_statement), ("Comparison of measured records", &None));
+    assert_eq!(data.quantities[0].sides.each_ref().map(String::as_str), ["Repeat", "Original"]);
+    assert_eq!(data.quantities[0].short_sides, ["rep.", "orig."]);
+    assert!(data.quantities[0].figure.as_ref().is_some_and(|figure| figure.caption.contains("repeats against originals")));
+    assert!(data.traces.iter().all(|trace| trace.figure.alt.starts_with("Repeat and original")), "{:?}", data.traces);
+    assert_eq!(data.notation.comparisons.len(), 1);
+    assert!(data.notation.comparisons[0].meaning.starts_with("Positive: the magnitude of the repeat is larger."));
+    for (name, drawing) in figures(&found).into_iter().filter(|(name, _)| name.starts_with("pairs") || name.starts_with("trace")) {
+        let words = [">repeat", ">original", ": repeat ", ", original "];
+        assert!(words[..2].iter().all(|word| drawing.contains(word)) || words[2..].iter().all(|word| drawing.contains(word)), "{name}");
+        assert!(!drawing.contains(">simulated") && !drawing.contains(">measured"), "{name}");
+    }
+    let page = html(&data, &figures(&found)).expect("a page");
+    // The class of a curve is for scripts.
+    let told = page.split("id=\"protocol\"").next().unwrap_or_default().replace("\"curve simulated\"", "");
+    for word in ["simulated", "Simulated", ">sim.<"] {
+        assert!(!told.contains(word), "{word}: {:?}", told.find(word).map(|at| &told[at.saturating_sub(120)..at + 80]));
+    }
 }
 
 /// The kind follows from the quantities: several of different kinds are mixed; records among themselves are no validation.
@@ -153,6 +204,7 @@ fn words_follow_what_the_quantities_are() {
     found.quantities.iter_mut().for_each(|quantity| quantity.among = Some("simulated".into()));
     assert_eq!(word(&found), ("Comparison report", "requirements not met".into(), facts("Compared values")));
     let data = view(&found);
-    assert_eq!((data.words.over.as_str(), data.quantities[0].sides), ("Comparison of simulation codes", ["Record", "All records"]));
+    assert_eq!(data.words.over, "Comparison of simulation codes");
+    assert_eq!(data.quantities[0].sides.each_ref().map(String::as_str), ["Record", "All records"]);
     assert_eq!(data.measurement_statement, None);
 }

@@ -240,6 +240,12 @@ fn the_program_certifies_verifies_and_refuses_to_study() {
     }
     let (code, said) = run(&["study", "sections", "campaign", "--protocol", "named.fp", "--out", "study", "--take", "1"]);
     assert_eq!(code, Some(0), "{said}");
+    // A study speaks in the words of the protocol, in the terminal and in the report.
+    assert!(said.contains("of the selections have the verdict 'accepted'") && said.contains("  Accepted: "), "{said}");
+    let page = fs::read_to_string(folder.path().join("study/report.html")).expect("a page");
+    assert!(!page.split("id=\"protocol\"").next().unwrap_or(&page).contains("validated"));
+    let json = fs::read_to_string(folder.path().join("study/study.json")).expect("study.json");
+    assert!(json.contains("\"verdict_all_sections\": \"validated\"") && json.contains("\"share_validated\""), "{json}");
     let over = protocol().replacen("verdict measured_test", "verdict first\n  holds  when measured_test holds\n\nverdict measured_test", 1);
     fs::write(folder.path().join("over.fp"), over).expect("a file");
     let (code, said) = run(&["study", "sections", "campaign", "--protocol", "over.fp", "--out", "refused"]);

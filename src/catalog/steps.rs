@@ -84,6 +84,13 @@ const fn bare(kind: StepKind, head: &'static [Part], about: &'static str) -> Ste
     StepEntry { kind, form: Form { head, numbers: &[], choices: &[] }, about }
 }
 
+/// The wording of two poles, and what follows it.
+macro_rules! poles {
+    ($($zeros:expr),*) => {
+        &[Part::Word("transfer"), Part::Word("function"), Part::Word("poles"), ABOVE_ZERO, Part::Word("quality"), QUALITY, $($zeros),*]
+    };
+}
+
 pub const STEPS: &[StepEntry] = &[
     butterworth(StepKind::LowPass, &[Part::Word("low-pass"), Part::Frequency("cut-off")], "Butterworth low-pass over the whole record."),
     butterworth(StepKind::HighPass, &[Part::Word("high-pass"), Part::Frequency("cut-off")], "Butterworth high-pass over the whole record."),
@@ -105,49 +112,14 @@ pub const STEPS: &[StepEntry] = &[
         &[Part::Word("transfer"), Part::Word("function"), Part::Word("pole"), ABOVE_ZERO, Part::Word("zero"), FROM_ZERO],
         "One real pole and one real zero: (1 + s/z)/(1 + s/p); with the zero at 0 Hz (s/p)/(1 + s/p).",
     ),
+    transfer(poles![], "Two poles: 1/P, P = 1 + s/(quality p) + (s/p)²."),
+    transfer(poles![Part::Word("zero"), FROM_ZERO], "Two poles and one real zero: (1 + s/z)/P; with the zero at 0 Hz (s/p)/P."),
     transfer(
-        &[Part::Word("transfer"), Part::Word("function"), Part::Word("poles"), ABOVE_ZERO, Part::Word("quality"), QUALITY],
-        "Two poles: 1/P, P = 1 + s/(quality p) + (s/p)².",
-    ),
-    transfer(
-        &[
-            Part::Word("transfer"),
-            Part::Word("function"),
-            Part::Word("poles"),
-            ABOVE_ZERO,
-            Part::Word("quality"),
-            QUALITY,
-            Part::Word("zero"),
-            FROM_ZERO,
-        ],
-        "Two poles and one real zero: (1 + s/z)/P; with the zero at 0 Hz (s/p)/P.",
-    ),
-    transfer(
-        &[
-            Part::Word("transfer"),
-            Part::Word("function"),
-            Part::Word("poles"),
-            ABOVE_ZERO,
-            Part::Word("quality"),
-            QUALITY,
-            Part::Word("zeros"),
-            FROM_ZERO,
-        ],
+        poles![Part::Word("zeros"), FROM_ZERO],
         "Two poles and two zeros without damping: (1 + (s/z)²)/P; with the zeros at 0 Hz (s/p)²/P.",
     ),
     transfer(
-        &[
-            Part::Word("transfer"),
-            Part::Word("function"),
-            Part::Word("poles"),
-            ABOVE_ZERO,
-            Part::Word("quality"),
-            QUALITY,
-            Part::Word("zeros"),
-            ABOVE_ZERO,
-            Part::Word("quality"),
-            QUALITY,
-        ],
+        poles![Part::Word("zeros"), ABOVE_ZERO, Part::Word("quality"), QUALITY],
         "Two poles and two zeros: (1 + s/(quality z) + (s/z)²)/P.",
     ),
     window(

@@ -93,7 +93,7 @@ impl Checker<'_> {
         let over_axis = over_name
             .zip(over.first())
             .map(|(name, signal)| Axis { unit: self.own_unit(&name, after(chain, signal.dimension)), column: name });
-        let words = normalised(&field.value.text);
+        let words = self.with_values(&normalised(&field.value.text));
         let (first, _) = positions.first()?;
         Some(Compared {
             evaluation: Evaluation::Metric { metric, over, over_axis, repeats: false },
@@ -141,7 +141,7 @@ impl Checker<'_> {
         if let (Kind::Input(0), [Input { taken: Taken::Compared(metric), over: None, .. }]) = (&valued.expr.kind, inputs.as_slice()) {
             return self.by_one(*metric, None, field, positions, chain);
         }
-        let words = normalised(&field.value.text);
+        let words = self.with_values(&normalised(&field.value.text));
         Some(Compared {
             evaluation: Evaluation::Combined { of: valued, repeats: false },
             dimension,

@@ -7,6 +7,7 @@ use crate::catalog::{Function, Metric, Reducer, Statistic};
 use crate::metrics::filter::{Band, Cutoff, Phase, TransferFunction, Warping};
 use crate::metrics::percentile::Method;
 use crate::metrics::window::Ends;
+use crate::result;
 use crate::source::Span;
 use crate::units::{Dimension, Unit};
 
@@ -40,6 +41,21 @@ impl Plan {
     /// Whether a quantity needs records of this side.
     pub fn reads(&self, side: Side) -> bool {
         self.quantities.iter().any(|quantity| quantity.evaluation.reads(side))
+    }
+
+    /// What the protocol is about.
+    pub fn kind(&self) -> result::Kind {
+        result::Kind::of_all(self.quantities.iter().map(|quantity| quantity.evaluation.kind()))
+    }
+
+    /// The overall verdict in the protocol's own words, or in those of its kind.
+    pub fn verdict_words(&self) -> result::VerdictWords {
+        let rule = self.overall();
+        if !rule.has_words() {
+            return result::VerdictWords::of(self.kind());
+        }
+        let [good, bad] = rule.words.clone();
+        result::VerdictWords { good, bad }
     }
 
     /// The verdict of the protocol as a whole: the one without a name, else the first.
@@ -542,6 +558,15 @@ pub enum Center {
     Median,
 }
 
+impl Center {
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Mean => "mean",
+            Self::Median => "median",
+        }
+    }
+}
+
 impl Evaluation {
     /// Whether records of this side are needed.
     pub fn reads(&self, side: Side) -> bool {
@@ -550,6 +575,16 @@ impl Evaluation {
             Self::Values { records: Records::Compared { .. }, .. } => true,
             Self::Values { records: Records::Repeats { .. }, .. } => side == Side::Measured,
             Self::Metric { repeats, .. } | Self::Combined { repeats, .. } => !repeats || side == Side::Measured,
+        }
+    }
+
+    /// What a quantity is about.
+    pub fn kind(&self) -> result::Kind {
+        match self {
+            Self::Values { records: Records::Of(_), .. } => result::Kind::Assessment,
+            Self::Values { records: Records::Spread { .. }, .. } => result::Kind::Comparison,
+            _ if self.of_repeats() => result::Kind::Comparison,
+            _ => result::Kind::Validation,
         }
     }
 
@@ -779,6 +814,13 @@ pub struct VerdictRule {
     pub source: Option<String>,
     pub notes: Vec<String>,
     pub span: Span,
+}
+
+impl VerdictRule {
+    /// Whether its words are its own, and not those of the kind of the protocol.
+    pub fn has_words(&self) -> bool {
+        self.name.is_some() || self.own_words
+    }
 }
 
 #[derive(Clone, Debug)]

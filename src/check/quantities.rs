@@ -271,7 +271,7 @@ impl Checker<'_> {
         };
         let values: Vec<(Valued, Dimension)> = values.into_iter().collect::<Option<_>>()?;
         let result = result?;
-        let processing = values.iter().map(|(value, _)| words(&value.expr)).collect::<Vec<_>>().join("; ");
+        let processing = values.iter().map(|(value, _)| self.with_values(&words(&value.expr))).collect::<Vec<_>>().join("; ");
         let values: Vec<Valued> = values.into_iter().map(|(value, _)| value).collect();
         let field_of = |key: &str| block.field(key).map(|field| field.value.span.clone());
         let Some(difference) = difference else {
@@ -292,7 +292,7 @@ impl Checker<'_> {
             Some(compare) => compare?,
             None => Compare::Sides,
         };
-        let comparison = words(&difference);
+        let comparison = self.with_values(&words(&difference));
         let key = if compared != result { "difference" } else { "value" };
         let from = field_of(key).filter(|_| Some(compared) != dimension);
         let best = of_equal_sides(&difference).map(Best::Near).zip(field_of("difference"));
@@ -302,8 +302,7 @@ impl Checker<'_> {
                 (Records::Repeats { difference }, comparison.replace("measured", "original").replace("simulated", "repeat"))
             }
             Compare::With(side, center) => {
-                let name = if center == Center::Mean { "mean" } else { "median" };
-                let words = comparison.replace("measured", &format!("{name} of all"));
+                let words = comparison.replace("measured", &format!("{} of all", center.in_words())).replace("simulated", side.in_words());
                 (Records::Spread { side, center, difference }, words)
             }
         };

@@ -44,10 +44,13 @@ pub fn document(found: &Diagnosis, before: &Certification) -> Document {
         headline: Finding { word: found.verdict.to_string(), class, sign: sign(class) },
         sentence: found.says.first().cloned().unwrap_or_default(),
         key_facts: vec![
-            Fact { name: "Verdict before".into(), value: before.verdict.in_words().into() },
+            Fact { name: "Verdict before".into(), value: before.verdict_word().into() },
             Fact {
                 name: "Verdict with the effects".into(),
-                value: found.shrink.as_ref().map_or("-".into(), |shrink| shrink.verdict_after.clone()),
+                value: found
+                    .shrink
+                    .as_ref()
+                    .map_or("-".into(), |shrink| before.protocol.verdict_words.word(shrink.verdict_after).to_owned()),
             },
             Fact { name: "Gap removed".into(), value: found.shrink.as_ref().map_or("-".into(), |shrink| share(shrink.fraction_removed)) },
             Fact { name: "Sections".into(), value: found.how.sections.to_string() },

@@ -48,8 +48,11 @@ impl<'a> OfLimit<'a> {
         format!("{} of {}{open}", self.count(Some(true)), self.results.len())
     }
 
-    /// Why groups were not assessed: the first reason.
+    /// Why the limit is not assessed: the first reason of a group. Where a group fails, that is no reason of what the limit came to.
     pub fn reason(&self) -> Option<&'a str> {
+        if self.holds().is_some() {
+            return None;
+        }
         self.results.iter().find(|one| one.holds.is_none()).and_then(|one| one.reason.as_deref())
     }
 
@@ -146,6 +149,15 @@ mod tests {
         );
         let open = OfLimit { results: vec![&all[2], &all[0]] };
         assert_eq!((open.decisive().scope.as_str(), open.holds()), ("a", None));
+    }
+
+    #[test]
+    fn a_reason_is_one_of_what_the_limit_came_to() {
+        let open = StatisticResult { reason: Some("cant_deficiency does not vary".into()), ..result("c", None, None) };
+        let [holds, fails] = [result("a", Some(true), Some(0.9)), result("b", Some(false), Some(1.4))];
+        let reason = |results: Vec<&StatisticResult>| OfLimit { results }.reason().map(str::to_string);
+        assert_eq!(reason(vec![&holds, &open]).as_deref(), Some("cant_deficiency does not vary"));
+        assert_eq!((reason(vec![&open, &fails]), reason(vec![&holds])), (None, None));
     }
 
     #[test]

@@ -12,6 +12,7 @@ pub mod html;
 pub mod json;
 pub mod number;
 pub mod pdf;
+pub mod sides;
 pub mod study;
 pub mod tables;
 #[cfg_attr(not(feature = "typeset"), path = "no_typesetter.rs")]

@@ -1,6 +1,6 @@
 //! All tables of the report as CSV.
 
-use crate::result::Certification;
+use crate::result::{Certification, ClassSpread, OfRecord, QuantityResult};
 
 /// File names and contents for the folder `tables/`.
 ///
@@ -77,6 +77,10 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
     });
     let header = ["quantity", "unit", "section", "zone", "signal", "record", "simulated", "measured", "difference", "value", "samples"];
     add("values", &header, pairs.collect())?;
+    if found.quantities.iter().any(|quantity| quantity.spread.is_some()) {
+        add("spreads", &SPREADS, spreads(found, of_records))?;
+        add("spreads_between", &SPREADS_BETWEEN, spreads(found, between))?;
+    }
     add("sections", &section_header(found), section_rows(found))?;
     let checks = found.sections.iter().flat_map(|section| {
         section.checks.iter().map(|check| {
@@ -145,6 +149,76 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
     let files = found.campaign.files.iter().map(|file| vec![file.path.clone(), file.bytes.to_string(), file.sha256.clone()]);
     add("files", &["file", "bytes", "sha256"], files.collect())?;
     Ok(all)
+}
+
+const SPREADS: [&str; 13] = [
+    "quantity",
+    "unit",
+    "center",
+    "zone",
+    "record",
+    "values",
+    "mean deviation",
+    "standard deviation",
+    "largest deviation",
+    "section",
+    "signal",
+    "root mean square",
+    "rank",
+];
+
+const SPREADS_BETWEEN: [&str; 13] = [
+    "quantity",
+    "unit",
+    "center",
+    "zone",
+    "records",
+    "places",
+    "range of means",
+    "std of means",
+    "mean range",
+    "mean std",
+    "largest range",
+    "section",
+    "signal",
+];
+
+/// Rows for each quantity with several records and each class of sections, after what these are.
+fn spreads(found: &Certification, rows: impl Fn(&ClassSpread) -> Vec<Vec<String>>) -> Vec<Vec<String>> {
+    let of_quantity = |quantity: &QuantityResult| -> Vec<Vec<String>> {
+        let Some(spread) = &quantity.spread else { return Vec::new() };
+        let of_class = |class: &ClassSpread| {
+            let of = [quantity.id.clone(), quantity.unit.clone(), spread.center.clone(), class.zone.clone().unwrap_or_default()];
+            rows(class).into_iter().map(move |row| [of.to_vec(), row].concat())
+        };
+        spread.classes.iter().flat_map(of_class).collect()
+    };
+    found.quantities.iter().flat_map(of_quantity).collect()
+}
+
+fn of_records(class: &ClassSpread) -> Vec<Vec<String>> {
+    let row = |one: &OfRecord| {
+        vec![
+            one.record.clone(),
+            one.values.to_string(),
+            one.mean.to_string(),
+            number(one.std),
+            one.largest.value.to_string(),
+            one.largest.section.clone(),
+            one.largest.signal.clone(),
+            one.rms.to_string(),
+            one.rank.to_string(),
+        ]
+    };
+    class.records.iter().map(row).collect()
+}
+
+fn between(class: &ClassSpread) -> Vec<Vec<String>> {
+    let numbers = [class.range_of_means, class.std_of_means, class.mean_range, class.mean_std, class.widest.value];
+    let mut row = vec![class.records.len().to_string(), class.places.to_string()];
+    row.extend(numbers.map(|value| value.to_string()));
+    row.extend([class.widest.section.clone(), class.widest.signal.clone()]);
+    vec![row]
 }
 
 /// A cell that a spreadsheet does not interpret as a formula: such text gets an apostrophe in front, the spreadsheets' own mark of text

@@ -3,6 +3,8 @@
 use indexmap::IndexMap;
 use serde::Serialize;
 
+use super::Verdict;
+
 /// A diagnosis.
 #[derive(Clone, Debug, Serialize)]
 pub struct Diagnosis {
@@ -336,8 +338,8 @@ pub struct Shrink {
     pub high: f64,
     pub held_out: bool,
     pub quantities: Vec<QuantityShrink>,
-    pub verdict_before: String,
-    pub verdict_after: String,
+    pub verdict_before: Verdict,
+    pub verdict_after: Verdict,
     /// The same over the quantities that the effects change.
     pub touched: Option<Touched>,
     /// Share of the whitened excess that each effect removes, if there are several.

@@ -7,26 +7,33 @@ use super::{Certification, QuantityResult, Verdict};
 /// What a protocol is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Kind {
-    /// Every quantity compares simulated with measured records.
+    /// Quantities compare simulated with measured records.
     Validation,
-    /// Every quantity is of one record by itself.
+    /// Quantities are of one record by itself.
     Assessment,
-    /// Every quantity compares several records of one side with what is central of them.
+    /// Every quantity compares records of one side: several with what is central of them, or repeats with their originals.
     Comparison,
+    /// Validation and assessment.
     Mixed,
 }
 
 impl Kind {
     /// Without quantities, a validation.
     pub fn of(quantities: &[QuantityResult]) -> Self {
-        let one = |quantity: &QuantityResult| match (&quantity.from, &quantity.among) {
-            (Some(_), _) => Self::Assessment,
-            (None, Some(_)) => Self::Comparison,
-            (None, None) => Self::Validation,
-        };
-        let mut kinds = quantities.iter().map(one);
-        let first = kinds.next().unwrap_or(Self::Validation);
-        if kinds.all(|kind| kind == first) { first } else { Self::Mixed }
+        Self::of_all(quantities.iter().map(QuantityResult::kind))
+    }
+
+    /// Of a protocol with quantities of these kinds. Comparisons of records of one side make a comparison only where there is nothing else:
+    /// a validation that also looks at repeats is a validation.
+    pub fn of_all(kinds: impl Iterator<Item = Self>) -> Self {
+        let kinds: Vec<Self> = kinds.collect();
+        let some = |kind| kinds.contains(&kind);
+        match (some(Self::Validation), some(Self::Assessment), some(Self::Comparison)) {
+            (true, true, _) => Self::Mixed,
+            (false, true, _) => Self::Assessment,
+            (false, false, true) => Self::Comparison,
+            (_, false, _) => Self::Validation,
+        }
     }
 
     /// The verdict in words: a model is validated, requirements are met.
@@ -36,6 +43,47 @@ impl Kind {
             (_, Verdict::Validated) => "requirements met",
             (_, Verdict::NotValidated) => "requirements not met",
             (_, Verdict::NotAssessable) => "not assessable",
+        }
+    }
+}
+
+impl QuantityResult {
+    fn kind(&self) -> Kind {
+        match (&self.from, &self.among) {
+            (Some(_), _) => Kind::Assessment,
+            (None, Some(_)) => Kind::Comparison,
+            (None, None) if self.repeats => Kind::Comparison,
+            (None, None) => Kind::Validation,
+        }
+    }
+
+    /// Whether a record of this side is in its values.
+    fn reads(&self, side: &str) -> bool {
+        match self.from.as_ref().or(self.among.as_ref()) {
+            Some(of) => of == side,
+            None => !self.repeats || side == "measured",
+        }
+    }
+}
+
+/// The verdict of a protocol in its words.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct VerdictWords {
+    pub good: String,
+    pub bad: String,
+}
+
+impl VerdictWords {
+    pub fn of(kind: Kind) -> Self {
+        let word = |verdict| kind.verdict_words(verdict).to_owned();
+        Self { good: word(Verdict::Validated), bad: word(Verdict::NotValidated) }
+    }
+
+    pub fn word(&self, verdict: Verdict) -> &str {
+        match verdict {
+            Verdict::Validated => &self.good,
+            Verdict::NotValidated => &self.bad,
+            Verdict::NotAssessable => verdict.in_words(),
         }
     }
 }
@@ -63,11 +111,38 @@ impl Certification {
 
     /// Sides of which records are in the quantities: simulated, measured.
     pub fn reads(&self) -> (bool, bool) {
-        let is = |side: &str, quantity: &QuantityResult| {
-            let alone = quantity.from.as_ref().or(quantity.among.as_ref());
-            alone.is_none_or(|of| of == side)
-        };
-        let any = |side: &str| self.quantities.is_empty() || self.quantities.iter().any(|quantity| is(side, quantity));
+        let any = |side: &str| self.quantities.is_empty() || self.quantities.iter().any(|quantity| quantity.reads(side));
         (any("simulated"), any("measured"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Repeats or codes beside other quantities do not change what a protocol is about.
+    #[test]
+    fn comparisons_count_where_there_is_nothing_else() {
+        use Kind::{Assessment, Comparison, Mixed, Validation};
+        let cases: [(&[Kind], Kind); 7] = [
+            (&[], Validation),
+            (&[Validation], Validation),
+            (&[Comparison, Comparison], Comparison),
+            (&[Comparison, Validation], Validation),
+            (&[Assessment, Comparison], Assessment),
+            (&[Validation, Assessment], Mixed),
+            (&[Validation, Assessment, Comparison], Mixed),
+        ];
+        for (kinds, expected) in cases {
+            assert_eq!(Kind::of_all(kinds.iter().copied()), expected, "{kinds:?}");
+        }
+    }
+
+    #[test]
+    fn a_verdict_that_cannot_be_given_has_no_word_of_its_own() {
+        let words = VerdictWords { good: "accepted".into(), bad: "rejected".into() };
+        let all = [Verdict::Validated, Verdict::NotValidated, Verdict::NotAssessable];
+        assert_eq!(all.map(|verdict| words.word(verdict)), ["accepted", "rejected", "not assessable"]);
+        assert_eq!(VerdictWords::of(Kind::Assessment).good, "requirements met");
     }
 }

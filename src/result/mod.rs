@@ -8,15 +8,17 @@ pub mod finding;
 mod kind;
 pub mod origin;
 pub mod report;
+mod spread;
 pub mod study;
 pub mod verdict;
 
 use serde::Serialize;
 
 pub use finding::{Consequence, Finding};
-pub use kind::Kind;
+pub use kind::{Kind, VerdictWords};
 pub use origin::{FittedTo, OriginInfo};
 pub use report::ReportItem;
+pub use spread::{ClassSpread, Furthest, OfRecord, Spread};
 pub use verdict::{Outcome, Verdict, VerdictResult};
 
 /// All results of a certification, in the order of the protocol and of the campaign.
@@ -73,6 +75,8 @@ pub struct ProtocolInfo {
     pub graph_svg: String,
     /// Criterion of the overall verdict, in a sentence.
     pub verdict_rule: String,
+    /// The overall verdict in the protocol's own words, or in those of its kind.
+    pub verdict_words: VerdictWords,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -226,6 +230,10 @@ pub struct QuantityResult {
     pub from: Option<String>,
     /// The side whose records are each compared with what is central of all of them: `simulated`.
     pub among: Option<String>,
+    /// Whether sections that were measured again are compared with their originals: `simulated` is the repeat, `measured` the original.
+    pub repeats: bool,
+    /// How far several records of one side are apart.
+    pub spread: Option<Spread>,
     pub statistics: Vec<StatisticResult>,
     /// Number of sites of the values.
     pub n: usize,
@@ -435,6 +443,9 @@ pub struct Trace {
     pub end: f64,
     pub measured: Curve,
     pub simulated: Curve,
+    /// Of several records that are compared with each other: the name of the one above, and all others.
+    pub record: Option<String>,
+    pub others: Vec<(String, Curve)>,
 }
 
 #[derive(Clone, Debug, Default, Serialize)]

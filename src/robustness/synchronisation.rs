@@ -5,8 +5,8 @@ use crate::certify::Compiled;
 use crate::check::plan::Plan;
 use crate::data::Campaign;
 use crate::problem::Problems;
-use crate::result::Verdict;
 use crate::result::study::{AtOffset, Estimated, Found, Study, SyncStudy};
+use crate::result::{Verdict, VerdictWords};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::study::case::Case;
 use crate::study::fails::Fails;
@@ -56,8 +56,9 @@ pub fn synchronisation(
     let without = Without { case: &base, fails, selection: &selection };
     let mut found: Vec<AtOffset> =
         all.iter().zip(&offsets).map(|(evaluated, offset)| at_offset(evaluated, compiled, settings, *offset, &without)).collect();
+    let words = plan.verdict_words();
     for at in (0..found.len()).filter(|at| *at != zero) {
-        found[at].changes = changes(&found[zero], &found[at]);
+        found[at].changes = changes(&found[zero], &found[at], &words);
         found[at].lost = lost(&all[zero], &all[at], plan);
     }
     let estimates = all[zero].offsets().map(|(section, zone, offset)| Estimated {
@@ -116,10 +117,10 @@ fn at_offset(evaluated: &Evaluated, compiled: &Compiled, settings: &Settings, of
 
 /// Differences from the case without offset: the verdict on all sections, limits of all sections, limits of the single selection, and
 /// the number of selections with another verdict.
-fn changes(base: &AtOffset, at: &AtOffset) -> Vec<String> {
+fn changes(base: &AtOffset, at: &AtOffset, words: &VerdictWords) -> Vec<String> {
     let mut changes = Vec::new();
     if base.verdict != at.verdict {
-        changes.push(format!("all sections: {} instead of {}", at.verdict.in_words(), base.verdict.in_words()));
+        changes.push(format!("all sections: {} instead of {}", words.word(at.verdict), words.word(base.verdict)));
     }
     for reason in at.reasons.iter().filter(|reason| at.verdict != Verdict::NotAssessable && !same_limit(&base.reasons, reason)) {
         changes.push(format!("all sections: {reason}"));

@@ -6,6 +6,7 @@ use super::facts::Facts;
 use super::limits::{self, Compared, Judging};
 use super::section::SectionValues;
 use super::sections::Unit;
+use super::spreads;
 use super::table::{Member, count_independent, independent};
 use super::verdicts;
 use crate::check::plan::{Evaluation, Plan, Quantity, Records, Zone};
@@ -47,7 +48,7 @@ pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: 
     let named = verdicts::named(plan, &decided);
     let (rule, overall) = (plan.overall(), decided.into_iter().next().unwrap_or_default());
     let verdict = overall.outcome.overall();
-    let own = (rule.name.is_some() || rule.own_words).then(|| match verdict {
+    let own = rule.has_words().then(|| match verdict {
         Verdict::NotAssessable => verdict.in_words().to_string(),
         _ => overall.outcome.word(&rule.words).to_string(),
     });
@@ -194,6 +195,18 @@ fn quantity_result(graph: &Graph, index: usize, judging: &Judging<'_>, reason: O
     let reason = reason.or(undefined);
     let holds = if reason.is_some() { None } else { Some(statistics.iter().all(|statistic| statistic.holds == Some(true))) };
     let show = |value: f64| quantity.unit.from_si(value);
+    let value = |member: &Member<'_>| PairValue {
+        section: member.unit.name.clone(),
+        zone: member.unit.zone.clone(),
+        signal: member.signal.to_string(),
+        taken: quantity.evaluation.value_in_words(member.row.which),
+        record: member.row.record.as_deref().map(str::to_string),
+        simulated: member.row.simulated.map(show),
+        measured: member.row.measured.map(show),
+        difference: show(member.row.value),
+        samples: member.row.samples,
+    };
+    let values: Vec<PairValue> = members.iter().map(value).collect();
     let result = QuantityResult {
         id: quantity.id.clone(),
         title: quantity.title.clone(),
@@ -215,22 +228,14 @@ fn quantity_result(graph: &Graph, index: usize, judging: &Judging<'_>, reason: O
             Evaluation::Values { records: Records::Spread { side, .. }, .. } => Some(side.in_words().into()),
             _ => None,
         },
+        repeats: quantity.evaluation.of_repeats(),
+        spread: match quantity.evaluation.as_ref() {
+            Evaluation::Values { records: Records::Spread { center, .. }, .. } => spreads::spread(*center, &values),
+            _ => None,
+        },
         statistics,
         n: count_independent(plan, members),
-        values: members
-            .iter()
-            .map(|member| PairValue {
-                section: member.unit.name.clone(),
-                zone: member.unit.zone.clone(),
-                signal: member.signal.to_string(),
-                taken: quantity.evaluation.value_in_words(member.row.which),
-                record: member.row.record.as_deref().map(str::to_string),
-                simulated: member.row.simulated.map(show),
-                measured: member.row.measured.map(show),
-                difference: show(member.row.value),
-                samples: member.row.samples,
-            })
-            .collect(),
+        values,
         holds,
         reason,
         rule: limits::rule_place(&quantity.span),

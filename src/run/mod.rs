@@ -22,6 +22,7 @@ mod sections;
 mod sides;
 mod signal;
 pub mod single;
+mod spreads;
 mod synchronisation;
 mod table;
 mod told;

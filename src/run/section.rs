@@ -100,14 +100,7 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
         let mut values = common.clone();
         match measured {
             Ok(measured) => {
-                let sides = Sides {
-                    simulated: &simulated,
-                    measured: &measured,
-                    original: original.as_ref(),
-                    known: &known,
-                    extent: unit.extent,
-                    method: work.plan.sections.percentiles,
-                };
+                let sides = Sides::of_section(work, unit, (&simulated, &measured), original.as_ref(), &known);
                 quantities(work, &sides, &active, &mut values);
                 record_checks(work, &sides, &mut values);
                 plausibility::look(work, unit, &sides, &track, &mut values);
@@ -299,14 +292,7 @@ pub fn single(work: &Work<'_>, unit: &Unit, index: usize, signal: usize) -> Resu
         }
         None => None,
     };
-    let sides = Sides {
-        simulated: &simulated,
-        measured: &measured,
-        original: original.as_ref(),
-        known: &known,
-        extent: unit.extent,
-        method: work.plan.sections.percentiles,
-    };
+    let sides = Sides::of_section(work, unit, (&simulated, &measured), original.as_ref(), &known);
     let rows = sides.rows(work, signal, nodes).map_err(Fault::new)?;
     Ok(Computed { rows, records: all })
 }

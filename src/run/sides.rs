@@ -66,6 +66,17 @@ pub struct Two<'a> {
 pub static NOT_READ: Evaluated = Vec::new();
 
 impl<'a> Sides<'a> {
+    /// The simulated and the measured records of a section.
+    pub fn of_section(
+        work: &Work<'_>,
+        unit: &Unit,
+        (simulated, measured): (&'a [RecordOfSide], &'a [RecordOfSide]),
+        original: Option<&'a Original<'a>>,
+        known: &'a Known<'a>,
+    ) -> Self {
+        Self { simulated, measured, original, known, extent: unit.extent, method: work.plan.sections.percentiles }
+    }
+
     fn of(&self, side: Side) -> &'a [RecordOfSide] {
         match side {
             Side::Simulated => self.simulated,

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use super::record::{Found, Work, needed, open};
 use super::sections::Unit as Section;
 use super::signal::Samples;
-use crate::check::plan::{Evaluation, Side};
+use crate::check::plan::{Evaluation, Records, Side};
+use crate::data::WhichRecord;
 use crate::graph::NodeId;
 use crate::result::{Curve, QuantityResult, Trace, took_part};
 use crate::units::Unit;
@@ -75,12 +76,9 @@ fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record
     // A loop is plotted from the signals that were compared; other signals from the record around the section as well.
     let node = if over.node.is_some() { nodes.processed } else { nodes.filtered };
     let wanted: BTreeSet<NodeId> = [node].into_iter().chain(over.node).collect();
-    let known = unit.known(work.facts);
-    let curve = |side: Side| {
-        let name = |which| work.campaign.record_name(which).map(|name| name.as_ref());
-        let all = work.campaign.records(side.kind());
-        let which = all.into_iter().find(|&which| took_part(record, side == Side::Simulated, name(which)));
-        let which = which.ok_or_else(|| format!("there is no {} record of it", side.in_words()))?;
+    let name = |which| work.campaign.record_name(which).map(|name| name.as_ref());
+    let curve_of = |unit: &Section, which: WhichRecord| {
+        let known = unit.known(work.facts);
         let needed = needed(work.graph, &wanted, &known)?;
         let opened = open(work, unit, which, &needed).map_err(|fault| fault.says)?;
         let found = opened.evaluate(work.graph, &needed, &wanted, &known, work.plan.sections.percentiles)?;
@@ -97,8 +95,31 @@ fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record
         };
         Ok::<_, String>((thinned(samples, x, &quantity.signal_unit, &over.unit), opened.extent))
     };
-    let of = |side: Side| -> Result<_, String> { if quantity.evaluation.reads(side) { curve(side).map(Some) } else { Ok(None) } };
-    let (measured, simulated) = (of(Side::Measured)?, of(Side::Simulated)?);
+    let curve = |unit: &Section, side: Side| {
+        let all = work.campaign.records(side.kind());
+        let which = all.into_iter().find(|&which| took_part(record, side == Side::Simulated, name(which)));
+        curve_of(unit, which.ok_or_else(|| format!("there is no {} record of it", side.in_words()))?)
+    };
+    let of = |side: Side| -> Result<_, String> { if quantity.evaluation.reads(side) { curve(unit, side).map(Some) } else { Ok(None) } };
+    let original = unit.original.and_then(|original| work.units.get(original)).filter(|_| quantity.evaluation.of_repeats());
+    let (measured, simulated) = match original {
+        // The original stands in the place of the measurement; distances count from the start of each section.
+        Some(original) => {
+            let (repeat, (mut first, extent)) = (curve(unit, Side::Measured)?, curve(original, Side::Measured)?);
+            if over.node.is_none() {
+                let shift = over.unit.from_si(repeat.1.0) - over.unit.from_si(extent.0);
+                first.x.iter_mut().for_each(|x| *x += shift);
+            }
+            (Some((first, repeat.1)), Some(repeat))
+        }
+        None => (of(Side::Measured)?, of(Side::Simulated)?),
+    };
+    let mut others = Vec::new();
+    if let Evaluation::Values { records: Records::Spread { side, .. }, .. } = quantity.evaluation.as_ref() {
+        for which in work.campaign.records(side.kind()).into_iter().filter(|&which| name(which) != record) {
+            others.push((name(which).unwrap_or_default().to_string(), curve_of(unit, which)?.0));
+        }
+    }
     let extent = measured.as_ref().or(simulated.as_ref()).map_or((0.0, 0.0), |(_, extent)| *extent);
     let of_curve = |curve: Option<(Curve, _)>| curve.map(|(curve, _)| curve).unwrap_or_default();
     let (measured, simulated) = (of_curve(measured), of_curve(simulated));
@@ -124,6 +145,8 @@ fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record
         end,
         measured,
         simulated,
+        record: record.map(str::to_string),
+        others,
     })
 }
 

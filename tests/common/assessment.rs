@@ -26,7 +26,7 @@ pub fn certification() -> Certification {
     found.campaign.origin = None;
     found.protocol.title = "On-track assessment".into();
     found.protocol.source = None;
-    found.protocol.verdict_rule = "validated when every limit holds".into();
+    found.protocol.verdict_rule = "requirements met when every limit holds".into();
     found.reasons = vec![format!("SigmaY: estimate ({FAILS}) exceeds the limit")];
     found
 }
@@ -88,6 +88,8 @@ fn quantity(found: &Certification) -> QuantityResult {
         has_sides: false,
         from: Some("measured".into()),
         among: None,
+        repeats: false,
+        spread: None,
         statistics,
         n: 30,
         values,

@@ -135,6 +135,7 @@ pub fn empty() -> Certification {
             graph_nodes: 0,
             graph_svg: String::new(),
             verdict_rule: String::new(),
+            verdict_words: fishplate::result::VerdictWords::of(fishplate::result::Kind::Validation),
         },
         campaign: CampaignInfo {
             name: String::new(),
@@ -290,6 +291,8 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
     QuantityResult {
         from: None,
         among: None,
+        repeats: false,
+        spread: None,
         id: kind.id.into(),
         title: kind.title.into(),
         symbol: kind.symbol.into(),
@@ -376,6 +379,8 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
     QuantityResult {
         from: None,
         among: None,
+        repeats: false,
+        spread: None,
         id: "sprague_geers_ay".into(),
         title: format!("Sprague-Geers metric {HOSTILE}"),
         symbol: STRANGE.into(),
@@ -463,6 +468,8 @@ fn trace(at: usize, quantity: &QuantityResult, noise: &mut Noise) -> Trace {
         end: 220.0,
         measured: curve(noise),
         simulated: curve(noise),
+        record: None,
+        others: Vec::new(),
     }
 }
 
@@ -573,5 +580,6 @@ fn protocol() -> ProtocolInfo {
         graph_nodes: 96,
         graph_svg: drawing("graph", 1400, 600),
         verdict_rule: "every statistic of every quantity holds, and every zone has at least 3 sections".into(),
+        verdict_words: fishplate::result::VerdictWords::of(fishplate::result::Kind::Validation),
     }
 }

@@ -192,6 +192,8 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
     QuantityResult {
         from: None,
         among: None,
+        repeats: false,
+        spread: None,
         id: id.into(),
         title: title.into(),
         symbol: symbol.into(),
@@ -319,6 +321,8 @@ fn traces(noise: &mut Noise) -> Vec<Trace> {
             end,
             measured: Curve { x: x.clone(), y: measured },
             simulated: Curve { x, y: simulated },
+            record: None,
+            others: Vec::new(),
         }
     })
     .collect()
@@ -399,5 +403,6 @@ fn protocol() -> ProtocolInfo {
         graph_nodes: 42,
         graph_svg: "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"200\" height=\"40\" viewBox=\"0 0 200 40\"><rect x=\"2\" y=\"8\" width=\"80\" height=\"24\" fill=\"none\" stroke=\"#1f242b\"/><text x=\"12\" y=\"24\" font-size=\"11\">channel</text><path d=\"M82 20H118\" stroke=\"#1f242b\"/><rect x=\"118\" y=\"8\" width=\"80\" height=\"24\" fill=\"none\" stroke=\"#1f242b\"/><text x=\"128\" y=\"24\" font-size=\"11\">low-pass</text></svg>".into(),
         verdict_rule: "Every mean and every standard deviation is within its limit, and every zone has at least 3 sections.".into(),
+        verdict_words: fishplate::result::VerdictWords::of(fishplate::result::Kind::Validation),
     }
 }

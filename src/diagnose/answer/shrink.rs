@@ -153,8 +153,8 @@ pub fn compare(
         high: whole.high,
         held_out: true,
         quantities: quantities.collect(),
-        verdict_before: before.verdict.in_words().into(),
-        verdict_after: after.verdict.in_words().into(),
+        verdict_before: before.verdict,
+        verdict_after: after.verdict,
         touched: (!touched.is_empty()).then(|| removed(before, after, &touched, seed)),
         shares,
     }

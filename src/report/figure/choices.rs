@@ -6,8 +6,8 @@ use super::frame::Frame;
 use super::legend::{Entry, Legend};
 use super::style::{BEYOND, BLUE, DASHED, GRID, INK, MUTED, Mark, SMALL, TEXT, VERMILION, WHITE, WIDTH, cut, text_width};
 use crate::report::number;
-use crate::result::Verdict;
 use crate::result::study::{AtValue, ParameterStudy};
+use crate::result::{Verdict, VerdictWords};
 
 /// Heights of a row and of the line between parameters, in points.
 const ROW: f64 = 10.0;
@@ -23,11 +23,11 @@ fn sign(verdict: Verdict) -> (Mark, plotters::style::RGBColor) {
     }
 }
 
-/// One row per value: the limit at 1, shape and colour for the verdict, the share of selections validated at the right.
-pub fn choices(study: &ParameterStudy) -> String {
+/// One row per value: the limit at 1, shape and colour for the verdict, the share of selections for which the verdict holds at the right.
+pub fn choices(study: &ParameterStudy, words: &VerdictWords) -> String {
     let legend = Legend::new(
         [Verdict::Validated, Verdict::NotValidated, Verdict::NotAssessable]
-            .map(|verdict| Entry::mark(sign(verdict).0, sign(verdict).1, verdict.in_words()))
+            .map(|verdict| Entry::mark(sign(verdict).0, sign(verdict).1, words.word(verdict)))
             .to_vec(),
         WIDTH - NAMES,
     );
@@ -45,7 +45,7 @@ pub fn choices(study: &ParameterStudy) -> String {
     legend.draw(&mut canvas, (NAMES, 0.0));
     canvas.draw(|layer| {
         layer.rect((x.at(1.0), top), (frame.right(), frame.bottom()), BEYOND);
-        layer.text("validated", (WIDTH - 2.0, top - 6.0), &Font::right(SMALL).color(MUTED));
+        layer.text(&words.good, (WIDTH - 2.0, top - 6.0), &Font::right(SMALL).color(MUTED));
     });
     frame.x_axis(&mut canvas, &x.ticks(8), "largest statistic / limit, all sections");
     let (mut y, mut limit) = (top, vec![top]);
@@ -63,7 +63,7 @@ pub fn choices(study: &ParameterStudy) -> String {
         });
         y += GAP;
         for at in &parameter.values {
-            row(&mut canvas, &frame, at, y + 0.5 * ROW - 2.0);
+            row(&mut canvas, &frame, (at, words.word(at.verdict)), y + 0.5 * ROW - 2.0);
             y += ROW;
         }
     }
@@ -77,7 +77,7 @@ pub fn choices(study: &ParameterStudy) -> String {
     canvas.finish()
 }
 
-fn row(canvas: &mut Canvas, frame: &Frame, at: &AtValue, y: f64) {
+fn row(canvas: &mut Canvas, frame: &Frame, (at, verdict): (&AtValue, &str), y: f64) {
     let share = at.share.map_or_else(|| number::NONE.to_owned(), |share| format!("{} %", number::fixed(100.0 * share.share, 2)));
     canvas.draw(|layer| {
         layer.line((frame.left(), y), (frame.right(), y), GRID, 0.4);
@@ -86,7 +86,7 @@ fn row(canvas: &mut Canvas, frame: &Frame, at: &AtValue, y: f64) {
     });
     if let Some((which, value)) = &at.largest {
         let (mark, color) = sign(at.verdict);
-        let title = format!("{}: {which} {} of its limit, {}", at.value, number::fixed(*value, 3), at.verdict.in_words());
+        let title = format!("{}: {which} {} of its limit, {}", at.value, number::fixed(*value, 3), verdict);
         canvas.group(&Group { class: "mark", title: Some(&title), ..Group::default() }, |layer| {
             layer.mark(mark, (frame.x.at(value.clamp(frame.x.low, frame.x.high)), y), 2.2, color);
         });

@@ -115,7 +115,7 @@ pub fn draw(canvas: &mut Canvas, quantity: &QuantityResult, against: &Against<'_
     let decimals = number::decimals(&quantity.unit, quantity.values.iter().map(|pair| pair.difference));
     for pair in &quantity.values {
         let (mark, color) = zones.mark(pair.zone.as_deref());
-        let title = tooltip(pair, &quantity.unit, decimals);
+        let title = tooltip(pair, quantity, decimals);
         canvas.group(&pair_group(pair, &title), |layer| {
             layer.mark(mark, (x.at(slots.place(&pair.section, &pair.signal)), y.at(pair.difference)), 1.8, color);
         });

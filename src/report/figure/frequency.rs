@@ -67,14 +67,20 @@ pub fn frequency(quantity: &QuantityResult, zones: &Zones) -> String {
     });
     let decimals = number::decimals(&quantity.unit, quantity.values.iter().map(|value| value.difference));
     for (at, (name, values)) in curves.iter().enumerate() {
-        curve(&mut canvas, &frame, values, look(at, name), (&quantity.unit, decimals));
+        curve(&mut canvas, &frame, values, look(at, name), (quantity, decimals));
     }
     frame.spine(&mut canvas);
     canvas.finish()
 }
 
 /// Steps from each value to the next, and a mark at each value.
-fn curve(canvas: &mut Canvas, frame: &Frame, values: &[&PairValue], (mark, color): (Mark, RGBColor), (unit, decimals): (&str, usize)) {
+fn curve(
+    canvas: &mut Canvas,
+    frame: &Frame,
+    values: &[&PairValue],
+    (mark, color): (Mark, RGBColor),
+    (quantity, decimals): (&QuantityResult, usize),
+) {
     let share = |rank: usize| 100.0 * rank as f64 / values.len() as f64;
     let finite = values.iter().enumerate().filter(|(_, value)| value.difference.is_finite());
     let steps: Vec<(f64, f64)> = finite
@@ -85,7 +91,7 @@ fn curve(canvas: &mut Canvas, frame: &Frame, values: &[&PairValue], (mark, color
         .collect();
     canvas.group(&Group { class: "curve", ..Group::default() }, |layer| layer.path(&steps, color, 0.8));
     for (rank, value) in values.iter().enumerate() {
-        let title = tooltip(value, unit, decimals);
+        let title = tooltip(value, quantity, decimals);
         canvas.group(&pair_group(value, &title), |layer| {
             layer.mark(mark, (frame.x.at(value.difference), frame.y.at(share(rank + 1))), 1.7, color);
         });

@@ -37,7 +37,7 @@ pub use states::{before_after, signals};
 pub use trace::trace;
 pub use zones::Zones;
 
-use crate::report::estimates;
+use crate::report::{estimates, sides};
 use crate::result::Certification;
 
 /// All figures of a report by their names in the view ([`super::view::FigureView::name`]).
@@ -62,7 +62,7 @@ pub fn figures(found: &Certification) -> Vec<(String, String)> {
         }
     }
     for (at, one) in found.traces.iter().enumerate() {
-        drawn.push((format!("trace-{at}"), trace(one)));
+        drawn.push((format!("trace-{at}"), trace(one, sides::of_trace(one, found))));
     }
     if !found.domain.is_empty() {
         drawn.push(("domain".to_owned(), domain(&found.domain, &found.sections, &zones)));

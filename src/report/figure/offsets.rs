@@ -7,6 +7,7 @@ use super::legend::{Entry, Legend};
 use super::style::{BEYOND, BLUE, DASHED, INK, Mark, SMALL, TEXT, WIDTH, color, text_width};
 use super::symbol::symbol;
 use crate::report::number;
+use crate::result::VerdictWords;
 use crate::result::study::{AtOffset, SyncStudy};
 
 const PANEL: f64 = 118.0;
@@ -85,15 +86,15 @@ fn panel(canvas: &mut Canvas, study: &SyncStudy, (title, signed): (&str, bool), 
     frame.spine(canvas);
 }
 
-/// The share of selections validated as a function of the offset.
-pub fn shares(study: &SyncStudy) -> String {
+/// The share of selections for which the verdict holds as a function of the offset.
+pub fn shares(study: &SyncStudy, words: &VerdictWords) -> String {
     let points: Vec<(f64, f64)> =
         study.offsets.iter().filter_map(|at| at.study.as_ref().ok().map(|found| (at.offset, 100.0 * found.share.share))).collect();
     let y = Scale { low: 0.0, high: 103.0, from: 128.0, to: 8.0 };
     let ticks: Vec<Tick> = y.ticks(6);
     let frame = Frame { x: Scale::over(study.offsets.iter().map(|at| at.offset), Frame::axis_room(&ticks), WIDTH - 10.0), y };
     let mut canvas = Canvas::new(WIDTH, 158.0);
-    frame.y_axis(&mut canvas, &ticks, "selections validated [%]");
+    frame.y_axis(&mut canvas, &ticks, &format!("selections {} [%]", words.good));
     frame.x_axis(&mut canvas, &frame.x.ticks(10), &format!("offset of the measurement [{}]", number::unit(&study.axis_unit)));
     let placed: Vec<(f64, f64)> = points.iter().map(|(offset, share)| (frame.x.at(*offset), y.at(*share))).collect();
     canvas.draw(|layer| layer.path(&placed, BLUE, 0.9));

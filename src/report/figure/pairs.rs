@@ -9,6 +9,7 @@ use super::levels::Levels;
 use super::style::{MUTED, TICK, WIDTH};
 use super::zones::Zones;
 use crate::report::number;
+use crate::report::sides::Sides;
 use crate::result::{PairValue, QuantityResult};
 
 /// Height of the plotting areas, in points; the left one is square.
@@ -52,10 +53,10 @@ fn ends(values: &[(&PairValue, f64, f64)]) -> impl Iterator<Item = f64> {
 
 fn scatter(canvas: &mut Canvas, quantity: &QuantityResult, zones: &Zones, values: &[(&PairValue, f64, f64)], (left, bottom): (f64, f64)) {
     let of = |side: &str| axis::title(side, &quantity.unit);
-    let (one, other) = if quantity.among.is_some() { ("record", "all records") } else { ("simulated", "measured") };
+    let Sides { one, other, .. } = Sides::of(quantity);
     let frame = Frame { x: Scale::over(ends(values), left, left + HEIGHT), y: Scale::over(ends(values), bottom, bottom - HEIGHT) };
     let ticks = frame.x.ticks(TICKS);
-    frame.x_axis(canvas, &ticks, &of(other));
+    frame.x_axis(canvas, &ticks, &of(&other));
     frame.y_axis(canvas, &ticks, &of(one));
     canvas.draw(|layer| layer.line((frame.left(), bottom), (frame.right(), frame.top()), MUTED, 0.8));
     canvas.draw(|layer| layer.text(&format!("{one} = {other}"), (frame.right(), frame.top() - 5.0), &Font::right(TICK).color(MUTED)));
@@ -63,7 +64,7 @@ fn scatter(canvas: &mut Canvas, quantity: &QuantityResult, zones: &Zones, values
     let decimals = number::decimals(&quantity.unit, ends(values));
     for (pair, simulated, measured) in values {
         let (mark, color) = zones.mark(pair.zone.as_deref());
-        let title = tooltip(pair, &quantity.unit, decimals);
+        let title = tooltip(pair, quantity, decimals);
         canvas.group(&pair_group(pair, &title), |layer| {
             layer.mark(mark, (frame.x.at(*measured), frame.y.at(*simulated)), 2.1, color);
         });
@@ -83,8 +84,8 @@ pub(super) fn pair_group<'a>(pair: &'a PairValue, title: &'a str) -> Group<'a> {
 }
 
 /// Tooltip of a pair.
-pub(super) fn tooltip(pair: &PairValue, unit: &str, decimals: usize) -> String {
-    let shown = |value: f64| number::with_unit(&number::fixed(value, decimals), unit);
+pub(super) fn tooltip(pair: &PairValue, quantity: &QuantityResult, decimals: usize) -> String {
+    let shown = |value: f64| number::with_unit(&number::fixed(value, decimals), &quantity.unit);
     let mut text = format!("{}, {}", pair.section, pair.signal);
     if let Some(record) = &pair.record {
         text.push_str(&format!(", {record}"));
@@ -94,7 +95,8 @@ pub(super) fn tooltip(pair: &PairValue, unit: &str, decimals: usize) -> String {
     }
     match (pair.simulated, pair.measured) {
         (Some(simulated), Some(measured)) => {
-            text.push_str(&format!(": simulated {}, measured {}, difference {}", shown(simulated), shown(measured), shown(pair.difference)))
+            let Sides { one, other, .. } = Sides::of(quantity);
+            text.push_str(&format!(": {one} {}, {other} {}, difference {}", shown(simulated), shown(measured), shown(pair.difference)))
         }
         _ => text.push_str(&format!(": {}", shown(pair.difference))),
     }

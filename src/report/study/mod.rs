@@ -12,15 +12,16 @@ pub use document::{Chapter, Document, Head, Item, Table};
 use crate::report::figure;
 use crate::report::number;
 use crate::report::view::{self, Fact, Finding};
-use crate::result::Verdict;
 use crate::result::study::{Found, Share, Study};
+use crate::result::{Verdict, VerdictWords};
 
 /// The study as printed in both reports.
 pub fn document(study: &Study) -> Document {
+    let words = &study.protocol.verdict_words;
     let (title, opening, mut chapters) = match &study.found {
-        Found::Sections(found) => ("Selection of sections", sections::opening(found), sections::chapters(found)),
-        Found::Sync(found) => ("Synchronisation", sync::opening(found), sync::chapters(found)),
-        Found::Parameters(found) => ("Parameters of the protocol", parameters::opening(found), parameters::chapters(found)),
+        Found::Sections(found) => ("Selection of sections", sections::opening(found, words), sections::chapters(found, words)),
+        Found::Sync(found) => ("Synchronisation", sync::opening(found, words), sync::chapters(found, words)),
+        Found::Parameters(found) => ("Parameters of the protocol", parameters::opening(found, words), parameters::chapters(found, words)),
     };
     if !study.notes.is_empty() {
         chapters.push(Chapter { id: "remarks".into(), title: "Remarks".into(), items: vec![Item::List { entries: study.notes.clone() }] });
@@ -50,12 +51,13 @@ fn symbols(found: &Found) -> Vec<String> {
     all.into_iter().collect::<indexmap::IndexSet<_>>().into_iter().cloned().collect()
 }
 
-/// An unchanged verdict as a headline; only `validated` gets the positive sign. `otherwise` if `verdict` is `None`.
-fn stays(verdict: Option<Verdict>, otherwise: &str) -> Finding {
+/// An unchanged verdict as a headline; only one that holds gets the positive sign. `otherwise` if `verdict` is `None`.
+fn stays(verdict: Option<Verdict>, words: &VerdictWords, otherwise: &str) -> Finding {
+    let unchanged = |verdict| format!("Verdict unchanged: {}", words.word(verdict));
     match verdict {
-        Some(Verdict::Validated) => Finding::new(Some(true), "Verdict unchanged: validated", "", ""),
+        Some(Verdict::Validated) => Finding::new(Some(true), &unchanged(Verdict::Validated), "", ""),
         // Neither positive nor negative: that a verdict does not depend on a choice is no statement on the model.
-        Some(verdict) => Finding { class: "open", sign: "–", word: format!("Verdict unchanged: {}", verdict.in_words()) },
+        Some(verdict) => Finding { class: "open", sign: "–", word: unchanged(verdict) },
         None => Finding::new(None, "", "", otherwise),
     }
 }
@@ -85,10 +87,11 @@ fn settings(study: &Study) -> Chapter {
 
 /// All figures of a study by their names in the document.
 pub fn figures(study: &Study) -> Vec<(String, String)> {
+    let words = &study.protocol.verdict_words;
     match &study.found {
         Found::Sections(found) => vec![("boxes".into(), figure::boxes(&found.quantities))],
         Found::Sync(found) => {
-            let mut drawn = vec![("selection".into(), figure::selection(found)), ("shares".into(), figure::shares(found))];
+            let mut drawn = vec![("selection".into(), figure::selection(found)), ("shares".into(), figure::shares(found, words))];
             for (at, offset) in found.offsets.iter().enumerate() {
                 if let Ok(study) = &offset.study {
                     drawn.push((format!("boxes-{at}"), figure::boxes(&study.quantities)));
@@ -96,7 +99,7 @@ pub fn figures(study: &Study) -> Vec<(String, String)> {
             }
             drawn
         }
-        Found::Parameters(found) => vec![("choices".into(), figure::choices(found))],
+        Found::Parameters(found) => vec![("choices".into(), figure::choices(found, words))],
     }
 }
 

@@ -3,41 +3,44 @@
 use super::document::{Chapter, Head, Item, Table};
 use super::{Opening, share};
 use crate::report::number;
+use crate::report::sides::capital;
 use crate::report::view::Fact;
+use crate::result::VerdictWords;
 use crate::result::study::{AtValue, ParameterStudy, Varied};
 
-pub fn opening(found: &ParameterStudy) -> Opening {
+pub fn opening(found: &ParameterStudy, words: &VerdictWords) -> Opening {
     let deciding: Vec<&str> =
         found.parameters.iter().filter(|parameter| parameter.decides).map(|parameter| parameter.title.as_str()).collect();
     let values: usize = found.parameters.iter().map(|parameter| parameter.values.len()).sum();
     let sentence = if deciding.is_empty() {
-        format!("The baseline verdict is '{}'; no tested value changes it.", found.base.verdict.in_words())
+        format!("The baseline verdict is '{}'; no tested value changes it.", words.word(found.base.verdict))
     } else {
-        format!("The baseline verdict is '{}'. It changes with: {}.", found.base.verdict.in_words(), deciding.join("; "))
+        format!("The baseline verdict is '{}'. It changes with: {}.", words.word(found.base.verdict), deciding.join("; "))
     };
     Opening {
         headline: super::stays(
             Some(found.base.verdict).filter(|_| deciding.is_empty()),
+            words,
             &format!("{} of {} parameters affect the verdict", deciding.len(), found.parameters.len()),
         ),
         sentence,
         facts: [
-            ("Parameters varied", found.parameters.len().to_string()),
-            ("Values tested", values.to_string()),
-            ("Baseline verdict", found.base.verdict.in_words().to_owned()),
-            ("Selections validated", found.base.share.as_ref().map_or_else(|| number::NONE.to_owned(), share)),
+            ("Parameters varied".to_owned(), found.parameters.len().to_string()),
+            ("Values tested".to_owned(), values.to_string()),
+            ("Baseline verdict".to_owned(), words.word(found.base.verdict).to_owned()),
+            (format!("Selections: {}", words.good), found.base.share.as_ref().map_or_else(|| number::NONE.to_owned(), share)),
         ]
-        .map(|(name, value)| Fact { name: name.to_owned(), value })
+        .map(|(name, value)| Fact { name, value })
         .to_vec(),
     }
 }
 
-pub fn chapters(found: &ParameterStudy) -> Vec<Chapter> {
+pub fn chapters(found: &ParameterStudy, words: &VerdictWords) -> Vec<Chapter> {
     let row = |parameter: &Varied, at: &AtValue| {
         vec![
             parameter.name.clone(),
             if at.is_base { format!("{} (baseline)", at.value) } else { at.value.clone() },
-            at.verdict.in_words().to_owned(),
+            words.word(at.verdict).to_owned(),
             at.largest.as_ref().map_or_else(|| number::NONE.to_owned(), |(_, value)| number::beside(*value, 1.0, 3)),
             at.largest.as_ref().map_or_else(String::new, |(which, _)| which.clone()),
             at.share.as_ref().map_or_else(|| at.reason.clone().unwrap_or_default(), share),
@@ -53,19 +56,25 @@ pub fn chapters(found: &ParameterStudy) -> Vec<Chapter> {
             ),
             Item::figure(
                 "choices",
-                "Largest statistic divided by its limit for each value, and the share of selections validated",
+                format!(
+                    "Largest statistic divided by its limit for each value, and the share of selections with the verdict '{}'",
+                    words.good
+                ),
                 "For every value of every parameter the largest normalised statistic; the numbers are in the table.",
             ),
             Item::Table {
                 table: Table {
-                    caption: "Verdict on all sections, largest statistic divided by its limit, and share of selections validated".into(),
+                    caption: format!(
+                        "Verdict on all sections, largest statistic divided by its limit, and share of selections with the verdict '{}'",
+                        words.good
+                    ),
                     head: vec![
                         Head::text("Parameter"),
                         Head::text("Value"),
                         Head::short("Verdict"),
                         Head::number("Largest ratio"),
                         Head::text("Statistic"),
-                        Head::number("Validated"),
+                        Head::number(&capital(&words.good)),
                     ],
                     rows: rows.collect(),
                 },

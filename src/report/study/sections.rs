@@ -3,9 +3,10 @@
 use super::document::{Chapter, Head, Item, Table};
 use super::{Opening, percent, share};
 use crate::report::number;
+use crate::report::sides::capital;
 use crate::report::view::{Fact, Finding};
-use crate::result::Verdict;
 use crate::result::study::{Importance, QuantitySpread, Reduction, Removal, SelectionStudy, Spread};
+use crate::result::{Verdict, VerdictWords};
 
 /// Maximum number of rows of a table; the CSV tables contain all.
 const MOST_ROWS: usize = 60;
@@ -14,7 +15,7 @@ fn fact(name: &str, value: String) -> Fact {
     Fact { name: name.to_owned(), value }
 }
 
-pub fn opening(found: &SelectionStudy) -> Opening {
+pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
     let all = found.share.share;
     let agrees = match found.verdict {
         Verdict::Validated => all,
@@ -25,7 +26,7 @@ pub fn opening(found: &SelectionStudy) -> Opening {
         share if share >= 0.5 => "depends on the sections chosen",
         _ => "differs for most selections from that of all sections together",
     };
-    // The result box states the share: positive if all are validated, negative if none is.
+    // The result box states the share: positive if the verdict holds for all, negative if for none.
     let holds = match all {
         share if share >= 1.0 => Some(true),
         share if share <= 0.0 => Some(false),
@@ -43,13 +44,14 @@ pub fn opening(found: &SelectionStudy) -> Opening {
     Opening {
         headline: Finding::new(holds, &share(&found.share), &share(&found.share), &share(&found.share)),
         sentence: format!(
-            "of the selections are validated. The verdict on all usable sections together is '{}'. The verdict {same}. {looked}",
-            found.verdict.in_words()
+            "of the selections have the verdict '{}'. The verdict on all usable sections together is '{}'. The verdict {same}. {looked}",
+            words.good,
+            words.word(found.verdict)
         ),
         facts: vec![
             fact("Selections", number::large(found.combinations)),
-            fact("Validated", if found.share.exact { number::count(found.share.validated) } else { share(&found.share) }),
-            fact("All sections", found.verdict.in_words().to_owned()),
+            fact(&capital(&words.good), if found.share.exact { number::count(found.share.validated) } else { share(&found.share) }),
+            fact("All sections", words.word(found.verdict).to_owned()),
             fact(
                 "Sections",
                 found.strata.iter().map(|stratum| format!("{} of {}", stratum.take, stratum.sections.len())).collect::<Vec<_>>().join(", "),
@@ -58,7 +60,7 @@ pub fn opening(found: &SelectionStudy) -> Opening {
     }
 }
 
-pub fn chapters(found: &SelectionStudy) -> Vec<Chapter> {
+pub fn chapters(found: &SelectionStudy, words: &VerdictWords) -> Vec<Chapter> {
     let mut items = vec![strata(found)];
     items.extend(found.methods.iter().map(Item::text));
     let mut chapters = vec![
@@ -68,7 +70,7 @@ pub fn chapters(found: &SelectionStudy) -> Vec<Chapter> {
         Chapter {
             id: "sections".into(),
             title: "Influence of individual sections".into(),
-            items: importance(&found.sections, found.removal.as_ref()),
+            items: importance(&found.sections, found.removal.as_ref(), words),
         },
     ];
     chapters.extend(found.reduction.as_ref().map(reduction));
@@ -231,15 +233,18 @@ fn failing(found: &SelectionStudy) -> Vec<Item> {
     items
 }
 
-fn importance(sections: &[Importance], removal: Option<&Removal>) -> Vec<Item> {
+fn importance(sections: &[Importance], removal: Option<&Removal>, words: &VerdictWords) -> Vec<Item> {
     let mut sorted: Vec<&Importance> = sections.iter().collect();
     let effect = |one: &Importance| one.with.zip(one.without).map_or(0.0, |(with, without)| with - without);
     sorted.sort_by(|a, b| effect(b).abs().total_cmp(&effect(a).abs()));
     let shown = |share: Option<f64>| share.map_or_else(|| number::NONE.to_owned(), percent);
-    let removal = removal.map(|removal| Item::text(worded(removal)));
+    let removal = removal.map(|removal| Item::text(worded(removal, words)));
     let table = [Item::Table {
         table: Table {
-            caption: "Share of selections validated with and without each section, sorted by the difference".into(),
+            caption: format!(
+                "Share of selections with the verdict '{}', with and without each section, sorted by the difference",
+                words.good
+            ),
             head: vec![
                 Head::text("Section"),
                 Head::short("Zone"),
@@ -261,8 +266,8 @@ fn importance(sections: &[Importance], removal: Option<&Removal>) -> Vec<Item> {
 }
 
 /// A sentence on the sets whose removal changes the verdict.
-fn worded(removal: &Removal) -> String {
-    let verdict = removal.verdict.in_words();
+fn worded(removal: &Removal, words: &VerdictWords) -> String {
+    let verdict = words.word(removal.verdict);
     match removal.sets.as_slice() {
         [] if removal.complete => {
             format!(

@@ -3,45 +3,48 @@
 use super::document::{Chapter, Head, Item, Table};
 use super::{Opening, percent, sections, share};
 use crate::report::number;
+use crate::report::sides::capital;
 use crate::report::view::Fact;
+use crate::result::VerdictWords;
 use crate::result::study::{AtOffset, SyncStudy};
 
 fn shown(found: &SyncStudy, offset: f64) -> String {
     number::with_unit(&number::significant(offset, 4), &found.axis_unit)
 }
 
-pub fn opening(found: &SyncStudy) -> Opening {
+pub fn opening(found: &SyncStudy, words: &VerdictWords) -> Opening {
     let shares: Vec<f64> = found.offsets.iter().filter_map(|at| at.study.as_ref().ok().map(|study| study.share.share)).collect();
     let (low, high) = shares.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), share| (low.min(*share), high.max(*share)));
     let base = found.offsets.iter().find(|at| at.offset == 0.0);
     let same = base.is_none_or(|base| found.offsets.iter().all(|at| at.verdict == base.verdict));
     let (first, last) = (found.offsets.first().map_or(0.0, |at| at.offset), found.offsets.last().map_or(0.0, |at| at.offset));
     let facts = [
-        ("Offsets", format!("{} to {}", shown(found, first), shown(found, last))),
-        ("Validated, minimum", percent(low)),
-        ("Validated, maximum", percent(high)),
-        ("Estimated offsets removed", if found.corrected { "yes" } else { "no" }.to_owned()),
+        ("Offsets".to_owned(), format!("{} to {}", shown(found, first), shown(found, last))),
+        (format!("{}, minimum", capital(&words.good)), percent(low)),
+        (format!("{}, maximum", capital(&words.good)), percent(high)),
+        ("Estimated offsets removed".to_owned(), if found.corrected { "yes" } else { "no" }.to_owned()),
     ];
     Opening {
-        headline: super::stays(base.map(|base| base.verdict).filter(|_| same), "The verdict changes"),
+        headline: super::stays(base.map(|base| base.verdict).filter(|_| same), words, "The verdict changes"),
         sentence: format!(
-            "The measurement was shifted relative to the simulation, from {} to {}. The verdict on all sections together {}. The share of validated selections is between {} and {}.",
+            "The measurement was shifted relative to the simulation, from {} to {}. The verdict on all sections together {}. The share of selections with the verdict '{}' is between {} and {}.",
             shown(found, first),
             shown(found, last),
             match base.filter(|_| same) {
-                Some(base) => format!("is the same at every offset ({})", base.verdict.in_words()),
+                Some(base) => format!("is the same at every offset ({})", words.word(base.verdict)),
                 None => "depends on the offset".to_owned(),
             },
+            words.good,
             percent(low),
             percent(high)
         ),
-        facts: facts.map(|(name, value)| Fact { name: name.to_owned(), value }).to_vec(),
+        facts: facts.map(|(name, value)| Fact { name, value }).to_vec(),
     }
 }
 
-pub fn chapters(found: &SyncStudy) -> Vec<Chapter> {
+pub fn chapters(found: &SyncStudy, words: &VerdictWords) -> Vec<Chapter> {
     let mut chapters = vec![
-        Chapter { id: "shares".into(), title: "Share validated".into(), items: shares(found) },
+        Chapter { id: "shares".into(), title: format!("Share with the verdict '{}'", words.good), items: shares(found, words) },
         Chapter { id: "one".into(), title: "Single selection".into(), items: one(found) },
         Chapter { id: "estimates".into(), title: "Offsets estimated from the signals".into(), items: estimates(found) },
     ];
@@ -57,7 +60,7 @@ pub fn chapters(found: &SyncStudy) -> Vec<Chapter> {
     chapters
 }
 
-fn shares(found: &SyncStudy) -> Vec<Item> {
+fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Item> {
     let row = |at: &AtOffset| {
         let (validated, selections) = match &at.study {
             Ok(study) => (share(&study.share), number::large(study.combinations)),
@@ -69,20 +72,23 @@ fn shares(found: &SyncStudy) -> Vec<Item> {
             Err(_) => (number::NONE.to_owned(), number::NONE.to_owned()),
         };
         let changes = if at.changes.is_empty() { number::NONE.to_owned() } else { at.changes.join("; ") };
-        vec![shown(found, at.offset), validated, lost, gained, selections, at.verdict.in_words().to_owned(), changes]
+        vec![shown(found, at.offset), validated, lost, gained, selections, words.word(at.verdict).to_owned(), changes]
     };
+    let good = &words.good;
     let mut items = vec![
         Item::figure(
             "shares",
-            "Share of selections validated as a function of the measurement offset",
-            "Share of selections validated over the offset; the numbers are in the table.",
+            format!("Share of selections with the verdict '{good}' as a function of the measurement offset"),
+            format!("Share of selections with the verdict '{good}' over the offset; the numbers are in the table."),
         ),
         Item::Table {
             table: Table {
-                caption: "Influence of the synchronisation: share of selections validated, share validated without the offset but not with it, share validated only with it, and the verdict".into(),
+                caption: format!(
+                    "Influence of the synchronisation: share of selections with the verdict '{good}', share with it without the offset but not with the offset (lost), share with it only with the offset (gained), and the verdict"
+                ),
                 head: vec![
                     Head::number("Offset"),
-                    Head::number("Validated"),
+                    Head::number(&capital(good)),
                     Head::number("Lost"),
                     Head::number("Gained"),
                     Head::number("Selections"),

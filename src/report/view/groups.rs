@@ -2,29 +2,24 @@
 
 use serde::Serialize;
 
+use super::summary::Limited;
 use super::{Finding, name, summary};
 use crate::report::estimates::{self, OfLimit};
 use crate::report::number;
+use crate::report::sides::capital;
 use crate::result::{QuantityResult, StatisticResult};
 
 /// A limit in the summary, with the group that is nearest to it or farthest beyond.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EstimateRow {
-    pub id: String,
-    pub symbol: String,
-    pub title: String,
+    /// The values of the decisive group; the finding is that of all.
+    #[serde(flatten)]
+    pub limited: Limited,
     pub estimate: String,
-    pub unit: String,
     /// Groups that hold: `14 of 16`.
     pub holding: String,
-    /// The decisive group: where it is, its values and n, its estimate and limit.
+    /// Where the decisive group is.
     pub place: String,
-    pub count: String,
-    pub value: String,
-    pub limit: String,
-    pub normalised: String,
-    pub holds: Finding,
-    pub reason: Option<String>,
 }
 
 /// All groups of one limit.
@@ -65,21 +60,15 @@ pub(super) fn rows(quantity: &QuantityResult) -> Vec<EstimateRow> {
 
 fn row(quantity: &QuantityResult, limit: &OfLimit<'_>) -> EstimateRow {
     let decisive = limit.decisive();
-    let one = Some(decisive);
     EstimateRow {
-        id: quantity.id.clone(),
-        symbol: super::symbol(&quantity.symbol),
-        title: quantity.title.clone(),
+        limited: Limited {
+            holds: Finding::of(limit.holds()).marginal(limit.holds().is_some() && limit.results.iter().any(|one| one.marginal)),
+            reason: limit.reason().map(str::to_owned),
+            ..summary::limited(quantity, decisive)
+        },
         estimate: number::formula(&decisive.title),
-        unit: number::unit(&decisive.unit),
         holding: limit.holding(),
         place: if decisive.value.is_some() { decisive.scope.clone() } else { number::NONE.to_owned() },
-        count: summary::pairs_and_n(decisive.count, decisive.n),
-        value: summary::value(one),
-        limit: summary::limit(one),
-        normalised: summary::normalised(one),
-        holds: Finding::of(limit.holds()).marginal(limit.holds().is_some() && limit.results.iter().any(|one| one.marginal)),
-        reason: limit.reason().map(str::to_owned),
     }
 }
 
@@ -143,9 +132,4 @@ fn members(one: &StatisticResult, heads: &[String]) -> Vec<String> {
         return vec![name(&one.scope)];
     }
     keys(one).iter().map(|(_, member)| name(member)).collect()
-}
-
-fn capital(word: &str) -> String {
-    let mut letters = word.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

@@ -65,8 +65,8 @@ pub(super) fn checklist(found: &Certification) -> Vec<IdentityRow> {
     };
     let protocol = &found.protocol;
     let method = match &protocol.edition {
-        Some(edition) => format!("{} ({edition}); protocol `{}`, printed in this report", protocol.title, protocol.name),
-        None => format!("{}; protocol `{}`, printed in this report", protocol.title, protocol.name),
+        Some(edition) => format!("{} ({edition}); protocol “{}”, printed in this report", protocol.title, protocol.name),
+        None => format!("{}; protocol “{}”, printed in this report", protocol.title, protocol.name),
     };
     let mut rows = vec![row("7.8.2.1 a)", "Title", &super::title(found))];
     rows.extend(found.campaign.report.iter().map(|item| IdentityRow {

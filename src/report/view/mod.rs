@@ -9,12 +9,14 @@ mod notation;
 mod protocol;
 mod quantity;
 mod section;
+mod spread;
 mod summary;
 mod verdicts;
 mod wording;
 
 use serde::Serialize;
 
+use crate::report::sides::{self, capital};
 use crate::report::{estimates, findings, number};
 use crate::result::{CampaignInfo, Certification, DataItem, Kind, QuantityResult, StatisticResult, Trace, Verdict};
 
@@ -24,7 +26,8 @@ pub use notation::{ChannelRow, NotationView, SymbolRow, Term};
 pub use protocol::{ProtocolView, SourceFile, view as protocol_view};
 pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair};
 pub use section::{CheckTable, ColumnHead, DomainView, SectionRow, SectionTable, ZoneView};
-pub use summary::{FurtherRow, SummaryRow};
+pub use spread::{SpreadClass, SpreadRow, SpreadTable};
+pub use summary::{FurtherRow, Limited, SummaryRow};
 pub use verdicts::VerdictRow;
 pub use wording::Wording;
 
@@ -217,7 +220,7 @@ pub fn view(found: &Certification) -> ReportData {
         notation: notation::view(found),
         key_facts: key_facts(found),
         campaign: campaign(&found.campaign),
-        protocol: ProtocolView { verdict_rule: wording::rule(found), ..protocol::view(&found.protocol) },
+        protocol: protocol::view(&found.protocol),
         summary,
         further,
         estimates: found.quantities.iter().flat_map(groups::rows).collect(),
@@ -383,11 +386,16 @@ fn overview(found: &Certification) -> Option<FigureView> {
 }
 
 /// The curves of a trace in words.
-fn sides(trace: &Trace) -> &'static str {
+fn curves(trace: &Trace, found: &Certification) -> String {
+    if !trace.others.is_empty() {
+        let names: Vec<&str> = trace.record.iter().chain(trace.others.iter().map(|(name, _)| name)).map(String::as_str).collect();
+        return format!("Records {}:", names.join(", "));
+    }
+    let (simulated, measured) = sides::of_trace(trace, found);
     match (trace.simulated.y.is_empty(), trace.measured.y.is_empty()) {
-        (true, false) => "Measured",
-        (false, true) => "Simulated",
-        _ => "Simulated and measured",
+        (true, false) => capital(measured),
+        (false, true) => capital(simulated),
+        _ => format!("{} and {measured}", capital(simulated)),
     }
 }
 
@@ -405,7 +413,7 @@ fn traces(found: &Certification) -> Vec<TraceView> {
                     caption: format!("{} in section {}{zone}: {}", name(&trace.signal), name(&trace.section), trace.why),
                     alt: format!(
                         "{} {} [{}] over {} [{}], section {} from {} to {}.",
-                        sides(trace),
+                        curves(trace, found),
                         trace.signal,
                         number::unit(&trace.unit),
                         trace.axis,

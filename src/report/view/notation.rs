@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::Finding;
 use crate::report::number;
-use crate::result::{Certification, Kind};
+use crate::result::{Certification, QuantityResult};
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct NotationView {
@@ -39,16 +39,37 @@ pub struct Term {
     pub meaning: String,
 }
 
-/// Comparisons with an explanation of their sign. Others are self-explanatory.
+/// Comparisons with an explanation of their sign, of values called ONE and OTHER. Others are self-explanatory.
 const COMPARISONS: [(&str, &str); 3] = [
     (
-        "sign(measured) * (simulated - measured)",
-        "Positive: the simulated value is larger in the direction of the measured value. A wrong sign of the simulation gives a large \
-         negative difference.",
+        "sign(OTHER) * (ONE - OTHER)",
+        "Positive: the ONE is larger in the direction of the OTHER. A wrong sign of the ONE gives a large negative difference.",
     ),
-    ("|simulated| - |measured|", "Positive: the magnitude of the simulated value is larger. The signs of both values are not compared."),
-    ("simulated - measured", "Positive: the simulated value is larger, with its sign."),
+    ("|ONE| - |OTHER|", "Positive: the magnitude of the ONE is larger. The signs of both values are not compared."),
+    ("ONE - OTHER", "Positive: the ONE is larger, with its sign."),
 ];
+
+/// What the two values of a difference are called in its words, and in a sentence.
+const VALUES: [([&str; 2], [&str; 2]); 6] = [
+    (["simulated", "measured"], ["simulated value", "measured value"]),
+    (["repeat", "original"], ["repeat", "original"]),
+    (["simulated", "mean of all"], ["simulated value", "mean of all"]),
+    (["simulated", "median of all"], ["simulated value", "median of all"]),
+    (["measured", "mean of all"], ["measured value", "mean of all"]),
+    (["measured", "median of all"], ["measured value", "median of all"]),
+];
+
+/// Each comparison that quantities use, with its meaning.
+fn comparisons(found: &Certification) -> Vec<Term> {
+    let put = |text: &str, [one, other]: [&str; 2]| text.replace("ONE", one).replace("OTHER", other);
+    let of_values = |(in_words, named)| {
+        let term = move |(words, meaning): (&str, &str)| (put(words, in_words), put(meaning, named));
+        COMPARISONS.into_iter().map(term)
+    };
+    let used = |words: &str| found.quantities.iter().any(|quantity| quantity.comparison == words);
+    let all = VALUES.into_iter().flat_map(of_values).filter(|(words, _)| used(words));
+    all.map(|(words, meaning)| Term { word: number::formula(&words), meaning }).collect()
+}
 
 /// Terms of a comparison of simulated with measured records.
 const COMPARED: [(&str, &str); 4] = [
@@ -66,11 +87,26 @@ const ASSESSED: [(&str, &str); 4] = [
     ("Estimate", "What is compared with the limit: a statistic of the values of a group, or a value predicted from them."),
 ];
 
-/// Terms of a comparison of records of one side.
-const AMONG: [(&str, &str); 3] = [
-    ("Record, all records", "The number of one record, and the mean or the median of all records of the section."),
+/// Terms of a comparison of several records of one side.
+const AMONG: [(&str, &str); 6] = [
+    ("Record", "The number of one record, in one section, for one signal."),
+    ("Mean of all, median of all", "That of the numbers of all records of the section."),
+    ("Deviation, difference", "Of the number of a record from that of all records."),
+    (
+        "Max. − min., s",
+        "Largest less smallest number and standard deviation (divisor n − 1): of the mean deviations of the records; of the spread, of the \
+         deviations of all records in one section, for one signal.",
+    ),
+    ("Rank", "By the root mean square of the deviations: 1 is nearest to all records. Equal ones have the same rank."),
     ("Values / n", "Number of values of a statistic, and of their independent sites."),
-    ("Mean", "Arithmetic mean of the differences."),
+];
+
+/// Terms of a comparison of repeats with their originals.
+const REPEATED: [(&str, &str); 4] = [
+    ("Repeat, original", "A section that was measured again, and the section that it repeats: the number of each, for one signal."),
+    ("Values / n", "Number of values of a statistic, and of their independent sites."),
+    ("Mean", "Arithmetic mean of the values."),
+    ("Standard deviation", "Scatter of the values about their mean. The divisor, n − 1 or n, is stated with it."),
 ];
 
 /// Terms explained in every report.
@@ -81,20 +117,29 @@ const WORDS: [(&str, &str); 4] = [
     ("rms", "Root of the mean of the squares of the samples."),
 ];
 
-fn terms(found: &Certification) -> impl Iterator<Item = &'static (&'static str, &'static str)> {
-    let (compared, assessed, among): (&[_], &[_], &[_]) = match found.kind() {
-        Kind::Validation => (&COMPARED, &[], &[]),
-        Kind::Assessment => (&[], &ASSESSED, &[]),
-        Kind::Comparison => (&[], &[], &AMONG),
-        Kind::Mixed => (&COMPARED, &ASSESSED, &[]),
-    };
-    compared.iter().chain(assessed).chain(among).chain(&WORDS)
+fn terms(found: &Certification) -> Vec<(&'static str, &'static str)> {
+    let some = |of: fn(&QuantityResult) -> bool| found.quantities.iter().any(of);
+    let compared = some(|quantity| quantity.from.is_none() && quantity.among.is_none() && !quantity.repeats);
+    let kinds: [(bool, &[_]); 4] = [
+        (compared, &COMPARED),
+        (some(|quantity| quantity.from.is_some()), &ASSESSED),
+        (some(|quantity| quantity.among.is_some()), &AMONG),
+        (some(|quantity| quantity.repeats), &REPEATED),
+    ];
+    let used = kinds.into_iter().filter(|(used, _)| *used).flat_map(|(_, terms)| terms).chain(&WORDS);
+    // A word that two kinds explain stands once, as the first explains it.
+    let mut all: Vec<(&str, &str)> = Vec::new();
+    for (word, meaning) in used {
+        if !all.iter().any(|(known, _)| known == word) {
+            all.push((word, meaning));
+        }
+    }
+    all
 }
 
 pub(super) fn view(found: &Certification) -> NotationView {
     let term = |(word, meaning): &(&str, &str)| Term { word: (*word).to_owned(), meaning: (*meaning).to_owned() };
     let finding = |holds, says: &str| (Finding::of(holds), says.to_owned());
-    let used = |words: &str| found.quantities.iter().any(|quantity| quantity.comparison == words);
     NotationView {
         channels: found
             .protocol
@@ -118,12 +163,8 @@ pub(super) fn view(found: &Certification) -> NotationView {
                 comparison: number::formula(&quantity.comparison),
             })
             .collect(),
-        comparisons: COMPARISONS
-            .iter()
-            .filter(|(words, _)| used(words))
-            .map(|(words, meaning)| Term { word: number::formula(words), meaning: (*meaning).to_owned() })
-            .collect(),
-        words: if found.quantities.is_empty() { Vec::new() } else { terms(found).map(term).collect() },
+        comparisons: comparisons(found),
+        words: if found.quantities.is_empty() { Vec::new() } else { terms(found).iter().map(term).collect() },
         findings: vec![
             finding(Some(true), "The acceptance criterion or requirement is met."),
             finding(Some(false), "It is not met."),

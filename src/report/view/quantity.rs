@@ -1,12 +1,14 @@
 //! One quantity: its statistics and limits, its worst pairs, and all its values.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use indexmap::IndexMap;
 use serde::Serialize;
 
 use super::groups::{self, GroupTable};
+use super::spread::{self, SpreadTable};
 use super::{FigureView, Finding, name, summary};
+use crate::report::sides::Sides;
 use crate::report::{estimates, figure, number};
 use crate::result::{PairValue, QuantityResult, StatisticResult};
 
@@ -36,15 +38,21 @@ pub struct QuantityView {
     pub reason: Option<String>,
     /// Whether values are simulated and measured, and not a single number of a metric.
     pub has_sides: bool,
+    /// What its values are called: `Pairs` of simulated and measured ones, or `Values`.
+    pub rows: &'static str,
     /// Whether values are those of one record, assessed by themselves.
     pub assessed: bool,
-    /// Names of the two values of a pair: simulated and measured, or a record and what is central of all.
-    pub sides: [&'static str; 2],
+    /// Names of the two values of a pair: simulated and measured, a record and what is central of all, or a repeat and its original.
+    pub sides: [String; 2],
     /// The same in the narrow heads of tables.
     pub short_sides: [&'static str; 2],
     pub statistics: Vec<StatisticView>,
     /// Estimates by group.
     pub groups: Vec<GroupTable>,
+    /// How far several records of one side are apart.
+    pub spreads: Vec<SpreadTable>,
+    /// Whether values are those of several records.
+    pub by_record: bool,
     /// The pairs with the largest difference (or metric value), in decreasing order.
     pub worst: Vec<WorstPair>,
     /// Reference of `ratio` of the worst pairs, e.g. `limit of the standard deviation`.
@@ -82,6 +90,7 @@ pub struct StatisticView {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct WorstPair {
     pub section: String,
+    pub record: String,
     pub zone: String,
     pub signal: String,
     pub simulated: String,
@@ -103,6 +112,8 @@ pub struct ValueBlock {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ValueRow {
     pub section: String,
+    /// Empty where there is one record of each side.
+    pub record: String,
     pub zone: String,
     /// For every signal: simulated, measured, difference; without sides, only the value of the metric.
     pub cells: Vec<Vec<String>>,
@@ -114,6 +125,7 @@ pub(super) fn view(at: usize, quantity: &QuantityResult, work: Option<&str>) -> 
         quantity.values.iter().flat_map(|pair| [Some(pair.difference), pair.simulated, pair.measured]).flatten(),
     );
     let (worst, worst_against) = worst(quantity, decimals);
+    let sides = Sides::of(quantity);
     QuantityView {
         id: quantity.id.clone(),
         title: quantity.title.clone(),
@@ -130,11 +142,14 @@ pub(super) fn view(at: usize, quantity: &QuantityResult, work: Option<&str>) -> 
         holds: Finding::of_quantity(quantity),
         reason: quantity.reason.clone(),
         has_sides: quantity.has_sides,
+        rows: if sides_apart(quantity) { "Pairs" } else { "Values" },
         assessed: quantity.from.is_some(),
-        sides: if quantity.among.is_some() { ["Record", "All records"] } else { ["Simulated", "Measured"] },
-        short_sides: if quantity.among.is_some() { ["rec.", "all"] } else { ["sim.", "meas."] },
+        sides: sides.heads(),
+        short_sides: sides.short,
         statistics: stated(quantity).into_iter().map(statistic).collect(),
         groups: groups::tables(quantity),
+        spreads: spread::tables(quantity),
+        by_record: quantity.values.iter().any(|pair| pair.record.is_some()),
         worst,
         worst_against,
         values: blocks(quantity, decimals),
@@ -143,6 +158,11 @@ pub(super) fn view(at: usize, quantity: &QuantityResult, work: Option<&str>) -> 
         regressions: regressions(at, quantity),
         frequency: (quantity.from.is_some() && !quantity.values.is_empty()).then(|| frequency(at, quantity)),
     }
+}
+
+/// Whether its values are of a simulated and a measured record.
+fn sides_apart(quantity: &QuantityResult) -> bool {
+    quantity.from.is_none() && quantity.among.is_none() && !quantity.repeats
 }
 
 /// Results that have no table of their own.
@@ -186,7 +206,8 @@ fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<
         .into_iter()
         .take(WORST)
         .map(|pair| WorstPair {
-            section: of_record(&pair.section, pair.record.as_deref()),
+            section: name(&pair.section),
+            record: pair.record.as_deref().map(name).unwrap_or_default(),
             zone: zone(pair),
             signal: name(&pair.signal),
             simulated: number::optional(pair.simulated, decimals),
@@ -214,26 +235,27 @@ fn blocks(quantity: &QuantityResult, decimals: usize) -> Vec<ValueBlock> {
     }
     // Rows of one section stay together.
     rows.sort_by_cached_key(|(section, ..), _| quantity.values.iter().position(|pair| pair.section == **section));
+    let sections = |signal: &str| -> HashSet<&str> {
+        quantity.values.iter().filter(|pair| pair.signal == signal).map(|pair| pair.section.as_str()).collect()
+    };
+    // Signals without a common section are not of one table: half of it would be empty.
     signals
-        .chunks(width)
+        .chunk_by(|one, next| !sections(one).is_disjoint(&sections(next)))
+        .flat_map(|signals| signals.chunks(width))
         .map(|signals| ValueBlock {
             signals: signals.iter().map(|signal| name(signal)).collect(),
             rows: rows
                 .iter()
                 .filter(|(_, cells)| signals.iter().any(|signal| cells.contains_key(signal)))
                 .map(|((section, record, _), cells)| ValueRow {
-                    section: of_record(section, *record),
+                    section: name(section),
+                    record: record.map(name).unwrap_or_default(),
                     zone: cells.values().next().map(|pair| zone(pair)).unwrap_or_default(),
                     cells: signals.iter().map(|signal| cell(cells.get(signal).copied(), quantity.has_sides, decimals)).collect(),
                 })
                 .collect(),
         })
         .collect()
-}
-
-/// A section and, where there are several, the record.
-fn of_record(section: &str, record: Option<&str>) -> String {
-    record.map_or_else(|| name(section), |record| name(&format!("{section}, {record}")))
 }
 
 fn cell(pair: Option<&PairValue>, has_sides: bool, decimals: usize) -> Vec<String> {
@@ -264,12 +286,11 @@ fn pairs(at: usize, quantity: &QuantityResult) -> FigureView {
         .map(|one| format!("{} ({}) {}, limit {}", one.title, one.scope, summary::value(Some(one)), summary::limit(Some(one))))
         .collect();
     let what = match (quantity.has_sides, &quantity.from) {
-        (true, _) if quantity.among.is_some() => "each record against all records, and the differences".to_owned(),
-        (true, _) => "simulated against measured values, and their differences".to_owned(),
+        (true, _) => format!("{}, and their differences", Sides::of(quantity).against()),
         (false, Some(side)) => format!("{side} values by section with their limits"),
         (false, None) => "values of the comparison".to_owned(),
     };
-    let rows = if quantity.from.is_some() { "values" } else { "pairs" };
+    let rows = if sides_apart(quantity) { "pairs" } else { "values" };
     FigureView {
         name: format!("pairs-{at}"),
         caption: format!("{}: {what}, {} {rows}", super::symbol(&quantity.symbol), number::count(quantity.values.len() as u64)),

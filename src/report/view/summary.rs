@@ -32,18 +32,13 @@ pub struct SummaryRow {
     pub reason: Option<String>,
 }
 
-/// A statistic other than mean and standard deviation over all pairs.
+/// A statistic of a quantity against its limit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FurtherRow {
+pub struct Limited {
     pub id: String,
     pub symbol: String,
     pub title: String,
     pub unit: String,
-    pub filter: String,
-    pub processing: String,
-    pub comparison: String,
-    pub statistic: String,
-    pub scope: String,
     /// Pairs / n: `48 / 12`, n being the number of sites.
     pub count: String,
     pub value: String,
@@ -51,6 +46,18 @@ pub struct FurtherRow {
     pub normalised: String,
     pub holds: Finding,
     pub reason: Option<String>,
+}
+
+/// A statistic other than mean and standard deviation over all pairs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FurtherRow {
+    #[serde(flatten)]
+    pub limited: Limited,
+    pub filter: String,
+    pub processing: String,
+    pub comparison: String,
+    pub statistic: String,
+    pub scope: String,
 }
 
 pub(super) fn tables(quantities: &[QuantityResult]) -> (Vec<SummaryRow>, Vec<FurtherRow>) {
@@ -105,24 +112,30 @@ fn summary_row(quantity: &QuantityResult, mean: Option<&StatisticResult>, std: O
     }
 }
 
-fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> FurtherRow {
+pub(super) fn limited(quantity: &QuantityResult, statistic: &StatisticResult) -> Limited {
     let one = Some(statistic);
-    FurtherRow {
+    Limited {
         id: quantity.id.clone(),
         symbol: super::symbol(&quantity.symbol),
         title: quantity.title.clone(),
         unit: number::unit(&statistic.unit),
-        filter: quantity.filter.clone(),
-        processing: quantity.processing.clone(),
-        comparison: quantity.comparison.clone(),
-        statistic: statistic.title.clone(),
-        scope: statistic.scope.clone(),
         count: pairs_and_n(statistic.count, statistic.n),
         value: value(one),
         limit: limit(one),
         normalised: normalised(one),
         holds: Finding::of_statistic(one),
         reason: statistic.reason.clone(),
+    }
+}
+
+fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> FurtherRow {
+    FurtherRow {
+        limited: limited(quantity, statistic),
+        filter: quantity.filter.clone(),
+        processing: quantity.processing.clone(),
+        comparison: quantity.comparison.clone(),
+        statistic: statistic.title.clone(),
+        scope: statistic.scope.clone(),
     }
 }
 

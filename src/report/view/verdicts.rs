@@ -5,40 +5,23 @@ use serde::Serialize;
 use super::Finding;
 use crate::result::{Certification, Verdict, VerdictResult};
 
+/// A verdict with its reasons in symbols.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct VerdictRow {
-    pub title: String,
     pub finding: Finding,
-    pub overall: bool,
-    /// If it holds, and if it does not.
-    pub words: [String; 2],
-    /// `accepted when every limit holds`
-    pub criterion: String,
-    pub reasons: Vec<String>,
-    /// Who decides it, if a person does.
-    pub judged_by: Option<String>,
-    pub clause: Option<String>,
-    pub source: Option<String>,
-    pub notes: Vec<String>,
+    #[serde(flatten)]
+    pub verdict: VerdictResult,
 }
 
 pub(super) fn rows(found: &Certification) -> Vec<VerdictRow> {
-    found.verdicts.iter().map(|verdict| row(verdict, found)).collect()
-}
-
-fn row(verdict: &VerdictResult, found: &Certification) -> VerdictRow {
-    VerdictRow {
-        title: verdict.title.clone(),
+    let row = |verdict: &VerdictResult| VerdictRow {
         finding: Finding::new(verdict.outcome.holds(), &verdict.word, &verdict.word, &verdict.word),
-        overall: verdict.overall,
-        words: verdict.words.clone(),
-        criterion: verdict.criterion.clone(),
-        reasons: verdict.reasons.iter().map(|reason| super::in_symbols(reason, found)).collect(),
-        judged_by: verdict.judged_by.clone(),
-        clause: verdict.clause.clone(),
-        source: verdict.source.clone(),
-        notes: verdict.notes.clone(),
-    }
+        verdict: VerdictResult {
+            reasons: verdict.reasons.iter().map(|reason| super::in_symbols(reason, found)).collect(),
+            ..verdict.clone()
+        },
+    };
+    found.verdicts.iter().map(row).collect()
 }
 
 /// Title of the overall verdict, if it has a name.

@@ -84,13 +84,6 @@ pub(super) fn sentence(found: &Certification) -> &'static str {
     }
 }
 
-/// The rule of the verdict, with the word of the verdict: `requirements met when every limit holds`.
-pub(super) fn rule(found: &Certification) -> String {
-    let rule = &found.protocol.verdict_rule;
-    let (before, after) = (Verdict::Validated.in_words(), found.kind().verdict_words(Verdict::Validated));
-    rule.strip_prefix(before).map_or_else(|| rule.clone(), |rest| format!("{after}{rest}"))
-}
-
 /// The statement about the simulation; `None` where no simulated record is in a quantity. That nothing was changed after the comparison is
 /// printed only of a comparison with measurements whose campaign has no origin that contradicts it.
 pub(super) fn simulation_statement(found: &Certification) -> Option<String> {
