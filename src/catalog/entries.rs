@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use super::{Best, DIFFERENCES, FUNCTIONS, Form, METRICS, NumberOption, REDUCERS, SIGNAL_FUNCTIONS, STATISTICS, STEPS, Signature};
+use super::{
+    Best, DIFFERENCES, FUNCTIONS, Form, METRICS, NOT_CHECKED, NumberOption, REDUCERS, SIGNAL_FUNCTIONS, STATISTICS, STEPS, Signature,
+};
 use crate::units::Dimension;
 
 /// One operation of the language on signals or numbers.
@@ -70,12 +72,8 @@ pub fn entries() -> Vec<Entry> {
         };
         let best = Some(entry.best.in_words());
         let options = options(&entry.form);
-        all.push(Entry {
-            source: Some(entry.source),
-            best,
-            options,
-            ..Entry::new("metric", entry.form.in_words(), signature, entry.about)
-        });
+        let about = if entry.unverified { format!("{} Unverified: {NOT_CHECKED}.", entry.about) } else { entry.about.to_string() };
+        all.push(Entry { source: Some(entry.source), best, options, ..Entry::new("metric", entry.form.in_words(), signature, about) });
     }
     for (name, expression) in DIFFERENCES {
         let best = Some(Best::Near(0.0).in_words());

@@ -14,7 +14,7 @@ pub use forms::{Choice, Form, NumberOption, Part};
 pub use functions::{FUNCTIONS, Function, SIGNAL_FUNCTIONS, Signature};
 pub use reducers::{REDUCERS, Reducer, ReducerEntry, STATISTICS, Statistic, StatisticEntry};
 pub use steps::{STEPS, StepEntry, StepKind};
-pub use two_signals::{Asked, Best, METRICS, Metric, MetricEntry, Pair};
+pub use two_signals::{Asked, Best, METRICS, Metric, MetricEntry, NOT_CHECKED, Pair};
 
 /// Named differences of a simulated and a measured value, as name and expression.
 pub const DIFFERENCES: [(&str, &str); 3] = [

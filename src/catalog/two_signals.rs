@@ -85,6 +85,9 @@ impl PartialEq for Metric {
     }
 }
 
+/// What is said of a metric that is [`MetricEntry::unverified`].
+pub const NOT_CHECKED: &str = "not checked against a reference implementation";
+
 #[derive(Debug)]
 pub struct MetricEntry {
     pub form: Form,
@@ -97,6 +100,8 @@ pub struct MetricEntry {
     pub best: Best,
     pub about: &'static str,
     pub source: &'static str,
+    /// Not checked against a reference implementation: reports say so beside its numbers.
+    pub unverified: bool,
     /// The error gives the reason why it is not defined.
     pub run: fn(&Pair<'_>) -> Result<f64, String>,
 }
@@ -145,14 +150,27 @@ macro_rules! ratio {
             best: $best,
             about: $about,
             source: $source,
+            unverified: false,
             run: |p| $run(p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
         }
     };
 }
 
 macro_rules! of_signal {
-    ($head:expr, $common:expr, $about:expr, $source:expr, $run:path) => {
-        MetricEntry { gives: |signal, _| signal, common_points: $common, ..ratio!($head, Best::Least(0.0), $about, $source, $run) }
+    ($head:expr, $about:expr, $source:expr, $run:path) => {
+        MetricEntry { gives: |signal, _| signal, ..ratio!($head, Best::Least(0.0), $about, $source, $run) }
+    };
+}
+
+macro_rules! of_distributions {
+    ($head:expr, $best:expr, $about:expr, $source:expr, $run:path) => {
+        MetricEntry { form: Form { numbers: POINTS, ..form($head) }, of_distributions: true, ..ratio!(&[], $best, $about, $source, $run) }
+    };
+}
+
+macro_rules! unverified {
+    ($part:literal, $about:expr, $run:path) => {
+        MetricEntry { unverified: true, ..ratio!(&[Part::Word("cora"), Part::Word($part)], Best::Greatest(1.0), $about, CORA, $run) }
     };
 }
 
@@ -161,6 +179,10 @@ const POINTS: &[NumberOption] = &[NumberOption { name: "points", default: None, 
 
 const SG: &str = "Sprague & Geers 2004";
 const RUSSELL: &str = "Russell 1997";
+const THEIL: &str = "Theil 1966";
+const ISO: &str = "ISO/TS 18571:2014";
+const CORA: &str = "Gehre, Gades & Wernicke 2009, as described for Altair HyperGraph";
+const BOGOJEVIC: &str = "Bogojevic & Lucanin 2014, as described by Goetz & Polach";
 
 pub const METRICS: &[MetricEntry] = &[
     ratio!(
@@ -209,8 +231,29 @@ pub const METRICS: &[MetricEntry] = &[
         &[Part::Word("theil"), Part::Word("inequality")],
         Best::Least(0.0),
         "Root mean square difference divided by the sum of the root mean squares, from 0 to 1.",
-        "Theil 1966",
+        THEIL,
         pair::theil_u1
+    ),
+    ratio!(
+        &[Part::Word("theil"), Part::Word("bias")],
+        Best::Least(0.0),
+        "Share of the mean square difference that is a difference of the means.",
+        THEIL,
+        pair::theil_bias
+    ),
+    ratio!(
+        &[Part::Word("theil"), Part::Word("variance")],
+        Best::Least(0.0),
+        "Share of the mean square difference that is a difference of the standard deviations.",
+        THEIL,
+        pair::theil_variance
+    ),
+    ratio!(
+        &[Part::Word("theil"), Part::Word("covariance")],
+        Best::Greatest(1.0),
+        "Share of the mean square difference that is a lack of correlation: what is neither bias nor variance.",
+        THEIL,
+        pair::theil_covariance
     ),
     ratio!(
         &[Part::Word("weighted"), Part::Word("integrated"), Part::Word("factor")],
@@ -227,6 +270,46 @@ pub const METRICS: &[MetricEntry] = &[
         "definition",
         pair::mirrored_correlation
     ),
+    ratio!(
+        &[Part::Word("iso18571"), Part::Word("corridor")],
+        Best::Greatest(1.0),
+        "Agreement with two corridors about the measurement: 5 % and 50 % of its largest magnitude either way.",
+        ISO,
+        pair::iso18571_corridor
+    ),
+    ratio!(
+        &[Part::Word("iso18571"), Part::Word("phase")],
+        Best::Greatest(1.0),
+        "Rating of the shift with the best correlation: 1 at none, 0 at 20 % of the samples.",
+        ISO,
+        pair::iso18571_phase
+    ),
+    ratio!(
+        &[Part::Word("iso18571"), Part::Word("magnitude")],
+        Best::Greatest(1.0),
+        "Rating of the amplitudes after the shift and dynamic time warping.",
+        ISO,
+        pair::iso18571_magnitude
+    ),
+    ratio!(
+        &[Part::Word("iso18571"), Part::Word("slope")],
+        Best::Greatest(1.0),
+        "Rating of the smoothed slopes after the shift.",
+        ISO,
+        pair::iso18571_slope
+    ),
+    ratio!(
+        &[Part::Word("iso18571"), Part::Word("overall")],
+        Best::Greatest(1.0),
+        "0.4 corridor + 0.2 (phase + magnitude + slope).",
+        ISO,
+        pair::iso18571_overall
+    ),
+    unverified!("corridor", "Corridor rating, with the corridors of ISO/TS 18571.", pair::cora_corridor),
+    unverified!("progression", "Rating of the shape at the best shift: ((cosine + 1) / 2)^10.", pair::cora_progression),
+    unverified!("size", "Rating of the size at the best shift: the smaller over the larger sum of squares.", pair::cora_size),
+    unverified!("phase", "Rating of the best shift: 1 up to 1 %, 0 from 12 % of the interval.", pair::cora_phase),
+    unverified!("total", "(corridor + 0.5 progression + 0.25 size + 0.25 phase) / 2.", pair::cora_total),
     MetricEntry {
         form: form(&[Part::Word("shift")]),
         gives: |_, axis| axis,
@@ -235,6 +318,7 @@ pub const METRICS: &[MetricEntry] = &[
         best: Best::Near(0.0),
         about: "Shift to be added to the measured axis for the largest correlation, up to a quarter of the section.",
         source: "definition",
+        unverified: false,
         run: |p| pair::shift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
     },
     MetricEntry {
@@ -245,6 +329,7 @@ pub const METRICS: &[MetricEntry] = &[
         best: Best::Near(0.0),
         about: "Change over the section of the regression line of measured minus simulated samples.",
         source: "definition",
+        unverified: false,
         run: |p| pair::drift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
     },
     ratio!(
@@ -254,28 +339,69 @@ pub const METRICS: &[MetricEntry] = &[
         "Kraft et al. 2013, as described by Goetz & Polach",
         pair::kraft_misfit
     ),
-    MetricEntry {
-        form: Form { numbers: POINTS, ..form(&[Part::Word("matching"), Part::Word("probability")]) },
-        of_distributions: true,
-        ..ratio!(
-            &[],
-            Best::Greatest(1.0),
-            "Probability of equal variances (F test) times the agreement of the means.",
-            "Bogojevic & Lucanin 2014, as described by Goetz & Polach",
-            pair::bogojevic
-        )
-    },
+    of_distributions!(
+        &[Part::Word("matching"), Part::Word("probability")],
+        Best::Greatest(1.0),
+        "Probability of equal variances (F test) times the agreement of the means.",
+        BOGOJEVIC,
+        pair::bogojevic
+    ),
+    of_distributions!(
+        &[Part::Word("fisher"), Part::Word("probability")],
+        Best::Greatest(1.0),
+        "Two-sided probability of the F test that the variances are equal, for independent values; n - 1 degrees of freedom each.",
+        BOGOJEVIC,
+        pair::bogojevic_variance_probability
+    ),
+    of_distributions!(
+        &[Part::Word("variance"), Part::Word("ratio")],
+        Best::Near(1.0),
+        "Variance (n - 1) of the simulation over that of the measurement.",
+        BOGOJEVIC,
+        pair::bogojevic_variance_ratio
+    ),
+    of_distributions!(
+        &[Part::Word("agreement"), Part::Word("in"), Part::Word("mean")],
+        Best::Greatest(1.0),
+        "1 less the difference of the means over the larger magnitude of them; below 0 where their signs differ.",
+        BOGOJEVIC,
+        pair::bogojevic_mean_term
+    ),
     of_signal!(
         &[Part::Word("root-mean-square"), Part::Word("difference")],
-        true,
         "Root mean square of the differences of the samples.",
         "definition",
         pair::root_mean_square_error
     ),
+    ratio!(
+        &[Part::Word("normalised"), Part::Word("root-mean-square"), Part::Word("difference")],
+        Best::Least(0.0),
+        "The same over the root mean square of the measurement: Theil's U2.",
+        THEIL,
+        pair::theil_u2
+    ),
+    ratio!(
+        &[Part::Word("range-normalised"), Part::Word("root-mean-square"), Part::Word("difference")],
+        Best::Least(0.0),
+        "The same over the range of the measurement.",
+        "definition",
+        pair::relative_to_range
+    ),
+    MetricEntry {
+        common_points: false,
+        of_distributions: true,
+        ..ratio!(
+            &[Part::Word("root-mean-square"), Part::Word("ratio")],
+            Best::Near(1.0),
+            "Root mean square of the simulation over that of the measurement; behind a band-pass filter that of the band.",
+            "definition",
+            pair::rms_ratio
+        )
+    },
     MetricEntry {
         form: Form { numbers: POINTS, ..form(&[Part::Word("area"), Part::Word("between"), Part::Word("distributions")]) },
         of_distributions: true,
-        ..of_signal!(&[], false, "Area between the two cumulative distributions of the samples.", "Ferson, Oberkampf & Ginzburg 2008", area)
+        ..of_signal!(&[], "Area between the two cumulative distributions of the samples.", "Ferson, Oberkampf & Ginzburg 2008", area)
     },
     MetricEntry {
         form: form(&[Part::Word("coherence"), Part::Word("from"), Part::Frequency("low"), Part::Word("to"), Part::Frequency("high")]),
@@ -285,6 +411,7 @@ pub const METRICS: &[MetricEntry] = &[
         best: Best::Greatest(1.0),
         about: "Mean coherence of the spectral lines from the first frequency to below the second: Welch's method, Hann windows of 256 samples, 50 % overlap.",
         source: "Welch 1967",
+        unverified: false,
         run: |p| {
             let band = p.band.ok_or("the frequencies are missing")?;
             coherence::in_band(p.simulated, p.measured, p.rate, band).map_err(|undefined| undefined.to_string())
@@ -298,6 +425,7 @@ pub const METRICS: &[MetricEntry] = &[
         best: Best::Least(0.0),
         about: "Largest difference of the hysteresis loops of the signal over another one: simulated and measured on the same branch.",
         source: "EN 15273-2, stationary sway test",
+        unverified: false,
         run: |p| loop_error(p).map(|error| error.maximum),
     },
     MetricEntry {
@@ -308,6 +436,7 @@ pub const METRICS: &[MetricEntry] = &[
         best: Best::Least(0.0),
         about: "Mean difference of the hysteresis loops of the signal over another one: simulated and measured on the same branch.",
         source: "EN 15273-2, stationary sway test",
+        unverified: false,
         run: |p| loop_error(p).map(|error| error.mean),
     },
 ];

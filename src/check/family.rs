@@ -160,6 +160,9 @@ pub(super) fn overlay(parent: &mut Block, variant: &Block) {
         // A rule and the judgement of a person replace each other, too.
         "holds" | "of" => says("judged by"),
         "judged by" => says("holds"),
+        // And a limit and the reason why there is none.
+        "reported" => says("limit"),
+        "limit" => says("reported"),
         // A number of one's own is not the one that was to be confirmed.
         "unconfirmed" => says("default") || says("is") || parent.kind.text == "zone" && says("where"),
         _ => false,

@@ -568,6 +568,19 @@ impl Center {
 }
 
 impl Evaluation {
+    /// The metrics in it that are not checked against a reference implementation, in words.
+    pub fn unverified(&self) -> Vec<String> {
+        let of_inputs = |inputs: &[Input]| -> Vec<Metric> {
+            inputs.iter().filter_map(|input| if let Taken::Compared(metric) = input.taken { Some(metric) } else { None }).collect()
+        };
+        let metrics = match self {
+            Self::Values { .. } => Vec::new(),
+            Self::Metric { metric, .. } => vec![*metric],
+            Self::Combined { of, .. } => of.inputs.first().map_or_else(Vec::new, |inputs| of_inputs(inputs)),
+        };
+        metrics.into_iter().filter(|metric| metric.0.unverified).map(|metric| metric.0.form.in_words()).collect()
+    }
+
     /// Whether records of this side are needed.
     pub fn reads(&self, side: Side) -> bool {
         match self {

@@ -11,7 +11,7 @@ use super::plan::{
 };
 use super::scalars::Scope;
 use super::steps::after;
-use crate::catalog::{Best, DIFFERENCES};
+use crate::catalog::{Best, DIFFERENCES, NOT_CHECKED};
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
@@ -115,13 +115,19 @@ impl Checker<'_> {
         let best = compared.as_ref().and_then(|compared| compared.best.as_ref());
         let places: Vec<String> = positions.iter().flatten().next().map_or_else(Vec::new, |(_, at)| at.keys().cloned().collect());
         let limits = self.limits(block, unit.as_ref().zip(from), best, &places);
-        if block.field("limit").is_none() && !incomplete && !self.is_referred_to(block.name_text()) {
+        if let (Some(reported), Some(limit)) = (block.field("reported"), block.field("limit")) {
+            let says = "a quantity is either reported without a limit, or has one";
+            self.problems.push(Problem::error("reported-and-limit", says).at(&reported.key.span).also(&limit.key.span, "the limit"));
+        }
+        let meant = block.field("reported").is_some() || self.is_referred_to(block.name_text());
+        if block.field("limit").is_none() && !incomplete && !meant {
             self.problems.push(
                 Problem::warning(
                     "no-limit",
                     format!("quantity `{}` has no limit: it is reported and has no effect on a verdict", block.name_text()),
                 )
-                .at(block.span()),
+                .at(block.span())
+                    .help("if that is meant, say why: `reported \"...\"`"),
             );
         }
         if let (Some(only), None, 2..) = (block.field("where"), block.field("minimum pairs"), self.minimum_pairs) {
@@ -138,14 +144,19 @@ impl Checker<'_> {
         let text = |key: &str| block.field(key).map(|field| field.value.text.clone());
         let filter =
             if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") };
+        let unverified = compared.evaluation.unverified();
+        let reported = text("reported").map(|why| format!("Reported without a limit. {why}"));
+        let notes = reported.into_iter().chain(block.fields_named("note").map(|note| note.value.text.clone()));
+        let notes = notes.chain(unverified.iter().map(|metric| format!("Unverified: `{metric}` is {NOT_CHECKED}."))).collect();
+        let comparison = if unverified.is_empty() { compared.comparison } else { format!("{} (unverified)", compared.comparison) };
         Some(Quantity {
             id: block.name_text().to_string(),
             title: block.title.as_ref().map_or_else(|| block.name_text().to_string(), |title| title.text.clone()),
             symbol: text("symbol").unwrap_or_else(|| block.name_text().to_string()),
-            words: QuantityWords { of: all.join("; "), filter, processing: compared.processing, comparison: compared.comparison },
+            words: QuantityWords { of: all.join("; "), filter, processing: compared.processing, comparison },
             clause: text("clause"),
             source: text("source"),
-            notes: block.fields_named("note").map(|note| note.value.text.clone()).collect(),
+            notes,
             unit,
             signal_unit,
             positions: positions.into_iter().map(|(position, _)| position).collect(),

@@ -130,6 +130,7 @@ mod tests {
             normalised,
             sample: Sample::default(),
             regression: None,
+            divided_at: None,
             holds,
             factors: Vec::new(),
             limit_text: "1 kN".into(),

@@ -279,6 +279,9 @@ pub struct StatisticResult {
     /// Of an estimate that is a regression with one regressor.
     #[serde(skip)]
     pub regression: Option<Box<RegressionFigure>>,
+    /// Of an estimate that is a share of the values: where it divides them, in the unit of the quantity.
+    #[serde(skip)]
+    pub divided_at: Option<f64>,
     pub holds: Option<bool>,
     /// Factors of the limit that depend on vehicle data.
     pub factors: Vec<LimitFactor>,

@@ -7,7 +7,7 @@ use super::sections::Unit;
 use super::table::{Member, Table, independent};
 use crate::catalog::Statistic;
 use crate::check::evaluate::{Values, flag, number};
-use crate::check::plan::{DataReducer, DatumKind, Estimate, EstimateKind, Fit, Kind, OfGroup, Plan, Scalar, Taking, Type};
+use crate::check::plan::{DataReducer, DatumKind, Estimate, EstimateKind, Fit, Kind, OfGroup, Operator, Plan, Scalar, Taking, Type};
 use crate::metrics::cluster::{self, Bounds, Draws, Mean, StandardDeviation};
 use crate::metrics::percentile::{Method, percentile};
 use crate::metrics::regression::{self, Regression, Tails};
@@ -145,6 +145,23 @@ impl Group<'_> {
         let at = fit.at.iter().map(|target| self.over(target, values)).collect::<Result<Vec<_>, _>>()?;
         let regression = Regression::fit(values, &regressors).map_err(|error| error.to_string())?;
         Ok(Fitted { regression, regressors, at })
+    }
+
+    /// The bound of a share of the values: X of `share where value <= X`, in SI. `None` of other estimates, and of a bound that differs from
+    /// section to section.
+    pub fn divided_at(&self, of: &OfGroup) -> Option<f64> {
+        let (Kind::Input(0), [Taking::Share { condition, of_sections: false, others }]) = (&of.expr.kind, of.taken.as_slice()) else {
+            return None;
+        };
+        let Kind::Binary(operator, left, right) = &condition.kind else { return None };
+        let compares = matches!(operator, Operator::Less | Operator::LessEqual | Operator::Greater | Operator::GreaterEqual);
+        if !compares || !matches!(left.kind, Kind::Input(0)) {
+            return None;
+        }
+        let values = self.values();
+        let value = Err("the bound of a share is the same for all values".to_string());
+        let inputs: Vec<Result<f64, String>> = [value].into_iter().chain(others.iter().map(|other| self.take(other, &values))).collect();
+        number(right, &Known { inputs: &inputs, ..Known::vehicle(self.facts) }).ok()
     }
 
     /// The diagram of a regression with one regressor, in the unit of the quantity; `None` for other estimates and where there is

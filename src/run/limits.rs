@@ -25,6 +25,8 @@ pub struct Estimated<'a> {
     pub value: Result<Option<f64>, String>,
     pub interval: Option<(f64, f64)>,
     pub regression: Option<RegressionFigure>,
+    /// In SI.
+    pub divided_at: Option<f64>,
 }
 
 /// An estimate compared with its limit, and the sentence for the verdict where the limit is not met.
@@ -64,14 +66,23 @@ impl<'a> Judging<'a> {
     fn of_part(&self, limit: &Limit, part: Part<'a>) -> Estimated<'a> {
         let members = match part.members(self.facts, self.members) {
             Ok(members) => members,
-            Err(reason) => return Estimated { part, members: Vec::new(), value: Err(reason), interval: None, regression: None },
+            Err(reason) => {
+                return Estimated { part, members: Vec::new(), value: Err(reason), interval: None, regression: None, divided_at: None };
+            }
         };
         if members.is_empty() {
-            return Estimated { part, members, value: Err("no value is available".into()), interval: None, regression: None };
+            return Estimated {
+                part,
+                members,
+                value: Err("no value is available".into()),
+                interval: None,
+                regression: None,
+                divided_at: None,
+            };
         }
         let group = Group { plan: self.plan, facts: self.facts, members: &members, table: self.table };
-        let (value, interval, regression) = match &limit.estimate.kind {
-            EstimateKind::Each => (Ok(None), None, None),
+        let (value, interval, regression, divided_at) = match &limit.estimate.kind {
+            EstimateKind::Each => (Ok(None), None, None, None),
             EstimateKind::Of(of) => {
                 let entry = match limit.estimate.statistic() {
                     Some((Statistic::Named(entry), _)) => Some(entry),
@@ -79,10 +90,11 @@ impl<'a> Judging<'a> {
                 };
                 let interval = entry.and_then(|entry| entry.interval);
                 let interval = interval.and_then(|interval| interval(&group.values(), &group.units()));
-                (group.number(of).map(Some), interval, group.figure(of, &self.quantity.unit))
+                let divided_at = group.divided_at(of);
+                (group.number(of).map(Some), interval, group.figure(of, &self.quantity.unit), divided_at)
             }
         };
-        Estimated { part, members, value, interval, regression }
+        Estimated { part, members, value, interval, regression, divided_at }
     }
 
     /// Compares the estimates with the limit, group by group.
@@ -113,6 +125,7 @@ impl<'a> Judging<'a> {
             normalised: None,
             sample: self.sample(members),
             regression: None,
+            divided_at: None,
             holds: None,
             factors: Vec::new(),
             limit_text: limit.words.clone(),
@@ -130,6 +143,7 @@ impl<'a> Judging<'a> {
         let mut result = self.empty(limit, group.part.in_words(), group.part.keys(), &group.members);
         result.factors = factors(self.plan, self.facts, limit);
         result.regression = group.regression.clone().map(Box::new);
+        result.divided_at = group.divided_at.map(|value| self.quantity.unit.from_si(value));
         let outcome = match &group.value {
             Err(reason) => Err(reason.clone()),
             Ok(None) => self.each(limit, &group.members, &mut result),

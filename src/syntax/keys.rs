@@ -364,6 +364,7 @@ pub const KINDS: &[Kind] = &[
             phrase("difference", "The difference of the two values.", "|simulated| - |measured|"),
             phrase("metric", "In place of value and difference: one number computed from both signals.", "sprague-geers magnitude"),
             many(phrase("limit", "A statistic or estimate over all values, or over those of each group, and its limit.", "std 9 kN")),
+            text("reported", "Why it has no limit: it is reported, and decides nothing.", "A factor of the metric above."),
             phrase("minimum signals", "The number of signals that it needs.", "2"),
             phrase("minimum pairs", "The number of section x signal pairs that it needs.", "24"),
             phrase("in", "The unit of printed values, if it is not that of the signal.", "kN"),

@@ -69,6 +69,7 @@ fn quantity(found: &Certification) -> QuantityResult {
         normalised: Some(26.5 / 46.0),
         holds: Some(true),
         regression: None,
+        divided_at: None,
         reason: None,
         rule: RulePlace { file: "on-track.fp".into(), line: 30 },
         ..statistics[0].clone()
@@ -145,6 +146,7 @@ fn estimate(name: &str, zone: &str, wheelset: &str, values: &[PairValue]) -> Sta
         normalised: (!open).then_some(value / 46.0),
         sample: Sample { mean: Some(23.25), std: Some(2.0) },
         regression,
+        divided_at: None,
         holds: (!open).then_some(value <= 46.0),
         factors: Vec::new(),
         limit_text: "10 kN + 2/3 * Q0".into(),

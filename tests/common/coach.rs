@@ -234,6 +234,7 @@ fn statistics(values: &[PairValue], unit: &str, limit: f64) -> Vec<StatisticResu
         normalised: Some(value.abs() / limit),
         sample: Sample::default(),
         regression: None,
+        divided_at: None,
         holds: Some(value.abs() <= limit),
         factors: Vec::new(),
         limit_text: text.into(),

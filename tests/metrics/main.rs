@@ -6,6 +6,7 @@ mod hysteresis;
 mod pair;
 mod percentile;
 mod properties;
+mod ratings;
 mod regression;
 mod resample;
 mod statistics;

@@ -15,6 +15,30 @@ pub fn root_mean_square_error(simulated: &[f64], measured: &[f64]) -> Result<f64
     Ok((energies.difference / simulated.len() as f64).sqrt())
 }
 
+/// [`root_mean_square_error`] over the range of the measurement.
+///
+/// # Errors
+/// The measurement is constant.
+pub fn relative_to_range(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    let error = root_mean_square_error(simulated, measured)?;
+    let (low, high) = measured.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
+    if high > low { Ok(error / (high - low)) } else { Err(Undefined::because("the measured signal is constant")) }
+}
+
+/// Root mean square of the simulation over that of the measurement; each may have samples of its own.
+///
+/// # Errors
+/// The measurement is zero throughout; a signal without samples, or with a sample that is not finite.
+pub fn rms_ratio(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+    super::check_values(simulated, measured)?;
+    let of = |signal: &[f64]| statistics::rms(signal).ok_or_else(too_large);
+    let (of_simulated, of_measured) = (of(simulated)?, of(measured)?);
+    if of_measured == 0.0 {
+        return Err(Undefined::because("the measured signal is zero throughout"));
+    }
+    Ok(of_simulated / of_measured)
+}
+
 /// Pearson's correlation, in [-1, 1].
 ///
 /// # Errors
@@ -100,5 +124,5 @@ fn residuals(simulated: &[f64], measured: &[f64]) -> Result<Vec<f64>, Undefined>
 }
 
 fn too_large() -> Undefined {
-    Undefined::because("the sum of the residuals overflows")
+    Undefined::because("the samples exceed the range of numbers")
 }

@@ -1,6 +1,6 @@
 //! Metrics of the values of the signals regardless of their order.
 
-use super::{Undefined, check, check_finite};
+use super::{Undefined, check, check_values};
 use crate::metrics::{
     incomplete_beta::incomplete_beta,
     percentile::{Method, percentiles},
@@ -87,7 +87,8 @@ pub fn bogojevic_variance_probability(simulated: &[f64], measured: &[f64]) -> Re
     Ok(f_two_sided(bogojevic_variance_ratio(simulated, measured)?, degrees(simulated), degrees(measured)))
 }
 
-/// Agreement of the means: `1 - |mean s - mean m| / max(|mean s|, |mean m|)`, not below 0; 1 where both are zero.
+/// Agreement of the means: `1 - |mean s - mean m| / max(|mean s|, |mean m|)`, down to -1 for means of
+/// opposite sign; 1 where both are zero.
 ///
 /// # Errors
 /// A signal without samples, or with a sample that is not finite.
@@ -100,15 +101,16 @@ pub fn bogojevic_mean_term(simulated: &[f64], measured: &[f64]) -> Result<f64, U
     if larger <= ZERO_MEAN * magnitude {
         return Ok(1.0);
     }
-    Ok((1.0 - (of_simulated - of_measured).abs() / larger).max(0.0))
+    Ok(1.0 - (of_simulated - of_measured).abs() / larger)
 }
 
-/// Metric of Bogojevic and Lucanin: probability of the variance ratio times the agreement of the means; 1 is best.
+/// Metric of Bogojevic and Lucanin: probability of the variance ratio times the agreement of the means, of which a negative
+/// one counts 0; 1 is best.
 ///
 /// # Errors
 /// As [`bogojevic_variance_ratio`].
 pub fn bogojevic(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
-    Ok(bogojevic_variance_probability(simulated, measured)? * bogojevic_mean_term(simulated, measured)?)
+    Ok(bogojevic_variance_probability(simulated, measured)? * bogojevic_mean_term(simulated, measured)?.max(0.0))
 }
 
 /// Two-sided probability of a variance ratio under the F distribution: twice the smaller tail, at most 1.
@@ -120,17 +122,6 @@ pub fn f_two_sided(ratio: f64, numerator_degrees: f64, denominator_degrees: f64)
     let lower = incomplete_beta(numerator_degrees / 2.0, denominator_degrees / 2.0, of_numerator, of_denominator);
     let upper = incomplete_beta(denominator_degrees / 2.0, numerator_degrees / 2.0, of_denominator, of_numerator);
     (2.0 * lower.min(upper)).min(1.0)
-}
-
-/// Checks values of both sides, whose numbers may differ.
-fn check_values(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
-    for (signal, which) in [(simulated, "simulated"), (measured, "measured")] {
-        if signal.is_empty() {
-            return Err(Undefined::because(format!("the {which} signal has no samples")));
-        }
-        check_finite(signal, which)?;
-    }
-    Ok(())
 }
 
 fn in_range(area: f64) -> Result<f64, Undefined> {

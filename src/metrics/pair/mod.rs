@@ -5,14 +5,19 @@
 //! uniform grid, as the sampling distance cancels.
 
 mod alignment;
+mod cora;
 mod deviation;
 mod distribution;
 mod geers;
+mod iso18571;
+mod lag;
 mod theil;
 
 pub use alignment::{drift, mirrored_correlation, shift};
+pub use cora::{cora_corridor, cora_phase, cora_progression, cora_size, cora_total};
 pub use deviation::{
-    anova_mean, anova_standard_deviation, correlation, kraft_misfit, kraft_misfit_root, root_mean_square_error, weighted_integrated_factor,
+    anova_mean, anova_standard_deviation, correlation, kraft_misfit, kraft_misfit_root, relative_to_range, rms_ratio,
+    root_mean_square_error, weighted_integrated_factor,
 };
 pub use distribution::{
     area_between, area_metric, bogojevic, bogojevic_mean_term, bogojevic_variance_probability, bogojevic_variance_ratio, f_two_sided,
@@ -22,6 +27,7 @@ pub use geers::{
     geers_comprehensive, geers_phase, russell_comprehensive, russell_magnitude, russell_phase, sprague_geers_comprehensive,
     sprague_geers_magnitude, sprague_geers_phase,
 };
+pub use iso18571::{iso18571_corridor, iso18571_magnitude, iso18571_overall, iso18571_phase, iso18571_slope};
 pub use theil::{theil_bias, theil_covariance, theil_u1, theil_u2, theil_variance};
 
 use std::fmt;
@@ -58,6 +64,17 @@ fn check(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
     }
     check_finite(simulated, "simulated")?;
     check_finite(measured, "measured")
+}
+
+/// Values on both sides, not equally many.
+fn check_values(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
+    for (signal, which) in [(simulated, "simulated"), (measured, "measured")] {
+        if signal.is_empty() {
+            return Err(Undefined::because(format!("the {which} signal has no samples")));
+        }
+        check_finite(signal, which)?;
+    }
+    Ok(())
 }
 
 fn check_finite(signal: &[f64], which: &str) -> Result<(), Undefined> {

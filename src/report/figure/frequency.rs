@@ -1,4 +1,4 @@
-//! Cumulative frequency of the values of an assessed quantity: one curve for each record, or for each zone where there is one record.
+//! Cumulative frequency of the values of a quantity: one curve for each record, or for each zone where there is one record.
 
 use indexmap::IndexMap;
 use plotters::style::RGBColor;
@@ -11,11 +11,18 @@ use super::pairs::{pair_group, tooltip};
 use super::style::{self, DASHED, INK, MUTED, Mark, TICK, WIDTH};
 use super::zones::Zones;
 use crate::report::number;
-use crate::result::{PairValue, QuantityResult};
+use crate::result::{PairValue, QuantityResult, StatisticResult};
 
 const HEIGHT: f64 = 140.0;
 /// Most limits that are drawn one by one; of more, the smallest and the largest.
 const LIMITS: usize = 6;
+
+/// Whether it is drawn: of an assessed quantity, and of a metric with a limit of the distribution of its values.
+pub fn has_frequency(quantity: &QuantityResult) -> bool {
+    let percentile = |name: &str| name.strip_prefix('p').is_some_and(|percent| percent.parse::<f64>().is_ok());
+    let of_distribution = || quantity.statistics.iter().any(|one| one.divided_at.is_some() || percentile(&one.name));
+    !quantity.values.is_empty() && (quantity.from.is_some() || !quantity.has_sides && of_distribution())
+}
 
 /// Values in increasing order, each at the share of values of its curve that do not exceed it.
 pub fn frequency(quantity: &QuantityResult, zones: &Zones) -> String {
@@ -100,7 +107,9 @@ fn curve(
 
 /// The different limits of the quantity in its unit, in increasing order, with their texts; of a magnitude on both sides where values are.
 fn limits(quantity: &QuantityResult) -> Vec<(f64, String)> {
-    let stated = quantity.statistics.iter().filter(|one| one.unit == quantity.unit).filter_map(|one| one.limit);
+    // The limit of a share is no value; where the share divides the values is one.
+    let of = |one: &StatisticResult| one.divided_at.or(one.limit.filter(|_| one.unit == quantity.unit));
+    let stated = quantity.statistics.iter().filter_map(of);
     let mut all: Vec<f64> = stated.collect();
     if quantity.values.iter().any(|value| value.difference < 0.0) {
         all.extend(all.clone().into_iter().map(|limit| -limit));

@@ -27,7 +27,7 @@ mod zones;
 pub use boxes::boxes;
 pub use choices::choices;
 pub use domain::domain;
-pub use frequency::frequency;
+pub use frequency::{frequency, has_frequency};
 pub use map::map;
 pub use offsets::{selection, shares};
 pub use overview::overview;
@@ -51,7 +51,7 @@ pub fn figures(found: &Certification) -> Vec<(String, String)> {
     }
     for (at, quantity) in found.quantities.iter().enumerate().filter(|(_, quantity)| !quantity.values.is_empty()) {
         drawn.push((format!("pairs-{at}"), pairs(quantity, &zones)));
-        if quantity.from.is_some() {
+        if has_frequency(quantity) {
             drawn.push((format!("frequency-{at}"), frequency(quantity, &zones)));
         }
         for (nth, limit) in estimates::limits(quantity).iter().enumerate() {

@@ -64,7 +64,7 @@ pub struct QuantityView {
     pub figure: Option<FigureView>,
     /// Regressions of its estimates.
     pub regressions: Vec<FigureView>,
-    /// Cumulative frequency of the values; of an assessed quantity.
+    /// Cumulative frequency of the values, where it is drawn.
     pub frequency: Option<FigureView>,
 }
 
@@ -156,7 +156,7 @@ pub(super) fn view(at: usize, quantity: &QuantityResult, work: Option<&str>) -> 
         count: number::count(quantity.values.len() as u64),
         figure: (!quantity.values.is_empty()).then(|| pairs(at, quantity)),
         regressions: regressions(at, quantity),
-        frequency: (quantity.from.is_some() && !quantity.values.is_empty()).then(|| frequency(at, quantity)),
+        frequency: figure::has_frequency(quantity).then(|| frequency(at, quantity)),
     }
 }
 
