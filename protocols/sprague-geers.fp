@@ -2,25 +2,30 @@
 
 protocol sprague-geers "Sprague & Geers metric of forces and accelerations, section by section"
   source  "Sprague & Geers, A spectral-element method for modelling cavitation in transient fluid-structure"
-          "interaction, 2004; applied to rail vehicles by Fries et al., as described by Goetz & Polach"
+          "interaction, 2004; applied to rail vehicles by Fries et al., as described by Goetz & Polach, Table"
+          "2"
   author  "Fishplate"
-  scope   "Comparison of time histories of single sections. The publication gives no limits for rail"
-          "vehicles. The limits are parameters to be set by the user."
+  scope   "Comparison of time histories, quantity by quantity and section by section. Fries et al. applied"
+          "the metric to accelerations of a passenger vehicle and suggested limits. Their numbers were not to"
+          "hand: the limits here are parameters, to be replaced by theirs."
   axis    distance in m
   time    time in s
   note    "The mean is not removed: an offset affects magnitude and phase. The measurement is the reference."
 
 parameter magnitude_limit "Limit of the magnitude error"
-  default  0.25
-  range    0 to 10
+  default      0.25
+  range        0 to 10
+  unconfirmed  "A choice of this text; the limits suggested by Fries et al. were not to hand."
 
 parameter phase_limit "Limit of the phase error"
-  default  0.25
-  range    0 to 1
+  default      0.25
+  range        0 to 1
+  unconfirmed  "A choice of this text; the limits suggested by Fries et al. were not to hand."
 
 parameter comprehensive_limit "Limit of the comprehensive error"
-  default  0.35
-  range    0 to 10
+  default      0.35
+  range        0 to 10
+  unconfirmed  "A choice of this text; the limits suggested by Fries et al. were not to hand."
 
 place wheelset
   members  1, 2, 3, 4

@@ -41,6 +41,9 @@ pub const SHIPPED: &[Shipped] = shipped![
     "en14067-6-wheel-unloading",
     "en14067-6-flexibility",
     "sprague-geers",
+    "bogojevic-lucanin",
+    "kraft",
+    "metrics-side-by-side",
     "stationary-sway",
 ];
 

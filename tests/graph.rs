@@ -62,6 +62,9 @@ fn every_node_is_used() {
         let positions = || graph.plausibility.iter().flat_map(|rule| &rule.positions);
         used.extend(positions().flat_map(|position| position.own.into_iter().chain(position.inputs.iter().map(|input| input.node))));
         used.extend(graph.quantities.iter().flat_map(|quantity| quantity.signals.iter().map(|signal| signal.filtered)));
+        // A quantity without limits ends in its values.
+        let reported = graph.quantities.iter().filter(|quantity| quantity.limits.is_empty());
+        used.extend(reported.flat_map(|quantity| quantity.signals.iter().map(|signal| signal.compare)));
         let idle: Vec<&str> = (0..graph.nodes.len()).filter(|id| !used.contains(id)).map(|id| graph.nodes[id].label.as_str()).collect();
         assert!(idle.is_empty(), "{name}: {idle:?}");
     }

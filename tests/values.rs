@@ -12,7 +12,8 @@ use fishplate::check::{Overrides, family};
 use fishplate::data::Campaign;
 use fishplate::library;
 use fishplate::problem::Problems;
-use fishplate::result::{Certification, Finding, StatisticResult, Verdict};
+use fishplate::report::figure::{self, Zones};
+use fishplate::result::{Certification, Finding, PairValue, StatisticResult, Verdict};
 use fishplate::run::Settings;
 use fishplate::source::Source;
 use serde_json::Value;
@@ -400,4 +401,93 @@ fn numbers_of_both_sides_agree_with_numpy() {
         }
     }
     assert!(compared > 2000, "{compared}");
+}
+
+/// Numbers of NumPy, SciPy and `objective-rating-metrics` 1.3: protocol > section > signal > quantity; see `cases/values/metrics.py`.
+fn expected_metrics() -> Value {
+    let text = fs::read_to_string(root().join("tests/cases/values/metrics.json")).expect("expected numbers");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+fn shipped(name: &str) -> Compiled {
+    compiled(name, &library::shipped(name).expect("a shipped protocol").text)
+}
+
+/// In SI, of a quantity, section, signal and, where there are several, record.
+fn value_of(found: &Certification, quantity: &str, section: &str, signal: &str, record: Option<&str>) -> f64 {
+    let of = found.quantities.iter().find(|known| known.id == quantity).unwrap_or_else(|| panic!("no quantity {quantity}"));
+    let is = |value: &&PairValue| value.section == section && value.signal == signal && value.record.as_deref() == record;
+    let value = of.values.iter().find(is).unwrap_or_else(|| panic!("{quantity} has no value of {section} {signal}"));
+    let factor = if of.unit == "kN" { 1000.0 } else { 1.0 };
+    value.difference * factor
+}
+
+#[track_caller]
+fn agree(value: f64, expected: &Value, what: &str) {
+    let expected = expected.as_f64().expect("a number");
+    // The numbers are written with 12 digits; a probability of 1e-30 is a zero.
+    assert!((value - expected).abs() <= 1e-9 * expected.abs() + 1e-12, "{what}: {value}, not {expected}");
+}
+
+/// Every metric of the shipped protocols, 1e-9 relative.
+#[test]
+fn shipped_metrics_agree_with_scipy() {
+    let expected = expected_metrics();
+    for (protocol, least) in [("metrics-side-by-side", 2600), ("bogojevic-lucanin", 430)] {
+        let found = certified(&shipped(protocol), &root().join("examples/coach-good"));
+        let mut numbers = 0;
+        for (section, signals) in expected[protocol].as_object().expect("sections") {
+            for (signal, quantities) in signals.as_object().expect("signals") {
+                for (quantity, number) in quantities.as_object().expect("quantities") {
+                    agree(value_of(&found, quantity, section, signal, None), number, &format!("{quantity} {section} {signal}"));
+                    numbers += 1;
+                }
+            }
+        }
+        assert!(numbers >= least, "{numbers} numbers of {protocol}");
+        let unverified = |id: &str| found.quantities.iter().find(|of| of.id == id).expect("a quantity").comparison.contains("unverified");
+        if protocol == "metrics-side-by-side" {
+            assert!(unverified("Y_cora") && unverified("az_cora_size") && !unverified("Y_iso18571"));
+        }
+        // Limits that are no one's say so.
+        assert!(
+            found
+                .quantities
+                .iter()
+                .flat_map(|of| &of.statistics)
+                .all(|one| one.limit_text.ends_with("to be confirmed against the standard"))
+        );
+        assert!(found.notes.iter().any(|note| note.starts_with("To be confirmed against the standard: `")));
+    }
+}
+
+/// The index of each quantity, the share of each model up to it, and what the figure shows.
+#[test]
+fn misfits_are_judged_by_repeats_and_model() {
+    let expected = expected_metrics();
+    let found = certified(&shipped("kraft"), &root().join("examples/repeats"));
+    assert_eq!(found.verdict, Verdict::NotValidated);
+    for (section, signals) in expected["kraft"].as_object().expect("sections").iter().filter(|(section, _)| *section != "index") {
+        for (signal, quantities) in signals.as_object().expect("signals") {
+            for (quantity, number) in quantities.as_object().expect("quantities") {
+                let (quantity, record) = quantity.split_once(", ").map_or((quantity.as_str(), None), |(name, record)| (name, Some(record)));
+                agree(value_of(&found, quantity, section, signal, record), number, &format!("{quantity} {section} {signal}"));
+            }
+        }
+    }
+    for (name, of) in expected["kraft"]["index"].as_object().expect("quantities") {
+        let quantity = found.quantities.iter().find(|known| known.id == format!("{name}_misfit")).expect("a quantity");
+        assert_eq!(quantity.statistics.len(), 2, "one for each model");
+        for one in &quantity.statistics {
+            let (_, record) = one.group.iter().find(|(key, _)| key == "record").expect("a record");
+            agree(one.value.expect("a share"), &of[record], &format!("share of {name}, {record}"));
+            agree(one.divided_at.expect("an index"), &of["index"], &format!("index of {name}"));
+        }
+        let svg = figure::frequency(quantity, &Zones::of(&found));
+        assert_eq!(svg.matches("class=\"curve\"").count(), 2, "a curve for each model");
+        assert!(svg.contains("reference (") && svg.contains("soft_guidance (") && !svg.contains("limit 0.8"), "{svg}");
+    }
+    // Without sections measured again there is no index, and no verdict.
+    let found = certified(&shipped("kraft"), &root().join("examples/coach-good"));
+    assert_eq!(found.verdict, Verdict::NotAssessable);
 }
