@@ -246,6 +246,13 @@ pub struct QuantityResult {
     pub rule: RulePlace,
 }
 
+impl QuantityResult {
+    /// It has no limit: it is reported alone.
+    pub fn decides_nothing(&self) -> bool {
+        self.statistics.is_empty() && self.holds == Some(true)
+    }
+}
+
 /// One statistic over pairs of section and signal, and its limit.
 #[derive(Clone, Debug, Serialize)]
 pub struct StatisticResult {

@@ -47,7 +47,7 @@ impl Levels {
         }
         let mut levels = Self::default();
         let two_sided = quantity.has_sides || quantity.values.iter().any(|pair| pair.difference < 0.0);
-        for statistic in quantity.statistics.iter().filter(|statistic| statistic.unit == quantity.unit) {
+        for statistic in quantity.statistics.iter().filter(|statistic| statistic.unit == quantity.unit && statistic.divided_at.is_none()) {
             match statistic.name.as_str() {
                 "mean" => levels.mean(statistic, two_sided),
                 "std" => levels.deviation(statistic, center(quantity, &statistic.scope)),
@@ -61,7 +61,7 @@ impl Levels {
     fn of_assessed(quantity: &QuantityResult) -> Self {
         let mut levels = Self::default();
         let two_sided = quantity.values.iter().any(|pair| pair.difference < 0.0);
-        for statistic in quantity.statistics.iter().filter(|statistic| statistic.unit == quantity.unit) {
+        for statistic in quantity.statistics.iter().filter(|statistic| statistic.unit == quantity.unit && statistic.divided_at.is_none()) {
             let zones = estimates::zones(statistic);
             for scope in if zones.is_empty() { vec!["all"] } else { zones } {
                 for value in statistic.limit.iter().flat_map(|limit| both(0.0, *limit, two_sided)) {

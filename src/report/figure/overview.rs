@@ -138,10 +138,12 @@ fn row(canvas: &mut Canvas, frame: &Frame, quantity: &QuantityResult, series: &S
     canvas.group(&Group { class: "row", title: Some(&quantity.title), ..Group::default() }, |layer| {
         symbol_left_of(layer, &quantity.symbol, (frame.left() - 6.0, middle), &Font::right(TEXT).bold(fails), labels);
     });
-    finding(canvas, quantity.holds, (frame.right() + 8.0, middle));
+    if !quantity.decides_nothing() {
+        finding(canvas, quantity.holds, (frame.right() + 8.0, middle));
+    }
     let statistics: Vec<&StatisticResult> = shown(quantity).collect();
     if statistics.is_empty() {
-        let says = if quantity.statistics.is_empty() { "no values" } else { "no limit" };
+        let says = if quantity.values.is_empty() { "no values" } else { "no limit" };
         nothing(canvas, frame, middle, if quantity.holds.is_none() { "not assessable" } else { says });
         return;
     }

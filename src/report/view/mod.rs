@@ -118,6 +118,9 @@ impl Finding {
 
     /// Of a quantity: marginal if one of its statistics is.
     pub(crate) fn of_quantity(quantity: &QuantityResult) -> Self {
+        if quantity.decides_nothing() {
+            return Self { class: "open", sign: "–", word: "no limit".into() };
+        }
         Self::of(quantity.holds).marginal(quantity.holds.is_some() && quantity.statistics.iter().any(|one| one.marginal))
     }
 
@@ -259,10 +262,11 @@ fn more_reasons(count: usize) -> Option<String> {
 
 fn key_facts(found: &Certification) -> Vec<Fact> {
     let used = found.sections.iter().filter(|section| section.used).count();
-    let holding = found.quantities.iter().filter(|quantity| quantity.holds == Some(true)).count();
-    let failing = found.quantities.iter().filter(|quantity| quantity.holds == Some(false)).count();
-    let open = found.quantities.len() - holding - failing;
-    let mut quantities = format!("{holding} of {} met", found.quantities.len());
+    let deciding: Vec<&QuantityResult> = found.quantities.iter().filter(|quantity| !quantity.decides_nothing()).collect();
+    let holding = deciding.iter().filter(|quantity| quantity.holds == Some(true)).count();
+    let failing = deciding.iter().filter(|quantity| quantity.holds == Some(false)).count();
+    let open = deciding.len() - holding - failing;
+    let mut quantities = format!("{holding} of {} met", deciding.len());
     if failing > 0 {
         quantities.push_str(&format!(", {failing} not met"));
     }

@@ -198,7 +198,7 @@ fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<
         .iter()
         .find(|statistic| statistic.name == "std")
         .or_else(|| stated.first())
-        .filter(|statistic| statistic.unit == quantity.unit)
+        .filter(|statistic| statistic.unit == quantity.unit && statistic.divided_at.is_none())
         .and_then(|statistic| statistic.limit.filter(|limit| *limit > 0.0).map(|limit| (statistic, limit)));
     let mut pairs: Vec<&PairValue> = quantity.values.iter().collect();
     pairs.sort_by(|a, b| b.difference.abs().total_cmp(&a.difference.abs()));
