@@ -78,6 +78,7 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
         sections: outcome.sections,
         zones: outcome.zones,
         domain: outcome.domain,
+        application: outcome.application,
         traces: outcome.traces,
         findings: outcome.findings,
         notes: parameters_set(&compiled.plan).into_iter().chain(unconfirmed(&compiled.plan)).chain(notes).collect(),

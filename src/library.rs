@@ -40,10 +40,13 @@ pub const SHIPPED: &[Shipped] = shipped![
     "gm-rt2141-comparison",
     "en14067-6-wheel-unloading",
     "en14067-6-flexibility",
+    "en14363-2016-annex-t-application",
     "sprague-geers",
     "bogojevic-lucanin",
     "kraft",
     "metrics-side-by-side",
+    "code-benchmark",
+    "code-benchmark-reference",
     "stationary-sway",
 ];
 

@@ -462,3 +462,63 @@ fn a_state_of_the_vehicle_is_section_data() {
     };
     assert_eq!((of_state("tare"), of_state("laden")), ((Some(70.0), Some(12), Some(6)), (Some(100.0), Some(12), Some(6))));
 }
+
+/// Spreads of three codes with known offsets by the shipped protocol, and their deviations from the reference: of the wheel force 1, 2 and
+/// 6 kN, mean 3 kN, and of nothing else.
+#[test]
+fn a_code_benchmark_finds_the_offsets() {
+    let folder = three_codes();
+    let run = |protocol: &str| certify(folder.path(), &["--protocol", protocol, "--only", "results", "--set", "force_tolerance=2.5 kN"]);
+    let (spread, deviation) = (run("code-benchmark"), run("code-benchmark-reference"));
+    let (spreads, deviations) = (spread.results(), deviation.results());
+    for (at, (code, offset)) in CODES.into_iter().enumerate() {
+        for (results, expected) in [(&spreads, offset - 3.0), (&deviations, offset)] {
+            // Nine sections in curves; the maximum in all twelve.
+            for (id, rows, expected) in [("Q_qst", 18, expected), ("Q_max", 24, expected), ("Y_qst", 18, 0.0), ("az_max", 12, 0.0)] {
+                let values = quantity(results, id)["values"].as_array().expect("a list");
+                let values: Vec<f64> =
+                    values.iter().filter(|one| one["record"] == code).map(|one| one["difference"].as_f64().expect("a number")).collect();
+                assert_eq!(values.len(), rows, "{id} {code}");
+                assert!(values.iter().all(|value| (value - expected).abs() < 1e-9), "{id} {code}: {values:?}");
+            }
+        }
+        let histories = quantity(&deviations, "Q_history")["values"].as_array().expect("a list");
+        let histories = histories.iter().filter(|one| one["record"] == code).map(|one| one["value"].as_f64().expect("a number"));
+        assert!(histories.into_iter().all(|value| (value - offset).abs() < 1e-9), "{code}");
+        // Within 2.5 kN of the mean: -2 and -1, not 3. Of the reference: 1 and 2, not 6.
+        let groups = quantity(&spreads, "Q_qst")["statistics"].as_array().expect("a list");
+        assert_eq!(groups[at]["holds"].as_bool(), Some(at < 2), "{groups:?}");
+    }
+    assert_eq!((spread.ran.code, deviation.ran.code), (1, 1));
+    assert_eq!(spreads["verdict_word"], "no agreement within the tolerances");
+    let accepted = certify(folder.path(), &["--protocol", "code-benchmark", "--only", "results", "--set", "force_tolerance=3.001 kN"]);
+    assert_eq!(accepted.results()["verdict_word"], "agreement within the tolerances");
+}
+
+/// Deviations of the example from its reference, against SciPy (`tests/cases/code_benchmark/make.py`).
+#[test]
+fn the_example_of_codes_has_the_numbers_of_scipy() {
+    let example = root().join("examples/code-benchmark");
+    let found = certify(&example, &["--protocol", "code-benchmark-reference", "--only", "results"]).results();
+    for (id, section, code, expected) in [
+        ("Y_qst", "S13", "polach", 5.795995496887336),
+        ("Y_qst", "S13", "independent", 0.00047489782190979213),
+        ("Y_qst", "S05", "midpoint", -6.750208744854547e-05),
+        ("Q_qst", "S13", "polach", -0.6284677029842243),
+        ("Q_qst", "S13", "built_in", 0.00041291356902206644),
+        ("Y_history", "S13", "polach", 5.891428998001503),
+        ("Y_history", "S05", "independent", 0.0026758551505696635),
+        ("Q_history", "S01", "midpoint", 0.003567811293937059),
+    ] {
+        let values = quantity(&found, id)["values"].as_array().expect("a list");
+        let wheel = if id.starts_with('Y') { "Y_1L" } else { "Q_1L" };
+        let one = values.iter().find(|one| one["section"] == section && one["record"] == code && one["signal"] == wheel).expect("a value");
+        let value = one["difference"].as_f64().or(one["value"].as_f64()).expect("a number");
+        assert!((value - expected).abs() < 1e-9, "{id} {section} {code}: {value}");
+    }
+    // The creep law differs, the integration does not: three codes of four agree with the reference.
+    let groups = quantity(&found, "Y_qst")["statistics"].as_array().expect("a list");
+    let holding: Vec<&str> =
+        groups.iter().filter(|one| one["holds"] == true).map(|one| one["group"]["record"].as_str().expect("a name")).collect();
+    assert_eq!(holding, ["independent", "built_in", "midpoint"]);
+}

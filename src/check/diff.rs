@@ -128,6 +128,7 @@ fn meaning(kind: &str, field: &Field) -> Option<String> {
     let quiet = &mut Problems::default();
     let text: &Text = &field.value;
     match key.word {
+        "over" => from_pest::domain(text, quiet).map(|domain| domain.meaning()),
         "limit" if kind == "quantity" => from_pest::limit(text, quiet).map(|limit| limit.meaning()),
         "filter" | "step" | "metric" => {
             from_pest::chain(text, quiet).map(|chain| chain.iter().map(|step| step.node.meaning()).collect::<Vec<_>>().join("; "))

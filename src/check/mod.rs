@@ -7,6 +7,7 @@ mod closed;
 mod conditions;
 mod declared;
 pub mod diff;
+mod domains;
 mod estimates;
 pub mod evaluate;
 pub mod family;
@@ -160,7 +161,7 @@ fn in_reading_order(problems: &mut Problems, from: usize) {
 
 fn written_rules(block: &Block) -> usize {
     match block.kind.text.as_str() {
-        "zone" | "check" | "filter" => 1,
+        "zone" | "check" | "filter" | "domain" => 1,
         "plausibility" => block.fields_named("of").count().max(1),
         "quantity" => 1 + block.fields_named("limit").count(),
         "verdict" => usize::from(block.name.is_some()),
@@ -178,6 +179,7 @@ fn rule_count(plan: &Plan) -> usize {
         + plan.checks.len()
         + plan.plausibility.len()
         + plan.filters.len()
+        + plan.domains.len()
         + plan.verdicts.iter().filter(|verdict| verdict.name.is_some()).count()
         + plan.quantities.iter().map(|quantity| 1 + limits(quantity)).sum::<usize>()
 }
@@ -277,6 +279,7 @@ impl Checker<'_> {
         let checks = of("check").filter_map(|block| self.section_check(block)).collect();
         let plausibility = of("plausibility").filter_map(|block| self.plausibility(block)).flatten().collect();
         let filters = of("filter").filter_map(|block| self.named_filter(block)).collect();
+        let domains = of("domain").filter_map(|block| self.domain(block)).collect();
         let quantities: Vec<plan::Quantity> = of("quantity").filter_map(|block| self.quantity(block)).collect();
         if of("quantity").next().is_none() {
             self.problems.push(Problem::error("no-quantity", "the protocol has no quantity, so nothing would be compared").at(head.span()));
@@ -322,6 +325,7 @@ impl Checker<'_> {
             checks,
             plausibility,
             sections,
+            domains,
             quantities,
             independent,
             verdicts,

@@ -31,6 +31,7 @@ pub struct Plan {
     pub checks: Vec<Check>,
     pub plausibility: Vec<Plausibility>,
     pub sections: SectionRules,
+    pub domains: Vec<Domain>,
     pub quantities: Vec<Quantity>,
     pub independent: Independent,
     /// The overall verdict first, the others in the order of the text.
@@ -328,7 +329,7 @@ pub enum OnFault {
     NotUsed,
     Note,
     Stop,
-    /// The campaign is not assessable. Only for plausibility rules.
+    /// The campaign is not assessable. Only for plausibility rules or a domain.
     NotAssessable,
 }
 
@@ -399,6 +400,31 @@ pub struct SectionRules {
     pub faulty: OnFault,
     pub minimum: usize,
     pub percentiles: Method,
+}
+
+/// What sections cover, and wanted operation is compared with.
+#[derive(Clone, Debug)]
+pub struct Domain {
+    pub name: String,
+    pub title: String,
+    pub over: Vec<Coordinate>,
+    /// Indices into [`Plan::columns`]: sections of other words are of another hull.
+    pub each: Vec<usize>,
+    /// Either a note, or not assessable.
+    pub otherwise: OnFault,
+    pub clause: Option<String>,
+    pub source: Option<String>,
+    pub notes: Vec<String>,
+    pub span: Span,
+}
+
+/// One of the numbers that span a domain.
+#[derive(Clone, Debug)]
+pub struct Coordinate {
+    pub expr: Expr,
+    /// As printed.
+    pub name: String,
+    pub unit: Unit,
 }
 
 /// A number that an expression takes from signals.

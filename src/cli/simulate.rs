@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 
 use super::inputs::{progress_bar, start_jobs};
@@ -17,6 +17,7 @@ use crate::disk::SetKind;
 use crate::effects::{self, Applied, Catalogue};
 use crate::library;
 use crate::model::CHANNELS;
+use crate::model::integrate::{MOST_STEPS, Method, SAMPLE, Steps};
 use crate::problem::{Problem, Problems, plain};
 use crate::simulate::{
     Deviation, Made, Plan, Section, check_confined, effects_of_origin, model_parameters, record_text, sections, simulate, single,
@@ -51,6 +52,12 @@ pub struct Simulate {
     out: Option<PathBuf>,
     #[command(flatten)]
     simulator: SimulatorChoice,
+    /// Method of integration of the reference vehicle model.
+    #[arg(long, value_enum, default_value_t, conflicts_with = "simulator")]
+    integrator: Integrator,
+    /// Largest step of integration of the reference vehicle model, in ms or with its unit: `0.25 ms`. At low speed steps are shorter.
+    #[arg(long, default_value = "1 ms", conflicts_with = "simulator")]
+    step: String,
     /// Add effects to the campaign's own simulation: its records + (simulator with effects - simulator without).
     #[arg(long, requires = "campaign")]
     increment: bool,
@@ -63,6 +70,15 @@ pub struct Simulate {
     /// Number of sections processed in parallel [default: one per core]
     #[arg(long, short)]
     jobs: Option<NonZeroUsize>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Integrator {
+    /// The classical method of fourth order.
+    #[default]
+    RungeKutta,
+    /// The midpoint method of second order, for comparisons.
+    Midpoint,
 }
 
 /// Loads a catalogue by name or path.
@@ -87,15 +103,19 @@ impl Simulate {
                 return Exit::Wrong;
             }
         };
+        let steps = match steps(self.integrator, &self.step) {
+            Ok(steps) => steps,
+            Err(problem) => return console.fail(problem, Exit::Wrong),
+        };
         match (&self.campaign, &self.vehicle) {
-            (Some(campaign), _) => self.whole(campaign, &catalogue, &effects, console),
-            (None, Some(vehicle)) => self.one(vehicle, &catalogue, &effects, console),
+            (Some(campaign), _) => self.whole(campaign, (&catalogue, &effects), steps, console),
+            (None, Some(vehicle)) => self.one(vehicle, (&catalogue, &effects), steps, console),
             (None, None) => Exit::Wrong,
         }
     }
 
     /// Simulates every section of a campaign, and writes a campaign with the simulated records.
-    fn whole(&self, folder: &Path, catalogue: &Catalogue, effects: &[Applied], console: &Console) -> Exit {
+    fn whole(&self, folder: &Path, (catalogue, effects): (&Catalogue, &[Applied]), steps: Steps, console: &Console) -> Exit {
         let mut problems = Problems::default();
         let campaign = Campaign::open(folder, &mut problems);
         if let (Some(campaign), Some(out)) = (&campaign, &self.out)
@@ -108,7 +128,7 @@ impl Simulate {
                 campaign.only_one(RecordKind::Simulation).map_err(|problem| problems.push(problem)).ok()?;
             }
             let sections = sections(campaign, &mut problems)?;
-            let chosen = self.simulator.open(campaign, &mut problems)?;
+            let chosen = self.simulator.open(campaign, &mut problems)?.integrated(steps);
             for problem in unusable(catalogue, effects, &sections, &chosen) {
                 problems.push(problem);
             }
@@ -183,7 +203,7 @@ impl Simulate {
     }
 
     /// Simulates one vehicle on one track.
-    fn one(&self, vehicle: &Path, catalogue: &Catalogue, effects: &[Applied], console: &Console) -> Exit {
+    fn one(&self, vehicle: &Path, (catalogue, effects): (&Catalogue, &[Applied]), steps: Steps, console: &Console) -> Exit {
         let (Some(track), Some(output)) = (&self.track, &self.output) else { return Exit::Wrong };
         if let Err(problem) = check_file(output, &[vehicle, track]) {
             return console.fail(problem, Exit::Wrong);
@@ -205,7 +225,7 @@ impl Simulate {
             Ok(plan) => plan,
             Err(problem) => return console.fail(problem, Exit::Wrong),
         };
-        let made = single((vehicle, &tree), track, speed, &plan.settings, plan.shift());
+        let made = single((vehicle, &tree), track, speed, (&plan.settings, plan.shift()), steps);
         let text = made.and_then(|mut signals| {
             let done = plan.operate(&mut signals, &nowhere).and_then(|()| record_text(&signals, &unit));
             done.map_err(|problem| Problems(vec![problem]))
@@ -265,6 +285,24 @@ fn say_baseline(console: &Console, chosen: &Chosen<'_>, deviations: &[Deviation]
 fn unit(name: &str) -> Unit {
     let unit = CHANNELS.iter().find(|(known, _)| *known == name).and_then(|(_, unit)| Unit::parse(unit).ok());
     unit.unwrap_or_else(Unit::one)
+}
+
+/// The steps of a method. A sample is a whole number of them.
+fn steps(integrator: Integrator, written: &str) -> Result<Steps, Problem> {
+    let wrong = |says: String| Problem::error("step", says).help("write `--step 0.5` for ms, or `--step '0.5 ms'`");
+    let milliseconds = Unit { text: "ms".into(), factor: SAMPLE, dimension: Dimension::TIME };
+    let step = number::read(written, &milliseconds).map_err(|refused| wrong(refused.says))?.si;
+    let parts = SAMPLE / step;
+    if !(1.0 - 1e-9..=MOST_STEPS).contains(&parts) {
+        let least = 1.0 / MOST_STEPS;
+        return Err(wrong(format!("a step of {} ms is outside the range of the model, {least} to 1 ms", step / SAMPLE)));
+    }
+    let method = match integrator {
+        Integrator::RungeKutta => Method::RungeKutta,
+        Integrator::Midpoint => Method::Midpoint,
+    };
+    // No longer than asked for; of 0.2 ms, which is no binary fraction, there are five.
+    Ok(Steps { method, per_sample: (parts - 1e-9).ceil() as usize })
 }
 
 fn speed(written: Option<&str>) -> Result<f64, Problem> {

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::data::text::read_text;
 use crate::data::{Campaign, RecordKind};
 use crate::effects::Signals;
+use crate::model::integrate::Steps;
 use crate::problem::{Problem, Problems};
 use crate::simulate::{
     Builtin, Cache, Deviation, External, Section, Simulator, Task, baseline_warning, deviations, in_units, read_program, recorded,
@@ -64,6 +65,15 @@ impl SimulatorChoice {
 }
 
 impl Chosen<'_> {
+    /// The reference vehicle model with other steps than its own; another simulator has its own.
+    #[must_use]
+    pub fn integrated(self, steps: Steps) -> Self {
+        match self {
+            Self::Builtin(model) if steps != Steps::from(1) => Self::Builtin(Box::new(model.integrated(steps))),
+            same => same,
+        }
+    }
+
     pub fn simulator(&self) -> &dyn Simulator {
         match self {
             Self::Builtin(model) => &**model,

@@ -53,9 +53,11 @@ pub struct Campaign {
     pub vehicle: Node,
     /// Absent if the campaign has no section table; every measured record is then evaluated as a whole.
     pub sections: Option<Table>,
+    /// Wanted operation, a point in each row; absent if the campaign does not say.
+    pub application: Option<Table>,
     /// The names of the sections in the order of the table, or of the measured records, sorted.
     pub names: Vec<Cell>,
-    /// `campaign.yaml`, the vehicle file and the section table, if present.
+    /// `campaign.yaml`, the vehicle file, the section table and the table of wanted operation, if present.
     pub files: Vec<ReadFile>,
     folder: Folder,
     record_folders: Vec<RecordFolder>,
@@ -99,6 +101,7 @@ impl Campaign {
         opening.misspelt(&tree);
         let vehicle = opening.vehicle(&tree);
         let sections = opening.sections(&tree);
+        let application = opening.application(&tree);
         let record_folders =
             RecordKind::ALL.into_iter().flat_map(|kind| members::read(&tree, kind, &opening.folder, opening.problems)).collect();
         let protocol = opening.text(&tree, "protocol");
@@ -121,6 +124,7 @@ impl Campaign {
             }),
             names: Vec::new(),
             sections,
+            application,
             source,
             tree,
             files,

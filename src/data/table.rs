@@ -65,6 +65,19 @@ impl Table {
         good.then_some(table)
     }
 
+    /// The same table with the names of its rows in a column, which must be there.
+    ///
+    /// Problems: `unknown-column`; `name-missing`, `duplicate-name`.
+    pub fn named_by(mut self, column: &str, problems: &mut Problems) -> Option<Self> {
+        self.key = Some(self.need_column(column).map_err(|problem| problems.push(problem)).ok()?);
+        let source = Arc::clone(&self.source);
+        let mut faults = Faults::new(&source.name);
+        self.check_names(&mut faults);
+        let good = faults.is_empty();
+        faults.add_to(problems);
+        good.then_some(self)
+    }
+
     fn check_names(&self, faults: &mut Faults<'_>) {
         let Some(column) = self.key.and_then(|key| self.columns.get(key)) else { return };
         let mut first: HashMap<&str, &Span> = HashMap::new();

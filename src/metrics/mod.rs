@@ -15,6 +15,7 @@
 //! | [`student`] | probability | quantiles of Student's t |
 //! | [`sampling`] | values | signs of recording faults: held, saturated, quantised |
 //! | [`pair`] | simulated and measured signal | measures of agreement |
+//! | [`hull`] | points | the nearest point of their convex hull, its corners |
 //! | [`random_effects`] | estimates with variances | the variance between them |
 //! | [`synchronise`] | signals of two records | the shift between them |
 //! | [`coherence`] | simulated and measured signal | the linear dependence as a function of frequency |
@@ -25,6 +26,7 @@ pub mod along;
 pub mod cluster;
 pub mod coherence;
 pub mod filter;
+pub mod hull;
 pub mod hysteresis;
 mod incomplete_beta;
 pub mod interval;

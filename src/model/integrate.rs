@@ -1,6 +1,7 @@
-//! Time integration: the classical Runge-Kutta method of fourth order with a fixed step.
+//! Time integration with a fixed step: the classical Runge-Kutta method of fourth order, or the midpoint method.
 //!
 //! Explicit, since at a step of 1 ms only the spin of the wheelsets at low speed is stiff, for which the step is divided.
+//! Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed. (1993), II.1.
 
 use super::equations::{Equations, Hints, Input, Outputs};
 use super::state::State;
@@ -8,18 +9,57 @@ use super::track::Track;
 
 /// Step in s, and sampling interval.
 pub const SAMPLE: f64 = 1e-3;
-/// Largest product of step and fastest rate; the stability limit of the method is 2.78.
-const STABLE: f64 = 2.45;
 /// Largest rate of any state of a vehicle at rest, in SI units, due to rounding. In the seconds before the track it causes less than a
 /// nanometre.
 const AT_REST: f64 = 1e-10;
 /// Maximum number of steps per sample. The reference vehicles need about ten at 1 m/s; a run with the maximum takes a hundred times as
 /// long.
-const MOST_STEPS: f64 = 1000.0;
+pub const MOST_STEPS: f64 = 1000.0;
 /// Longest run in s: about 54 km at 30 m/s. Its channels take 317 MB.
 pub const LONGEST: f64 = 1800.0;
 /// Longest time of a wheelset beyond the contact table, in s.
 const BEYOND: f64 = 0.2;
+
+/// A method of integration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// The classical method of fourth order.
+    #[default]
+    RungeKutta,
+    /// The midpoint method of second order: less accurate with the same step, for comparisons.
+    Midpoint,
+}
+
+impl Method {
+    /// Largest product of step and fastest rate: 88 % of the stability limit of the method, which is 2.78 or 2.
+    fn stable(self) -> f64 {
+        match self {
+            Self::RungeKutta => 2.45,
+            Self::Midpoint => 1.76,
+        }
+    }
+
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::RungeKutta => "Runge-Kutta method of fourth order",
+            Self::Midpoint => "midpoint method",
+        }
+    }
+}
+
+/// A method, and the number of its steps in each sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Steps {
+    pub method: Method,
+    pub per_sample: usize,
+}
+
+/// Of the Runge-Kutta method.
+impl From<usize> for Steps {
+    fn from(per_sample: usize) -> Self {
+        Self { method: Method::RungeKutta, per_sample }
+    }
+}
 
 /// A run without a result.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,34 +119,46 @@ pub fn run(
     state: State,
     from: f64,
     samples: usize,
-    steps_per_sample: usize,
+    steps: impl Into<Steps>,
     sample: impl FnMut(usize, &State, &Outputs),
 ) -> Result<(), Failure> {
+    let Steps { method, per_sample } = steps.into();
     // The widest vector instructions of the processor. They change the time, but not the result.
-    pulp::Arch::new().dispatch(Run { equations, track, state, from, samples, steps_per_sample, sample })
+    let arch = pulp::Arch::new();
+    match method {
+        Method::RungeKutta => {
+            arch.dispatch(Run::<_, 4> { equations, track, state, from, samples, per_sample, stages: RUNGE_KUTTA, sample })
+        }
+        Method::Midpoint => arch.dispatch(Run::<_, 2> { equations, track, state, from, samples, per_sample, stages: MIDPOINT, sample }),
+    }
 }
 
-struct Run<'a, F> {
+struct Run<'a, F, const N: usize> {
     equations: &'a Equations<'a>,
     track: &'a Track,
     state: State,
     from: f64,
     samples: usize,
-    steps_per_sample: usize,
+    per_sample: usize,
+    stages: [Stage; N],
     sample: F,
 }
 
-/// Positions of the stages in the step, and their weights.
-const STAGES: [(f64, f64); 4] = [(0.5, 1.0 / 6.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 3.0), (0.0, 1.0 / 6.0)];
+/// Where the rates of a stage are taken: 0 at the beginning, 1 in the middle, 2 at the end of the step. Then the part of the step to the
+/// state of the next stage, and the weight of the rates in the step.
+type Stage = (usize, f64, f64);
 
-impl<F: FnMut(usize, &State, &Outputs)> pulp::NullaryFnOnce for Run<'_, F> {
+const RUNGE_KUTTA: [Stage; 4] = [(0, 0.5, 1.0 / 6.0), (1, 0.5, 1.0 / 3.0), (1, 1.0, 1.0 / 3.0), (2, 0.0, 1.0 / 6.0)];
+const MIDPOINT: [Stage; 2] = [(0, 0.5, 0.0), (1, 0.0, 1.0)];
+
+impl<F: FnMut(usize, &State, &Outputs), const N: usize> pulp::NullaryFnOnce for Run<'_, F, N> {
     type Output = Result<(), Failure>;
 
     #[inline(always)]
     fn call(mut self) -> Self::Output {
         let (equations, track) = (self.equations, self.track);
         let speed = equations.speed;
-        let step = SAMPLE / self.steps_per_sample as f64;
+        let step = SAMPLE / self.per_sample as f64;
         let (low, high) = equations.table();
         let most = high.max(-low);
         let mut beyond = 0;
@@ -120,13 +172,13 @@ impl<F: FnMut(usize, &State, &Outputs)> pulp::NullaryFnOnce for Run<'_, F> {
             equations.look(track, self.from + speed * (still as f64 * SAMPLE), &mut hints, &mut inputs[begin]);
         }
         for n in still..self.samples {
-            for part in 0..self.steps_per_sample {
+            for part in 0..self.per_sample {
                 let t = n as f64 * SAMPLE + part as f64 * step;
                 equations.look(track, self.from + speed * (t + 0.5 * step), &mut hints, &mut inputs[1]);
                 equations.look(track, self.from + speed * (t + step), &mut hints, &mut inputs[end]);
                 let (start, mut probe) = (self.state, self.state);
-                for (stage, (next, weight)) in STAGES.into_iter().enumerate() {
-                    let input = &inputs[[begin, 1, 1, end][stage]];
+                for (stage, (at, next, weight)) in self.stages.into_iter().enumerate() {
+                    let input = &inputs[[begin, 1, end][at]];
                     let wheels = equations.motion(&probe, input, &mut rates);
                     if stage == 0 && part == 0 {
                         let outputs = equations.outputs(&probe, input, &rates, &wheels);
@@ -151,7 +203,7 @@ impl<F: FnMut(usize, &State, &Outputs)> pulp::NullaryFnOnce for Run<'_, F> {
     }
 }
 
-impl<F: FnMut(usize, &State, &Outputs)> Run<'_, F> {
+impl<F: FnMut(usize, &State, &Outputs), const N: usize> Run<'_, F, N> {
     /// Outputs the samples of a vehicle at rest before the track; returns their number.
     fn still(&mut self, input: &Input) -> usize {
         let mut rates = State::default();
@@ -168,11 +220,19 @@ impl<F: FnMut(usize, &State, &Outputs)> Run<'_, F> {
     }
 }
 
-/// Number of steps per sample for the vehicle at its speed.
+/// Number of steps per sample for the vehicle at its speed, with the Runge-Kutta method.
 ///
 /// # Errors
 /// The number is too large: [`FailureKind::TooStiff`].
 pub fn steps_per_sample(equations: &Equations<'_>) -> Result<usize, FailureKind> {
-    let steps = (equations.fastest_rate() * SAMPLE / STABLE).ceil().max(1.0);
+    least_steps(Method::RungeKutta, equations)
+}
+
+/// Least number of steps per sample with which a method is stable for the vehicle at its speed.
+///
+/// # Errors
+/// As [`steps_per_sample`].
+pub fn least_steps(method: Method, equations: &Equations<'_>) -> Result<usize, FailureKind> {
+    let steps = (equations.fastest_rate() * SAMPLE / method.stable()).ceil().max(1.0);
     if steps <= MOST_STEPS { Ok(steps as usize) } else { Err(FailureKind::TooStiff { steps }) }
 }

@@ -1,7 +1,7 @@
 //! From a run to a record: the recording chain of the reference.
 
 use super::equations::{Equations, Outputs};
-use super::integrate::{Failure, FailureKind, LONGEST, SAMPLE, run, steps_per_sample};
+use super::integrate::{Failure, FailureKind, LONGEST, Method, SAMPLE, Steps, least_steps, run};
 use super::parameters::Vehicle;
 use super::profile::Profile;
 use super::track::{Track, TrackTable};
@@ -86,14 +86,32 @@ pub struct Setup<'a> {
 /// # Errors
 /// The run diverges, a wheelset leaves the contact table, or the window lies before the start of the run.
 pub fn simulate(setup: &Setup<'_>, window: Window) -> Result<Record, Failure> {
-    simulate_with(setup, window, None)
+    simulate_by(setup, window, 1.into())
 }
 
-/// As [`simulate`], with a step of 1 ms / `divided` instead of the default.
+/// As [`simulate`], with a step of 1 ms / `divided` instead of the default, even if it is not stable.
 ///
 /// # Errors
 /// As [`simulate`].
 pub fn simulate_with(setup: &Setup<'_>, window: Window, divided: Option<usize>) -> Result<Record, Failure> {
+    recorded(setup, window, |equations| {
+        divided.map_or_else(|| least_steps(Method::RungeKutta, equations).map(Steps::from), |n| Ok(n.into()))
+    })
+}
+
+/// As [`simulate`], by a method with at least this number of steps per sample, more if it would not be stable.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_by(setup: &Setup<'_>, window: Window, steps: Steps) -> Result<Record, Failure> {
+    recorded(setup, window, |equations| Ok(Steps { per_sample: steps.per_sample.max(least_steps(steps.method, equations)?), ..steps }))
+}
+
+fn recorded(
+    setup: &Setup<'_>,
+    window: Window,
+    steps: impl FnOnce(&Equations<'_>) -> Result<Steps, FailureKind>,
+) -> Result<Record, Failure> {
     let equations = Equations::new(setup.vehicle, setup.profile, setup.speed);
     let track = Track::new(setup.track, setup.vehicle);
     let s0 = start(&equations, &track);
@@ -111,10 +129,9 @@ pub fn simulate_with(setup: &Setup<'_>, window: Window, divided: Option<usize>) 
         last += DECIMATION;
     }
     let samples = last + 1 + (RUN_OUT / SAMPLE) as usize;
-    let divided = divided.map_or_else(|| steps_per_sample(&equations), Ok);
-    let divided = divided.map_err(|kind| Failure { time: 0.0, distance: s0, kind })?;
+    let steps = steps(&equations).map_err(|kind| Failure { time: 0.0, distance: s0, kind })?;
     let mut raw = vec![vec![0.0; samples]; CHANNELS.len()];
-    run(&equations, &track, equations.at_rest(), s0, samples, divided, |n, _, outputs| {
+    run(&equations, &track, equations.at_rest(), s0, samples, steps, |n, _, outputs| {
         for (channel, value) in raw.iter_mut().zip(channels(outputs)) {
             channel[n] = value;
         }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 use crate::check::plan::Plan;
-use crate::result::Finding;
+use crate::result::{DomainResult, Finding};
 use crate::run::replay::{Recorded, RecordedSection, RecordedValue};
 
 #[derive(Clone, Debug, Deserialize)]
@@ -21,6 +21,8 @@ pub struct Results {
     pub sections: Vec<Section>,
     #[serde(default)]
     pub findings: Vec<Finding>,
+    #[serde(default)]
+    pub application: Vec<DomainResult>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -191,6 +193,7 @@ impl Results {
             let found = found.ok_or_else(|| format!("the result has no quantity `{}`", quantity.id))?;
             values.push(found.values.iter().map(value).collect());
         }
-        Ok(Recorded { vehicle, sections: self.sections.iter().map(section).collect(), values, findings: self.findings.clone() })
+        let sections = self.sections.iter().map(section).collect();
+        Ok(Recorded { vehicle, sections, values, findings: self.findings.clone(), application: self.application.clone() })
     }
 }

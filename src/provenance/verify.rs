@@ -171,6 +171,10 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
         [] => Value::Null,
         verdicts => serde_json::json!(verdicts),
     };
+    let application = match replayed.application.as_slice() {
+        [] => Value::Null,
+        application => serde_json::json!(application),
+    };
     for (key, again) in [
         ("verdict", serde_json::json!(verdict)),
         ("verdict_word", serde_json::json!(replayed.judged.own_word)),
@@ -178,6 +182,7 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
         ("verdicts", verdicts),
         ("quantities", json::quantities(&replayed.judged.quantities)),
         ("zones", json::zones(&replayed.judged.zones)),
+        ("application", application),
     ] {
         let found = compare(value(key), &again, key);
         numbers += found.numbers;

@@ -33,6 +33,9 @@ pub fn results(found: &Certification) -> String {
     root.insert("sections".into(), Value::Array(found.sections.iter().map(|section| zone_as_number(json!(section))).collect()));
     root.insert("zones".into(), zones(&found.zones));
     root.insert("domain".into(), json!(found.domain));
+    if !found.application.is_empty() {
+        root.insert("application".into(), json!(found.application));
+    }
     root.insert("findings".into(), json!(found.findings));
     root.insert("notes".into(), json!(found.notes));
     text(&Value::Object(root))

@@ -1,6 +1,6 @@
 //! All tables of the report as CSV.
 
-use crate::result::{Certification, ClassSpread, OfRecord, QuantityResult};
+use crate::result::{Certification, ClassSpread, CoordinateRange, DomainResult, OfRecord, QuantityResult, WantedPoint};
 
 /// File names and contents for the folder `tables/`.
 ///
@@ -129,6 +129,23 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
         .iter()
         .map(|d| vec![d.name.clone(), d.unit.clone(), d.scope.clone(), number(Some(d.low)), number(Some(d.high)), d.count.to_string()]);
     add("domain", &["quantity", "unit", "scope", "low", "high", "sections"], domain.collect())?;
+    if !found.application.is_empty() {
+        let head = [
+            "domain",
+            "scope",
+            "point",
+            "inside",
+            "distance",
+            "coordinate",
+            "unit",
+            "value",
+            "nearest",
+            "outside by",
+            "beyond range",
+            "nearest section",
+        ];
+        add("application", &head, found.application.iter().flat_map(application_rows).collect())?;
+    }
     let vehicle = found.campaign.vehicle.iter().chain(&found.campaign.facts).map(|item| {
         let unit = item.unit.clone().unwrap_or_default();
         vec![item.name.clone(), item.value.clone(), unit, item.unit_assumed.to_string(), item.used.to_string()]
@@ -288,4 +305,29 @@ mod tests {
         let (_, bytes) = csv_file("t", &["a"], vec![vec!["=1+1".into()]]).expect("written");
         assert_eq!(bytes, b"a\n'=1+1\n");
     }
+}
+
+/// One row for each point of wanted operation and coordinate.
+fn application_rows(result: &DomainResult) -> Vec<Vec<String>> {
+    let of_point = |point: &WantedPoint| {
+        let at = |list: &Option<Vec<f64>>, at: usize| number(list.as_ref().map(|list| list[at]));
+        let row = |(index, of): (usize, &CoordinateRange)| {
+            vec![
+                result.domain.clone(),
+                result.scope.clone(),
+                point.point.clone(),
+                point.inside.map_or(String::new(), |inside| inside.to_string()),
+                number(point.distance),
+                of.name.clone(),
+                of.unit.clone(),
+                number(Some(point.values[index])),
+                at(&point.nearest, index),
+                at(&point.outside_by, index),
+                at(&point.beyond_range, index),
+                point.nearest_section.clone().unwrap_or_default(),
+            ]
+        };
+        result.coordinates.iter().enumerate().map(row).collect::<Vec<_>>()
+    };
+    result.points.iter().flat_map(of_point).collect()
 }

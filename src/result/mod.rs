@@ -4,6 +4,7 @@
 
 pub mod blind;
 pub mod diagnosis;
+pub mod domain;
 pub mod finding;
 mod kind;
 pub mod origin;
@@ -12,8 +13,9 @@ mod spread;
 pub mod study;
 pub mod verdict;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+pub use domain::{CoordinateRange, DomainResult, DomainSection, WantedPoint};
 pub use finding::{Consequence, Finding};
 pub use kind::{Kind, VerdictWords};
 pub use origin::{FittedTo, OriginInfo};
@@ -42,6 +44,8 @@ pub struct Certification {
     pub zones: Vec<ZoneResult>,
     /// Range of each numeric section column over the used sections: the validity domain.
     pub domain: Vec<DomainRange>,
+    /// Wanted operation inside and outside what the sections cover; empty if the protocol does not ask.
+    pub application: Vec<DomainResult>,
     /// Plots of the most relevant sections.
     pub traces: Vec<Trace>,
     /// Plausibility findings, in the order of the protocol's rules and of the sections.
@@ -183,7 +187,7 @@ pub fn took_part(value: Option<&str>, simulated: bool, name: Option<&str>) -> bo
 }
 
 /// Place of a rule in the protocol.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RulePlace {
     /// One of the names in [`ProtocolInfo::files`].
     pub file: String,

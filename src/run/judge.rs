@@ -25,7 +25,15 @@ pub struct Judged {
     pub zones: Vec<ZoneResult>,
 }
 
-pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: &[SectionValues], findings: &[Finding]) -> Judged {
+/// What was told before anything is judged.
+#[derive(Debug)]
+pub struct Told<'a> {
+    pub findings: &'a [Finding],
+    /// Why nothing can be assessed, beside findings of plausibility.
+    pub barred: Vec<String>,
+}
+
+pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: &[SectionValues], told: &Told<'_>) -> Judged {
     let used: Vec<(&Unit, &SectionValues)> = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
     let mut missing = Vec::new();
     let zones: Vec<ZoneResult> = plan.zones.iter().map(|zone| zone_result(zone, units)).collect();
@@ -36,7 +44,8 @@ pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: 
     if sites < plan.sections.minimum {
         missing.push(format!("{}; at least {} required", usable(used.len(), sites), plan.sections.minimum));
     }
-    missing.extend(not_plausible(plan, findings, missing.is_empty()));
+    missing.extend(not_plausible(plan, told.findings, missing.is_empty()));
+    missing.extend(told.barred.iter().cloned());
     let rows: Vec<Rows<'_>> = plan.quantities.iter().enumerate().map(|(index, quantity)| rows(plan, quantity, index, &used)).collect();
     let table: Vec<_> = rows.iter().map(Rows::usable).collect();
     let of_quantity = |(index, quantity): (usize, &Quantity)| {

@@ -28,6 +28,7 @@ mod table;
 mod told;
 mod traces;
 mod verdicts;
+mod wanted;
 
 use indexmap::IndexMap;
 use rayon::prelude::*;
@@ -36,7 +37,10 @@ use crate::check::plan::{OnFault, Plan};
 use crate::data::Campaign;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
-use crate::result::{Consequence, DataItem, FileHash, Finding, QuantityResult, SectionResult, Trace, Verdict, VerdictResult, ZoneResult};
+use crate::result::{
+    Consequence, DataItem, DomainRange, DomainResult, FileHash, Finding, QuantityResult, SectionResult, Trace, Verdict, VerdictResult,
+    ZoneResult,
+};
 
 pub use facts::{Facts, scalar};
 pub use judge::Judged;
@@ -58,7 +62,8 @@ pub struct Outcome {
     pub quantities: Vec<QuantityResult>,
     pub sections: Vec<SectionResult>,
     pub zones: Vec<ZoneResult>,
-    pub domain: Vec<crate::result::DomainRange>,
+    pub domain: Vec<DomainRange>,
+    pub application: Vec<DomainResult>,
     pub traces: Vec<Trace>,
     /// The vehicle data that the protocol reads.
     pub vehicle: Vec<DataItem>,
@@ -85,6 +90,8 @@ pub struct Evaluated {
     units: Vec<Unit>,
     values: Vec<SectionValues>,
     findings: Vec<Finding>,
+    /// Wanted operation against what the sections used cover.
+    application: Vec<DomainResult>,
     notes: Vec<String>,
     /// Records in the order of the sections.
     pub files: Vec<FileHash>,
@@ -98,8 +105,8 @@ pub struct Evaluated {
 pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Outcome, Problems> {
     let prepared = Prepared::new(plan, graph, campaign)?;
     let evaluated = prepared.evaluate(&Shifts::NONE, progress)?.swap_remove(0);
-    let Evaluated { units, values, findings, notes, files, .. } = &evaluated;
-    let judged = judge::judge(plan, graph, &evaluated.facts, units, values, findings);
+    let Evaluated { units, findings, notes, files, .. } = &evaluated;
+    let judged = evaluated.judge(plan, graph);
     let mut findings = findings.clone();
     findings.extend(requirements::findings(plan, &evaluated.facts, units));
     findings.extend(told::findings(plan, &evaluated.facts, &judged.quantities));
@@ -119,6 +126,7 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
         quantities: judged.quantities,
         zones: judged.zones,
         domain,
+        application: evaluated.application.clone(),
         traces,
         vehicle: evaluated.vehicle(plan),
         findings,
@@ -157,7 +165,8 @@ pub fn evaluate(
 impl Evaluated {
     /// Results of quantities and verdicts over all usable sections.
     pub fn judge(&self, plan: &Plan, graph: &Graph) -> Judged {
-        judge::judge(plan, graph, &self.facts, &self.units, &self.values, &self.findings)
+        let barred = domain::barred(&self.application);
+        judge::judge(plan, graph, &self.facts, &self.units, &self.values, &judge::Told { findings: &self.findings, barred })
     }
 
     /// All values and limits that the verdict depends on.
@@ -188,6 +197,8 @@ struct Prepared<'a> {
     campaign: &'a Campaign,
     facts: Facts,
     units: Vec<Unit>,
+    /// Wanted operation, for each domain.
+    wanted: Vec<Vec<wanted::Point>>,
     notes: Vec<String>,
     present: Vec<Vec<bool>>,
     recorded: Vec<Vec<bool>>,
@@ -198,6 +209,7 @@ impl<'a> Prepared<'a> {
         let mut problems = Problems::default();
         let facts = Facts::read(plan, campaign, &mut problems);
         let mut units = sections::units(plan, campaign, &mut problems);
+        let wanted = wanted::points(plan, campaign, &facts, &mut problems);
         if problems.any_error() {
             return Err(problems);
         }
@@ -207,7 +219,7 @@ impl<'a> Prepared<'a> {
         let recorded = columns::recorded_positions(graph, &seen, &facts, &units);
         requirements::check_data(plan, &facts, &mut units);
         stop_on_fault(plan, &units, &[])?;
-        Ok(Self { plan, graph, campaign, facts, units, notes, present, recorded })
+        Ok(Self { plan, graph, campaign, facts, units, wanted, notes, present, recorded })
     }
 
     fn work(&self) -> record::Work<'_> {
@@ -266,8 +278,10 @@ impl<'a> Prepared<'a> {
         if needed && !refused_by_finding && units.iter().all(|unit| unit.fault.is_some()) {
             return Err(nothing_usable(&units, values));
         }
+        let application = domain::compared(self.plan, &self.facts, &units, &self.wanted);
+        let findings = findings.into_iter().chain(domain::findings(&application)).collect();
         let files = values.iter().flat_map(|values| values.files.iter().cloned()).collect();
-        Ok(Evaluated { facts: self.facts.clone(), units, values, findings, notes, files })
+        Ok(Evaluated { facts: self.facts.clone(), units, values, findings, application, notes, files })
     }
 }
 

@@ -1,7 +1,8 @@
 //! Computes a verdict again from the values recorded in a result, without the records, to check that it follows from them.
 
+use super::domain;
 use super::facts::{Facts, Known, NOT_STATED, absent, scalar};
-use super::judge::{Judged, judge};
+use super::judge::{Judged, Told, judge};
 use super::record::needed;
 use super::requirements;
 use super::section::SectionValues;
@@ -10,7 +11,7 @@ use super::table::Row;
 use crate::check::evaluate::number;
 use crate::check::plan::{Evaluation, Plan, Records, Scalar};
 use crate::graph::{Graph, NodeId};
-use crate::result::{Consequence, Finding};
+use crate::result::{Consequence, DomainResult, Finding};
 use crate::source::{Source, Spanned};
 
 /// The part of a result that rules use. All texts are as in the result, in the units that the protocol declares.
@@ -22,6 +23,7 @@ pub struct Recorded {
     /// One for each [`Plan::quantities`].
     pub values: Vec<Vec<RecordedValue>>,
     pub findings: Vec<Finding>,
+    pub application: Vec<DomainResult>,
 }
 
 #[derive(Clone, Debug)]
@@ -57,6 +59,8 @@ pub struct RecordedValue {
 #[derive(Debug)]
 pub struct Replayed {
     pub judged: Judged,
+    /// Wanted operation against what the sections cover.
+    pub application: Vec<DomainResult>,
     /// Inconsistencies of the result, in words.
     pub contradictions: Vec<String>,
 }
@@ -111,7 +115,9 @@ pub fn replay(plan: &Plan, graph: &Graph, recorded: &Recorded) -> Result<Replaye
     for unit in &mut units {
         unit.faulty = unit.fault.is_some();
     }
-    Ok(Replayed { judged: judge(plan, graph, &facts, &units, &values, &recorded.findings), contradictions })
+    let application = domain::compared(plan, &facts, &units, &domain::recorded(plan, &recorded.application)?);
+    let told = Told { findings: &recorded.findings, barred: domain::barred(&application) };
+    Ok(Replayed { judged: judge(plan, graph, &facts, &units, &values, &told), application, contradictions })
 }
 
 /// Which of several values a recorded one is, by its words.

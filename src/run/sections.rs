@@ -80,7 +80,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
     let (start, end) = (extent_datum("start"), extent_datum("end"));
     let mut missing = false;
     for datum in plan.columns.iter().chain([&start, &end]) {
-        missing |= column_missing(datum, table, problems);
+        missing |= column_missing(datum, (table, "table of sections"), problems);
     }
     if missing {
         return Vec::new();
@@ -149,14 +149,14 @@ fn whole_record(plan: &Plan, name: &Cell, site: usize) -> Unit {
 }
 
 /// Reports a declared column that is missing or has a unit of another dimension.
-fn column_missing(datum: &Datum, table: &Table, problems: &mut Problems) -> bool {
+pub fn column_missing(datum: &Datum, (table, called): (&Table, &str), problems: &mut Problems) -> bool {
     let Some(index) = table.column(&datum.key) else {
         if datum.default.is_some() {
             return false;
         }
         let known: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
         problems.push(
-            Problem::error("missing-column", format!("the table of sections has no column `{}`", datum.key))
+            Problem::error("missing-column", format!("the {called} has no column `{}`", datum.key))
                 .at(&table.columns[0].span.to(&table.columns[table.columns.len() - 1].span))
                 .also(&datum.span, "the protocol needs it")
                 .suggest(&datum.key, known),
@@ -174,22 +174,22 @@ fn column_missing(datum: &Datum, table: &Table, problems: &mut Problems) -> bool
     }
 }
 
-/// A row of the table of sections.
-struct Row<'a> {
-    table: &'a Table,
-    row: usize,
+/// A row of a table with section data.
+pub struct Row<'a> {
+    pub table: &'a Table,
+    pub row: usize,
     /// Path of the table inside the campaign.
-    file: &'a str,
+    pub file: &'a str,
 }
 
 /// Why a cell has no value. An empty cell is a fault only if a rule needs it; a cell that cannot be read is always a fault.
-struct CellFault {
-    says: String,
-    ill_formed: bool,
+pub struct CellFault {
+    pub says: String,
+    pub ill_formed: bool,
 }
 
 impl Row<'_> {
-    fn cell(&self, datum: &Datum) -> Result<Scalar, CellFault> {
+    pub fn cell(&self, datum: &Datum) -> Result<Scalar, CellFault> {
         let nothing = |says: String| datum.default.clone().ok_or(CellFault { says, ill_formed: false });
         let Some(index) = self.table.column(&datum.key) else {
             return nothing(format!("there is no column `{}`", datum.key));

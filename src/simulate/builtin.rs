@@ -8,6 +8,7 @@ use crate::data::table::Cell;
 use crate::data::{Campaign, RecordKind};
 use crate::disk;
 use crate::effects::{Channel, Signals};
+use crate::model::integrate::Steps;
 use crate::model::{
     self, CHANNELS, PARAMETERS, Parameter, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, VehicleFault, Window,
 };
@@ -33,7 +34,12 @@ pub struct Builtin<'a> {
     vehicle: Vehicle,
     new: ProfileTable,
     worn: Option<ProfileTable>,
+    steps: Steps,
+    name: String,
 }
+
+/// Name of the model in reports.
+const MODEL: &str = "reference vehicle model";
 
 impl<'a> Builtin<'a> {
     /// The model for a campaign; `None`, with problems, if the campaign lacks an input.
@@ -60,7 +66,14 @@ impl<'a> Builtin<'a> {
         };
         let new = read("profile.file", "profile.csv", true, problems)?;
         let worn = read("profile.worn_file", "profile_worn.csv", false, problems);
-        Some(Self { campaign, vehicle, new, worn })
+        Some(Self { campaign, vehicle, new, worn, steps: 1.into(), name: MODEL.into() })
+    }
+
+    /// The same with another method or step, which its name then says.
+    #[must_use]
+    pub fn integrated(self, steps: Steps) -> Self {
+        let step = 1.0 / steps.per_sample as f64;
+        Self { steps, name: format!("{MODEL}, {} with steps of {step} ms or less", steps.method.in_words()), ..self }
     }
 
     /// The vehicle with some parameters set.
@@ -83,7 +96,7 @@ impl<'a> Builtin<'a> {
 
 impl Simulator for Builtin<'_> {
     fn name(&self) -> &str {
-        "reference vehicle model"
+        &self.name
     }
 
     fn catalogue_name(&self) -> Option<&str> {
@@ -108,12 +121,13 @@ impl Simulator for Builtin<'_> {
         }
         let window = Window { from: around.from - task.shift, to: around.to - task.shift };
         let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
-        made(&setup, window).map_err(|problem| Problem { says: format!("section `{}`: {}", section.name(), problem.says), ..problem })
+        made(&setup, window, self.steps)
+            .map_err(|problem| Problem { says: format!("section `{}`: {}", section.name(), problem.says), ..problem })
     }
 }
 
-fn made(setup: &Setup<'_>, window: Window) -> Result<Signals, Problem> {
-    let record = model::simulate(setup, window).map_err(|failure| Problem::error("simulation-failed", failure.to_string()))?;
+fn made(setup: &Setup<'_>, window: Window, steps: Steps) -> Result<Signals, Problem> {
+    let record = model::simulate_by(setup, window, steps).map_err(|failure| Problem::error("simulation-failed", failure.to_string()))?;
     let channels = CHANNELS.iter().zip(record.channels).map(|((name, _), values)| Channel { name: (*name).to_string(), values });
     Ok(Signals { axis: record.distance, over_time: false, rate: SAMPLING_RATE, channels: channels.collect() })
 }
@@ -231,8 +245,8 @@ pub fn single(
     vehicle_file: (&Path, &Node),
     track_file: &Path,
     speed: f64,
-    settings: &[(String, f64)],
-    shift: f64,
+    (settings, shift): (&[(String, f64)], f64),
+    steps: Steps,
 ) -> Result<Signals, Problems> {
     let mut problems = Problems::default();
     let (path, tree) = vehicle_file;
@@ -263,7 +277,7 @@ pub fn single(
     let (start, end) = (track.distance[0], track.distance[track.distance.len() - 1]);
     let half = vehicle.half_bogie_spacing + vehicle.half_wheelbase;
     let window = Window { from: start - shift, to: end - half - shift };
-    made(&Setup { vehicle: &vehicle, profile: &profile, track: &track, speed }, window).map_err(all)
+    made(&Setup { vehicle: &vehicle, profile: &profile, track: &track, speed }, window, steps).map_err(all)
 }
 
 fn track_of(campaign: &Campaign, section: &Cell) -> Result<TrackTable, Problem> {

@@ -107,6 +107,7 @@ pub const KINDS: &[Kind] = &[
             many(phrase("zone", "A zone of the parent, a family, or `every` for all.", "4")),
             many(phrase("check", "A section check of the parent, a family, or `every` for all.", "full_curve")),
             many(phrase("plausibility", "A plausibility rule of the parent, a family, or `every` for all.", "wheel_load")),
+            many(phrase("domain", "A domain of the parent, or `every` one.", "application")),
             many(phrase("verdict", "A named verdict of the parent, a family, or `every` for all.", "inspection")),
             many(phrase(
                 "limit",
@@ -331,6 +332,28 @@ pub const KINDS: &[Kind] = &[
             phrase("faulty", "The consequence of a faulty record: `not used` (the section, with the reason) or `stop`.", "not used"),
             phrase("minimum", "The total number of used sections that the campaign needs.", "12"),
             phrase("percentiles", "The interpolation rule of percentiles, by the name of Hyndman & Fan.", "linear"),
+            NOTE,
+        ],
+    },
+    Kind {
+        word: "domain",
+        group: "domains",
+        named: true,
+        single: false,
+        about: "Which wanted operation lies inside what the sections cover: the convex hull of section data.",
+        keys: &[
+            phrase(
+                "over",
+                "What spans it: section data or expressions of them, each `in` the unit it is printed in; `for each` word of the table a hull of its own.",
+                "speed, cant_deficiency, curvature in 1/km for each state",
+            ),
+            phrase(
+                "otherwise",
+                "What wanted operation outside does: `note` (the default), or `not assessable` (the campaign).",
+                "not assessable",
+            ),
+            CLAUSE,
+            SOURCE,
             NOTE,
         ],
     },

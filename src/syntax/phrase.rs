@@ -162,6 +162,14 @@ pub struct Scope {
     pub condition: Option<Phrase>,
 }
 
+/// `speed, curvature in 1/km for each state`: what spans a domain, and by what sections are told apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Domain {
+    /// Each with the text of its unit, if it has one.
+    pub over: Vec<(Phrase, Option<At<String>>)>,
+    pub each: Vec<At<String>>,
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     EveryLimit,
@@ -233,6 +241,15 @@ impl Limit {
     /// The estimate and the direction of the limit: `std`, `p95 at least`.
     pub fn bounds(&self) -> String {
         format!("{}{}", self.estimate.meaning(), if self.at_least { " at least" } else { "" })
+    }
+}
+
+impl Domain {
+    /// As [`Phrase::meaning`].
+    pub fn meaning(&self) -> String {
+        let unit = |unit: &Option<At<String>>| unit.as_ref().map_or(String::new(), |unit| format!(" in {}", unit.node));
+        let over = joined(&self.over, ", ", |(of, written)| format!("{}{}", of.meaning(), unit(written)));
+        format!("{over} each {}", joined(&self.each, ", ", |key| key.node.clone()))
     }
 }
 

@@ -4,13 +4,13 @@ use std::cell::RefCell;
 
 use fishplate::metrics::filter::{Band, Cutoff, Filter, Phase};
 use fishplate::model::equations::{Equations, Hints};
-use fishplate::model::integrate::{run, steps_per_sample};
+use fishplate::model::integrate::{Method, Steps, run, steps_per_sample};
 use fishplate::model::state::{CAR, State, WHEELSET, Z};
 use fishplate::model::{CHANNELS, SAMPLING_RATE, Setup, Track, simulate_with, start};
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{DVector, Dop853, System};
 
-use crate::common::{COACH, WAGON, cones, deviation, free_run, profile, section, vehicle};
+use crate::common::{COACH, WAGON, cones, deviation, even, free_run, profile, section, vehicle};
 
 /// On cones the equations are smooth: halving the step divides the error by 16. A wheelset set aside and a body let fall, 0.3 s;
 /// the order of the largest difference between successive halvings lies between 3.8 and 4.3.
@@ -31,6 +31,30 @@ fn the_method_is_of_fourth_order() {
     for (coarse, fine) in [(difference(0, 1), difference(1, 2)), (difference(1, 2), difference(2, 3))] {
         let order = (coarse / fine).log2();
         assert!((3.8..4.3).contains(&order), "{order} from {coarse} and {fine}");
+    }
+}
+
+/// The midpoint method on the same motion: halving the step divides the error by 4; the order lies between 1.9 and 2.1.
+#[test]
+fn the_midpoint_method_is_of_second_order() {
+    let v = vehicle(COACH, &[]);
+    let profile = cones(0.1, 0.05, &v);
+    let equations = Equations::new(&v, &profile, 40.0);
+    let track = Track::new(&even(&[(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)]), &v);
+    let mut from = State::default();
+    from.x[WHEELSET.y..WHEELSET.y + 4].copy_from_slice(&[0.002, 0.0015, 0.001, 0.002]);
+    from.x[CAR + Z] = 0.005;
+    let end = |per_sample: usize| {
+        let mut end = from;
+        let steps = Steps { method: Method::Midpoint, per_sample };
+        run(&equations, &track, from, 10.0, 301, steps, |_, state, _| end = *state).unwrap();
+        end.x
+    };
+    let ends = [2, 4, 8, 16].map(end);
+    let difference = |a: usize, b: usize| ends[a].iter().zip(&ends[b]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    for (coarse, fine) in [(difference(0, 1), difference(1, 2)), (difference(1, 2), difference(2, 3))] {
+        let order = (coarse / fine).log2();
+        assert!((1.9..2.1).contains(&order), "{order} from {coarse} and {fine}");
     }
 }
 

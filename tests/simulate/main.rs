@@ -14,6 +14,7 @@ mod increments;
 mod one;
 mod operators;
 mod shipped;
+mod steps;
 
 use std::fs;
 use std::path::{Path, PathBuf};

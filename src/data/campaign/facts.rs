@@ -1,6 +1,7 @@
 //! Facts: what `campaign.yaml` says beyond the layout of the folder. They are printed.
 
 use super::RecordKind;
+use super::opening::APPLICATION;
 use crate::data::cells::name_and_unit;
 use crate::data::identification::REPORT_KEY;
 use crate::data::origin::ORIGIN_KEY;
@@ -22,7 +23,7 @@ pub struct Fact {
 }
 
 /// Keys of `campaign.yaml` beside those of the records.
-pub(super) const LAYOUT: [&str; 7] = ["name", "vehicle", "sections", "parameters", "protocol", ORIGIN_KEY, REPORT_KEY];
+pub(super) const LAYOUT: [&str; 8] = ["name", "vehicle", "sections", APPLICATION, "parameters", "protocol", ORIGIN_KEY, REPORT_KEY];
 
 /// Scalars at the top and one map below it, in the order written.
 pub(super) fn facts(tree: &Node) -> Vec<Fact> {

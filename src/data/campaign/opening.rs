@@ -16,6 +16,11 @@ use crate::yaml::{self, Node, Value};
 /// The column of the section table that names the sections; without it, the first column does.
 const SECTION_KEY: &str = "section";
 
+/// The key of the table of wanted operation.
+pub(super) const APPLICATION: &str = "application";
+/// The column of that table that names the points of operation.
+const POINT_KEY: &str = "point";
+
 /// A campaign that is being opened, and what was wrong with it so far.
 pub(super) struct Opening<'a> {
     pub(super) folder: Folder,
@@ -78,11 +83,20 @@ impl Opening<'_> {
     }
 
     pub(super) fn sections(&mut self, tree: &Node) -> Option<Table> {
-        let written = self.text(tree, "sections")?;
+        self.table(tree, "sections", Some(SECTION_KEY))
+    }
+
+    pub(super) fn application(&mut self, tree: &Node) -> Option<Table> {
+        // No other column has names: of two equal speeds in the first one, the second would be a fault.
+        self.table(tree, APPLICATION, None)?.named_by(POINT_KEY, self.problems)
+    }
+
+    fn table(&mut self, tree: &Node, key: &str, names: Option<&str>) -> Option<Table> {
+        let written = self.text(tree, key)?;
         let place = self.folder.place(&written.value, &written.span);
         let place = self.keep(place)?;
         let mut found = Problems::default();
-        let table = Table::read(&place.path, &place.shown, Some(SECTION_KEY), &mut found);
+        let table = Table::read(&place.path, &place.shown, names, &mut found);
         for problem in found.0 {
             self.problems.push(named_at(problem, Some(&written.span)));
         }
@@ -113,7 +127,7 @@ impl Opening<'_> {
         }
         for (key, value) in node.entries() {
             // What the campaign lacks was meant, whatever the protocol calls its parameters.
-            let layout = ["vehicle", "sections", "protocol"].into_iter().chain(RecordKind::ALL.map(RecordKind::key));
+            let layout = ["vehicle", "sections", APPLICATION, "protocol"].into_iter().chain(RecordKind::ALL.map(RecordKind::key));
             if layout.into_iter().any(|known| known == key.text) && tree.get(&key.text).is_none() {
                 let says = format!("`{}` stands among the parameters of the protocol", key.text);
                 let problem = Problem::error("unknown-key", says).at(&key.span);

@@ -3,6 +3,7 @@
 //! plotters draws. Names of sections, signals and quantities are user text and are escaped. Marks have a `<title>` as tooltip, and
 //! `data-section` and `data-zone` for the scripts of the HTML report.
 
+mod application;
 pub mod axis;
 mod boxes;
 pub mod canvas;
@@ -24,6 +25,7 @@ mod symbol;
 mod trace;
 mod zones;
 
+pub use application::application;
 pub use boxes::boxes;
 pub use choices::choices;
 pub use domain::domain;
@@ -37,7 +39,7 @@ pub use states::{before_after, signals};
 pub use trace::trace;
 pub use zones::Zones;
 
-use crate::report::{estimates, sides};
+use crate::report::{estimates, sides, view};
 use crate::result::Certification;
 
 /// All figures of a report by their names in the view ([`super::view::FigureView::name`]).
@@ -66,6 +68,9 @@ pub fn figures(found: &Certification) -> Vec<(String, String)> {
     }
     if !found.domain.is_empty() {
         drawn.push(("domain".to_owned(), domain(&found.domain, &found.sections, &zones)));
+    }
+    for (at, result) in found.application.iter().enumerate().filter(|(_, result)| view::application::drawn(result)) {
+        drawn.push((format!("application-{at}"), application(result)));
     }
     if !found.protocol.graph_svg.trim().is_empty() {
         drawn.push(("graph".to_owned(), found.protocol.graph_svg.clone()));

@@ -106,7 +106,7 @@ fn filled(data: &ReportData) -> Result<String, Problems> {
         sections => !data.section_tables.is_empty() || !data.zones.is_empty(),
         quantities => !data.quantities.is_empty(),
         traces => !data.traces.is_empty(),
-        domain => !data.domain.is_empty(),
+        domain => !data.domain.is_empty() || !data.application.is_empty(),
     };
     environment.render_str(world::REPORT, context).map_err(|error| one(Problem::error("report-template", error.to_string())))
 }

@@ -3,6 +3,7 @@
 //! PDF and HTML are filled from the same [`ReportData`]; the templates do not calculate. Names and texts of users are passed on
 //! unchanged: escaping is the task of the template.
 
+pub mod application;
 mod groups;
 mod identity;
 mod notation;
@@ -85,6 +86,8 @@ pub struct ReportData {
     pub traces: Vec<TraceView>,
     pub domain: Vec<DomainView>,
     pub domain_figure: Option<FigureView>,
+    /// Wanted operation inside and outside what the sections cover.
+    pub application: Vec<application::ApplicationView>,
     /// Plausibility findings.
     pub findings: Vec<findings::Row>,
     /// Remarks that do not change the verdict.
@@ -146,7 +149,7 @@ pub struct Fact {
 /// A figure: its name, its caption, and a text alternative.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FigureView {
-    /// `overview`, `domain`, `graph`, `pairs-<index of the quantity>`, `trace-<index of the trace>`; indices from 0.
+    /// `overview`, `domain`, `application-<index of the domain>`, `graph`, `pairs-<index of the quantity>`, `trace-<index of the trace>`; indices from 0.
     pub name: String,
     pub caption: String,
     pub alt: String,
@@ -241,6 +244,7 @@ pub fn view(found: &Certification) -> ReportData {
                 found.domain.len()
             ),
         }),
+        application: application::views(found),
         findings: findings::rows(&found.findings),
         notes: found.notes.clone(),
     }

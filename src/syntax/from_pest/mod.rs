@@ -10,7 +10,7 @@ use pest::Parser;
 use pest::iterators::Pair;
 
 use super::document::Text;
-use super::phrase::{Alias, At, Limit, Node, OfPlaces, OverVerdicts, Phrase, Pick, Scope, Step, Verdict};
+use super::phrase::{Alias, At, Domain, Limit, Node, OfPlaces, OverVerdicts, Phrase, Pick, Scope, Step, Verdict};
 use crate::problem::Problems;
 use tree::{cases, either, estimate, pick, step, sum};
 
@@ -61,6 +61,20 @@ pub fn axis(text: &Text, problems: &mut Problems) -> Option<(At<String>, At<Stri
 pub fn range(text: &Text, problems: &mut Problems) -> Option<(Phrase, Phrase)> {
     let mut inner = parts(parse(Rule::range, text, problems)?);
     Some((sum(inner.next()?)?, sum(inner.next()?)?))
+}
+
+pub fn domain(text: &Text, problems: &mut Problems) -> Option<Domain> {
+    let mut domain = Domain { over: Vec::new(), each: Vec::new() };
+    for part in parts(parse(Rule::domain, text, problems)?) {
+        if part.as_rule() == Rule::each_keys {
+            domain.each = parts(part).map(|key| named(&key)).collect();
+            continue;
+        }
+        let mut inner = parts(part);
+        let of = sum(inner.next()?)?;
+        domain.over.push((of, inner.next().map(|unit| named(&unit))));
+    }
+    Some(domain)
 }
 
 pub fn chain(text: &Text, problems: &mut Problems) -> Option<Vec<At<Step>>> {

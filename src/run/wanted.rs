@@ -1,0 +1,113 @@
+//! Wanted operation: the application table of the campaign, with section data in place of sections.
+
+use super::facts::{Facts, Known};
+use super::sections::{Row, column_missing};
+use crate::check::evaluate::number;
+use crate::check::plan::{Domain, Expr, Kind, Plan, Scalar};
+use crate::data::Campaign;
+use crate::data::table::{Cell, Table};
+use crate::problem::{Problem, Problems};
+
+/// A point of wanted operation in one domain.
+#[derive(Clone, Debug)]
+pub struct Point {
+    pub name: String,
+    /// SI, in the order of the coordinates.
+    pub values: Vec<f64>,
+    /// Words by which groups are told apart, in the order of the domain.
+    pub group: Vec<String>,
+}
+
+/// For each domain of the plan, the points of the application table. Every cell that a domain needs must have a value.
+pub fn points(plan: &Plan, campaign: &Campaign, facts: &Facts, problems: &mut Problems) -> Vec<Vec<Point>> {
+    let Some(first) = plan.domains.first() else { return Vec::new() };
+    let Some(table) = &campaign.application else {
+        problems.push(
+            Problem::error("key-missing", format!("the campaign has no `application`, the wanted operation of domain `{}`", first.name))
+                .at(&campaign.tree.span.part(0..0))
+                .also(&first.span, "the protocol needs it")
+                .help("name a table in campaign.yaml: `application: application.csv`, with a column `point` and those of the domain"),
+        );
+        return Vec::new();
+    };
+    let mut missing = false;
+    for index in plan.domains.iter().flat_map(columns).collect::<std::collections::BTreeSet<_>>() {
+        missing |= column_missing(&plan.columns[index], (table, "table of wanted operation"), problems);
+    }
+    if missing {
+        return Vec::new();
+    }
+    plan.domains.iter().map(|domain| of_domain(plan, domain, (campaign, table), facts, problems)).collect()
+}
+
+/// Columns that a domain reads.
+fn columns(domain: &Domain) -> Vec<usize> {
+    let mut found = domain.each.clone();
+    let mut see = |part: &Expr| {
+        if let Kind::Column(index) = part.kind {
+            found.push(index);
+        }
+    };
+    domain.over.iter().for_each(|coordinate| coordinate.expr.visit(&mut see));
+    found
+}
+
+fn of_domain(plan: &Plan, domain: &Domain, (campaign, table): (&Campaign, &Table), facts: &Facts, problems: &mut Problems) -> Vec<Point> {
+    let needed = columns(domain);
+    let mut found = Vec::new();
+    for (row, name) in table.names().enumerate() {
+        let cells = Row { table, row, file: campaign.inside(&table.source.name) };
+        let mut refused = None;
+        let mut value = |index: usize| {
+            if !needed.contains(&index) {
+                return Err(String::new());
+            }
+            cells.cell(&plan.columns[index]).map_err(|fault| {
+                if fault.ill_formed && refused.is_none() {
+                    let cell = table.column(&plan.columns[index].key).and_then(|column| table.cell(row, column));
+                    refused = Some(wrong(cell.unwrap_or(name), &fault.says));
+                }
+                fault.says
+            })
+        };
+        let columns: Vec<Result<Scalar, String>> = (0..plan.columns.len()).map(&mut value).collect();
+        if let Some(problem) = refused {
+            problems.push(problem.also(&domain.span, "the domain"));
+            continue;
+        }
+        match point(domain, name, &columns, facts) {
+            Ok(point) => found.push(point),
+            Err(says) => problems.push(wrong(name, &says).also(&domain.span, "the domain")),
+        }
+    }
+    found
+}
+
+fn wrong(cell: &Cell, says: &str) -> Problem {
+    Problem::error("wanted-value", format!("wanted operation: {says}")).at(&cell.span)
+}
+
+fn point(domain: &Domain, name: &Cell, columns: &[Result<Scalar, String>], facts: &Facts) -> Result<Point, String> {
+    let known = Known { columns: Some(columns), ..Known::vehicle(facts) };
+    let values = domain.over.iter().map(|coordinate| value(&coordinate.expr, &coordinate.name, &known)).collect::<Result<_, _>>()?;
+    let group = domain.each.iter().map(|index| word(&columns[*index])).collect::<Result<_, _>>()?;
+    Ok(Point { name: name.value.clone(), values, group })
+}
+
+/// The value of a coordinate, SI.
+pub fn value(expr: &Expr, name: &str, known: &Known<'_>) -> Result<f64, String> {
+    match number(expr, known) {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err(format!("{name} is not a finite number")),
+        Err(says) => Err(format!("{name}: {says}")),
+    }
+}
+
+/// A word or flag of the table.
+pub fn word(value: &Result<Scalar, String>) -> Result<String, String> {
+    match value.clone()? {
+        Scalar::Word(word) => Ok(word),
+        Scalar::Flag(flag) => Ok(flag.to_string()),
+        Scalar::Number(number) => Ok(number.to_string()),
+    }
+}
