@@ -205,7 +205,7 @@ fn in_words(rule: Rule) -> &'static str {
         Rule::alias => "an alias (`outer is L when ..., R when ...`)",
         Rule::axis => "an axis (`distance in m`)",
         Rule::range => "a range (`a to b`)",
-        Rule::domain | Rule::coordinate => "what spans a domain (`speed, cant_deficiency for each state`)",
+        Rule::domain | Rule::coordinate => "what spans a domain (`a, b for each c`)",
         Rule::chain => "a filter chain",
         Rule::step | Rule::steps | Rule::part => "a step",
         Rule::step_when | Rule::of_when | Rule::kw_when => "`when`",
