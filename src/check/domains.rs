@@ -64,7 +64,7 @@ impl Checker<'_> {
     }
 
     fn unit_of_other_dimension(&mut self, words: &str, dimension: Dimension, found: Dimension, at: &Span) {
-        let says = format!("`{words}` is {}, its unit is of {}", dimension.in_words(), found.in_words());
+        let says = format!("`{words}` is {}, `{}` is a unit of {}", dimension.in_words(), at.text(), found.in_words());
         self.problems.push(Problem::error("unit-mismatch", says).at(at));
     }
 

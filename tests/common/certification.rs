@@ -87,7 +87,7 @@ pub fn certification() -> Certification {
         quantities,
         zones: zones(&sections),
         domain: domain(),
-        application: Vec::new(),
+        application: application(),
         sections,
         traces,
         findings: Vec::new(),
@@ -115,6 +115,51 @@ fn report() -> Vec<ReportItem> {
         item(&["dates", "issue"], "Date of issue", Some("7.8.2.1 j)"), Some("2023-06-30")),
         item(&["model version"], "Model version", None, None),
     ]
+}
+
+/// Wanted operation with a hull, and of a group without sections.
+fn application() -> Vec<DomainResult> {
+    let coordinates = |ends: Option<(f64, f64)>| {
+        let of = |name: &str, unit: &str| CoordinateRange {
+            name: name.into(),
+            unit: unit.into(),
+            low: ends.map(|(low, _)| low),
+            high: ends.map(|(_, high)| high),
+        };
+        vec![of("Speed", "km/h"), of(HOSTILE, "mm"), of("Curvature", "1/km")]
+    };
+    let section = |section: &str, values: [f64; 3]| DomainSection { section: section.into(), values: values.to_vec(), corner: true };
+    let point = |point: &str, inside: Option<bool>, by: f64| WantedPoint {
+        point: point.into(),
+        values: vec![50.0 + by, 50.0, 20.0],
+        inside,
+        distance: inside.map(|_| by.abs() / 100.0),
+        nearest: inside.map(|_| vec![50.0, 50.0, 20.0]),
+        outside_by: inside.map(|_| vec![by, 0.0, 0.0]),
+        beyond_range: Some(vec![0.0; 3]),
+        nearest_section: inside.map(|_| "S01".into()),
+        section_distance: inside.map(|_| 0.1),
+    };
+    let one = |scope: &str, sections: Vec<DomainSection>, reason: Option<&str>, points: Vec<WantedPoint>| DomainResult {
+        domain: "application".into(),
+        title: "Application domain".into(),
+        group: [("state".to_string(), scope.to_string())].into_iter().collect(),
+        scope: format!("State {scope}"),
+        coordinates: coordinates((!sections.is_empty()).then_some((0.0, 100.0))),
+        sections,
+        left_out: vec![LONG.into()],
+        reason: reason.map(Into::into),
+        points,
+        otherwise: Consequence::Note,
+        clause: Some("T.3".into()),
+        source: None,
+        notes: vec![HOSTILE.into()],
+        rule: RulePlace { file: "protocol.fp".into(), line: 7 },
+    };
+    let corners = [[0.0, 0.0, 0.0], [100.0, 0.0, 0.0], [0.0, 100.0, 0.0], [0.0, 0.0, 100.0], [100.0, 100.0, 100.0]];
+    let sections = corners.into_iter().enumerate().map(|(at, values)| section(&format!("S{at:02}"), values)).collect();
+    let points = vec![point("inside", Some(true), 0.0), point(HOSTILE, Some(false), 30.0), point(LONG, Some(false), -1e-7)];
+    vec![one("tare", sections, None, points), one(HOSTILE, Vec::new(), Some("no section is used"), vec![point("none", None, 0.0)])]
 }
 
 /// A certification without anything in it.
