@@ -290,23 +290,6 @@ fn number(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| value.to_string())
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_cell_is_a_formula() {
-        for formula in ["=1+1", "+A1", "-A1", "@SUM(A1)", "\t=1", "\r=1", "-"] {
-            assert_eq!(inert(formula), format!("'{formula}"));
-        }
-        for plain in ["", "-1.5", "+2", "-1e-3", "1+1", "Y_1R", "a=b"] {
-            assert_eq!(inert(plain), plain);
-        }
-        let (_, bytes) = csv_file("t", &["a"], vec![vec!["=1+1".into()]]).expect("written");
-        assert_eq!(bytes, b"a\n'=1+1\n");
-    }
-}
-
 /// One row for each point of wanted operation and coordinate.
 fn application_rows(result: &DomainResult) -> Vec<Vec<String>> {
     let of_point = |point: &WantedPoint| {
@@ -330,4 +313,21 @@ fn application_rows(result: &DomainResult) -> Vec<Vec<String>> {
         result.coordinates.iter().enumerate().map(row).collect::<Vec<_>>()
     };
     result.points.iter().flat_map(of_point).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_cell_is_a_formula() {
+        for formula in ["=1+1", "+A1", "-A1", "@SUM(A1)", "\t=1", "\r=1", "-"] {
+            assert_eq!(inert(formula), format!("'{formula}"));
+        }
+        for plain in ["", "-1.5", "+2", "-1e-3", "1+1", "Y_1R", "a=b"] {
+            assert_eq!(inert(plain), plain);
+        }
+        let (_, bytes) = csv_file("t", &["a"], vec![vec!["=1+1".into()]]).expect("written");
+        assert_eq!(bytes, b"a\n'=1+1\n");
+    }
 }
