@@ -82,7 +82,7 @@ fn an_assessment_agrees_with_scipy() {
 fn an_assessment_needs_no_simulation() {
     let folder = tempfile::tempdir().expect("a folder");
     let from = root().join("examples/coach-good");
-    for name in ["vehicle.yaml", "sections.csv", "profile.csv"] {
+    for name in ["vehicle.yaml", "sections.csv", "application.csv", "profile.csv"] {
         fs::copy(from.join(name), folder.path().join(name)).expect("a copy");
     }
     for part in ["measurement", "track"] {
