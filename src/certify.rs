@@ -1,19 +1,21 @@
 //! Certification: from a protocol and a campaign to the results of a report.
 
+mod pool;
+
 use indexmap::IndexMap;
 use sha2::{Digest, Sha256};
 
 use crate::check::plan::{DatumKind, Parameter, Plan, Scalar, SetBy};
 use crate::check::{self, Overrides, diff, family::Family};
-use crate::data::Campaign;
 use crate::data::campaign::Fact;
 use crate::data::identification::Stated;
 use crate::data::origin::Origin;
+use crate::data::{Campaign, Campaigns, qualified};
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
 use crate::result::{
-    CampaignInfo, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, FittedTo, OriginInfo, ParameterInfo, ProtocolFile,
-    ProtocolInfo, ReportItem,
+    CampaignInfo, CampaignMember, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, FittedTo, OriginInfo, ParameterInfo,
+    ProtocolFile, ProtocolInfo, ReportItem,
 };
 use crate::run::{self, Progress, Settings};
 use crate::syntax::document::Block;
@@ -57,13 +59,19 @@ pub fn compile(family: Family, overrides: &Overrides, problems: &mut Problems) -
     Some(Compiled { family, plan, graph })
 }
 
-/// Evaluates a compiled protocol on a campaign.
+/// Evaluates a compiled protocol on a campaign, or on several as one.
 ///
 /// # Errors
 /// The campaign is not usable as a whole; see [`run::run`].
-pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Certification, Problems> {
-    let outcome = run::run(&compiled.plan, &compiled.graph, campaign, settings, progress)?;
-    let campaign = campaign_info(&compiled.plan, campaign, outcome.files, outcome.vehicle);
+pub fn certify<'a>(
+    compiled: &Compiled,
+    campaigns: impl Into<Campaigns<'a>>,
+    settings: Settings,
+    progress: Progress<'_>,
+) -> Result<Certification, Problems> {
+    let campaigns = campaigns.into();
+    let outcome = run::run(&compiled.plan, &compiled.graph, campaigns, settings, progress)?;
+    let campaign = campaign_info(&compiled.plan, campaigns, outcome.files, outcome.vehicle);
     let mut notes = outcome.notes;
     notes.extend(campaign.origin.as_ref().map(|origin| format!("{}.", origin.says)));
     Ok(Certification {
@@ -86,20 +94,58 @@ pub fn certify(compiled: &Compiled, campaign: &Campaign, settings: Settings, pro
 }
 
 /// The campaign as printed in a report: all files read, with the records last, and the vehicle data, with those used by the protocol first.
-pub fn campaign_info(plan: &Plan, campaign: &Campaign, records: Vec<FileHash>, vehicle: Vec<DataItem>) -> CampaignInfo {
-    let mut files: Vec<FileHash> = campaign
-        .files
-        .iter()
-        .map(|file| FileHash { path: file.path.clone(), sha256: file.sha256.clone(), bytes: file.bytes, record: None })
-        .collect();
+pub fn campaign_info<'a>(plan: &Plan, campaigns: impl Into<Campaigns<'a>>, records: Vec<FileHash>, vehicle: Vec<DataItem>) -> CampaignInfo {
+    let campaigns = campaigns.into();
+    let mut files = Vec::new();
+    for (number, campaign) in campaigns.iter().enumerate() {
+        let path = |path: &str| qualified(campaigns.name_of(number), path);
+        files.extend(campaign.files.iter().map(|file| FileHash {
+            path: path(&file.path),
+            sha256: file.sha256.clone(),
+            bytes: file.bytes,
+            record: None,
+        }));
+    }
     files.extend(records);
-    CampaignInfo {
+    if !campaigns.pooled() {
+        let campaign = campaigns.get(0);
+        return CampaignInfo {
+            name: campaign.name.clone(),
+            members: Vec::new(),
+            origin: campaign.origin.as_ref().map(|origin| origin_info(origin, &files)),
+            files,
+            vehicle: vehicle_items(plan, campaign, vehicle, None),
+            facts: campaign.facts.iter().map(fact_item).collect(),
+            report: campaign.report.iter().map(report_item).collect(),
+        };
+    }
+    let member = |campaign: &Campaign| CampaignMember {
+        short_name: campaign.short_name.value.clone(),
         name: campaign.name.clone(),
+        sections: campaign.names.len(),
         origin: campaign.origin.as_ref().map(|origin| origin_info(origin, &files)),
-        files,
-        vehicle: vehicle_items(plan, campaign, vehicle),
-        facts: campaign.facts.iter().map(fact_item).collect(),
         report: campaign.report.iter().map(report_item).collect(),
+    };
+    let members: Vec<CampaignMember> = campaigns.iter().map(member).collect();
+    let mut all = Vec::new();
+    for campaign in campaigns.iter() {
+        let of = &campaign.short_name.value;
+        let own = vehicle.iter().filter(|item| item.of.as_ref() == Some(of)).cloned().collect();
+        all.extend(vehicle_items(plan, campaign, own, Some(of)));
+    }
+    CampaignInfo {
+        name: pool::name(&members),
+        origin: pool::origin(&members),
+        files,
+        vehicle: all,
+        facts: pool::facts(
+            campaigns
+                .iter()
+                .map(|campaign| (campaign.short_name.value.as_str(), &campaign.facts))
+                .map(|(of, facts)| facts.iter().map(|fact| DataItem { of: Some(of.to_string()), ..fact_item(fact) }).collect()),
+        ),
+        report: pool::report(&members),
+        members,
     }
 }
 
@@ -243,13 +289,21 @@ fn report_item((field, value): &Stated) -> ReportItem {
 fn fact_item(fact: &Fact) -> DataItem {
     let plain = fact.name.replace('_', " ");
     let name = if fact.group.is_empty() { plain } else { format!("{}: {plain}", fact.group.replace('_', " ")) };
-    DataItem { name, value: fact.text.clone(), unit: fact.unit.clone().filter(|unit| unit != "-"), used: false, unit_assumed: false }
+    DataItem {
+        name,
+        value: fact.text.clone(),
+        unit: fact.unit.clone().filter(|unit| unit != "-"),
+        used: false,
+        unit_assumed: false,
+        of: None,
+    }
 }
 
 /// Values used by the protocol with their units, then all others of the file.
-fn vehicle_items(plan: &Plan, campaign: &Campaign, used: Vec<DataItem>) -> Vec<DataItem> {
+fn vehicle_items(plan: &Plan, campaign: &Campaign, used: Vec<DataItem>, of: Option<&String>) -> Vec<DataItem> {
     let mut rest = Vec::new();
     flatten("", &campaign.vehicle, &mut rest);
+    rest.iter_mut().for_each(|item| item.of = of.cloned());
     let unused = rest.into_iter().filter(|item| !plan.vehicle.iter().any(|datum| datum.key == item.name));
     used.into_iter().chain(unused).collect()
 }
@@ -264,11 +318,11 @@ fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {
         }
         Value::List(list) => {
             let value = list.iter().map(|item| item.raw.as_str()).collect::<Vec<_>>().join(", ");
-            items.push(DataItem { name: prefix.to_string(), value, unit: None, used: false, unit_assumed: false });
+            items.push(DataItem { name: prefix.to_string(), value, unit: None, used: false, unit_assumed: false, of: None });
         }
         _ => {
             let (value, unit) = number_and_unit(&node.raw);
-            items.push(DataItem { name: prefix.to_string(), value, unit, used: false, unit_assumed: false });
+            items.push(DataItem { name: prefix.to_string(), value, unit, used: false, unit_assumed: false, of: None });
         }
     }
 }

@@ -522,3 +522,90 @@ fn the_example_of_codes_has_the_numbers_of_scipy() {
         groups.iter().filter(|one| one["holds"] == true).map(|one| one["group"]["record"].as_str().expect("a name")).collect();
     assert_eq!(holding, ["independent", "built_in", "midpoint"]);
 }
+
+/// Each code against a reference code, and each code against each other one, by closed form.
+#[test]
+fn declared_records_are_compared() {
+    let folder = three_codes();
+    let records = "record reference \"Reference code\"\n  is  simulated gamma\n\nrecord codes \"Codes\"\n  is  simulated alpha, beta\n\n\
+                   record every_code \"All codes\"\n  is  simulated\n\n";
+    let of = |id: &str, how: &str| {
+        format!(
+            "quantity {id} \"{id}\"\n  of  Q at wheelset 1\n  value  mean\n{how}  limit  mean 100 kN for each record\n  limit  std 100 kN for \
+             each record\n\n"
+        )
+    };
+    let compared = |with: &str| format!("  compare  {with}\n  difference  simulated - measured\n");
+    let text = [
+        of("against", &compared("codes with reference")),
+        of("all_against", &compared("simulated with reference")),
+        of("each", &compared("every_code with each other")),
+        of("mean", &compared("reference with mean of codes")),
+        of("tested", &compared("codes with measured")),
+        of("alone", "  from  reference\n"),
+        "quantity rms \"rms\"\n  of  Q at wheelset 1\n  metric  rms of (simulated - measured)\n  compare  codes with reference\n  \
+         limit  mean 100 kN for each record\n\n"
+            .to_string(),
+    ];
+    let found = run(folder.path(), &format!("{records}{}", text.concat()));
+    assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
+    let results = found.results();
+    let means = |id: &str| -> Vec<(String, f64, u64, u64)> { by_record(quantity(&results, id), "mean") };
+    assert_records(&means("against"), &[("alpha, gamma", -5.0, 24, 12), ("beta, gamma", -4.0, 24, 12)]);
+    assert_eq!(means("against"), means("all_against"));
+    assert_records(&means("each"), &[("alpha, beta", -1.0, 24, 12), ("alpha, gamma", -5.0, 24, 12), ("beta, gamma", -4.0, 24, 12)]);
+    assert_records(&means("mean"), &[("gamma", 4.5, 24, 12)]);
+    assert_records(&means("tested"), &[("alpha", 1.0, 24, 12), ("beta", 2.0, 24, 12)]);
+    assert_records(&means("rms"), &[("alpha, gamma", 5.0, 24, 12), ("beta, gamma", 4.0, 24, 12)]);
+    assert_eq!(means("alone").len(), 1);
+    let row = &quantity(&results, "against")["values"][1];
+    assert_eq!((&row["record"], &row["signal"]), (&Value::from("beta, gamma"), &Value::from("Q_1R")));
+    let difference = |key: &str| row[key].as_f64().expect("a number");
+    assert!((difference("simulated") - difference("measured") - difference("difference")).abs() < 1e-9, "{row}");
+}
+
+/// A report of two codes is checked and traced to the records of both.
+#[test]
+fn a_pair_of_codes_is_verified_and_traced() {
+    let folder = three_codes();
+    let text = "record reference \"Reference code\"\n  is  simulated gamma\n\nquantity code \"Code\"\n  of  Q at wheelset 1\n  value  mean\n  \
+                compare  simulated with reference\n  difference  simulated - measured\n  limit  mean 100 kN\n";
+    let protocol = protocol(folder.path(), text);
+    let found = certify(folder.path(), &["--protocol", &protocol]);
+    assert_eq!(found.ran.code, 0, "{}", found.ran.stderr);
+    let report = found.folder().join("report.pdf").display().to_string();
+    let campaign = folder.path().display().to_string();
+    let verified = fishplate(&["verify", &report, &campaign]);
+    assert_eq!(verified.code, 0, "{}", verified.stdout);
+    let traced = fishplate(&["trace", &report, "code", "S02", "Q_1L", "--record", "beta, gamma", "--campaign", &campaign]);
+    assert_eq!(traced.code, 0, "{}{}", traced.stdout, traced.stderr);
+    for part in ["simulation/beta/S02.csv", "simulation/gamma/S02.csv", "as in the report"] {
+        assert!(traced.stdout.contains(part), "{part}: {}", traced.stdout);
+    }
+    assert!(!traced.stdout.contains("measurement/S02.csv") && !traced.stdout.contains("alpha"), "{}", traced.stdout);
+    let page = found.text("report.html");
+    assert!(page.contains("Comparison report") && page.contains("Reference code"), "the second side has its title");
+}
+
+/// What a protocol calls by name must be in the campaign.
+#[test]
+fn a_record_that_a_campaign_lacks_is_told() {
+    let folder = three_codes();
+    let of = |name: &str| {
+        format!(
+            "record reference \"Reference code\"\n  is  simulated {name}\n\nquantity code \"Code\"\n  of  Q at wheelset 1\n  value  mean\n  from  \
+             reference\n  limit  mean 100 kN\n"
+        )
+    };
+    let found = run(folder.path(), &of("gama"));
+    assert_eq!(found.ran.code, 2, "{}", found.ran.stdout);
+    for part in ["error[unknown-record]: the campaign has no simulation `gama`", "did you mean `gamma`?", "small.fp:25:17"] {
+        assert!(found.ran.stderr.contains(part), "{part}: {}", found.ran.stderr);
+    }
+    // One record without a name.
+    let one = tiny();
+    let found = run(one.path(), &of("gamma"));
+    assert!(found.ran.stderr.contains("give its records names in campaign.yaml: `simulation: {gamma: folder}`"), "{}", found.ran.stderr);
+    replace(&one.path().join("campaign.yaml"), "simulation: simulation", "simulation: {gamma: simulation}");
+    assert_eq!(run(one.path(), &of("gamma")).ran.code, 0);
+}

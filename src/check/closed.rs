@@ -68,7 +68,7 @@ impl Checker<'_> {
     fn stands_for(&self, phrase: &Phrase, seen: &mut BTreeSet<String>) -> Meaning {
         let mut of = |phrase: &Phrase| self.stands_for(phrase, seen);
         match &phrase.node {
-            Node::Number { .. } => Meaning::Closed,
+            Node::Number { .. } | Node::Quoted(_) => Meaning::Closed,
             // Values of a signal, of one side or of other limits have no meaning before they are used.
             Node::Percentile(_) | Node::Reduced(..) | Node::Over(..) | Node::Bound { .. } | Node::Share { .. } | Node::Fit(_) => {
                 Meaning::Open

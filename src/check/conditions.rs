@@ -34,6 +34,8 @@ struct Test {
 enum Is {
     /// The value is one of these words.
     Words(Vec<String>),
+    /// This word, or any other, of which not all are known.
+    Name(bool, String),
     Flag(bool),
     Number(Operator, f64),
 }
@@ -64,6 +66,7 @@ fn test(operator: Operator, left: &Expr, right: &Expr, negated: bool) -> Option<
     };
     let operator = if negated { opposite(operator)? } else { operator };
     let is = match (constant, &what.ty) {
+        (Scalar::Word(word), Type::Word(words)) if words.is_empty() => Is::Name(operator == Operator::Is, word.clone()),
         (Scalar::Word(word), Type::Word(words)) => {
             Is::Words(words.iter().filter(|other| (*other == word) == (operator == Operator::Is)).cloned().collect())
         }
@@ -104,6 +107,10 @@ fn contradictory(together: &[Test]) -> bool {
             Is::Words(words) => {
                 !words.iter().any(|word| same().all(|other| !matches!(&other.is, Is::Words(words) if !words.contains(word))))
             }
+            Is::Name(is, name) => same().any(|other| match &other.is {
+                Is::Name(other_is, other) => (*is && *other_is && name != other) || (is != other_is && name == other),
+                _ => false,
+            }),
             Is::Flag(flag) => same().any(|other| matches!(other.is, Is::Flag(other) if other != *flag)),
             Is::Number(operator, number) => same().any(|other| match other.is {
                 Is::Number(o, n) => apart(*operator, *number, o, n) || apart(o, n, *operator, *number),

@@ -348,8 +348,7 @@ impl Checker<'_> {
         if let Some(place) = common.places.iter().find(|place| *place == name || Some(place.as_str()) == name.strip_suffix('s')) {
             return Some(Key::Place(place.clone()));
         }
-        let column = self.names.columns.iter().position(|datum| datum.name == name);
-        if let Some(index) = column {
+        if let Some(index) = self.campaign_column(name, span) {
             if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
                 let says = format!("`{name}` is a number; only a column of words can form groups");
                 let help = "declare the column with `one of ...`, or use it in an estimate: `mean of ...`";
@@ -359,7 +358,7 @@ impl Checker<'_> {
             return Some(Key::Column(index));
         }
         let columns: Vec<String> = self.names.columns.iter().map(|datum| datum.name.clone()).collect();
-        let known = ["zone", "section", "site", "record"].into_iter().chain(common.places.iter().map(String::as_str));
+        let known = ["zone", "section", "site", "record", "campaign"].into_iter().chain(common.places.iter().map(String::as_str));
         let known = known.chain(columns.iter().map(String::as_str));
         self.problems.push(
             Problem::error("unknown-key", format!("the values of `{}` cannot be grouped by `{name}`", common.block.name_text()))

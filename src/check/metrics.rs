@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::Checker;
 use super::names::{Assignment, Written, bare_word, normalised};
-use super::plan::{Axis, Evaluation, Expr, Input, InputSide, Kind, Origin, Position, Signal, SignalKind, Step, Taken, Type};
+use super::plan::{Axis, Evaluation, Expr, Input, InputSide, Kind, Origin, Pairing, Position, Signal, SignalKind, Step, Taken, Type};
 use super::quantities::Compared;
 use super::scalar_names::add_input;
 use super::scalars::{Reduce, Scope};
@@ -29,19 +29,20 @@ impl Checker<'_> {
         positions: Option<&[(Position, Assignment)]>,
         chain: Option<&[Step]>,
     ) -> Option<Compared> {
-        let of_repeats = compare.map_or(Some(false), |compare| self.of_metric(compare, &field.key.span));
+        let of_pairs = compare.map_or(Some(Pairing::SIDES), |compare| self.of_metric(compare, &field.key.span));
         let compared = if self.is_wording(&field.value) {
             self.by_wording(field, positions, chain)
         } else {
             self.by_expression(field, positions, chain)
         };
-        let (of_repeats, mut compared) = (of_repeats?, compared?);
-        if of_repeats {
-            if let Evaluation::Metric { repeats, .. } | Evaluation::Combined { repeats, .. } = &mut compared.evaluation {
-                *repeats = true;
+        let (of_pairs, mut compared) = (of_pairs?, compared?);
+        if of_pairs != Pairing::SIDES {
+            if let Evaluation::Metric { pairing, .. } | Evaluation::Combined { pairing, .. } = &mut compared.evaluation {
+                *pairing = of_pairs;
             }
-            let words = compared.comparison.replace("measured", "original").replace("simulated", "repeat");
-            compared.comparison = if words == compared.comparison { format!("{words} of repeat and original") } else { words };
+            let words = self.paired_words(of_pairs, &compared.comparison);
+            let both = self.paired_words(of_pairs, "simulated and measured");
+            compared.comparison = if words == compared.comparison { format!("{words} of {both}") } else { words };
         }
         Some(compared)
     }
@@ -96,7 +97,7 @@ impl Checker<'_> {
         let words = self.with_values(&normalised(&field.value.text));
         let (first, _) = positions.first()?;
         Some(Compared {
-            evaluation: Evaluation::Metric { metric, over, over_axis, repeats: false },
+            evaluation: Evaluation::Metric { metric, over, over_axis, pairing: Pairing::SIDES },
             dimension: (metric.0.gives)(
                 after(chain, first.signal.dimension),
                 self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension),
@@ -143,7 +144,7 @@ impl Checker<'_> {
         }
         let words = self.with_values(&normalised(&field.value.text));
         Some(Compared {
-            evaluation: Evaluation::Combined { of: valued, repeats: false },
+            evaluation: Evaluation::Combined { of: valued, pairing: Pairing::SIDES },
             dimension,
             processing: words.clone(),
             comparison: words,

@@ -23,6 +23,7 @@ mod plausibility;
 mod positions;
 pub mod possible;
 mod quantities;
+mod records;
 mod rules;
 mod scalar_names;
 mod scalars;
@@ -38,7 +39,7 @@ use std::collections::BTreeSet;
 use indexmap::IndexMap;
 
 use crate::problem::{Problem, Problems};
-use crate::source::Span;
+use crate::source::{Span, Spanned};
 use crate::syntax::document::{Block, Document, Text};
 use crate::units::Dimension;
 use names::Names;
@@ -87,6 +88,8 @@ struct Checker<'a> {
     own_of_both: Option<Dimension>,
     /// The present expression is one of several values; each applies only in its own cases.
     partial: bool,
+    /// Names of campaigns that conditions ask for.
+    campaigns: Vec<Spanned<String>>,
     depth: usize,
     work: usize,
     ddof: usize,
@@ -124,6 +127,7 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
         has_time: false,
         own_of_both: None,
         partial: false,
+        campaigns: Vec::new(),
         depth: 0,
         work: 0,
         ddof: 1,
@@ -320,6 +324,8 @@ impl Checker<'_> {
             unconfirmed,
             vehicle: self.names.vehicle.clone(),
             columns: self.names.columns.clone(),
+            campaigns: self.campaigns.clone(),
+            records: self.names.records.clone(),
             filters,
             zones,
             checks,

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use indexmap::IndexMap;
 
 use super::Checker;
-use super::plan::{Datum, Scalar, SetBy, Type};
+use super::plan::{Datum, DeclaredRecord, Scalar, SetBy, Type};
 use crate::catalog::{Reducer, Statistic};
 use crate::problem::Problem;
 use crate::source::Span;
@@ -67,6 +67,7 @@ pub struct Names {
     pub places: IndexMap<String, Place>,
     pub vehicle: Vec<Datum>,
     pub columns: Vec<Datum>,
+    pub records: Vec<DeclaredRecord>,
     pub channels: IndexMap<String, Channel>,
     pub signals: IndexMap<String, SignalDef>,
     pub defines: IndexMap<String, Written>,
@@ -117,6 +118,10 @@ impl Checker<'_> {
                     }
                     None => drop(self.names.failed.insert(name)),
                 },
+                "record" => match self.declared_record(&name, block) {
+                    Some(record) => self.names.records.push(record),
+                    None => drop(self.names.failed.insert(name)),
+                },
                 "vehicle" => match self.datum(&name, block, "key", name.clone()) {
                     Some(datum) => self.names.vehicle.push(datum),
                     None => drop(self.names.failed.insert(name)),
@@ -146,7 +151,8 @@ impl Checker<'_> {
 
     /// Reports a name that an expression could not use or would read as something else.
     fn usable_name(&mut self, block: &Block) {
-        const IN_EXPRESSIONS: [&str; 9] = ["parameter", "place", "vehicle", "section", "channel", "signal", "filter", "define", "estimate"];
+        const IN_EXPRESSIONS: [&str; 10] =
+            ["record", "parameter", "place", "vehicle", "section", "channel", "signal", "filter", "define", "estimate"];
         const WORDS: [&str; 25] = [
             "and",
             "or",

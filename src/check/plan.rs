@@ -8,7 +8,7 @@ use crate::metrics::filter::{Band, Cutoff, Phase, TransferFunction, Warping};
 use crate::metrics::percentile::Method;
 use crate::metrics::window::Ends;
 use crate::result;
-use crate::source::Span;
+use crate::source::{Span, Spanned};
 use crate::units::{Dimension, Unit};
 
 #[derive(Clone, Debug)]
@@ -26,6 +26,9 @@ pub struct Plan {
     pub unconfirmed: Vec<(String, String)>,
     pub vehicle: Vec<Datum>,
     pub columns: Vec<Datum>,
+    /// Names of campaigns that conditions ask for, where they stand.
+    pub campaigns: Vec<Spanned<String>>,
+    pub records: Vec<DeclaredRecord>,
     pub filters: Vec<NamedFilter>,
     pub zones: Vec<Zone>,
     pub checks: Vec<Check>,
@@ -133,6 +136,8 @@ pub enum DatumKind {
     Number(Unit),
     Words(Vec<String>),
     Flag,
+    /// The name of the section's campaign, which is not known before the run.
+    Campaign,
 }
 
 /// A value of an expression.
@@ -531,12 +536,10 @@ pub struct Position {
 pub enum Evaluation {
     /// Numbers of each record, assessed or compared.
     Values { values: Vec<Valued>, records: Records },
-    /// One number of the two signals. `over` is the other signal that the wording names, one for each position, with its name and
-    /// unit. With `repeats`, the signals are those of a repeated section and its original.
-    Metric { metric: Metric, over: Vec<Signal>, over_axis: Option<Axis>, repeats: bool },
-    /// One number computed from metrics, from values of one side and from values of the samples of both sides; `repeats` as for a
-    /// metric.
-    Combined { of: Valued, repeats: bool },
+    /// One number of the two signals; `over` is the other signal its wording names, one for each position, with its name and unit.
+    Metric { metric: Metric, over: Vec<Signal>, over_axis: Option<Axis>, pairing: Pairing },
+    /// One number of metrics, of numbers of one side, and of numbers of both sides' samples.
+    Combined { of: Valued, pairing: Pairing },
 }
 
 /// A number of one record.
@@ -550,15 +553,64 @@ pub struct Valued {
 /// The records that give the rows.
 #[derive(Clone, Debug)]
 pub enum Records {
-    /// One row for each record of this side, without comparison.
-    Of(Side),
-    /// One row for each simulated and measured record of a section.
-    Compared { difference: Expr },
-    /// One row for each record of this side, compared with the mean or median of all of them.
-    Spread { side: Side, center: Center, difference: Expr },
-    /// One row for each measured record of a section that repeats another. It is compared with the record of the original section,
-    /// which takes the place of the measurement.
-    Repeats { difference: Expr },
+    /// One row for each of these records: an assessment.
+    Of(Chosen),
+    /// One row for each pair of records.
+    Compared { pairing: Pairing, difference: Expr },
+    /// One row for each of these records, compared with what is central of others on the same side.
+    Spread { of: Chosen, among: Chosen, center: Center, difference: Expr },
+}
+
+/// Records of one side: all that the campaign has, or those of a record of the protocol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chosen {
+    pub side: Side,
+    /// Index into [`Plan::records`].
+    pub record: Option<usize>,
+}
+
+/// A record that the protocol declares.
+#[derive(Clone, Debug)]
+pub struct DeclaredRecord {
+    pub name: String,
+    pub title: String,
+    pub side: Side,
+    /// Names that the campaign gives to its records; all of the side where there are none.
+    pub members: Vec<Spanned<String>>,
+    pub span: Span,
+}
+
+/// Which records are compared. In a row the first stands in the place of the simulation, the second in that of the measurement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pairing {
+    /// Each of the first with each of the second; a record is not compared with itself.
+    Each(Chosen, Chosen),
+    /// Each record with each later one.
+    EachOther(Chosen),
+    /// Each measured record of a section that repeats another with that of its original.
+    Repeats,
+}
+
+impl Pairing {
+    /// Every simulated record with every measured one.
+    pub const SIDES: Self = Self::Each(Chosen { side: Side::Simulated, record: None }, Chosen { side: Side::Measured, record: None });
+
+    fn reads(self, side: Side) -> bool {
+        match self {
+            Self::Each(first, second) => first.side == side || second.side == side,
+            Self::EachOther(of) => of.side == side,
+            Self::Repeats => side == Side::Measured,
+        }
+    }
+
+    /// The side of both records, where it is the same.
+    pub fn within(self) -> Option<Side> {
+        match self {
+            Self::Each(first, second) => (first.side == second.side).then_some(first.side),
+            Self::EachOther(of) => Some(of.side),
+            Self::Repeats => None,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -610,10 +662,20 @@ impl Evaluation {
     /// Whether records of this side are needed.
     pub fn reads(&self, side: Side) -> bool {
         match self {
-            Self::Values { records: Records::Of(of) | Records::Spread { side: of, .. }, .. } => *of == side,
-            Self::Values { records: Records::Compared { .. }, .. } => true,
-            Self::Values { records: Records::Repeats { .. }, .. } => side == Side::Measured,
-            Self::Metric { repeats, .. } | Self::Combined { repeats, .. } => !repeats || side == Side::Measured,
+            Self::Values { records: Records::Of(of) | Records::Spread { of, .. }, .. } => of.side == side,
+            Self::Values { records: Records::Compared { pairing, .. }, .. }
+            | Self::Metric { pairing, .. }
+            | Self::Combined { pairing, .. } => pairing.reads(side),
+        }
+    }
+
+    /// Which records are compared pair by pair; `None` where each is taken by itself or compared with what is central of several.
+    pub fn pairing(&self) -> Option<Pairing> {
+        match self {
+            Self::Values { records: Records::Compared { pairing, .. }, .. }
+            | Self::Metric { pairing, .. }
+            | Self::Combined { pairing, .. } => Some(*pairing),
+            Self::Values { .. } => None,
         }
     }
 
@@ -646,17 +708,12 @@ impl Evaluation {
 
     /// Whether rows have two sides and a difference.
     pub fn has_sides(&self) -> bool {
-        matches!(self, Self::Values { records: Records::Compared { .. } | Records::Spread { .. } | Records::Repeats { .. }, .. })
+        matches!(self, Self::Values { records: Records::Compared { .. } | Records::Spread { .. }, .. })
     }
 
     /// Whether repeated sections are compared with their originals.
     pub fn of_repeats(&self) -> bool {
-        matches!(
-            self,
-            Self::Values { records: Records::Repeats { .. }, .. }
-                | Self::Metric { repeats: true, .. }
-                | Self::Combined { repeats: true, .. }
-        )
+        self.pairing() == Some(Pairing::Repeats)
     }
 }
 

@@ -7,8 +7,9 @@ use super::conditions::impossible;
 use super::evaluate::{Values, number, words};
 use super::names::{Assignment, bare_word, normalised};
 use super::plan::{
-    Center, DatumKind, Evaluation, Expr, InputSide, Kind, Position, Quantity, QuantityWords, Records, Side, Signal, Step, Valued,
+    DatumKind, Evaluation, Expr, InputSide, Kind, Pairing, Position, Quantity, QuantityWords, Records, Side, Signal, Step, Valued,
 };
+use super::records::Compare;
 use super::scalars::Scope;
 use super::steps::after;
 use crate::catalog::{Best, DIFFERENCES, NOT_CHECKED};
@@ -29,16 +30,6 @@ pub(super) struct Compared {
     pub best: Option<(Best, Span)>,
     /// The text that decides the dimension, where it is not that of the signal.
     pub from: Option<Span>,
-}
-
-/// The records that are compared.
-#[derive(Clone, Copy, Debug)]
-enum Compare {
-    Sides,
-    /// Each record of a side with the mean or median of all.
-    With(Side, Center),
-    /// Sections measured again with their originals.
-    Repeats,
 }
 
 impl Checker<'_> {
@@ -127,7 +118,7 @@ impl Checker<'_> {
                     format!("quantity `{}` has no limit: it is reported and has no effect on a verdict", block.name_text()),
                 )
                 .at(block.span())
-                    .help("if that is meant, say why: `reported \"...\"`"),
+                .help("if that is meant, say why: `reported \"...\"`"),
             );
         }
         if let (Some(only), None, 2..) = (block.field("where"), block.field("minimum pairs"), self.minimum_pairs) {
@@ -274,7 +265,7 @@ impl Checker<'_> {
                 return None;
             }
         }
-        let from = block.field("from").map(|field| self.side(field));
+        let from = block.field("from").map(|field| self.from(field));
         let compare = block.field("compare").map(|field| self.compare(field));
         let difference = match from {
             Some(_) => None,
@@ -286,7 +277,8 @@ impl Checker<'_> {
         let values: Vec<Valued> = values.into_iter().map(|(value, _)| value).collect();
         let field_of = |key: &str| block.field(key).map(|field| field.value.span.clone());
         let Some(difference) = difference else {
-            let side = from??;
+            let of = from??;
+            let side = of.side;
             let other = if side == Side::Measured { InputSide::Simulated } else { InputSide::Measured };
             if let Some(input) = values.iter().flat_map(|value| value.inputs.iter().flatten()).find(|input| input.side == other) {
                 let says = format!("the values are {}; the other record is not read", side.in_words());
@@ -294,79 +286,37 @@ impl Checker<'_> {
                 return None;
             }
             let from = field_of("value").filter(|_| Some(result) != dimension);
-            let evaluation = Evaluation::Values { values, records: Records::Of(side) };
-            let comparison = format!("{} values", side.in_words());
+            let evaluation = Evaluation::Values { values, records: Records::Of(of) };
+            let comparison = match of.record {
+                None => format!("{} values", side.in_words()),
+                Some(_) => format!("values of {}", self.chosen_in_words(of)),
+            };
             return Some(Compared { evaluation, dimension: result, processing, comparison, best: None, from });
         };
         let (difference, compared) = difference?;
         let compare = match compare {
             Some(compare) => compare?,
-            None => Compare::Sides,
+            None => Compare::Pairs(Pairing::SIDES),
         };
         let comparison = self.with_values(&words(&difference));
         let key = if compared != result { "difference" } else { "value" };
         let from = field_of(key).filter(|_| Some(compared) != dimension);
         let best = of_equal_sides(&difference).map(Best::Near).zip(field_of("difference"));
         let (records, comparison) = match compare {
-            Compare::Sides => (Records::Compared { difference }, comparison),
-            Compare::Repeats => {
-                (Records::Repeats { difference }, comparison.replace("measured", "original").replace("simulated", "repeat"))
+            Compare::Pairs(pairing) => {
+                let comparison = self.paired_words(pairing, &comparison);
+                (Records::Compared { pairing, difference }, comparison)
             }
-            Compare::With(side, center) => {
-                let words = comparison.replace("measured", &format!("{} of all", center.in_words())).replace("simulated", side.in_words());
-                (Records::Spread { side, center, difference }, words)
+            Compare::With(of, among, center) => {
+                let all = if among.record.is_some() { self.chosen_in_words(among) } else { "all" };
+                let words =
+                    comparison.replace("measured", &format!("{} of {all}", center.in_words())).replace("simulated", of.side.in_words());
+                let words = if of.record.is_some() { words.replace("simulated", self.chosen_in_words(of)) } else { words };
+                (Records::Spread { of, among, center, difference }, words)
             }
         };
         let evaluation = Evaluation::Values { values, records };
         Some(Compared { evaluation, dimension: compared, processing, comparison, best, from })
-    }
-
-    /// The side in a field such as `from measured`.
-    fn side(&mut self, field: &Field) -> Option<Side> {
-        let word = self.choice_field(field)?;
-        let found = Side::ALL.into_iter().find(|side| side.in_words() == word);
-        if found.is_none() {
-            let problem = Problem::error("unknown-record", format!("`{word}` is not a record of a campaign")).at(&field.value.span);
-            self.problems.push(problem.suggest(&word, Side::ALL.map(Side::in_words)));
-        }
-        found
-    }
-
-    /// Whether a metric compares a repeated section with its original; otherwise simulation with measurement.
-    pub(super) fn of_metric(&mut self, field: &Field, metric: &Span) -> Option<bool> {
-        match self.compare(field)? {
-            Compare::Sides => Some(false),
-            Compare::Repeats => Some(true),
-            Compare::With(..) => {
-                let problem =
-                    Problem::error("metric-and-spread", "a metric compares two signals; a mean of several signals is not available");
-                let help = "use `value` and `difference`, or compare `simulated with measured` or `repeats with originals`";
-                self.problems.push(problem.at(&field.value.span).also(metric, "the metric").help(help));
-                None
-            }
-        }
-    }
-
-    /// What is compared: `simulated with measured`, `simulated with mean of simulated`, `repeats with originals`.
-    fn compare(&mut self, field: &Field) -> Option<Compare> {
-        let words = normalised(&field.value.text);
-        let all: Vec<&str> = words.split(' ').collect();
-        let side = |word: &str| Side::ALL.into_iter().find(|side| side.in_words() == word);
-        match all.as_slice() {
-            ["simulated", "with", "measured"] => return Some(Compare::Sides),
-            ["repeats", "with", "originals"] => return Some(Compare::Repeats),
-            [of, "with", center @ ("mean" | "median"), "of", other] if of == other => {
-                if let Some(side) = side(of) {
-                    return Some(Compare::With(side, if *center == "mean" { Center::Mean } else { Center::Median }));
-                }
-            }
-            _ => {}
-        }
-        let problem =
-            Problem::error("unknown-comparison", format!("`{words}` does not say which records are compared")).at(&field.value.span);
-        let help = "write `simulated with measured`, `simulated with mean of simulated` (for several records) or `repeats with originals`";
-        self.problems.push(problem.help(help));
-        None
     }
 
     fn value(&mut self, field: &Field, positions: Option<&[(Position, Assignment)]>, chain: &[Step]) -> Option<(Valued, Dimension)> {

@@ -203,7 +203,7 @@ impl Checker<'_> {
     pub(super) fn independent(&mut self, block: Option<&Block>) -> Independent {
         let Some(field) = block.and_then(|block| block.field("independent")) else { return Independent::Site };
         let Some(word) = self.choice_field(field) else { return Independent::Site };
-        let column = self.names.columns.iter().position(|datum| datum.name == word);
+        let column = self.campaign_column(&word, &field.value.span);
         match (word.as_str(), column) {
             ("site", _) => Independent::Site,
             ("section", _) => Independent::Section,
@@ -211,7 +211,7 @@ impl Checker<'_> {
             _ => {
                 let known: Vec<String> = self.names.columns.iter().map(|datum| datum.name.clone()).collect();
                 let says = format!("`{word}` is neither `site`, `section` nor a section column");
-                let known = known.iter().map(String::as_str).chain(["site", "section"]);
+                let known = known.iter().map(String::as_str).chain(["site", "section", "campaign"]);
                 self.problems.push(Problem::error("unknown-name", says).at(&field.value.span).suggest(&word, known));
                 Independent::Site
             }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::Checker;
 use super::names::bare_word;
-use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Taken, Type};
+use super::plan::{Datum, DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Taken, Type};
 use super::scalars::{Reduce, Scope};
 use crate::catalog::{METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
 use crate::problem::Problem;
@@ -16,6 +16,9 @@ use crate::units::Unit;
 /// The meaning of a statistic's name in the bound of a limit, and how to limit an expression of values instead.
 pub(super) const LIMITS_NOT_VALUES: &str = "in a limit, the name of a statistic stands for the limit of that statistic, not for its \
     value; an expression of values stands before the limit: `limit (mean + 3 * std) 60 kN`";
+
+/// What says to which campaign of several a section belongs.
+pub(super) const CAMPAIGN: &str = "campaign";
 
 impl Checker<'_> {
     /// A value taken from the own signal of the quantity.
@@ -200,7 +203,11 @@ impl Checker<'_> {
         let of = |data: &[super::plan::Datum], wanted: &str| {
             if role.is_empty() || role == wanted { data.iter().position(|datum| datum.name == name) } else { None }
         };
-        let (column, vehicle) = (of(&self.names.columns, "section"), of(&self.names.vehicle, "vehicle"));
+        let vehicle = of(&self.names.vehicle, "vehicle");
+        let column = of(&self.names.columns, "section").or_else(|| {
+            let asked = vehicle.is_none() && (role.is_empty() || role == "section");
+            if asked { self.campaign_column(name, span) } else { None }
+        });
         if column.is_some() && vehicle.is_some() {
             self.problems.push(
                 Problem::error("ambiguous", format!("`{name}` is both a vehicle datum and a section column"))
@@ -240,6 +247,27 @@ impl Checker<'_> {
                 .help("make it a `parameter`, which a campaign can set"),
         );
         Some(None)
+    }
+
+    /// The column that says to which campaign a section belongs: it need not be declared, and is there once something asks for it. A column
+    /// that the protocol declares by this name goes before it.
+    pub(super) fn campaign_column(&mut self, name: &str, span: &Span) -> Option<usize> {
+        if let Some(known) = self.names.columns.iter().position(|datum| datum.name == name) {
+            return Some(known);
+        }
+        (name == CAMPAIGN && !self.is_signal(name)).then(|| {
+            self.names.columns.push(Datum {
+                name: CAMPAIGN.into(),
+                title: "Campaign".into(),
+                key: CAMPAIGN.into(),
+                kind: DatumKind::Campaign,
+                default: None,
+                may_be_absent: false,
+                range: None,
+                span: span.clone(),
+            });
+            self.names.columns.len() - 1
+        })
     }
 
     /// Whether `word of ...` is a product, because a parameter, definition or datum has this name.
@@ -303,6 +331,7 @@ impl Checker<'_> {
             known.extend(METRICS.iter().map(MetricEntry::call_in_words));
         }
         if scope.section {
+            known.push(CAMPAIGN.into());
             known.extend(self.names.columns.iter().map(|datum| datum.name.clone()));
         }
         if scope.vehicle {
@@ -341,6 +370,8 @@ fn datum_type(kind: &DatumKind) -> Type {
         DatumKind::Number(unit) => Type::Number(unit.dimension),
         DatumKind::Words(words) => Type::Word(words.clone()),
         DatumKind::Flag => Type::Flag,
+        // Any word: the campaigns are not known before the run.
+        DatumKind::Campaign => Type::Word(Vec::new()),
     }
 }
 

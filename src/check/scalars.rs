@@ -5,11 +5,11 @@ use super::conditions::impossible;
 use super::estimates::Group;
 use super::evaluate::{Nothing, evaluate, words};
 use super::names::Assignment;
-use super::plan::{Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Taking, Type};
+use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Taking, Type};
 use super::signals::is_signal_function;
 use crate::catalog::{FUNCTIONS, Function, MetricEntry, Reducer, SIGNAL_FUNCTIONS, Signature};
 use crate::problem::Problem;
-use crate::source::Span;
+use crate::source::{Span, Spanned};
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Dimension;
@@ -130,6 +130,11 @@ impl Checker<'_> {
             Node::Percentile(percent) if scope.group.is_some() => return self.group_percentile(*percent, &span, scope)?,
             Node::Percentile(percent) => return self.own_reducer(Reducer::Percentile(*percent), span, scope),
             Node::Path(path) => return self.path(path, &span, scope),
+            Node::Quoted(name) => {
+                let says = format!("`\"{name}\"` is a name, which only a word can be compared with");
+                self.problems.push(Problem::error("not-a-number", says).at(&span).help("for instance: `campaign is \"series 2\"`"));
+                return None;
+            }
             Node::Negative(inner) => {
                 let inner = self.expr(inner, text, scope)?;
                 let dimension = self.number_type(&inner)?;
@@ -361,6 +366,7 @@ impl Checker<'_> {
             (Type::Word(choices), node) => {
                 let word = match node {
                     Node::Path(path) => path.clone(),
+                    Node::Quoted(word) => word.clone(),
                     Node::Number { value, unit: None } => value.to_string(),
                     _ => {
                         self.problems.push(
@@ -372,8 +378,11 @@ impl Checker<'_> {
                     }
                 };
                 // A choice parameter stands for its value, unless a word with its name is among the choices.
-                let word = if choices.contains(&word) { word } else { self.choice_word(&word, &right_span)? };
-                if !choices.contains(&word) {
+                let meant = choices.contains(&word) || matches!(node, Node::Quoted(_));
+                let word = if meant { word } else { self.choice_word(&word, &right_span)? };
+                if self.is_campaign(&left) {
+                    self.campaigns.push(Spanned::new(word.clone(), right_span.span.clone()));
+                } else if !choices.contains(&word) {
                     self.problems.push(
                         Problem::error("unknown-choice", format!("`{}` cannot be `{word}`", words(&left)))
                             .at(&right_span)
@@ -398,6 +407,10 @@ impl Checker<'_> {
             }
         };
         self.folded(Expr { kind: Kind::Binary(operator, Box::new(left), Box::new(right)), ty: Type::Flag, span: span.clone() })
+    }
+
+    fn is_campaign(&self, expr: &Expr) -> bool {
+        matches!(expr.kind, Kind::Column(index) if self.names.columns[index].kind == DatumKind::Campaign)
     }
 
     /// Replaces an expression of constants by its value; a problem where there is none, such as for a division by zero.

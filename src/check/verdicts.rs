@@ -283,7 +283,7 @@ fn notes(block: &Block) -> Vec<String> {
 /// The word of [`KINDS`] for a quantity.
 fn kind(quantity: &Quantity) -> &'static str {
     match quantity.evaluation.as_ref() {
-        Evaluation::Values { records: Records::Of(Side::Measured), .. } => "measured",
+        Evaluation::Values { records: Records::Of(of), .. } if of.side == Side::Measured => "measured",
         Evaluation::Values { records: Records::Of(_), .. } => "simulated",
         _ => "compared",
     }

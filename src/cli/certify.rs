@@ -5,11 +5,12 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::inputs::{Prepared, prepare, progress_bar, start_jobs};
+use super::inputs::{Pool, prepare_all, progress_bar, start_jobs};
 use super::output::{Console, Exit};
 use super::places::{REPORT, check_folder};
 use super::sign;
 use crate::certify::certify;
+use crate::data::Campaigns;
 use crate::disk::{SIGNATURE, SetKind};
 use crate::problem::{Problem, Problems, plain};
 use crate::provenance::carried::REPORT_PDF;
@@ -24,8 +25,9 @@ pub const PLOTS: usize = 8;
 
 #[derive(Debug, Args)]
 pub struct Certify {
-    /// Folder of the campaign.
-    campaign: PathBuf,
+    /// Folder of the campaign; several are evaluated as one.
+    #[arg(required = true, value_name = "CAMPAIGN")]
+    campaigns: Vec<PathBuf>,
     /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
     #[arg(long, short)]
     protocol: Option<String>,
@@ -67,22 +69,22 @@ impl Certify {
             return exit;
         }
         let mut problems = Problems::default();
-        let prepared = prepare(&self.campaign, self.protocol.as_deref(), &self.set, &mut problems);
-        if let Some(Prepared { campaign, .. }) = &prepared
-            && let Err(problem) = check_folder(&self.out, REPORT, campaign)
-        {
-            problems.push(problem);
+        let prepared = prepare_all(&self.campaigns, self.protocol.as_deref(), &self.set, &mut problems);
+        for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
+            if let Err(problem) = check_folder(&self.out, REPORT, campaign) {
+                problems.push(problem);
+            }
         }
         console.problems(&problems);
-        let Some(Prepared { compiled, campaign, .. }) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let Some(Pool { compiled, campaigns, .. }) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
         // The password is read before the computation, so that a wrong one is reported at once.
         let key = match self.sign.as_deref().map(|path| secret_key(path, sign::password())).transpose() {
             Ok(key) => key,
             Err(problem) => return console.fail(problem, Exit::Wrong),
         };
-        let bar = progress_bar(console, campaign.names.len());
+        let bar = progress_bar(console, Campaigns::from(&campaigns).sections());
         let settings = Settings { traces: if self.only == Only::Results { 0 } else { self.plots } };
-        let found = certify(&compiled, &campaign, settings, &|section| {
+        let found = certify(&compiled, &campaigns, settings, &|section| {
             bar.set_message(plain(section));
             bar.inc(1);
         });

@@ -169,7 +169,7 @@ pub fn diagnosed(
     trying: &(dyn Fn(&str) + Sync),
     problems: &mut Problems,
 ) -> Option<(Campaign, Outcome)> {
-    let Prepared { compiled, campaign, .. } = prepare(asked.folder, asked.protocol, &[], problems)?;
+    let Prepared { compiled, campaign } = prepare(asked.folder, asked.protocol, &[], problems)?;
     places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
     let catalogue = load_catalogue(asked.catalogue, problems)?;
     let settings = Settings::read(&catalogue, problems)?;

@@ -1,7 +1,7 @@
 //! Common inputs of the subcommands that evaluate a protocol on a campaign.
 
 use std::num::NonZeroUsize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -11,8 +11,8 @@ use super::protocols::load;
 use crate::certify::{Compiled, compile};
 use crate::check::family::{self, Family};
 use crate::check::{Override, Overrides, plan::SetBy};
-use crate::data::Campaign;
 use crate::data::text::read_text;
+use crate::data::{Campaign, Campaigns};
 use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Spanned};
@@ -42,21 +42,59 @@ pub fn start_jobs(jobs: Option<NonZeroUsize>, console: &Console) -> Result<(), E
 pub struct Prepared {
     pub compiled: Compiled,
     pub campaign: Campaign,
+}
+
+/// A compiled protocol and the campaigns that it is evaluated on as one.
+#[derive(Debug)]
+pub struct Pool {
+    pub compiled: Compiled,
+    pub campaigns: Vec<Campaign>,
     pub overrides: Overrides,
 }
 
 /// Opens a campaign and compiles the protocol named on the command line, else the campaign's, else the first shipped one.
 pub fn prepare(folder: &Path, protocol: Option<&str>, set: &[String], problems: &mut Problems) -> Option<Prepared> {
-    let campaign = Campaign::open(folder, problems)?;
-    let family = match (protocol, &campaign.protocol) {
-        (Some(name), _) => load(name, problems),
-        (None, Some(named)) => campaign_protocol(&campaign, named, problems),
-        (None, None) => load(library::SHIPPED[0].name, problems),
+    let Pool { compiled, mut campaigns, .. } = prepare_all(&[folder.to_path_buf()], protocol, set, problems)?;
+    Some(Prepared { compiled, campaign: campaigns.pop()? })
+}
+
+/// As [`prepare`], of several campaigns.
+pub fn prepare_all(folders: &[PathBuf], protocol: Option<&str>, set: &[String], problems: &mut Problems) -> Option<Pool> {
+    let opened: Vec<Option<Campaign>> = folders.iter().map(|folder| Campaign::open(folder, problems)).collect();
+    let campaigns: Vec<Campaign> = opened.into_iter().collect::<Option<_>>()?;
+    Campaigns::from(&campaigns).check(problems);
+    let family = match protocol {
+        Some(name) => load(name, problems),
+        None => own_protocol(&campaigns, problems),
     }?;
-    let overrides = overrides(set, &campaign, problems)?;
+    let overrides = overrides(set, &campaigns, problems)?;
     let compiled = compile(family, &overrides, problems)?;
-    facts_like_parameters(&compiled, &campaign, problems);
-    Some(Prepared { compiled, campaign, overrides })
+    campaigns.iter().for_each(|campaign| facts_like_parameters(&compiled, campaign, problems));
+    Some(Pool { compiled, campaigns, overrides })
+}
+
+/// The protocol that the campaigns name: all the same one.
+fn own_protocol(campaigns: &[Campaign], problems: &mut Problems) -> Option<Family> {
+    let first = campaigns.first()?;
+    let name = |campaign: &Campaign| campaign.protocol.as_ref().map(|named| named.value.clone());
+    let at = |campaign: &Campaign| campaign.protocol.as_ref().map_or(campaign.short_name.span.clone(), |named| named.span.clone());
+    let called = |campaign: &Campaign| name(campaign).map_or_else(|| "none".to_string(), |name| format!("`{name}`"));
+    if let Some(other) = campaigns.iter().find(|other| name(other) != name(first)) {
+        let says = format!("the campaigns name different protocols: {} and {}", called(first), called(other));
+        let problem = Problem::error("several-protocols", says).at(&at(other)).also(&at(first), "the first");
+        problems.push(problem.help("name the one that is meant: `--protocol`"));
+        return None;
+    }
+    match &first.protocol {
+        Some(named) if campaigns.len() > 1 && library::shipped(&named.value).is_none() => {
+            let says = format!("each campaign has a protocol `{}` of its own", named.value);
+            let problem = Problem::error("several-protocols", says).at(&named.span);
+            problems.push(problem.help("name the one that is meant: `--protocol`"));
+            None
+        }
+        Some(named) => campaign_protocol(first, named, problems),
+        None => load(library::SHIPPED[0].name, problems),
+    }
 }
 
 /// A fact of the campaign sets nothing; one with the name of a parameter was most likely meant to.
@@ -68,10 +106,24 @@ fn facts_like_parameters(compiled: &Compiled, campaign: &Campaign, problems: &mu
     }
 }
 
-/// Parameters of the campaign, and over them those of the command line.
-fn overrides(set: &[String], campaign: &Campaign, problems: &mut Problems) -> Option<Overrides> {
+/// Parameters of the campaigns, which must set them alike, and over them those of the command line.
+fn overrides(set: &[String], campaigns: &[Campaign], problems: &mut Problems) -> Option<Overrides> {
     let mut overrides = Overrides::new();
-    for parameter in &campaign.parameters {
+    let on_command_line = |name: &str| set.iter().any(|set| set.split_once('=').is_some_and(|(set, _)| set.trim() == name));
+    for parameter in campaigns.iter().flat_map(|campaign| &campaign.parameters) {
+        let name = &parameter.name.text;
+        let same =
+            |other: &&Campaign| other.parameters.iter().any(|other| (&other.name.text, &other.value.raw) == (name, &parameter.value.raw));
+        if let Some(other) = campaigns.iter().find(|other| !same(other)).filter(|_| !on_command_line(name)) {
+            let says =
+                format!("the parameter `{name}` is `{}` here, and not in the campaign `{}`", parameter.value.raw, other.short_name.value);
+            let set = other.parameters.iter().find(|other| other.name.text == *name);
+            let place = set.map_or(&other.short_name.span, |set| &set.value.span);
+            let problem = Problem::error("parameters-differ", says).at(&parameter.value.span);
+            let problem = problem.also(place, if set.is_some() { "another value" } else { "not set" });
+            problems.push(problem.help(format!("set one for all: `--set {name}=...`")));
+            return None;
+        }
         let value = &parameter.value;
         let text = Text { text: value.raw.clone(), span: value.span.clone(), exact: value.exact };
         overrides.insert(parameter.name.text.clone(), Override { text, set_by: SetBy::Campaign });

@@ -49,7 +49,9 @@ pub enum Color {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Evaluate a protocol on a campaign and write the report.
-    #[command(after_help = "Example:\n  fishplate certify examples/coach --out target/coach-report")]
+    #[command(
+        after_help = "Examples:\n  fishplate certify examples/coach --out target/coach-report\n  fishplate certify examples/coach-good examples/coach --out target/coach-pool"
+    )]
     Certify(certify::Certify),
     /// Check that a report is consistent and, with its campaign, that the same files still give the same numbers and pages.
     #[command(

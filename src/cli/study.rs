@@ -5,10 +5,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::inputs::{Prepared, prepare, progress_bar, start_jobs};
+use super::inputs::{Pool, prepare_all, progress_bar, start_jobs};
 use super::output::{Console, Exit, reports};
 use super::places::{REPORT, check_folder};
 use super::values::{numbers, values};
+use crate::data::Campaigns;
 use crate::disk::SetKind;
 use crate::problem::{Problem, Problems, plain};
 use crate::report::study as report;
@@ -56,8 +57,9 @@ pub enum Study {
 
 #[derive(Debug, Args)]
 pub struct Common {
-    /// Folder of the campaign.
-    campaign: PathBuf,
+    /// Folder of the campaign; several are evaluated as one.
+    #[arg(required = true, value_name = "CAMPAIGN")]
+    campaigns: Vec<PathBuf>,
     /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
     #[arg(long, short)]
     protocol: Option<String>,
@@ -97,11 +99,11 @@ impl Study {
         }
         let mut problems = common.wrong();
         let asked = self.asked(&mut problems);
-        let prepared = prepare(&common.campaign, common.protocol.as_deref(), &common.set, &mut problems);
-        if let Some(prepared) = &prepared
-            && let Err(problem) = check_folder(&common.out, REPORT, &prepared.campaign)
-        {
-            problems.push(problem);
+        let prepared = prepare_all(&common.campaigns, common.protocol.as_deref(), &common.set, &mut problems);
+        for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
+            if let Err(problem) = check_folder(&common.out, REPORT, campaign) {
+                problems.push(problem);
+            }
         }
         console.problems(&problems);
         let Some((asked, prepared)) = asked.zip(prepared).filter(|_| !problems.any_error()) else { return Exit::Wrong };
@@ -156,11 +158,12 @@ enum Asked {
 }
 
 impl Asked {
-    fn found(self, common: &Common, prepared: &Prepared, console: &Console) -> Result<found::Study, Problems> {
-        let Prepared { compiled, campaign, overrides } = prepared;
+    fn found(self, common: &Common, prepared: &Pool, console: &Console) -> Result<found::Study, Problems> {
+        let Pool { compiled, campaigns, overrides } = prepared;
+        let campaigns = Campaigns::from(campaigns);
         robustness::countable(compiled)?;
         // A selection takes one value of each section and signal.
-        if let (Self::Sections | Self::Sync(_), Err(problem)) = (&self, campaign.one_of_each()) {
+        if let (Self::Sections | Self::Sync(_), Err(problem)) = (&self, campaigns.one_of_each()) {
             return Err(Problems(vec![problem]));
         }
         let settings = common.settings();
@@ -171,7 +174,7 @@ impl Asked {
         };
         let steps = match &self {
             Self::Parameters(_) => 1 + vary.iter().map(|vary| vary.values.len()).sum::<usize>(),
-            _ => campaign.names.len(),
+            _ => campaigns.sections(),
         };
         let bar = progress_bar(console, steps);
         let progress = |step: &str| {
@@ -179,9 +182,9 @@ impl Asked {
             bar.inc(1);
         };
         let found = match &self {
-            Self::Sections => robustness::sections(compiled, campaign, &settings, &progress),
-            Self::Sync(asked) => robustness::synchronisation(compiled, campaign, &settings, asked, &progress),
-            Self::Parameters(_) => robustness::parameters(compiled, campaign, overrides, &settings, &vary, &progress),
+            Self::Sections => robustness::sections(compiled, campaigns, &settings, &progress),
+            Self::Sync(asked) => robustness::synchronisation(compiled, campaigns, &settings, asked, &progress),
+            Self::Parameters(_) => robustness::parameters(compiled, campaigns, overrides, &settings, &vary, &progress),
         };
         bar.finish_and_clear();
         found

@@ -21,8 +21,10 @@ use crate::report::visible::visible;
 pub struct Verify {
     /// A report of `certify`: report.pdf, its folder, or results.json.
     report: PathBuf,
-    /// Folder of the campaign: its files are compared with the report, and the protocol in the report is evaluated again.
-    campaign: Option<PathBuf>,
+    /// Folder of the campaign, or of each campaign of a pool: the files are compared with the report, and the protocol in the report is
+    /// evaluated again.
+    #[arg(value_name = "CAMPAIGN")]
+    campaigns: Vec<PathBuf>,
     /// Public key for the signature: a file, or the key itself.
     #[arg(long, value_name = "KEY")]
     public_key: Option<String>,
@@ -52,7 +54,7 @@ impl Verify {
             // Fails only if the thread pool exists already, which is not the case here.
             let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
         }
-        if let Some(folder) = self.campaign.as_ref().filter(|folder| !disk::may_exist(folder)) {
+        if let Some(folder) = self.campaigns.iter().find(|folder| !disk::may_exist(folder)) {
             let says = format!("there is no campaign `{}`", folder.display());
             return console.fail(crate::problem::Problem::error("folder-missing", says), Exit::Wrong);
         }
@@ -72,13 +74,17 @@ impl Verify {
         };
         let (mut checks, compiled) = alone(&carried, given.as_ref());
         checks.push(signed);
-        if let Some(campaign) = &self.campaign {
+        if !self.campaigns.is_empty() {
             let bar = progress_bar(console, carried.results.sections.len());
             let progress = |section: &str| {
                 bar.set_message(section.to_string());
                 bar.inc(1);
             };
-            checks.extend(against(&carried, compiled.as_ref(), Again { campaign, plots: self.plots, progress: &progress }));
+            checks.extend(against(
+                &carried,
+                compiled.as_ref(),
+                Again { campaigns: &self.campaigns, plots: self.plots, progress: &progress },
+            ));
             bar.finish_and_clear();
         }
         let any = |outcome: Outcome| checks.iter().any(|check| check.outcome == outcome);
@@ -89,7 +95,7 @@ impl Verify {
         };
         if !console.quiet || exit != Exit::Done {
             let most = if self.all { usize::MAX } else { MOST };
-            if console.print(&told(&carried, &checks, self.campaign.is_some(), most, console.color)) != Exit::Done {
+            if console.print(&told(&carried, &checks, !self.campaigns.is_empty(), most, console.color)) != Exit::Done {
                 return Exit::Unfinished;
             }
         }
@@ -165,9 +171,9 @@ pub struct Trace {
     /// Which record, where the campaign has several: `simpack`, or `simpack, run1` where it has several of both.
     #[arg(long)]
     record: Option<String>,
-    /// Folder of the campaign: rows and values are read and computed again.
-    #[arg(long, value_name = "DIR")]
-    campaign: Option<PathBuf>,
+    /// Folder of the campaign: rows and values are read and computed again. Repeated for each campaign of a pool.
+    #[arg(long = "campaign", value_name = "DIR")]
+    campaigns: Vec<PathBuf>,
     /// The protocol, if the report does not contain it; its SHA-256 must be the one in the results.
     #[arg(long, short)]
     protocol: Option<String>,
@@ -187,14 +193,14 @@ impl Trace {
         let compiled = match carried.sources(given.as_ref()) {
             Ok(sources) => carried.compiled(&sources, &mut problems),
             // Without its protocol, the contents of a report can be shown, but not computed again.
-            Err(problem) if self.campaign.is_some() => return wrong(Problems(vec![problem])),
+            Err(problem) if !self.campaigns.is_empty() => return wrong(Problems(vec![problem])),
             Err(_) => None,
         };
         if problems.any_error() {
             return wrong(problems);
         }
         let asked = Asked { quantity: &self.quantity, section: &self.section, signal: &self.signal, record: self.record.as_deref() };
-        match trace(&carried, compiled.as_ref(), asked, self.campaign.as_deref()) {
+        match trace(&carried, compiled.as_ref(), asked, &self.campaigns) {
             Ok(found) => {
                 let text: Vec<String> = found.text.split('\n').map(visible).collect();
                 match console.print(&text.join("\n")) {

@@ -38,6 +38,8 @@ pub struct Parameter {
 #[derive(Clone, Debug)]
 pub struct Campaign {
     pub name: String,
+    /// What it is called where it stands beside others; the name if it has none.
+    pub short_name: Spanned<String>,
     pub source: Arc<Source>,
     /// The whole of `campaign.yaml`.
     pub tree: Node,
@@ -98,6 +100,7 @@ impl Campaign {
         if name.is_none() && tree.get("name").is_none() {
             opening.problems.push(Problem::error("key-missing", "the campaign has no `name`").at(&tree.span.part(0..0)));
         }
+        let short_name = opening.text(&tree, facts::SHORT_NAME);
         opening.misspelt(&tree);
         let vehicle = opening.vehicle(&tree);
         let sections = opening.sections(&tree);
@@ -110,6 +113,10 @@ impl Campaign {
         let report = identification::read(&tree, opening.problems);
         let Opening { folder, files, .. } = opening;
         let mut campaign = Self {
+            short_name: short_name.unwrap_or_else(|| {
+                let at = tree.get("name").map_or_else(|| tree.span.part(0..0), |node| node.span.clone());
+                Spanned::new(name.clone().unwrap_or_default(), at)
+            }),
             name: name.unwrap_or_default(),
             facts: facts::facts(&tree),
             parameters,
@@ -150,6 +157,11 @@ impl Campaign {
                 problems.push(problem);
             }
         }
+    }
+
+    /// The folder of the campaign, without symbolic links.
+    pub fn folder(&self) -> &Path {
+        self.folder.real()
     }
 
     /// The path inside the campaign of a file that a message names by the folder as it was given.

@@ -14,6 +14,8 @@ pub(super) struct RecordFolder {
     pub kind: RecordKind,
     /// Where there are several of the kind.
     pub name: Option<Arc<str>>,
+    /// What a list or a map calls it, also if it is the only one.
+    pub called: Option<Arc<str>>,
     pub folder: Spanned<String>,
     /// Files that belong to no section; listed if a record is missing.
     pub strangers: OnceLock<Vec<String>>,
@@ -43,7 +45,7 @@ pub(super) fn read(tree: &Node, kind: RecordKind, folder: &Folder, problems: &mu
     let Some(node) = tree.get(kind.key()) else { return Vec::new() };
     let several = matches!(node.value, Value::List(_) | Value::Map(_)) && kind != RecordKind::Track;
     if !several {
-        return text(node, kind.key(), problems).map(|folder| of(kind, None, folder)).into_iter().collect();
+        return text(node, kind.key(), problems).map(|folder| of(kind, None, None, folder)).into_iter().collect();
     }
     let mut found: Vec<(Spanned<String>, Spanned<String>)> = Vec::new();
     for item in node.items() {
@@ -83,11 +85,15 @@ pub(super) fn read(tree: &Node, kind: RecordKind, folder: &Folder, problems: &mu
         }
     }
     let one = found.len() == 1;
-    found.into_iter().map(|(name, folder)| of(kind, (!one).then(|| name.value.into()), folder)).collect()
+    let named = |(name, folder): (Spanned<String>, Spanned<String>)| {
+        let called: Arc<str> = name.value.into();
+        of(kind, (!one).then(|| Arc::clone(&called)), Some(called), folder)
+    };
+    found.into_iter().map(named).collect()
 }
 
-fn of(kind: RecordKind, name: Option<Arc<str>>, folder: Spanned<String>) -> RecordFolder {
-    RecordFolder { kind, name, folder, strangers: OnceLock::new() }
+fn of(kind: RecordKind, name: Option<Arc<str>>, called: Option<Arc<str>>, folder: Spanned<String>) -> RecordFolder {
+    RecordFolder { kind, name, called, folder, strangers: OnceLock::new() }
 }
 
 fn text(node: &Node, key: &str, problems: &mut Problems) -> Option<Spanned<String>> {

@@ -4,6 +4,7 @@
 //! | file | content |
 //! |---|---|
 //! | `campaign` | a campaign folder: `campaign.yaml`, the vehicle, the sections, where the records are |
+//! | `campaigns` | several campaigns evaluated as one |
 //! | `identification` | identification of the report |
 //! | `members` | the folders of records, one or several of a kind |
 //! | `record` | one sampled record; optimised for speed |
@@ -16,6 +17,7 @@
 //! | `write` | output files |
 
 pub mod campaign;
+mod campaigns;
 mod cells;
 pub mod checks;
 mod faults;
@@ -32,6 +34,7 @@ pub mod text;
 pub mod write;
 
 pub use campaign::{Campaign, RecordKind};
+pub use campaigns::{Campaigns, qualified};
 pub use cells::Heading;
 pub use checks::{Axis, check_axis};
 pub use folder::Place;

@@ -49,6 +49,11 @@ pub fn sites(table: &Table, problems: &mut Problems) -> Vec<usize> {
     (0..rows).map(|row| sets.first(row)).collect()
 }
 
+/// What the column `site` says of a section.
+pub fn site_text<'a>(table: &'a Table, section: &str) -> Option<&'a str> {
+    Column::of(table, SITE).text(table.row_named(section)?)
+}
+
 /// For each row, the row that it repeats; none where `repeat of` is empty or names no other row.
 pub fn originals(table: &Table) -> Vec<Option<usize>> {
     let repeat = Column::of(table, REPEAT_OF);

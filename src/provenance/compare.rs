@@ -30,7 +30,7 @@ pub struct Compared {
 }
 
 /// Keys that identify entries of a list, so that an additional entry does not change those after it.
-const NAMES: &[&str] = &["id", "name", "path", "zone", "section", "signal", "scope", "rule", "code", "channel"];
+const NAMES: &[&str] = &["id", "name", "path", "zone", "campaign", "section", "signal", "scope", "rule", "code", "channel"];
 
 /// Compares two results completely.
 pub fn compare(before: &Value, after: &Value, at: &str) -> Compared {

@@ -50,8 +50,16 @@ pub struct Parameter {
 #[derive(Clone, Debug, Deserialize)]
 pub struct Campaign {
     pub name: String,
+    /// The campaigns of a pool.
+    #[serde(default)]
+    pub members: Vec<Member>,
     pub files: Vec<File>,
     pub vehicle: Vec<Item>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub struct Member {
+    pub short_name: String,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -75,10 +83,17 @@ pub struct Record {
 pub struct Item {
     pub value: String,
     pub used: bool,
+    /// Whose it is, where there are several vehicles.
+    #[serde(default)]
+    pub of: Option<String>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 pub struct Section {
+    #[serde(default)]
+    pub campaign: Option<String>,
+    #[serde(default)]
+    pub vehicle: Option<String>,
     pub section: String,
     /// The first section of its site.
     #[serde(default)]
@@ -167,9 +182,19 @@ impl Results {
     /// # Errors
     /// A quantity of the protocol is missing.
     pub fn recorded(&self, plan: &Plan) -> Result<Recorded, String> {
-        let vehicle = self.campaign.vehicle.iter().filter(|item| item.used).map(|item| item.value.clone()).collect();
+        let used = || self.campaign.vehicle.iter().filter(|item| item.used);
+        let mut of: Vec<Option<String>> = Vec::new();
+        for vehicle in self.sections.iter().map(|section| &section.vehicle).chain(used().map(|item| &item.of)) {
+            if !of.contains(vehicle) {
+                of.push(vehicle.clone());
+            }
+        }
+        let data = |of: Option<String>| (of.clone(), used().filter(|item| item.of == of).map(|item| item.value.clone()).collect());
+        let vehicles = of.into_iter().map(data).collect();
         let section = |section: &Section| RecordedSection {
             name: section.section.clone(),
+            campaign: section.campaign.clone(),
+            vehicle: section.vehicle.clone(),
             site: section.site.clone().unwrap_or_else(|| section.section.clone()),
             zone: section.zone.clone(),
             fault: (!section.used).then(|| section.reason.clone().unwrap_or_default()),
@@ -194,6 +219,6 @@ impl Results {
             values.push(found.values.iter().map(value).collect());
         }
         let sections = self.sections.iter().map(section).collect();
-        Ok(Recorded { vehicle, sections, values, findings: self.findings.clone(), application: self.application.clone() })
+        Ok(Recorded { vehicles, sections, values, findings: self.findings.clone(), application: self.application.clone() })
     }
 }

@@ -34,6 +34,11 @@ pub fn statement(found: &Certification, files: &[(String, Vec<u8>)]) -> String {
     let mut dependencies: Vec<Value> =
         protocol.files.iter().map(|file| resource(&format!("protocol/{}", file.name), &file.sha256)).collect();
     dependencies.extend(found.campaign.files.iter().map(|file| resource(&format!("campaign/{}", file.path), &file.sha256)));
+    let mut campaign = Map::from_iter([("name".to_string(), json!(found.campaign.name))]);
+    if !found.campaign.members.is_empty() {
+        let names: Vec<&str> = found.campaign.members.iter().map(|member| member.short_name.as_str()).collect();
+        campaign.insert("members".into(), json!(names));
+    }
     let statement = json!({
         "_type": STATEMENT,
         "subject": subject,
@@ -44,7 +49,7 @@ pub fn statement(found: &Certification, files: &[(String, Vec<u8>)]) -> String {
                 "externalParameters": {
                     "protocol": {"name": protocol.name, "sha256": protocol.sha256},
                     "parameters": parameters,
-                    "campaign": {"name": found.campaign.name},
+                    "campaign": campaign,
                 },
                 "internalParameters": {},
                 "resolvedDependencies": dependencies,

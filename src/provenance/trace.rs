@@ -1,17 +1,17 @@
 //! Traces one number of a report to the line of its rule and to the rows of its data.
 
 use std::fmt::Write;
-use std::path::Path;
+use std::path::PathBuf;
 
 use super::carried::Carried;
 use super::results::{File, Pair, Place, Quantity, Statistic};
 use crate::certify::Compiled;
-use crate::data::Campaign;
+use crate::data::Campaigns;
 use crate::graph::{Node, Operation};
 use crate::problem::{Problem, Problems};
 use crate::report::number::significant;
 use crate::result::took_part;
-use crate::run::single::{Side, Single, single};
+use crate::run::single::{Side, single};
 use crate::source::Span;
 use crate::units::Unit;
 
@@ -38,15 +38,19 @@ pub struct Traced {
 ///
 /// # Errors
 /// `no-such-quantity`, `no-such-section`, `no-such-signal`, `not-evaluated`; problems of the campaign.
-pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, campaign: Option<&Path>) -> Result<Traced, Problems> {
+pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, campaigns: &[PathBuf]) -> Result<Traced, Problems> {
     let (quantity, pair) = find(carried, asked).map_err(|problem| Problems(vec![problem]))?;
     let index = compiled.and_then(|compiled| {
         let index = compiled.plan.quantities.iter().position(|known| known.id == quantity.id)?;
         let signal = compiled.plan.quantities[index].positions.iter().position(|position| position.name == pair.signal)?;
         Some((index, signal))
     });
-    let again = match (compiled, index, campaign) {
-        (Some(compiled), Some(index), Some(folder)) => Some(compute(compiled, index, folder, (asked.section, pair.record.as_deref()))?),
+    let again = match (compiled, index) {
+        (Some(compiled), Some(index)) if !campaigns.is_empty() => {
+            let opened = super::verify::open(carried, campaigns)?;
+            let (plan, graph) = (&compiled.plan, &compiled.graph);
+            Some(single(plan, graph, Campaigns::from(&opened), index, (asked.section, pair.record.as_deref()))?)
+        }
         _ => None,
     };
     let mut out = head(quantity, pair);
@@ -59,7 +63,8 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
     }
     let mut agrees = true;
     let read = |file: &File| again.as_ref().is_some_and(|again| again.records.iter().any(|side| side.file.path == file.path));
-    let files: Vec<&File> = records(carried, pair, &read).collect();
+    let within = compiled.zip(index).and_then(|(compiled, index)| compiled.plan.quantities[index.0].evaluation.pairing()?.within());
+    let files: Vec<&File> = records(carried, pair, within.map(|side| side.kind().key()), &read).collect();
     for file in &files {
         let side = again.as_ref().and_then(|again| again.records.iter().find(|side| side.file.path == file.path));
         agrees &= record(&mut out, file, pair, side, compiled.zip(index));
@@ -113,13 +118,6 @@ fn find<'a>(carried: &'a Carried, asked: Asked<'_>) -> Result<(&'a Quantity, &'a
         let says = format!("{} has no record `{record}` in section {}", quantity.id, asked.section);
         Problem::error("no-such-record", says).suggest(record, names)
     })
-}
-
-fn compute(compiled: &Compiled, index: (usize, usize), folder: &Path, section: (&str, Option<&str>)) -> Result<Single, Problems> {
-    let mut problems = Problems::default();
-    let campaign = Campaign::open(folder, &mut problems).filter(|_| !problems.any_error());
-    let Some(campaign) = campaign else { return Err(problems) };
-    single(&compiled.plan, &compiled.graph, &campaign, index, section)
 }
 
 fn suffix(unit: &str) -> String {
@@ -189,10 +187,19 @@ fn operations(out: &mut String, carried: &Carried, compiled: &Compiled, index: (
 }
 
 /// The records that a value was taken from, the simulated one first, and those that were read to compute it again.
-fn records<'a>(carried: &'a Carried, pair: &'a Pair, read: &'a dyn Fn(&File) -> bool) -> impl Iterator<Item = &'a File> {
+fn records<'a>(
+    carried: &'a Carried,
+    pair: &'a Pair,
+    within: Option<&'static str>,
+    read: &'a dyn Fn(&File) -> bool,
+) -> impl Iterator<Item = &'a File> {
+    let took_part = move |kind: &str, name: Option<&str>| match (within, pair.record.as_deref().and_then(|of| of.split_once(", "))) {
+        (Some(within), Some((first, second))) => kind == within && name.is_some_and(|name| name == first || name == second),
+        _ => took_part(pair.record.as_deref(), kind == "simulation", name),
+    };
     let of = move |file: &&File, kind: &str| {
         file.record.as_ref().is_some_and(|record| {
-            let own = record.section == pair.section && took_part(pair.record.as_deref(), kind == "simulation", record.name.as_deref());
+            let own = record.section == pair.section && took_part(kind, record.name.as_deref());
             record.kind == kind && (own || read(file))
         })
     };

@@ -1,6 +1,6 @@
 //! Verification of a report, alone and against its campaign.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
@@ -8,9 +8,9 @@ use super::carried::Carried;
 use super::compare::{Compared, Difference, compare};
 use crate::certify::{Compiled, certify, protocol_info};
 use crate::check::family::Family;
-use crate::data::Campaign;
 use crate::data::fingerprint::fingerprint;
 use crate::data::hash::sha256;
+use crate::data::{Campaign, Campaigns};
 use crate::problem::{Problem, Problems};
 use crate::report::{attached, figure, json, typst, view};
 use crate::result::Certification;
@@ -198,7 +198,8 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
 #[allow(missing_debug_implementations, reason = "a function has none")]
 #[derive(Clone, Copy)]
 pub struct Again<'a> {
-    pub campaign: &'a Path,
+    /// The campaign of the report, or all of its pool in any order.
+    pub campaigns: &'a [PathBuf],
     /// Number of distance plots of the report.
     pub plots: usize,
     pub progress: Progress<'a>,
@@ -206,9 +207,25 @@ pub struct Again<'a> {
 
 /// Checks of inputs, numbers and pages against the campaign.
 pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>) -> Vec<Check> {
+    let members = &carried.results.campaign.members;
+    if again.campaigns.len() != members.len().max(1) {
+        let says = match members.len() {
+            0 => format!("the report is of one campaign, and {} are given", again.campaigns.len()),
+            many => {
+                let names: Vec<&str> = members.iter().map(|member| member.short_name.as_str()).collect();
+                format!("the report is of {many} campaigns, give all of them: {}", names.join("; "))
+            }
+        };
+        return vec![Check::not_possible("input files", says)];
+    }
+    let opened = open(carried, again.campaigns);
     let mut lost = Vec::new();
     for file in &carried.results.campaign.files {
-        match fingerprint(again.campaign, &file.path) {
+        let Some((folder, inside)) = place(carried, again.campaigns, &opened, &file.path) else {
+            lost.push(format!("missing: {}", file.path));
+            continue;
+        };
+        match fingerprint(folder, inside) {
             Ok(Some((hash, _))) if hash == file.sha256 => {}
             Ok(Some((hash, bytes))) => lost.push(format!(
                 "changed: {}: SHA-256 {} ({} bytes) in the report, {hash} ({bytes} bytes) now",
@@ -218,7 +235,10 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
             Err(problem) => lost.push(format!("not readable: {}: {}", file.path, problem.says)),
         }
     }
-    let certified = compiled.map(|compiled| run(compiled, again));
+    let certified = compiled.map(|compiled| {
+        let campaigns = opened.as_ref().map_err(Clone::clone)?;
+        certify(compiled, Campaigns::from(campaigns), Settings { traces: again.plots }, again.progress)
+    });
     if let Some(Ok(found)) = &certified {
         let known = |path: &str| carried.results.campaign.files.iter().any(|file| file.path == path);
         let extra = found.campaign.files.iter().filter(|file| !known(&file.path));
@@ -245,11 +265,43 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
     checks
 }
 
-fn run(compiled: &Compiled, again: Again<'_>) -> Result<Certification, Problems> {
+/// The campaigns of the report in its order.
+///
+/// # Errors
+/// One cannot be opened, or is not of the pool.
+pub fn open(carried: &Carried, folders: &[PathBuf]) -> Result<Vec<Campaign>, Problems> {
     let mut problems = Problems::default();
-    let campaign = Campaign::open(again.campaign, &mut problems);
-    let Some(campaign) = campaign.filter(|_| !problems.any_error()) else { return Err(problems) };
-    certify(compiled, &campaign, Settings { traces: again.plots }, again.progress)
+    let mut opened: Vec<Campaign> = folders.iter().filter_map(|folder| Campaign::open(folder, &mut problems)).collect();
+    if problems.any_error() {
+        return Err(problems);
+    }
+    let members: Vec<&str> = carried.results.campaign.members.iter().map(|member| member.short_name.as_str()).collect();
+    if !members.is_empty() {
+        for campaign in &opened {
+            let name = &campaign.short_name;
+            if !members.contains(&name.value.as_str()) {
+                let problem = Problem::error("unknown-campaign", format!("the report has no campaign `{}`", name.value)).at(&name.span);
+                problems.push(problem.suggest(&name.value, members.iter().copied()));
+            }
+        }
+        opened.sort_by_key(|campaign| members.iter().position(|name| *name == campaign.short_name.value));
+    }
+    if problems.any_error() { Err(problems) } else { Ok(opened) }
+}
+
+/// The folder of a file of the report, and its path there.
+fn place<'a>(
+    carried: &Carried,
+    folders: &'a [PathBuf],
+    opened: &'a Result<Vec<Campaign>, Problems>,
+    path: &'a str,
+) -> Option<(&'a Path, &'a str)> {
+    if carried.results.campaign.members.is_empty() {
+        return Some((folders.first()?.as_path(), path));
+    }
+    let (name, inside) = path.split_once('/')?;
+    let campaign = opened.as_ref().ok()?.iter().find(|campaign| campaign.short_name.value == name)?;
+    Some((campaign.folder(), inside))
 }
 
 /// Compares all numbers of the report with those of a new evaluation, and then the pages.

@@ -3,23 +3,14 @@
 use serde_json::{Map, Value, json};
 
 use super::{attached, estimates};
-use crate::result::{Certification, ProtocolFile, ProtocolInfo, QuantityResult, StatisticResult, ZoneResult, report};
+use crate::result::{CampaignInfo, Certification, ProtocolFile, ProtocolInfo, QuantityResult, StatisticResult, ZoneResult, report};
 
 /// The complete result, ending in a line break.
 pub fn results(found: &Certification) -> String {
     let mut root = Map::new();
     root.insert("fishplate".into(), json!(env!("CARGO_PKG_VERSION")));
     root.insert("protocol".into(), protocol(&found.protocol));
-    root.insert(
-        "campaign".into(),
-        json!({
-            "name": found.campaign.name,
-            "files": found.campaign.files,
-            "vehicle": found.campaign.vehicle,
-            "origin": found.campaign.origin,
-            "report": report::tree(&found.campaign.report),
-        }),
-    );
+    root.insert("campaign".into(), campaign(&found.campaign));
     root.insert("verdict".into(), json!(found.verdict_words()));
     if let Some(word) = &found.own_word {
         root.insert("verdict_word".into(), json!(word));
@@ -39,6 +30,19 @@ pub fn results(found: &Certification) -> String {
     root.insert("findings".into(), json!(found.findings));
     root.insert("notes".into(), json!(found.notes));
     text(&Value::Object(root))
+}
+
+fn campaign(campaign: &CampaignInfo) -> Value {
+    let mut entry = Map::new();
+    entry.insert("name".into(), json!(campaign.name));
+    if !campaign.members.is_empty() {
+        entry.insert("members".into(), json!(campaign.members));
+    }
+    entry.insert("files".into(), json!(campaign.files));
+    entry.insert("vehicle".into(), json!(campaign.vehicle));
+    entry.insert("origin".into(), json!(campaign.origin));
+    entry.insert("report".into(), report::tree(&campaign.report));
+    Value::Object(entry)
 }
 
 /// A value in the format of the results, ending in a line break.
@@ -109,6 +113,9 @@ fn quantity(quantity: &QuantityResult) -> Value {
     }
     let values = quantity.values.iter().map(|pair| {
         let mut row = Map::new();
+        if pair.campaign.is_some() {
+            row.insert("campaign".into(), json!(pair.campaign));
+        }
         row.insert("section".into(), json!(pair.section));
         row.insert("zone".into(), json!(pair.zone));
         row.insert("signal".into(), json!(pair.signal));

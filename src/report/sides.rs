@@ -16,9 +16,10 @@ impl Sides {
     pub fn of(quantity: &QuantityResult) -> Self {
         let (one, other, short) = match (&quantity.among, quantity.repeats) {
             (Some(_), _) => {
-                let center = quantity.spread.as_ref().map(|spread| spread.center.as_str());
-                let other = center.map_or_else(|| "all records".to_owned(), |center| format!("{center} of all"));
-                ("record", other, ["rec.", "all"])
+                let center = quantity.spread.as_ref().map(|spread| format!("{} of all", spread.center));
+                let short = if quantity.against.is_some() { "other" } else { "all" };
+                let other = quantity.against.as_ref().map(|title| title.to_lowercase()).or(center);
+                ("record", other.unwrap_or_else(|| "all records".to_owned()), ["rec.", short])
             }
             (None, true) => ("repeat", "original".to_owned(), ["rep.", "orig."]),
             (None, false) => ("simulated", "measured".to_owned(), ["sim.", "meas."]),

@@ -58,9 +58,20 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
         ],
         statistics.collect(),
     )?;
+    // A column of its own says which of several campaigns a row is of.
+    let pooled = !found.campaign.members.is_empty();
+    let header = |all: &[&'static str], after: usize| {
+        let mut all = all.to_vec();
+        if pooled {
+            all.insert(after, "campaign");
+        }
+        all
+    };
+    let of = |campaign: &Option<String>| pooled.then(|| campaign.clone().unwrap_or_default());
     let pairs = found.quantities.iter().flat_map(|quantity| {
-        quantity.values.iter().map(|pair| {
-            vec![
+        quantity.values.iter().map(move |pair| {
+            let campaign = of(&pair.campaign);
+            let row = vec![
                 quantity.id.clone(),
                 quantity.unit.clone(),
                 pair.section.clone(),
@@ -72,11 +83,12 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
                 number(quantity.has_sides.then_some(pair.difference)),
                 number((!quantity.has_sides).then_some(pair.difference)),
                 pair.samples.to_string(),
-            ]
+            ];
+            with(row, campaign, 2)
         })
     });
-    let header = ["quantity", "unit", "section", "zone", "signal", "record", "simulated", "measured", "difference", "value", "samples"];
-    add("values", &header, pairs.collect())?;
+    let columns = ["quantity", "unit", "section", "zone", "signal", "record", "simulated", "measured", "difference", "value", "samples"];
+    add("values", &header(&columns, 2), pairs.collect())?;
     if found.quantities.iter().any(|quantity| quantity.spread.is_some()) {
         add("spreads", &SPREADS, spreads(found, of_records))?;
         add("spreads_between", &SPREADS_BETWEEN, spreads(found, between))?;
@@ -94,7 +106,7 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
     });
     add("checks", &["section", "requirement", "holds", "found"], checks.collect())?;
     let findings = found.findings.iter().map(|finding| {
-        vec![
+        let row = vec![
             finding.code.clone(),
             finding.section.clone().unwrap_or_default(),
             finding.record.clone().unwrap_or_default(),
@@ -105,11 +117,12 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
             finding.says.clone(),
             finding.cause.clone().unwrap_or_default(),
             finding.consequence.in_words().into(),
-        ]
+        ];
+        with(row, of(&finding.campaign), 1)
     });
     add(
         "findings",
-        &["rule", "section", "record", "channel", "value", "expected", "unit", "finding", "likely cause", "consequence"],
+        &header(&["rule", "section", "record", "channel", "value", "expected", "unit", "finding", "likely cause", "consequence"], 1),
         findings.collect(),
     )?;
     let zones = found.zones.iter().map(|z| {
@@ -146,11 +159,15 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
         ];
         add("application", &head, found.application.iter().flat_map(application_rows).collect())?;
     }
+    let several = found.campaign.vehicle.iter().any(|item| item.of.is_some());
     let vehicle = found.campaign.vehicle.iter().chain(&found.campaign.facts).map(|item| {
         let unit = item.unit.clone().unwrap_or_default();
-        vec![item.name.clone(), item.value.clone(), unit, item.unit_assumed.to_string(), item.used.to_string()]
+        let row = vec![item.name.clone(), item.value.clone(), unit, item.unit_assumed.to_string(), item.used.to_string()];
+        with(row, several.then(|| item.of.clone().unwrap_or_default()), 5)
     });
-    add("vehicle", &["name", "value", "unit", "unit assumed", "used by the protocol"], vehicle.collect())?;
+    let mut columns = vec!["name", "value", "unit", "unit assumed", "used by the protocol"];
+    columns.extend(several.then_some("of"));
+    add("vehicle", &columns, vehicle.collect())?;
     let parameters = found
         .protocol
         .parameters
@@ -238,6 +255,14 @@ fn between(class: &ClassSpread) -> Vec<Vec<String>> {
     vec![row]
 }
 
+/// A row with one more cell, if there is one.
+fn with(mut row: Vec<String>, cell: Option<String>, at: usize) -> Vec<String> {
+    if let Some(cell) = cell {
+        row.insert(at, cell);
+    }
+    row
+}
+
 /// A cell that a spreadsheet does not interpret as a formula: such text gets an apostrophe in front, the spreadsheets' own mark of text
 /// (OWASP, CSV Injection).
 fn inert(cell: &str) -> std::borrow::Cow<'_, str> {
@@ -265,6 +290,9 @@ fn section_header(found: &Certification) -> Vec<&str> {
         header.extend(first.columns.iter().map(|column| column.name.as_str()));
     }
     header.extend(["used", "reason"]);
+    if !found.campaign.members.is_empty() {
+        header.insert(0, "campaign");
+    }
     header
 }
 
@@ -280,7 +308,7 @@ fn section_rows(found: &Certification) -> Vec<Vec<String>> {
         ];
         row.extend(section.columns.iter().map(|column| column.value.clone()));
         row.extend([section.used.to_string(), section.reason.clone().unwrap_or_default()]);
-        row
+        with(row, section.campaign.clone(), 0)
     };
     found.sections.iter().map(row).collect()
 }

@@ -9,6 +9,9 @@ pub struct Finding {
     pub code: String,
     /// The channel, position or field concerned; `None` if it concerns a section or the campaign.
     pub channel: Option<String>,
+    /// Which of several campaigns it is about.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub campaign: Option<String>,
     /// `None` if it concerns the campaign.
     pub section: Option<String>,
     /// The kind of record: `simulation`, `measurement` or `track`.
@@ -53,6 +56,7 @@ impl Finding {
         Self {
             code: code.into(),
             channel: None,
+            campaign: None,
             section: None,
             record: None,
             value: None,

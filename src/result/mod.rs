@@ -135,7 +135,10 @@ pub struct FilterInfo {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct CampaignInfo {
+    /// Of a pool: the short names of its campaigns.
     pub name: String,
+    /// The campaigns of a pool; empty where there is one.
+    pub members: Vec<CampaignMember>,
     /// Every input file with its hash, in the order read.
     pub files: Vec<FileHash>,
     /// Vehicle data: first those used by the protocol, then all others.
@@ -145,6 +148,19 @@ pub struct CampaignInfo {
     /// Origin of the simulated records, where stated.
     pub origin: Option<OriginInfo>,
     /// Identification of the report, stated or not.
+    #[serde(serialize_with = "as_tree")]
+    pub report: Vec<ReportItem>,
+}
+
+/// One of several campaigns that were evaluated as one.
+#[derive(Clone, Debug, Serialize)]
+pub struct CampaignMember {
+    /// What it is called in results.
+    pub short_name: String,
+    pub name: String,
+    /// Its sections, or whole records.
+    pub sections: usize,
+    pub origin: Option<OriginInfo>,
     #[serde(serialize_with = "as_tree")]
     pub report: Vec<ReportItem>,
 }
@@ -196,7 +212,7 @@ pub struct RulePlace {
 }
 
 /// A named value of the campaign or the vehicle, as text.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DataItem {
     pub name: String,
     pub value: String,
@@ -205,6 +221,9 @@ pub struct DataItem {
     pub used: bool,
     /// The campaign states no unit: `unit` is that of the protocol.
     pub unit_assumed: bool,
+    /// Whose it is, where there are several vehicles or campaigns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
 }
 
 /// One quantity of the protocol: its processing, its values and its verdict.
@@ -232,8 +251,10 @@ pub struct QuantityResult {
     pub has_sides: bool,
     /// The record that is assessed by itself: `measured`; `None` where records are compared.
     pub from: Option<String>,
-    /// The side whose records are each compared with what is central of all of them: `simulated`.
+    /// The side whose records are compared with each other, or with what is central of them: `simulated`.
     pub among: Option<String>,
+    /// What stands on the other side there, if not all of them: a title.
+    pub against: Option<String>,
     /// Whether sections that were measured again are compared with their originals: `simulated` is the repeat, `measured` the original.
     pub repeats: bool,
     /// How far several records of one side are apart.
@@ -359,6 +380,8 @@ pub struct LimitFactor {
 /// One section and signal.
 #[derive(Clone, Debug, Serialize)]
 pub struct PairValue {
+    /// Which of several campaigns.
+    pub campaign: Option<String>,
     /// Name of the section (or of the record, without sections).
     pub section: String,
     pub zone: Option<String>,
@@ -385,6 +408,12 @@ impl PairValue {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct SectionResult {
+    /// Which of several campaigns, and which of several vehicles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub campaign: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vehicle: Option<String>,
+    /// Of a pool with the campaign: `series 2/S01`.
     pub section: String,
     /// The first section of its site; repeats have the same site.
     pub site: String,

@@ -9,7 +9,7 @@ mod synchronisation;
 
 use crate::certify::{Compiled, campaign_info, protocol_info};
 use crate::check::plan::{Decision, Plan};
-use crate::data::Campaign;
+use crate::data::Campaigns;
 use crate::problem::{Problem, Problems};
 use crate::result::study::{Found, Reduction, SelectionStudy, Study};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
@@ -33,11 +33,17 @@ pub struct Settings {
 ///
 /// # Errors
 /// As [`crate::run::run`]; `too-few-sections`: a zone has fewer usable sections than a selection takes.
-pub fn sections(compiled: &Compiled, campaign: &Campaign, settings: &Settings, progress: Progress<'_>) -> Result<Study, Problems> {
-    let evaluated = evaluate(&compiled.plan, &compiled.graph, campaign, &Shifts::NONE, progress)?.swap_remove(0);
+pub fn sections<'a>(
+    compiled: &Compiled,
+    campaigns: impl Into<Campaigns<'a>>,
+    settings: &Settings,
+    progress: Progress<'_>,
+) -> Result<Study, Problems> {
+    let campaigns = campaigns.into();
+    let evaluated = evaluate(&compiled.plan, &compiled.graph, campaigns, &Shifts::NONE, progress)?.swap_remove(0);
     let (case, reduction) = case_of(&evaluated, &compiled.plan, settings).map_err(too_few)?;
     let found = SelectionStudy { reduction, ..selections(&case, &settings.selections) };
-    Ok(joined(compiled, campaign, &evaluated, Found::Sections(found)))
+    Ok(joined(compiled, campaigns, &evaluated, Found::Sections(found)))
 }
 
 /// A study counts limits of selections: the overall verdict must rest on limits alone.
@@ -73,10 +79,10 @@ fn case_of(evaluated: &Evaluated, plan: &Plan, settings: &Settings) -> Result<(C
     })
 }
 
-fn joined(compiled: &Compiled, campaign: &Campaign, evaluated: &Evaluated, found: Found) -> Study {
+fn joined(compiled: &Compiled, campaigns: Campaigns<'_>, evaluated: &Evaluated, found: Found) -> Study {
     Study {
         protocol: protocol_info(compiled),
-        campaign: campaign_info(&compiled.plan, campaign, evaluated.files.clone(), evaluated.vehicle(&compiled.plan)),
+        campaign: campaign_info(&compiled.plan, campaigns, evaluated.files.clone(), evaluated.vehicle(&compiled.plan)),
         notes: evaluated.notes().to_vec(),
         found,
     }

@@ -7,7 +7,7 @@ use crate::certify::{Compiled, compile};
 use crate::check::family::Family;
 use crate::check::plan::{Parameter, Plan, SetBy};
 use crate::check::{Override, Overrides};
-use crate::data::Campaign;
+use crate::data::Campaigns;
 use crate::problem::{Problem, Problems};
 use crate::result::study::{AtValue, Found, ParameterStudy, Selected, Study, Varied};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
@@ -35,14 +35,15 @@ pub fn all_choices(plan: &Plan) -> Vec<Vary> {
 ///
 /// # Errors
 /// A value that the protocol does not allow; as [`crate::run::run`].
-pub fn parameters(
+pub fn parameters<'a>(
     compiled: &Compiled,
-    campaign: &Campaign,
+    campaigns: impl Into<Campaigns<'a>>,
     overrides: &Overrides,
     settings: &Settings,
     vary: &[Vary],
     progress: Progress<'_>,
 ) -> Result<Study, Problems> {
+    let campaigns = campaigns.into();
     let plan = &compiled.plan;
     // All values are compiled before any is evaluated, so that an invalid one is reported at once.
     let mut compiled_values = Vec::new();
@@ -58,7 +59,7 @@ pub fn parameters(
         return Err(problems);
     }
     let quiet = |_: &str| {};
-    let evaluated = evaluate(plan, &compiled.graph, campaign, &Shifts::NONE, &quiet)?.swap_remove(0);
+    let evaluated = evaluate(plan, &compiled.graph, campaigns, &Shifts::NONE, &quiet)?.swap_remove(0);
     progress("baseline");
     let base = at_value(&evaluated, compiled, settings, "baseline", true);
     let mut parameters = Vec::new();
@@ -72,7 +73,7 @@ pub fn parameters(
                 found.push(AtValue { value: shown, ..base.clone() });
                 continue;
             }
-            let evaluated = evaluate(&other.plan, &other.graph, campaign, &Shifts::NONE, &quiet)?.swap_remove(0);
+            let evaluated = evaluate(&other.plan, &other.graph, campaigns, &Shifts::NONE, &quiet)?.swap_remove(0);
             found.push(at_value(&evaluated, &other, settings, &shown, false));
         }
         parameters.push(Varied {
@@ -83,7 +84,7 @@ pub fn parameters(
             values: found,
         });
     }
-    Ok(joined(compiled, campaign, &evaluated, Found::Parameters(ParameterStudy { base, parameters })))
+    Ok(joined(compiled, campaigns, &evaluated, Found::Parameters(ParameterStudy { base, parameters })))
 }
 
 /// A parameter, a rule or a group of limits.

@@ -3,7 +3,7 @@
 use super::{Settings, joined, too_few};
 use crate::certify::Compiled;
 use crate::check::plan::Plan;
-use crate::data::Campaign;
+use crate::data::Campaigns;
 use crate::problem::Problems;
 use crate::result::study::{AtOffset, Estimated, Found, Study, SyncStudy};
 use crate::result::{Verdict, VerdictWords};
@@ -29,13 +29,14 @@ pub struct Synchronisation {
 ///
 /// # Errors
 /// As [`super::sections`], for the records without offset.
-pub fn synchronisation(
+pub fn synchronisation<'a>(
     compiled: &Compiled,
-    campaign: &Campaign,
+    campaigns: impl Into<Campaigns<'a>>,
     settings: &Settings,
     asked: &Synchronisation,
     progress: Progress<'_>,
 ) -> Result<Study, Problems> {
+    let campaigns = campaigns.into();
     let Compiled { plan, graph, .. } = compiled;
     let unit = &plan.axis.unit;
     let mut offsets = asked.offsets.clone();
@@ -44,7 +45,7 @@ pub fn synchronisation(
     offsets.dedup();
     let si: Vec<f64> = offsets.iter().map(|offset| unit.to_si(*offset)).collect();
     let shifts = Shifts { offsets: &si, farthest: Some(unit.to_si(asked.farthest)), correct: asked.correct };
-    let all = evaluate(plan, graph, campaign, &shifts, progress)?;
+    let all = evaluate(plan, graph, campaigns, &shifts, progress)?;
     let zero = offsets.iter().position(|offset| *offset == 0.0).unwrap_or(0);
     let mut base = Case::of(&all[zero].pool(plan), settings.take).map_err(too_few)?;
     if let Some(most) = settings.reduce {
@@ -76,7 +77,7 @@ pub fn synchronisation(
         selection: selection.iter().map(|&at| base.sections[at].clone()).collect(),
         offsets: found,
     };
-    Ok(joined(compiled, campaign, &all[zero], Found::Sync(study)))
+    Ok(joined(compiled, campaigns, &all[zero], Found::Sync(study)))
 }
 
 /// The reference without offset.

@@ -20,14 +20,15 @@ use crate::units::Dimension;
 pub fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut SectionValues) -> Result<Evaluated, Fault> {
     let mut wanted: BTreeSet<NodeId> =
         work.graph.checks.iter().flatten().map(|input| input.node).filter(|&node| work.graph.nodes[node].track).collect();
-    wanted.extend(plausibility::wanted(work, known, true));
-    let there = || match work.campaign.record_place(RecordKind::Track, &unit.cell) {
+    wanted.extend(plausibility::wanted(work, unit, known, true));
+    let campaign = work.campaign(unit);
+    let there = || match campaign.record_place(RecordKind::Track, &unit.cell) {
         Ok(_) => Ok(true),
         // A missing track record is stated for each check; a track record that cannot be read is a fault.
         Err(problem) if problem.code == "file-unreadable" => Err(Fault::new(problem.says)),
         Err(_) => Ok(false),
     };
-    let found = if !wanted.is_empty() && work.campaign.has(RecordKind::Track) && there()? {
+    let found = if !wanted.is_empty() && campaign.has(RecordKind::Track) && there()? {
         one_record(work, unit, RecordKind::Track.into(), &wanted, known, values)?.0
     } else {
         Vec::new()

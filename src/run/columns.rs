@@ -14,7 +14,7 @@ use crate::graph::{Graph, NodeId, Operation};
 pub type Seen = Vec<(WhichRecord, BTreeSet<String>)>;
 
 /// Reads the headings of every record.
-pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[Unit]) -> Seen {
+pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[&Unit]) -> Seen {
     let mut seen = Seen::new();
     let sides = Side::ALL.into_iter().filter(|side| plan.reads(*side)).map(Side::kind);
     let kinds = sides.chain(Some(RecordKind::Track).filter(|kind| campaign.has(*kind)));
@@ -31,7 +31,7 @@ pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[Unit]) -> Seen {
 }
 
 /// Positions of plausibility rules whose columns are in the records; other positions are not checked.
-pub fn recorded_positions(graph: &Graph, seen: &Seen, facts: &Facts, units: &[Unit]) -> Vec<Vec<bool>> {
+pub fn recorded_positions(graph: &Graph, seen: &Seen, facts: &Facts, units: &[&Unit]) -> Vec<Vec<bool>> {
     let there = |node: NodeId| {
         let track = graph.nodes[node].track;
         let of_kind = || seen.iter().filter(|(which, _)| (which.kind == RecordKind::Track) == track);
@@ -57,7 +57,7 @@ pub fn present_columns(
     campaign: &Campaign,
     seen: &Seen,
     facts: &Facts,
-    units: &[Unit],
+    units: &[&Unit],
     notes: &mut Vec<String>,
 ) -> Vec<Vec<bool>> {
     graph
@@ -87,8 +87,10 @@ pub fn present_columns(
                 .map(|missing| {
                     if !none {
                         for (column, which) in missing {
-                            let note =
-                                format!("`{column}` is in no record of the {}; its position is left out", campaign.record_in_words(*which));
+                            let called = units.first().and_then(|unit| unit.campaign_name.as_ref());
+                            let of = called.map_or_else(String::new, |name| format!(" of {name}"));
+                            let record = campaign.record_in_words(*which);
+                            let note = format!("`{column}` is in no record of the {record}{of}; its position is left out");
                             if !notes.contains(&note) {
                                 notes.push(note);
                             }
@@ -102,7 +104,7 @@ pub fn present_columns(
 }
 
 /// Columns that a node needs in some section.
-fn reads(graph: &Graph, node: NodeId, facts: &Facts, units: &[Unit]) -> BTreeSet<String> {
+fn reads(graph: &Graph, node: NodeId, facts: &Facts, units: &[&Unit]) -> BTreeSet<String> {
     let mut read = BTreeSet::new();
     for unit in units {
         // Where it cannot be determined which signal applies, the section is refused when it is evaluated.

@@ -8,7 +8,7 @@ use super::plausibility::consequence;
 use super::section::SectionValues;
 use super::sections::Unit;
 use crate::check::plan::{Distinct, Plan, Plausibility, Test};
-use crate::data::{Campaign, RecordKind, WhichRecord};
+use crate::data::{Campaigns, RecordKind, WhichRecord};
 use crate::result::Finding;
 
 /// Number of consecutive samples of a mark. Two independent signals with a resolution of a thousandth of their range agree in eight
@@ -82,7 +82,7 @@ type Place = (usize, usize);
 type Shared<'a> = BTreeMap<(usize, WhichRecord, usize, WhichRecord), Vec<(&'a str, &'a str)>>;
 
 /// Copies among the signals of every rule with `distinct`.
-pub fn find(plan: &Plan, campaign: &Campaign, units: &[Unit], values: &[SectionValues]) -> Vec<Finding> {
+pub fn find(plan: &Plan, campaigns: Campaigns<'_>, units: &[Unit], values: &[SectionValues]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut done: Vec<&str> = Vec::new();
     for rule in &plan.plausibility {
@@ -97,9 +97,10 @@ pub fn find(plan: &Plan, campaign: &Campaign, units: &[Unit], values: &[SectionV
             if again && (which.kind, of.kind) == (RecordKind::Simulation, RecordKind::Simulation) {
                 continue;
             }
-            let words = |which| campaign.record_in_words(which);
-            let (later, earlier) = ((units[later].name.as_str(), words(which)), (units[earlier].name.as_str(), words(of)));
-            findings.push(finding(rule, later, earlier, &channels));
+            let words = |unit: &Unit, which| campaigns.get(unit.campaign).record_in_words(which);
+            let (later, earlier) = (&units[later], &units[earlier]);
+            let found = finding(rule, (&later.name, words(later, which)), (&earlier.name, words(earlier, of)), &channels);
+            findings.push(Finding { campaign: later.campaign_name.clone(), ..found });
         }
     }
     findings

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashSet};
 
-use super::facts::{Facts, Known};
+use super::facts::{Facts, Known, Vehicle};
 use super::sections::Unit;
 use super::table::{Member, Table, independent};
 use crate::catalog::Statistic;
@@ -56,7 +56,8 @@ impl Group<'_> {
     /// As [`Self::number`], with other values in place of those of the rows.
     fn over(&self, of: &OfGroup, values: &[f64]) -> Result<f64, String> {
         let taken: Vec<Result<f64, String>> = of.taken.iter().map(|taking| self.take(taking, values)).collect();
-        number(&of.expr, &Known { inputs: &taken, ..Known::vehicle(self.facts) })
+        let of_vehicle = |vehicle: &Vehicle| number(&of.expr, &Known { inputs: &taken, ..Known::vehicle(vehicle) });
+        self.facts.agreed(self.members, of_vehicle, |value| format!("{value} (SI)"))
     }
 
     fn take(&self, taking: &Taking, values: &[f64]) -> Result<f64, String> {
@@ -161,7 +162,8 @@ impl Group<'_> {
         let values = self.values();
         let value = Err("the bound of a share is the same for all values".to_string());
         let inputs: Vec<Result<f64, String>> = [value].into_iter().chain(others.iter().map(|other| self.take(other, &values))).collect();
-        number(right, &Known { inputs: &inputs, ..Known::vehicle(self.facts) }).ok()
+        let of_vehicle = |vehicle: &Vehicle| number(right, &Known { inputs: &inputs, ..Known::vehicle(vehicle) });
+        self.facts.agreed(self.members, of_vehicle, f64::to_string).ok()
     }
 
     /// The diagram of a regression with one regressor, in the unit of the quantity; `None` for other estimates and where there is

@@ -1,37 +1,104 @@
 //! Vehicle data under the names of the protocol, and values of names in expressions during a run.
 
+use std::collections::BTreeSet;
+
+use super::sections::Unit;
+use super::table::Member;
 use super::told::is_dimensioned;
 use crate::check::evaluate::Values;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
-use crate::data::Campaign;
+use crate::data::{Campaign, Campaigns};
 use crate::problem::{Problem, Problems};
 use crate::result::DataItem;
 use crate::units::{self, number::Refused};
 
-/// Vehicle data, one for each [`Plan::vehicle`].
+/// Values of one vehicle, one for each [`Plan::vehicle`].
 #[derive(Clone, Debug)]
-pub struct Facts {
+pub struct Vehicle {
+    /// Whose vehicle it is, where there are several: the campaign.
+    pub of: Option<String>,
     /// An error states why a datum that may be absent has no value.
-    pub vehicle: Vec<Result<Scalar, String>>,
+    pub data: Vec<Result<Scalar, String>>,
     /// For each datum, whether it is a number without a unit in the vehicle file.
     pub assumed: Vec<bool>,
 }
 
+/// The vehicles of a run, to which [`Unit::vehicle`] refers; at least one.
+#[derive(Clone, Debug)]
+pub struct Facts {
+    pub vehicles: Vec<Vehicle>,
+}
+
 impl Facts {
     /// Reads every vehicle datum that the protocol declares. A missing or ill-formed one is a problem.
-    pub fn read(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Self {
-        let read = |datum| vehicle_datum(datum, campaign, problems).unwrap_or((Ok(Scalar::Number(0.0)), false));
-        let (vehicle, assumed) = plan.vehicle.iter().map(read).unzip();
-        Self { vehicle, assumed }
+    pub fn read(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> Self {
+        let vehicles = campaigns.iter().enumerate().map(|(number, campaign)| {
+            let read = |datum| vehicle_datum(datum, campaign, problems).unwrap_or((Ok(Scalar::Number(0.0)), false));
+            let (data, assumed) = plan.vehicle.iter().map(read).unzip();
+            Vehicle { of: campaigns.name_of(number).map(str::to_string), data, assumed }
+        });
+        Self { vehicles: vehicles.collect() }
+    }
+
+    pub fn of(&self, unit: &Unit) -> &Vehicle {
+        &self.vehicles[unit.vehicle]
     }
 
     /// The vehicle data as printed in a report.
     pub fn items(&self, plan: &Plan) -> Vec<DataItem> {
+        self.vehicles.iter().flat_map(|vehicle| vehicle.items(plan)).collect()
+    }
+
+    /// The vehicles of some rows, each once; all where there are no rows.
+    pub fn among(&self, members: &[Member<'_>]) -> Vec<&Vehicle> {
+        if self.vehicles.len() == 1 || members.is_empty() {
+            return self.vehicles.iter().collect();
+        }
+        let used: BTreeSet<usize> = members.iter().map(|member| member.unit.vehicle).collect();
+        used.into_iter().map(|number| &self.vehicles[number]).collect()
+    }
+
+    /// What holds of the vehicles of some rows, if it is the same for all of them.
+    ///
+    /// # Errors
+    /// It has no value, or differs; `shown` tells the values.
+    pub fn agreed<T: PartialEq>(
+        &self,
+        members: &[Member<'_>],
+        mut of: impl FnMut(&Vehicle) -> Result<T, String>,
+        shown: impl Fn(&T) -> String,
+    ) -> Result<T, String> {
+        let mut found: Vec<(&Vehicle, T)> = Vec::new();
+        for vehicle in self.among(members) {
+            let value = of(vehicle).map_err(|reason| vehicle.told(reason))?;
+            if found.iter().all(|(_, known)| *known != value) {
+                found.push((vehicle, value));
+            }
+        }
+        if found.len() > 1 {
+            let each: Vec<String> = found
+                .iter()
+                .map(|(vehicle, value)| format!("{} for {}", shown(value), vehicle.of.as_deref().unwrap_or_default()))
+                .collect();
+            return Err(format!("it depends on the vehicle: {}", each.join(", ")));
+        }
+        found.pop().map(|(_, value)| value).ok_or_else(|| "there is no vehicle".to_string())
+    }
+}
+
+impl Vehicle {
+    /// The values as a report prints them.
+    fn items(&self, plan: &Plan) -> Vec<DataItem> {
         let of = |(datum, (value, assumed)): (&Datum, (&Result<Scalar, String>, &bool))| {
             let unit_assumed = *assumed && is_dimensioned(&datum.kind);
-            DataItem { unit_assumed, ..vehicle_item(datum, value) }
+            DataItem { unit_assumed, of: self.of.clone(), ..vehicle_item(datum, value) }
         };
-        plan.vehicle.iter().zip(self.vehicle.iter().zip(&self.assumed)).map(of).collect()
+        plan.vehicle.iter().zip(self.data.iter().zip(&self.assumed)).map(of).collect()
+    }
+
+    /// A reason with the vehicle that it is of, where there are several.
+    fn told(&self, reason: String) -> String {
+        self.of.as_ref().map_or(reason.clone(), |of| format!("{reason} ({of})"))
     }
 }
 
@@ -44,7 +111,7 @@ pub fn item(datum: &Datum, value: Option<&Scalar>) -> DataItem {
         Some(Scalar::Flag(flag)) => flag.to_string(),
         None => String::new(),
     };
-    DataItem { name: datum.title.clone(), value, unit: unit.map(|unit| unit.text.clone()), used: true, unit_assumed: false }
+    DataItem { name: datum.title.clone(), value, unit: unit.map(|unit| unit.text.clone()), used: true, unit_assumed: false, of: None }
 }
 
 /// The reason why a datum that may be absent has no value.
@@ -59,7 +126,7 @@ pub const NOT_STATED: &str = "not stated";
 pub fn vehicle_item(datum: &Datum, value: &Result<Scalar, String>) -> DataItem {
     match value {
         Ok(value) => item(datum, Some(value)),
-        Err(_) => DataItem { name: datum.title.clone(), value: NOT_STATED.into(), unit: None, used: true, unit_assumed: false },
+        Err(_) => DataItem { name: datum.title.clone(), value: NOT_STATED.into(), unit: None, used: true, unit_assumed: false, of: None },
     }
 }
 
@@ -132,6 +199,7 @@ pub fn scalar(kind: &DatumKind, text: &str) -> Result<Scalar, String> {
             _ if text.contains(',') => Err(format!("`{text}` has a decimal comma; numbers are written with a point")),
             _ => Err(format!("`{text}` is not a number (in {unit})")),
         },
+        DatumKind::Campaign => Ok(Scalar::Word(text.to_string())),
         DatumKind::Flag => match text {
             "true" => Ok(Scalar::Flag(true)),
             "false" => Ok(Scalar::Flag(false)),
@@ -155,7 +223,7 @@ pub fn scalar(kind: &DatumKind, text: &str) -> Result<Scalar, String> {
 /// Values of the names in one section. Where a value is not known, the reason is given.
 #[derive(Debug)]
 pub struct Known<'a> {
-    pub facts: &'a Facts,
+    pub vehicle: &'a Vehicle,
     pub columns: Option<&'a [Result<Scalar, String>]>,
     pub extent: Option<(f64, f64)>,
     pub inputs: &'a [Result<f64, String>],
@@ -163,14 +231,14 @@ pub struct Known<'a> {
 }
 
 impl<'a> Known<'a> {
-    pub fn vehicle(facts: &'a Facts) -> Self {
-        Self { facts, columns: None, extent: None, inputs: &[], sides: None }
+    pub fn vehicle(vehicle: &'a Vehicle) -> Self {
+        Self { vehicle, columns: None, extent: None, inputs: &[], sides: None }
     }
 }
 
 impl Values for Known<'_> {
     fn vehicle(&self, index: usize) -> Result<Scalar, String> {
-        self.facts.vehicle[index].clone()
+        self.vehicle.data[index].clone()
     }
 
     fn column(&self, index: usize) -> Result<Scalar, String> {

@@ -9,7 +9,7 @@ use super::sections::Unit;
 use super::spreads;
 use super::table::{Member, count_independent, independent};
 use super::verdicts;
-use crate::check::plan::{Evaluation, Plan, Quantity, Records, Zone};
+use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
 use crate::graph::{Graph, Operation, QuantityNodes};
 use crate::result::{Consequence, Finding, PairValue, QuantityResult, Verdict, VerdictResult, ZoneResult};
 
@@ -205,6 +205,7 @@ fn quantity_result(graph: &Graph, index: usize, judging: &Judging<'_>, reason: O
     let holds = if reason.is_some() { None } else { Some(statistics.iter().all(|statistic| statistic.holds == Some(true))) };
     let show = |value: f64| quantity.unit.from_si(value);
     let value = |member: &Member<'_>| PairValue {
+        campaign: member.unit.campaign_name.clone(),
         section: member.unit.name.clone(),
         zone: member.unit.zone.clone(),
         signal: member.signal.to_string(),
@@ -230,11 +231,18 @@ fn quantity_result(graph: &Graph, index: usize, judging: &Judging<'_>, reason: O
         notes: quantity.notes.clone(),
         has_sides: quantity.evaluation.has_sides(),
         from: match quantity.evaluation.as_ref() {
-            Evaluation::Values { records: Records::Of(side), .. } => Some(side.in_words().into()),
+            Evaluation::Values { records: Records::Of(of), .. } => Some(of.side.in_words().into()),
             _ => None,
         },
         among: match quantity.evaluation.as_ref() {
-            Evaluation::Values { records: Records::Spread { side, .. }, .. } => Some(side.in_words().into()),
+            Evaluation::Values { records: Records::Spread { of, .. }, .. } => Some(of.side.in_words().into()),
+            other => other.pairing().and_then(Pairing::within).map(|side| side.in_words().into()),
+        },
+        against: match quantity.evaluation.pairing() {
+            Some(Pairing::Each(first, Chosen { record: Some(index), side })) if first.side == side => {
+                Some(plan.records[index].title.clone())
+            }
+            Some(pairing) if pairing.within().is_some() => Some("Other record".into()),
             _ => None,
         },
         repeats: quantity.evaluation.of_repeats(),

@@ -1,7 +1,7 @@
 //! Compares the estimates of a quantity with its limits.
 
 use super::estimates::{Group, Taken};
-use super::facts::{Facts, Known};
+use super::facts::{Facts, Known, Vehicle};
 use super::groups::{Closeness, Part, parts};
 use super::table::{Member, Table, count_independent};
 use super::told::factors;
@@ -12,6 +12,9 @@ use crate::metrics::statistics::{Divisor, mean, standard_deviation};
 use crate::result::{RegressionFigure, RulePlace, Sample, StatisticResult};
 use crate::source::Span;
 use crate::units::Unit;
+
+/// Help where one limit of several vehicles has several values.
+const ONE_LIMIT: &str = "give each its own: `for each campaign`";
 
 /// Relative tolerance for rounding of units and sums. A value equal to its limit meets the limit.
 const EQUAL: f64 = 1e-12;
@@ -46,8 +49,30 @@ pub struct Judging<'a> {
     pub table: &'a Table<'a>,
 }
 
-pub fn applies(limit: &Limit, facts: &Facts) -> Result<bool, String> {
-    limit.only_when.as_ref().map_or(Ok(true), |condition| flag(condition, &Known::vehicle(facts)))
+fn applies(limit: &Limit, vehicle: &Vehicle) -> Result<bool, String> {
+    limit.only_when.as_ref().map_or(Ok(true), |condition| flag(condition, &Known::vehicle(vehicle)))
+}
+
+/// Whether a limit applies to the vehicles of some rows.
+fn applies_to(limit: &Limit, facts: &Facts, members: &[Member<'_>]) -> Result<bool, String> {
+    let words = |applies: &bool| if *applies { "applies" } else { "does not apply" }.to_string();
+    facts.agreed(members, |vehicle| applies(limit, vehicle), words)
+}
+
+/// The rows of a group that a limit applies to: every value by itself has a vehicle of its own.
+///
+/// # Errors
+/// It cannot be told, or differs between the vehicles of a group that has one estimate.
+pub fn applying<'m>(limit: &Limit, facts: &Facts, mut members: Vec<Member<'m>>) -> Result<Option<Vec<Member<'m>>>, String> {
+    if !matches!(limit.estimate.kind, EstimateKind::Each) || members.is_empty() {
+        return Ok(applies_to(limit, facts, &members)?.then_some(members));
+    }
+    for vehicle in facts.among(&members) {
+        if !applies(limit, vehicle)? {
+            members.retain(|member| !std::ptr::eq(facts.of(member.unit), vehicle));
+        }
+    }
+    Ok((!members.is_empty()).then_some(members))
 }
 
 impl<'a> Judging<'a> {
@@ -56,20 +81,36 @@ impl<'a> Judging<'a> {
     /// # Errors
     /// It cannot be determined whether the limit applies.
     pub fn estimate(&self, limit: &'a Limit) -> Result<Vec<Estimated<'a>>, String> {
-        if !applies(limit, self.facts)? {
-            return Ok(Vec::new());
+        match applies_to(limit, self.facts, &[]) {
+            Ok(false) => return Ok(Vec::new()),
+            Err(reason) if self.facts.vehicles.len() == 1 => return Err(reason),
+            // Of several vehicles, those of each group decide.
+            _ => {}
         }
         let parts = parts(self.plan, self.quantity, limit, self.members, self.facts);
-        Ok(parts.into_iter().map(|part| self.of_part(limit, part)).collect())
+        Ok(parts.into_iter().filter_map(|part| self.of_part(limit, part)).collect())
     }
 
-    fn of_part(&self, limit: &Limit, part: Part<'a>) -> Estimated<'a> {
-        let members = match part.members(self.facts, self.members) {
-            Ok(members) => members,
-            Err(reason) => {
-                return Estimated { part, members: Vec::new(), value: Err(reason), interval: None, regression: None, divided_at: None };
-            }
+    /// `None` of a group whose vehicle the limit does not apply to.
+    fn of_part(&self, limit: &Limit, part: Part<'a>) -> Option<Estimated<'a>> {
+        let none = |reason: String| Estimated {
+            part: part.clone(),
+            members: Vec::new(),
+            value: Err(reason),
+            interval: None,
+            regression: None,
+            divided_at: None,
         };
+        let members = match part.members(self.facts, self.members).map(|members| applying(limit, self.facts, members)) {
+            Ok(Ok(Some(members))) => members,
+            Ok(Ok(None)) => return None,
+            Ok(Err(reason)) => return Some(none(format!("it cannot be determined whether the limit applies: {reason}"))),
+            Err(reason) => return Some(none(reason)),
+        };
+        Some(self.estimated(limit, part, members))
+    }
+
+    fn estimated(&self, limit: &Limit, part: Part<'a>, members: Vec<Member<'a>>) -> Estimated<'a> {
         if members.is_empty() {
             return Estimated {
                 part,
@@ -141,7 +182,7 @@ impl<'a> Judging<'a> {
 
     fn of_group(&self, limit: &'a Limit, group: &Estimated<'a>) -> Compared {
         let mut result = self.empty(limit, group.part.in_words(), group.part.keys(), &group.members);
-        result.factors = factors(self.plan, self.facts, limit);
+        result.factors = factors(self.plan, &self.facts.among(&group.members), limit);
         result.regression = group.regression.clone().map(Box::new);
         result.divided_at = group.divided_at.map(|value| self.quantity.unit.from_si(value));
         let outcome = match &group.value {
@@ -161,7 +202,10 @@ impl<'a> Judging<'a> {
     }
 
     /// The unit in which the estimate and its limit are printed.
-    pub fn unit(&self, limit: &'a Limit) -> &'a Unit {
+    pub fn unit<'u>(&self, limit: &'u Limit) -> &'u Unit
+    where
+        'a: 'u,
+    {
         limit.estimate.unit.as_ref().unwrap_or(&self.quantity.unit)
     }
 
@@ -170,7 +214,7 @@ impl<'a> Judging<'a> {
         let show = |value: f64| self.unit(limit).from_si(value);
         result.value = Some(show(value));
         result.interval = group.interval.map(|(low, high)| (show(low), show(high)));
-        let bound = self.bound(limit, &group.part, &group.members, &Known::vehicle(self.facts)).map_err(|reason| no_limit(&reason))?;
+        let bound = self.common_bound(limit, &group.part, &group.members).map_err(|reason| no_limit(&reason))?;
         result.limit = Some(show(bound));
         let (normalised, holds) = against(value, bound, limit.at_least);
         result.normalised = normalised;
@@ -205,7 +249,15 @@ impl<'a> Judging<'a> {
         Ok(all_hold)
     }
 
-    /// The limit of one group, SI.
+    /// The limit of a group with one estimate, SI: the same for all its vehicles.
+    pub fn common_bound(&self, limit: &Limit, part: &Part<'_>, members: &[Member<'_>]) -> Result<f64, String> {
+        let unit = self.unit(limit);
+        let of_vehicle = |vehicle: &Vehicle| self.bound(limit, part, members, &Known::vehicle(vehicle));
+        let found = self.facts.agreed(members, of_vehicle, |bound| format!("{}{}", significant(unit.from_si(*bound), 4), unit.suffix()));
+        found.map_err(|reason| if self.facts.vehicles.len() > 1 { format!("{reason}; {ONE_LIMIT}") } else { reason })
+    }
+
+    /// The limit of one value or group, SI, with what names stand for there.
     pub fn bound(&self, limit: &Limit, part: &Part<'_>, members: &[Member<'_>], known: &Known<'_>) -> Result<f64, String> {
         let group = Group { plan: self.plan, facts: self.facts, members, table: self.table };
         Bounds { quantity: self.quantity, part, group, known }.of(limit, 0)
@@ -320,7 +372,7 @@ impl Bounds<'_> {
         let mut found: Option<(Closeness, &Limit)> = None;
         for limit in self.quantity.limits.iter().filter(|limit| limit.estimate.name == name) {
             let Some(closeness) = self.part.covered_by(&limit.scope) else { continue };
-            if applies(limit, self.group.facts)? && found.is_none_or(|(before, _)| closeness > before) {
+            if applies(limit, self.known.vehicle)? && found.is_none_or(|(before, _)| closeness > before) {
                 found = Some((closeness, limit));
             }
         }

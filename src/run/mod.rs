@@ -34,7 +34,7 @@ use indexmap::IndexMap;
 use rayon::prelude::*;
 
 use crate::check::plan::{OnFault, Plan};
-use crate::data::Campaign;
+use crate::data::Campaigns;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::{
@@ -102,8 +102,14 @@ pub struct Evaluated {
 /// # Errors
 /// Reasons why the campaign cannot be used as a whole: missing vehicle data, no usable section, or a fault for which the protocol
 /// states `stop`.
-pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, progress: Progress<'_>) -> Result<Outcome, Problems> {
-    let prepared = Prepared::new(plan, graph, campaign)?;
+pub fn run<'a>(
+    plan: &Plan,
+    graph: &Graph,
+    campaigns: impl Into<Campaigns<'a>>,
+    settings: Settings,
+    progress: Progress<'_>,
+) -> Result<Outcome, Problems> {
+    let prepared = Prepared::new(plan, graph, campaigns.into())?;
     let evaluated = prepared.evaluate(&Shifts::NONE, progress)?.swap_remove(0);
     let Evaluated { units, findings, notes, files, .. } = &evaluated;
     let judged = evaluated.judge(plan, graph);
@@ -132,7 +138,7 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
         findings,
         notes,
         files: files.clone(),
-        sections: sections::results(plan, evaluated.units),
+        sections: sections::results(plan, &evaluated.facts, evaluated.units),
     })
 }
 
@@ -140,15 +146,16 @@ pub fn run(plan: &Plan, graph: &Graph, campaign: &Campaign, settings: Settings, 
 ///
 /// # Errors
 /// As [`run`].
-pub fn evaluate(
+pub fn evaluate<'a>(
     plan: &Plan,
     graph: &Graph,
-    campaign: &Campaign,
+    campaigns: impl Into<Campaigns<'a>>,
     shifts: &Shifts<'_>,
     progress: Progress<'_>,
 ) -> Result<Vec<Evaluated>, Problems> {
+    let campaigns = campaigns.into();
     if !shifts.plain() {
-        let one = campaign.one_of_each().err();
+        let one = campaigns.one_of_each().err();
         let repeats = plan.quantities.iter().find(|quantity| quantity.evaluation.of_repeats()).map(|quantity| {
             let says = format!("`{}` compares repeats, whose records cannot be moved along the track against the simulation", quantity.id);
             Problem::error("repeats-shifted", says)
@@ -159,7 +166,7 @@ pub fn evaluate(
             return Err(Problems(vec![problem]));
         }
     }
-    Prepared::new(plan, graph, campaign)?.evaluate(shifts, progress)
+    Prepared::new(plan, graph, campaigns)?.evaluate(shifts, progress)
 }
 
 impl Evaluated {
@@ -194,39 +201,54 @@ impl Evaluated {
 struct Prepared<'a> {
     plan: &'a Plan,
     graph: &'a Graph,
-    campaign: &'a Campaign,
+    campaigns: Campaigns<'a>,
     facts: Facts,
     units: Vec<Unit>,
     /// Wanted operation, for each domain.
     wanted: Vec<Vec<wanted::Point>>,
     notes: Vec<String>,
-    present: Vec<Vec<bool>>,
-    recorded: Vec<Vec<bool>>,
+    present: Vec<Vec<Vec<bool>>>,
+    recorded: Vec<Vec<Vec<bool>>>,
 }
 
 impl<'a> Prepared<'a> {
-    fn new(plan: &'a Plan, graph: &'a Graph, campaign: &'a Campaign) -> Result<Self, Problems> {
+    fn new(plan: &'a Plan, graph: &'a Graph, campaigns: Campaigns<'a>) -> Result<Self, Problems> {
         let mut problems = Problems::default();
-        let facts = Facts::read(plan, campaign, &mut problems);
-        let mut units = sections::units(plan, campaign, &mut problems);
-        let wanted = wanted::points(plan, campaign, &facts, &mut problems);
+        campaigns.check(&mut problems);
+        for asked in &plan.campaigns {
+            let names = || campaigns.iter().map(|campaign| campaign.short_name.value.as_str());
+            if !names().any(|name| name == asked.value) {
+                let says = format!("none of the campaigns is called `{}`", asked.value);
+                let problem = Problem::error("unknown-campaign", says).at(&asked.span).suggest(&asked.value, names());
+                let known = names().collect::<Vec<_>>().join("; ");
+                problems.push(if problem.help.is_some() { problem } else { problem.help(format!("there is {known}")) });
+            }
+        }
+        members(plan, campaigns, &mut problems);
+        let facts = Facts::read(plan, campaigns, &mut problems);
+        let mut units = sections::units(plan, campaigns, &mut problems);
+        let wanted = wanted::points(plan, campaigns, &facts, &mut problems);
         if problems.any_error() {
             return Err(problems);
         }
         let mut notes = Vec::new();
-        let seen = columns::seen_columns(plan, campaign, &units);
-        let present = columns::present_columns(plan, graph, campaign, &seen, &facts, &units, &mut notes);
-        let recorded = columns::recorded_positions(graph, &seen, &facts, &units);
+        let (mut present, mut recorded) = (Vec::new(), Vec::new());
+        for (number, campaign) in campaigns.iter().enumerate() {
+            let units: Vec<&Unit> = units.iter().filter(|unit| unit.campaign == number).collect();
+            let seen = columns::seen_columns(plan, campaign, &units);
+            present.push(columns::present_columns(plan, graph, campaign, &seen, &facts, &units, &mut notes));
+            recorded.push(columns::recorded_positions(graph, &seen, &facts, &units));
+        }
         requirements::check_data(plan, &facts, &mut units);
         stop_on_fault(plan, &units, &[])?;
-        Ok(Self { plan, graph, campaign, facts, units, wanted, notes, present, recorded })
+        Ok(Self { plan, graph, campaigns, facts, units, wanted, notes, present, recorded })
     }
 
     fn work(&self) -> record::Work<'_> {
         record::Work {
             plan: self.plan,
             graph: self.graph,
-            campaign: self.campaign,
+            campaigns: self.campaigns,
             facts: &self.facts,
             units: &self.units,
             present: &self.present,
@@ -268,7 +290,7 @@ impl<'a> Prepared<'a> {
     /// All sections at one shift. If `needed`, at least one section must be usable.
     fn at(&self, values: Vec<SectionValues>, needed: bool) -> Result<Evaluated, Problems> {
         let (mut units, mut notes) = (self.units.clone(), self.notes.clone());
-        let copies = copies::find(self.plan, self.campaign, &units, &values);
+        let copies = copies::find(self.plan, self.campaigns, &units, &values);
         requirements::take_over(self.plan, &self.facts, &mut units, &values, &copies, &mut notes)?;
         stop_on_fault(self.plan, &units, &values)?;
         let values = self.without_unused_originals(&units, values);
@@ -282,6 +304,31 @@ impl<'a> Prepared<'a> {
         let findings = findings.into_iter().chain(domain::findings(&application)).collect();
         let files = values.iter().flat_map(|values| values.files.iter().cloned()).collect();
         Ok(Evaluated { facts: self.facts.clone(), units, values, findings, application, notes, files })
+    }
+}
+
+/// What a protocol calls by name must be in every campaign.
+fn members(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) {
+    for (number, campaign) in campaigns.iter().enumerate() {
+        let of = campaigns.name_of(number).map_or_else(String::new, |name| format!(" {name}"));
+        for record in &plan.records {
+            let kind = record.side.kind();
+            let all = campaign.records(kind);
+            let names: Vec<&str> = all.iter().filter_map(|which| campaign.record_called(*which).map(AsRef::as_ref)).collect();
+            for member in record.members.iter().filter(|member| !names.contains(&member.value.as_str())) {
+                let says = format!("the campaign{of} has no {} `{}`", kind.key(), member.value);
+                let problem = Problem::error("unknown-record", says).at(&member.span).suggest(&member.value, names.iter().copied());
+                let named = campaign.tree.get(kind.key()).map(|node| node.span.clone());
+                let problem = named.map_or(problem.clone(), |at| problem.also(&at, "the records of the campaign"));
+                problems.push(match (&problem.help, names.is_empty()) {
+                    (Some(_), _) => problem,
+                    (None, true) => {
+                        problem.help(format!("give its records names in campaign.yaml: `{}: {{{}: folder}}`", kind.key(), member.value))
+                    }
+                    (None, false) => problem.help(format!("there is {}", names.join(", "))),
+                });
+            }
+        }
     }
 }
 

@@ -18,9 +18,9 @@ use crate::result::{Consequence, Finding};
 const DIGITS: usize = 4;
 
 /// Nodes whose values the rules need, of the track record (`track`) or of the other records.
-pub fn wanted(work: &Work<'_>, known: &Known<'_>, track: bool) -> BTreeSet<NodeId> {
+pub fn wanted(work: &Work<'_>, unit: &Unit, known: &Known<'_>, track: bool) -> BTreeSet<NodeId> {
     let mut wanted = BTreeSet::new();
-    for (rule, nodes, _) in positions(work, known) {
+    for (rule, nodes, _) in positions(work, unit, known) {
         let of_rule = nodes.inputs.iter().flat_map(InputNode::nodes);
         wanted.extend(of_rule.filter(|&node| work.graph.nodes[node].track == track));
         if let (Test::Distinct(_), Some(own), false) = (&rule.test, nodes.own, track) {
@@ -32,13 +32,17 @@ pub fn wanted(work: &Work<'_>, known: &Known<'_>, track: bool) -> BTreeSet<NodeI
 
 /// Every rule that applies to the section, at every recorded position: the rule, its nodes and the name of the position. A rule is
 /// passed over where it cannot be determined, for a missing datum, whether it applies or to which signal.
-fn positions<'a>(work: &'a Work<'_>, known: &'a Known<'_>) -> impl Iterator<Item = (&'a Plausibility, &'a PositionNodes, &'a str)> {
+fn positions<'a>(
+    work: &'a Work<'_>,
+    unit: &Unit,
+    known: &'a Known<'_>,
+) -> impl Iterator<Item = (&'a Plausibility, &'a PositionNodes, &'a str)> {
     let asked = |rule: &Plausibility| rule.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known)) == Ok(false);
     let decided = |nodes: &PositionNodes| {
         let nodes: BTreeSet<NodeId> = nodes.own.into_iter().chain(nodes.inputs.iter().flat_map(InputNode::nodes)).collect();
         needed(work.graph, &nodes, known).is_ok()
     };
-    let (plan, graph, recorded) = (work.plan, work.graph, work.recorded);
+    let (plan, graph, recorded) = (work.plan, work.graph, &work.recorded[unit.campaign]);
     plan.plausibility.iter().enumerate().filter(move |(_, rule)| asked(rule)).flat_map(move |(at, rule)| {
         graph.plausibility[at]
             .positions
@@ -51,7 +55,7 @@ fn positions<'a>(work: &'a Work<'_>, known: &'a Known<'_>) -> impl Iterator<Item
 
 /// Checks one section and adds its findings to the values.
 pub fn look(work: &Work<'_>, unit: &Unit, sides: &Sides<'_>, track: &Evaluated, values: &mut SectionValues) {
-    for (rule, nodes, name) in positions(work, sides.known) {
+    for (rule, nodes, name) in positions(work, unit, sides.known) {
         match &rule.test {
             Test::Require(requirement) => {
                 let at = Position { work, rule, requirement, unit, name };
@@ -103,7 +107,7 @@ impl Position<'_> {
     }
 
     fn of(&self, record: &RecordOfSide) -> String {
-        self.work.campaign.record_in_words(record.which)
+        self.work.campaign(self.unit).record_in_words(record.which)
     }
 
     /// `None` where the requirement is met, or cannot be evaluated because a datum is missing.
@@ -130,6 +134,7 @@ impl Position<'_> {
             code: self.rule.name.clone(),
             channel: (!self.name.is_empty()).then(|| self.name.to_string()),
             section: Some(self.unit.name.clone()),
+            campaign: self.unit.campaign_name.clone(),
             record,
             value: numbers.as_ref().map(|(value, ..)| *value),
             expected: numbers.as_ref().map(|(_, expected, ..)| *expected),

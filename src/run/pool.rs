@@ -1,19 +1,20 @@
 //! Everything a verdict depends on, for studies of the selection of sections: the values of every section and every limit with its
 //! bound, in the unit of the quantity.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::estimates::Group;
-use super::facts::{Facts, Known};
+use super::facts::{Facts, Known, Vehicle};
 use super::groups::{Part, parts};
 use super::judge::{Rows, members, rows};
-use super::limits::{Judging, applies};
+use super::limits::{Judging, applying};
 use super::section::SectionValues;
 use super::sections::Unit;
 use super::table::{Member, Row, Table};
 use crate::catalog::Statistic;
 use crate::check::evaluate::number;
-use crate::check::plan::{Decision, EstimateKind, Limit, OfGroup, Plan, Quantity, Taking};
+use crate::check::plan::{Decision, EstimateKind, Kind, Limit, OfGroup, Plan, Quantity, Taking};
 
 pub use crate::check::plan::Rule;
 
@@ -94,7 +95,7 @@ impl Estimator {
             true => Vec::new(),
             false => table.iter().map(|rows| rows.clone().map(|rows| rows.iter().map(numbered).collect())).collect(),
         };
-        let bound = judging.bound(limit, part, &inside, &Known::vehicle(facts)).unwrap_or(f64::NAN);
+        let bound = judging.common_bound(limit, part, &inside).unwrap_or(f64::NAN);
         Self {
             rules: Arc::clone(rules),
             quantity: plan.quantities.iter().position(|known| known.id == quantity.id).unwrap_or_default(),
@@ -128,6 +129,13 @@ impl Estimator {
             _ => None,
         };
         let taken = of.taken.iter().map(of_sums).collect::<Option<Vec<_>>>()?;
+        let mut reads_vehicle = false;
+        of.expr.visit(&mut |part| reads_vehicle |= matches!(part.kind, Kind::Vehicle(_)));
+        let vehicles: BTreeSet<usize> = self.rows.iter().map(|(_, unit, _)| unit.vehicle).collect();
+        if reads_vehicle && vehicles.len() > 1 {
+            return None;
+        }
+        let vehicle = &facts.vehicles[vehicles.first().copied().unwrap_or(0)];
         // Sums about the common mean avoid cancellation.
         let centre = self.rows.iter().map(|(.., row)| row.value).sum::<f64>() / self.rows.len().max(1) as f64;
         let mut sums = vec![Sums::default(); sections];
@@ -135,7 +143,7 @@ impl Estimator {
             let x = row.value - centre;
             sums[*section] = sums[*section].plus(Sums { n: 1.0, x, xx: x * x });
         }
-        Some(FromSums { facts, of, taken, centre, sums, bound: self.bound })
+        Some(FromSums { vehicle, of, taken, centre, sums, bound: self.bound })
     }
 
     /// The estimate over the rows of some sections, given by index, divided by the limit over all sections; `None` where it is not
@@ -195,7 +203,7 @@ impl Moment {
 /// An estimate of which a selection of sections needs no more than the sums of its values.
 #[derive(Debug)]
 pub struct FromSums<'a> {
-    facts: &'a Facts,
+    vehicle: &'a Vehicle,
     of: &'a OfGroup,
     /// With the number that a divisor is less than the number of values.
     taken: Vec<(Moment, f64)>,
@@ -217,7 +225,7 @@ impl FromSums<'_> {
             Moment::RootMeanSquare => Ok((squares / n + (self.centre + x / n).powi(2)).sqrt()),
         };
         let taken: Vec<Result<f64, String>> = self.taken.iter().map(of).collect();
-        let value = number(&self.of.expr, &Known { inputs: &taken, ..Known::vehicle(self.facts) });
+        let value = number(&self.of.expr, &Known { inputs: &taken, ..Known::vehicle(self.vehicle) });
         value.ok().map(|value| value / self.bound).filter(|value| value.is_finite())
     }
 }
@@ -294,7 +302,7 @@ fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &[Unit], values: &[Se
     let impossible = used.iter().any(|(_, values)| values.impossible.iter().any(|(at, _)| *at == index));
     let judging = Judging { plan, facts, quantity, members: &members, table };
     let mut limits = Vec::new();
-    for limit in quantity.limits.iter().filter(|limit| applies(limit, facts) == Ok(true)) {
+    for limit in &quantity.limits {
         for part in parts(plan, quantity, limit, &members, facts) {
             limits.extend(of_part(rules, &judging, limit, &part, units));
         }
@@ -314,26 +322,23 @@ fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &[Unit], values: &[Se
 
 fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Option<PooledLimit> {
     let Judging { plan, facts, quantity, members, .. } = *judging;
-    let inside = if part.by_section() {
-        let own = part.members(facts, members).ok()?;
+    let own = applying(limit, facts, part.members(facts, members).ok()?).ok()??;
+    let inside = if part.by_section() || facts.vehicles.len() > 1 {
         units.iter().map(|unit| own.iter().any(|member| member.unit.name == unit.name)).collect()
     } else {
         units.iter().map(|unit| part.has_section(unit, facts)).collect::<Result<Vec<_>, _>>().ok()?
     };
     let positions = part.positions(quantity);
-    let shown = |known: &Known<'_>, part: &Part<'_>, members: &[Member<'_>]| {
-        judging.bound(limit, part, members, known).ok().map(|bound| judging.unit(limit).from_si(bound))
-    };
+    let shown = |bound: Result<f64, String>| bound.ok().map(|bound| judging.unit(limit).from_si(bound));
     let bounds = if matches!(limit.estimate.kind, EstimateKind::Each) {
         let own = |unit: &Unit| match unit.fault {
             Some(_) => Some(f64::NAN),
-            None => shown(&unit.known(facts), &Part::of_section(plan, limit, unit), &[]),
+            None => shown(judging.bound(limit, &Part::of_section(plan, limit, unit), &[], &unit.known(facts))),
         };
         units.iter().map(own).collect::<Option<Vec<_>>>()?
     } else {
-        let members = part.members(facts, members).ok()?;
         // Data of sections can be used in the limit. This bound is that of all sections; an estimate computes its own.
-        vec![shown(&Known::vehicle(facts), part, &members)?]
+        vec![shown(judging.common_bound(limit, part, &own))?]
     };
     let estimate = match limit.estimate.statistic() {
         Some((statistic, ddof)) => Pooled::Statistic(statistic, ddof),

@@ -15,7 +15,7 @@ use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Plan, Side, StepSpec};
 use crate::data::checks::{Section, check_axis};
 use crate::data::record::Wanted;
-use crate::data::{Campaign, RecordKind, WhichRecord};
+use crate::data::{Campaign, Campaigns, RecordKind, WhichRecord, qualified};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::{Method, percentiles};
 use crate::problem::Problem;
@@ -27,17 +27,22 @@ use crate::units::Dimension;
 pub struct Work<'a> {
     pub plan: &'a Plan,
     pub graph: &'a Graph,
-    pub campaign: &'a Campaign,
+    pub campaigns: Campaigns<'a>,
     pub facts: &'a Facts,
     /// All sections; a repeat needs that of its original.
     pub units: &'a [Unit],
-    /// For each position of each quantity, whether its channels were recorded.
-    pub present: &'a [Vec<bool>],
+    /// For each campaign and each position of each quantity, whether its channels were recorded.
+    pub present: &'a [Vec<Vec<bool>>],
     /// The same for each position of each plausibility rule.
-    pub recorded: &'a [Vec<bool>],
+    pub recorded: &'a [Vec<Vec<bool>>],
 }
 
-impl Work<'_> {
+impl<'a> Work<'a> {
+    /// The campaign of a section.
+    pub fn campaign(&self, unit: &Unit) -> &'a Campaign {
+        self.campaigns.get(unit.campaign)
+    }
+
     /// Whether the protocol evaluates records of a side.
     pub fn reads(&self, side: Side) -> bool {
         self.plan.reads(side)
@@ -134,14 +139,16 @@ pub fn open(work: &Work<'_>, unit: &Unit, which: WhichRecord, needed: &BTreeSet<
             wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
         }
     }
-    let fault = |problems: Vec<Problem>| Fault { says: said(work.campaign, &problems), problems };
-    let (record, read) = work.campaign.read(which, &unit.cell, &wanted).map_err(fault)?;
+    let campaign = work.campaign(unit);
+    let fault = |problems: Vec<Problem>| Fault { says: said(campaign, &problems), problems };
+    let (record, read) = campaign.read(which, &unit.cell, &wanted).map_err(fault)?;
     let clock = time.map_or(axis.column.as_str(), |time| time.column.as_str());
     let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
     let checked = check_axis(&record, clock, &axis.column, section.as_ref()).map_err(fault)?;
-    let name = work.campaign.record_name(which).map(ToString::to_string);
+    let name = campaign.record_name(which).map(ToString::to_string);
     let of = RecordOf { kind: which.kind.key().into(), section: unit.name.clone(), name };
-    let file = FileHash { path: read.path, sha256: read.sha256, bytes: read.bytes, record: Some(of) };
+    let path = qualified(unit.campaign_name.as_deref(), &read.path);
+    let file = FileHash { path, sha256: read.sha256, bytes: read.bytes, record: Some(of) };
     let columns: Vec<_> = record.columns.into_iter().map(|column| (column.name, Arc::new(column.values))).collect();
     let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));
     let along_axis = values(&axis.column).unwrap_or_default();

@@ -1,7 +1,7 @@
 //! Computes a verdict again from the values recorded in a result, without the records, to check that it follows from them.
 
 use super::domain;
-use super::facts::{Facts, Known, NOT_STATED, absent, scalar};
+use super::facts::{Facts, Known, NOT_STATED, Vehicle, absent, scalar};
 use super::judge::{Judged, Told, judge};
 use super::record::needed;
 use super::requirements;
@@ -17,8 +17,8 @@ use crate::source::{Source, Spanned};
 /// The part of a result that rules use. All texts are as in the result, in the units that the protocol declares.
 #[derive(Clone, Debug, Default)]
 pub struct Recorded {
-    /// One for each [`Plan::vehicle`].
-    pub vehicle: Vec<String>,
+    /// Of each vehicle whose it is, where there are several, and one value for each [`Plan::vehicle`].
+    pub vehicles: Vec<(Option<String>, Vec<String>)>,
     pub sections: Vec<RecordedSection>,
     /// One for each [`Plan::quantities`].
     pub values: Vec<Vec<RecordedValue>>,
@@ -29,6 +29,9 @@ pub struct Recorded {
 #[derive(Clone, Debug)]
 pub struct RecordedSection {
     pub name: String,
+    /// Which of several campaigns and vehicles.
+    pub campaign: Option<String>,
+    pub vehicle: Option<String>,
     /// The first section of its site; its own name where the result states none.
     pub site: String,
     pub zone: Option<String>,
@@ -127,22 +130,28 @@ fn which(evaluation: &Evaluation, taken: Option<&str>) -> usize {
 }
 
 fn facts(plan: &Plan, recorded: &Recorded) -> Result<Facts, String> {
-    if recorded.vehicle.len() != plan.vehicle.len() {
-        return Err(format!("the protocol reads {} vehicle data, the result has {}", plan.vehicle.len(), recorded.vehicle.len()));
+    let vehicles = recorded.vehicles.iter().map(|(of, data)| vehicle(plan, of.clone(), data)).collect::<Result<_, _>>()?;
+    Ok(Facts { vehicles })
+}
+
+fn vehicle(plan: &Plan, of: Option<String>, data: &[String]) -> Result<Vehicle, String> {
+    if data.len() != plan.vehicle.len() {
+        return Err(format!("the protocol reads {} vehicle data, the result has {}", plan.vehicle.len(), data.len()));
     }
-    let read = plan.vehicle.iter().zip(&recorded.vehicle);
+    let read = plan.vehicle.iter().zip(data);
     let vehicle = read.map(|(datum, text)| match text.as_str() {
         NOT_STATED if datum.may_be_absent => Ok(Err(absent(datum))),
         text => scalar(&datum.kind, text).map(Ok).map_err(|says| format!("`{}`: {says}", datum.key)),
     });
-    let vehicle: Vec<Result<Scalar, String>> = vehicle.collect::<Result<_, _>>()?;
-    Ok(Facts { assumed: vec![false; vehicle.len()], vehicle })
+    let data: Vec<Result<Scalar, String>> = vehicle.collect::<Result<_, _>>()?;
+    Ok(Vehicle { of, assumed: vec![false; data.len()], data })
 }
 
 fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
     let axis = &plan.axis.unit;
     let nowhere = Source::new("results.json", "").whole();
     let place = |name: &str| recorded.sections.iter().position(|other| other.name == name);
+    let vehicle = |of: &Option<String>| recorded.vehicles.iter().position(|(known, _)| known == of);
     let one = |section: &RecordedSection| {
         if section.columns.len() != plan.columns.len() {
             let (asked, found) = (plan.columns.len(), section.columns.len());
@@ -151,8 +160,12 @@ fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
         let column = |(datum, text): (&crate::check::plan::Datum, &String)| -> Result<Scalar, String> {
             if text.is_empty() { Err(format!("`{}` is empty", datum.key)) } else { scalar(&datum.kind, text) }
         };
+        let none = || format!("section {}: the result has no data of its vehicle", section.name);
         Ok(Unit {
             name: section.name.clone(),
+            campaign: 0,
+            campaign_name: section.campaign.clone(),
+            vehicle: vehicle(&section.vehicle).ok_or_else(none)?,
             cell: Spanned::new(section.name.clone(), nowhere.clone()),
             zone: section.zone.clone(),
             site: place(&section.site).or_else(|| place(&section.name)).unwrap_or_default(),
@@ -172,10 +185,8 @@ fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
 
 /// Why a recorded difference does not follow from its two sides.
 fn difference(plan: &Plan, facts: &Facts, unit: &Unit, index: usize, row: &Row) -> Option<String> {
-    let Evaluation::Values {
-        records: Records::Compared { difference } | Records::Spread { difference, .. } | Records::Repeats { difference },
-        ..
-    } = plan.quantities[index].evaluation.as_ref()
+    let Evaluation::Values { records: Records::Compared { difference, .. } | Records::Spread { difference, .. }, .. } =
+        plan.quantities[index].evaluation.as_ref()
     else {
         return None;
     };

@@ -1,6 +1,6 @@
 //! Requirements on the data and records of sections, and the consequences of those that are not met.
 
-use super::facts::{Facts, item, trimmed};
+use super::facts::{Facts, Vehicle, item, trimmed};
 use super::section::SectionValues;
 use super::sections::Unit;
 use crate::check::evaluate::{Watched, flag, number};
@@ -36,7 +36,7 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
             // A datum missing from the vehicle file is not a fault of the section. The section is used, and a finding reports it.
             let untold = check.name == "length" && check.holds.is_none() && {
                 let minimum = asked(plan, unit, &check);
-                minimum.is_some_and(|minimum| !not_stated(minimum, facts).is_empty())
+                minimum.is_some_and(|minimum| !not_stated(minimum, facts.of(unit)).is_empty())
             };
             if check.holds != Some(true) && !untold {
                 let subject = match (check.name.as_str(), check.holds) {
@@ -95,10 +95,10 @@ fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckR
 }
 
 /// Vehicle data that an expression depends on and that the vehicle file does not state.
-fn not_stated(expr: &Expr, facts: &Facts) -> Vec<usize> {
+fn not_stated(expr: &Expr, vehicle: &Vehicle) -> Vec<usize> {
     let mut found = Vec::new();
     expr.visit(&mut |part| match part.kind {
-        Kind::Vehicle(index) if facts.vehicle[index].is_err() && !found.contains(&index) => found.push(index),
+        Kind::Vehicle(index) if vehicle.data[index].is_err() && !found.contains(&index) => found.push(index),
         _ => {}
     });
     found
@@ -109,7 +109,7 @@ pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
     let mut found: Vec<(usize, &str, Vec<&str>)> = Vec::new();
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
         for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
-            for index in asked(plan, unit, check).map_or_else(Vec::new, |expr| not_stated(expr, facts)) {
+            for index in asked(plan, unit, check).map_or_else(Vec::new, |expr| not_stated(expr, facts.of(unit))) {
                 match found.iter_mut().find(|(known, title, _)| *known == index && *title == check.title) {
                     Some((_, _, names)) => names.push(&unit.name),
                     None => found.push((index, &check.title, vec![&unit.name])),
@@ -193,7 +193,7 @@ fn unchecked(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
         for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
             // A datum missing from the vehicle file is reported by a finding.
-            if asked(plan, unit, check).is_some_and(|rule| !not_stated(rule, facts).is_empty()) {
+            if asked(plan, unit, check).is_some_and(|rule| !not_stated(rule, facts.of(unit)).is_empty()) {
                 continue;
             }
             match found.iter_mut().find(|(title, says, _)| *title == check.title && *says == check.says) {

@@ -69,23 +69,23 @@ pub fn of_section(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>) -> Vec<Sect
 /// The positions of each quantity that are evaluated in a section; those of repeats only in a section that repeats another.
 type Active = Vec<Vec<bool>>;
 
-fn active(work: &Work<'_>, repeats: bool, known: &Known<'_>) -> Result<Active, Fault> {
+fn active(work: &Work<'_>, unit: &Unit, known: &Known<'_>) -> Result<Active, Fault> {
     let holds = |only: Option<&Expr>| only.map_or(Ok(true), |only| flag(only, known));
     let of_quantity = |(quantity, present): (&Quantity, &Vec<bool>)| {
-        let all = holds(quantity.only.as_ref())? && (repeats || !quantity.evaluation.of_repeats());
+        let all = holds(quantity.only.as_ref())? && (unit.original.is_some() || !quantity.evaluation.of_repeats());
         let of_position = |(position, present): (&Position, &bool)| Ok(all && *present && holds(position.only.as_ref())?);
         quantity.positions.iter().zip(present).map(of_position).collect::<Result<Vec<bool>, String>>()
     };
-    work.plan.quantities.iter().zip(work.present).map(of_quantity).collect::<Result<_, _>>().map_err(Fault::new)
+    work.plan.quantities.iter().zip(&work.present[unit.campaign]).map(of_quantity).collect::<Result<_, _>>().map_err(Fault::new)
 }
 
 fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionValues) -> Result<Vec<SectionValues>, Fault> {
     let known = unit.known(work.facts);
     let track = track_checks(work, unit, &known, common)?;
-    let active = active(work, unit.original.is_some(), &known)?;
+    let active = active(work, unit, &known)?;
     // A record is reduced to numbers before the next one is opened, so that one record is in memory at a time.
-    let simulated = records(work, unit, Side::Simulated, &wanted(work, &known, &active, shifts, Side::Simulated), &known, common);
-    let wanted = wanted(work, &known, &active, shifts, Side::Measured);
+    let simulated = records(work, unit, Side::Simulated, &wanted(work, unit, &known, &active, shifts, Side::Simulated), &known, common);
+    let wanted = wanted(work, unit, &known, &active, shifts, Side::Measured);
     let measured = match &simulated {
         Ok(simulated) if !shifts.plain() => shifted(work, unit, shifts, &wanted, &known, simulated, common),
         _ => records(work, unit, Side::Measured, &wanted, &known, common).map(|measured| vec![Ok(measured)]),
@@ -125,13 +125,13 @@ fn records(
         return Ok(Vec::new());
     }
     let mut records: Result<Vec<RecordOfSide>, Fault> = Ok(Vec::new());
-    for which in work.campaign.records(side.kind()) {
+    for which in work.campaign(unit).records(side.kind()) {
         let one = one_record(work, unit, which, wanted, known, common).map(|(found, opened)| {
             // The first measurement defines the range of a whole record; without measurements, the simulation.
             if side == Side::Measured && which.number == 0 || common.extent.is_none() {
                 common.extent = Some(opened.extent);
             }
-            of_side(work, which, found)
+            of_side(work, unit, which, found)
         });
         records = match (records, one) {
             (Ok(mut all), Ok(one)) => {
@@ -145,8 +145,9 @@ fn records(
     records
 }
 
-fn of_side(work: &Work<'_>, which: WhichRecord, found: Evaluated) -> RecordOfSide {
-    RecordOfSide { name: work.campaign.record_name(which).cloned(), which, found }
+fn of_side(work: &Work<'_>, unit: &Unit, which: WhichRecord, found: Evaluated) -> RecordOfSide {
+    let campaign = work.campaign(unit);
+    RecordOfSide { name: campaign.record_name(which).cloned(), called: campaign.record_called(which).cloned(), which, found }
 }
 
 /// The section that this one repeats, with the values that quantities of repeats need. If it cannot be evaluated, it is itself not
@@ -193,7 +194,7 @@ fn shifted(
         .zip(simulated.first())
         .and_then(|(farthest, simulated)| synchronisation::estimate(work.graph, unit, farthest, &simulated.found, &held));
     let own = if shifts.correct { common.offset.as_ref().map_or(0.0, |offset| offset.shift) } else { 0.0 };
-    let at = |offset: &f64| held.at(own + offset).map(|found| vec![of_side(work, which, found)]).map_err(placed);
+    let at = |offset: &f64| held.at(own + offset).map(|found| vec![of_side(work, unit, which, found)]).map_err(placed);
     Ok(shifts.offsets.iter().map(at).collect())
 }
 
@@ -212,7 +213,7 @@ fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &Active, values: &mut 
 }
 
 /// Nodes whose values are needed from the records of one side.
-fn wanted(work: &Work<'_>, known: &Known<'_>, active: &Active, shifts: &Shifts<'_>, side: Side) -> BTreeSet<NodeId> {
+fn wanted(work: &Work<'_>, unit: &Unit, known: &Known<'_>, active: &Active, shifts: &Shifts<'_>, side: Side) -> BTreeSet<NodeId> {
     let mut wanted = BTreeSet::new();
     for (index, quantity) in work.graph.quantities.iter().enumerate() {
         let rule = &work.plan.quantities[index];
@@ -224,7 +225,7 @@ fn wanted(work: &Work<'_>, known: &Known<'_>, active: &Active, shifts: &Shifts<'
     for check in &work.graph.checks {
         wanted.extend(check.iter().flat_map(InputNode::nodes).filter(|&node| !work.graph.nodes[node].track));
     }
-    wanted.extend(plausibility::wanted(work, known, false));
+    wanted.extend(plausibility::wanted(work, unit, known, false));
     if shifts.farthest.is_some() {
         wanted.extend(synchronisation::signals(work, active));
     }
@@ -269,9 +270,9 @@ pub fn single(work: &Work<'_>, unit: &Unit, index: usize, signal: usize) -> Resu
     let mut all: Vec<OneRecord> = Vec::new();
     let mut read = |unit: &Unit, known: &Known<'_>, side: Side, place: Side| {
         let mut records = Vec::new();
-        for which in work.campaign.records(side.kind()) {
+        for which in work.campaign(unit).records(side.kind()) {
             let (found, opened) = one_record(work, unit, which, &wanted, known, &mut SectionValues::default())?;
-            let record = of_side(work, which, found.clone());
+            let record = of_side(work, unit, which, found.clone());
             all.push(OneRecord { place, name: record.name.clone(), found, opened });
             records.push(record);
         }

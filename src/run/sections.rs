@@ -3,9 +3,9 @@
 use super::facts::{Facts, Known, item, scalar};
 use super::signal::Extent;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
-use crate::data::Campaign;
-use crate::data::sites::{originals, sites};
+use crate::data::sites::{originals, site_text, sites};
 use crate::data::table::{Cell, Table};
+use crate::data::{Campaign, Campaigns, qualified};
 use crate::problem::{Problem, Problems};
 use crate::result::{CheckResult, SectionResult};
 use crate::source::Span;
@@ -14,7 +14,13 @@ use crate::units::Unit as OfMeasure;
 /// A section, or a whole record where there are no sections.
 #[derive(Clone, Debug)]
 pub struct Unit {
+    /// Of its own; in a pool with the campaign's: `series 2/S01`.
     pub name: String,
+    /// Number of its campaign, and what that is called where there are several.
+    pub campaign: usize,
+    pub campaign_name: Option<String>,
+    /// Number of its vehicle in [`Facts::vehicles`].
+    pub vehicle: usize,
     /// The section name with its place in the table; it is also the name of the records.
     pub cell: Cell,
     pub zone: Option<String>,
@@ -41,7 +47,7 @@ pub struct Unit {
 
 impl Unit {
     pub fn known<'a>(&'a self, facts: &'a Facts) -> Known<'a> {
-        Known { columns: Some(&self.columns), extent: self.extent, ..Known::vehicle(facts) }
+        Known { columns: Some(&self.columns), extent: self.extent, ..Known::vehicle(facts.of(self)) }
     }
 
     /// Records the first reason not to use it.
@@ -53,10 +59,40 @@ impl Unit {
     }
 }
 
+/// The sections of all campaigns, one campaign after the other.
+pub fn units(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> Vec<Unit> {
+    let mut all: Vec<Unit> = Vec::new();
+    // Sections of different campaigns are of one site only if the column `site` says so.
+    let mut sites: Vec<(String, usize, String)> = Vec::new();
+    for (number, campaign) in campaigns.iter().enumerate() {
+        let (before, called) = (all.len(), campaigns.name_of(number));
+        for mut unit in of_campaign(plan, campaign, problems) {
+            unit.campaign = number;
+            unit.vehicle = number;
+            unit.site += before;
+            unit.original = unit.original.map(|original| original + before);
+            if campaigns.pooled() {
+                unit.name = qualified(called, &unit.name);
+                unit.site_name = qualified(called, &unit.site_name);
+                unit.campaign_name = called.map(str::to_string);
+                let named = campaign.sections.as_ref().and_then(|table| site_text(table, &unit.cell.value));
+                if let Some(text) = named {
+                    match sites.iter().find(|(known, ..)| known == text) {
+                        Some((_, site, name)) => (unit.site, unit.site_name) = (*site, name.clone()),
+                        None => sites.push((text.to_string(), unit.site, unit.site_name.clone())),
+                    }
+                }
+            }
+            all.push(unit);
+        }
+    }
+    all
+}
+
 /// Reads the sections with the columns that the protocol declares.
-pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<Unit> {
+fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<Unit> {
     if plan.sections.whole_records {
-        return campaign.names.iter().enumerate().map(|(site, name)| whole_record(plan, name, site)).collect();
+        return campaign.names.iter().enumerate().map(|(site, name)| whole_record(plan, campaign, name, site)).collect();
     }
     let Some(table) = &campaign.sections else {
         problems.push(
@@ -88,7 +124,7 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
     let (sites, originals) = (sites(table, problems), originals(table));
     let mut units = Vec::new();
     for row in 0..table.rows.len() {
-        let row = Row { table, row, file: campaign.inside(&table.columns[0].span.source.name) };
+        let row = Row { table, row, campaign: &campaign.short_name.value, file: campaign.inside(&table.columns[0].span.source.name) };
         let columns: Vec<Result<Scalar, CellFault>> = plan.columns.iter().map(|datum| row.cell(datum)).collect();
         let ill_formed =
             columns.iter().find_map(|cell| cell.as_ref().err().filter(|fault| fault.ill_formed).map(|fault| fault.says.clone()));
@@ -96,6 +132,9 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
         let name = &campaign.names[row.row];
         let mut unit = Unit {
             name: name.value.clone(),
+            campaign: 0,
+            campaign_name: None,
+            vehicle: 0,
             cell: name.clone(),
             zone: plan.sections.zone.and_then(|zone| match &columns[zone] {
                 Ok(Scalar::Word(word)) => Some(word.clone()),
@@ -125,14 +164,20 @@ pub fn units(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<U
     units
 }
 
-fn whole_record(plan: &Plan, name: &Cell, site: usize) -> Unit {
+fn whole_record(plan: &Plan, campaign: &Campaign, name: &Cell, site: usize) -> Unit {
+    let called = |datum: &Datum| (datum.kind == DatumKind::Campaign).then(|| Scalar::Word(campaign.short_name.value.clone()));
     let columns = plan
         .columns
         .iter()
-        .map(|datum| datum.default.clone().ok_or_else(|| format!("`{}` is not known of a whole record", datum.name)))
+        .map(|datum| {
+            called(datum).or_else(|| datum.default.clone()).ok_or_else(|| format!("`{}` is not known of a whole record", datum.name))
+        })
         .collect();
     Unit {
         name: name.value.clone(),
+        campaign: 0,
+        campaign_name: None,
+        vehicle: 0,
         cell: name.clone(),
         zone: None,
         site,
@@ -150,6 +195,9 @@ fn whole_record(plan: &Plan, name: &Cell, site: usize) -> Unit {
 
 /// Reports a declared column that is missing or has a unit of another dimension.
 pub fn column_missing(datum: &Datum, (table, called): (&Table, &str), problems: &mut Problems) -> bool {
+    if datum.kind == DatumKind::Campaign {
+        return false;
+    }
     let Some(index) = table.column(&datum.key) else {
         if datum.default.is_some() {
             return false;
@@ -178,6 +226,8 @@ pub fn column_missing(datum: &Datum, (table, called): (&Table, &str), problems: 
 pub struct Row<'a> {
     pub table: &'a Table,
     pub row: usize,
+    /// What the campaign is called.
+    pub campaign: &'a str,
     /// Path of the table inside the campaign.
     pub file: &'a str,
 }
@@ -190,6 +240,9 @@ pub struct CellFault {
 
 impl Row<'_> {
     pub fn cell(&self, datum: &Datum) -> Result<Scalar, CellFault> {
+        if datum.kind == DatumKind::Campaign {
+            return Ok(Scalar::Word(self.campaign.to_string()));
+        }
         let nothing = |says: String| datum.default.clone().ok_or(CellFault { says, ill_formed: false });
         let Some(index) = self.table.column(&datum.key) else {
             return nothing(format!("there is no column `{}`", datum.key));
@@ -212,7 +265,7 @@ impl Row<'_> {
     }
 }
 
-pub fn results(plan: &Plan, units: Vec<Unit>) -> Vec<SectionResult> {
+pub fn results(plan: &Plan, facts: &Facts, units: Vec<Unit>) -> Vec<SectionResult> {
     let axis = &plan.axis.unit;
     let names: Vec<String> = units.iter().map(|unit| unit.name.clone()).collect();
     units
@@ -222,6 +275,8 @@ pub fn results(plan: &Plan, units: Vec<Unit>) -> Vec<SectionResult> {
             SectionResult {
                 site: names.get(unit.site).unwrap_or(&unit.name).clone(),
                 section: unit.name,
+                campaign: unit.campaign_name,
+                vehicle: facts.vehicles[unit.vehicle].of.clone(),
                 zone: unit.zone,
                 used: unit.fault.is_none(),
                 reason: unit.fault,

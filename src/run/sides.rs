@@ -10,7 +10,7 @@ use super::signal::{Extent, Rate, Samples};
 use super::table::Row;
 use crate::catalog::{Metric, Pair};
 use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Center, Evaluation, Expr, InputSide, Kind, Records, Side};
+use crate::check::plan::{Center, Chosen, Evaluation, Expr, InputSide, Kind, Pairing, Records, Side};
 use crate::data::WhichRecord;
 use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
 use crate::metrics::percentile::Method;
@@ -24,6 +24,8 @@ pub type Evaluated = Vec<(NodeId, Found)>;
 pub struct RecordOfSide {
     /// Its name, where the campaign has several records of the side.
     pub name: Option<Arc<str>>,
+    /// What the campaign calls it, also if it is the only one.
+    pub called: Option<Arc<str>>,
     pub which: WhichRecord,
     pub found: Evaluated,
 }
@@ -101,11 +103,7 @@ impl<'a> Sides<'a> {
         let (simulated, measured) = (of(self.simulated), of(self.measured));
         simulated.into_iter().flat_map(move |(s, simulated)| {
             let one = |(m, measured): &(Option<Arc<str>>, &'a Evaluated)| {
-                let name = match (&s, m) {
-                    (Some(s), Some(m)) => Some(format!("{s}, {m}").into()),
-                    (one, other) => one.clone().or_else(|| other.clone()),
-                };
-                (name, Two { simulated, measured, known, extent, method, shift: 0.0 })
+                (names(s.as_ref(), m.as_ref()), Two { simulated, measured, known, extent, method, shift: 0.0 })
             };
             measured.iter().map(one).collect::<Vec<_>>()
         })
@@ -113,16 +111,51 @@ impl<'a> Sides<'a> {
 
     /// Every measured record of a repeat with that of its original, which takes the place of the measurement. Distances are counted
     /// from the start of each section.
-    fn repeats(&self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>, &'a RecordOfSide, &'a RecordOfSide)> {
+    fn repeats(&self) -> impl Iterator<Item = Joined<'a>> {
         let (known, own, method) = (self.known, self.extent, self.method);
         self.original.into_iter().flat_map(move |original| {
             let extent = original.unit.extent;
             let shift = extent.zip(own).map_or(0.0, |((first, _), (again, _))| first - again);
             self.measured.iter().zip(&original.records).map(move |(repeat, first)| {
                 let two = Two { simulated: &repeat.found, measured: &first.found, known, extent, method, shift };
-                (repeat.name.clone(), two, repeat, first)
+                let second = Two { known: &original.known, ..self.alone(first) };
+                Joined { record: repeat.name.clone(), two, first: self.alone(repeat), second }
             })
         })
+    }
+
+    /// The records that a rule asks for, in the order of the campaign.
+    fn chosen(&self, work: &Work<'_>, chosen: Chosen) -> Vec<&'a RecordOfSide> {
+        let members = chosen.record.map_or(&[][..], |index| &work.plan.records[index].members);
+        let named = |record: &&RecordOfSide| members.iter().any(|member| record.called.as_deref() == Some(member.value.as_str()));
+        self.of(chosen.side).iter().filter(|record| members.is_empty() || named(record)).collect()
+    }
+
+    /// Two records that are compared, and the names of those of which there are several.
+    fn joined(&self, work: &Work<'_>, pairing: Pairing) -> Result<Vec<Joined<'a>>, String> {
+        let pair = |first: &'a RecordOfSide, second: &'a RecordOfSide| {
+            let two = Two { simulated: &first.found, measured: &second.found, ..self.alone(first) };
+            Joined { record: names(first.name.as_ref(), second.name.as_ref()), two, first: self.alone(first), second: self.alone(second) }
+        };
+        match pairing {
+            Pairing::Repeats => Ok(self.repeats().collect()),
+            Pairing::EachOther(of) => {
+                let all = self.chosen(work, of);
+                if all.len() < 2 {
+                    return Err(one_record(of.side));
+                }
+                Ok(all.iter().enumerate().flat_map(|(at, first)| all[at + 1..].iter().map(|second| pair(first, second))).collect())
+            }
+            Pairing::Each(one, other) => {
+                let (firsts, seconds) = (self.chosen(work, one), self.chosen(work, other));
+                let with = |first: &'a RecordOfSide| {
+                    let others = seconds.iter().filter(move |second| second.which != first.which);
+                    others.map(|second| pair(first, second)).collect::<Vec<_>>()
+                };
+                let found: Vec<Joined<'a>> = firsts.into_iter().flat_map(with).collect();
+                if found.is_empty() { Err(one_record(one.side)) } else { Ok(found) }
+            }
+        }
     }
 
     /// The rows of one position.
@@ -131,30 +164,24 @@ impl<'a> Sides<'a> {
             return Err("this node gives no rows".into());
         };
         match evaluation.as_ref() {
-            Evaluation::Metric { metric, repeats, .. } => {
+            Evaluation::Metric { metric, pairing, .. } => {
                 let common = metric.on_common_points(keeps_samples(work, nodes));
                 let node = if common { nodes.filtered } else { nodes.processed };
-                let one = |(record, two): (Option<Arc<str>>, Two<'_>)| {
+                let one = |Joined { record, two, .. }: Joined<'_>| {
                     let (value, samples) = two.compared(*metric, common, node, nodes.over)?;
                     Ok(Row { position, which: 0, record, simulated: None, measured: None, value, samples })
                 };
-                if *repeats {
-                    return self.repeats().map(|(record, two, ..)| one((record, two))).collect();
-                }
-                self.pairs().map(one).collect()
+                self.joined(work, *pairing)?.into_iter().map(one).collect()
             }
-            Evaluation::Combined { of, repeats } => {
-                let one = |(record, two): (Option<Arc<str>>, Two<'_>)| {
+            Evaluation::Combined { of, pairing } => {
+                let one = |Joined { record, two, .. }: Joined<'_>| {
                     let found: Vec<_> = nodes.inputs.iter().map(|input| two.counted(input, InputSide::Measured)).collect();
                     let samples = found.iter().flatten().map(|(_, samples)| *samples).max().unwrap_or(0);
                     let inputs: Vec<Result<f64, String>> = found.into_iter().map(|found| found.map(|(value, _)| value)).collect();
                     let value = number(&of.expr, &Known { inputs: &inputs, ..section(self.known) })?;
                     Ok(Row { position, which: 0, record, simulated: None, measured: None, value, samples })
                 };
-                if *repeats {
-                    return self.repeats().map(|(record, two, ..)| one((record, two))).collect();
-                }
-                self.pairs().map(one).collect()
+                self.joined(work, *pairing)?.into_iter().map(one).collect()
             }
             Evaluation::Values { values, records } => {
                 let mut rows = Vec::new();
@@ -181,55 +208,44 @@ impl<'a> Sides<'a> {
         value: &ValueNodes,
     ) -> Result<Vec<Row>, String> {
         let samples = |two: &Two<'_>, side| two.samples(work, nodes, value, side);
-        let alone = |side: Side| {
-            self.of(side).iter().map(move |record| {
+        let alone = |of: Chosen| {
+            self.chosen(work, of).into_iter().map(move |record| {
                 let two = self.alone(record);
-                Ok::<_, String>((record.name.clone(), two, two.value(work, value, own(side))?))
+                Ok::<_, String>((record.name.clone(), two, two.value(work, value, own(of.side))?))
             })
         };
         let difference_of = |difference: &Expr, s: f64, m: f64| number(difference, &Known { sides: Some((s, m)), ..section(self.known) });
         match records {
-            Records::Of(side) => {
+            Records::Of(of) => {
                 let one = |(record, two, value): (Option<Arc<str>>, Two<'_>, f64)| {
-                    let samples = samples(&two, own(*side));
+                    let samples = samples(&two, own(of.side));
                     Row { position, which, record, simulated: None, measured: None, value, samples }
                 };
-                alone(*side).map(|found| found.map(one)).collect()
+                alone(*of).map(|found| found.map(one)).collect()
             }
-            Records::Compared { difference } => {
-                let one = |(record, two): (Option<Arc<str>>, Two<'_>)| {
-                    let s = two.value(work, value, InputSide::Simulated)?;
-                    let m = two.value(work, value, InputSide::Measured)?;
-                    let samples = samples(&two, InputSide::Measured);
-                    Ok(Row {
-                        position,
-                        which,
-                        record,
-                        simulated: Some(s),
-                        measured: Some(m),
-                        value: difference_of(difference, s, m)?,
-                        samples,
-                    })
-                };
-                self.pairs().map(one).collect()
-            }
-            Records::Repeats { difference } => {
-                let one = |(record, _, repeat, first): (Option<Arc<str>>, Two<'_>, &RecordOfSide, &RecordOfSide)| {
-                    let again = self.alone(repeat);
-                    let known = self.original.map_or(self.known, |original| &original.known);
-                    let s = again.value(work, value, InputSide::Measured)?;
-                    let m = Two { known, ..self.alone(first) }.value(work, value, InputSide::Measured)?;
-                    let samples = samples(&again, InputSide::Measured);
+            Records::Compared { pairing, difference } => {
+                let one = |Joined { record, two, first, second }: Joined<'_>| {
+                    // Of two sides, each number may also take values of the other one.
+                    let (s, m, samples) = match pairing.within().or((*pairing == Pairing::Repeats).then_some(Side::Measured)) {
+                        None => {
+                            let s = two.value(work, value, InputSide::Simulated)?;
+                            (s, two.value(work, value, InputSide::Measured)?, samples(&two, InputSide::Measured))
+                        }
+                        Some(side) => {
+                            let s = first.value(work, value, own(side))?;
+                            (s, second.value(work, value, own(side))?, samples(&first, own(side)))
+                        }
+                    };
                     let value = difference_of(difference, s, m)?;
                     Ok(Row { position, which, record, simulated: Some(s), measured: Some(m), value, samples })
                 };
-                self.repeats().map(one).collect()
+                self.joined(work, *pairing)?.into_iter().map(one).collect()
             }
-            Records::Spread { side, center, difference } => {
-                let all = alone(*side).collect::<Result<Vec<_>, _>>()?;
+            Records::Spread { of, among, center, difference } => {
+                let all = alone(*among).collect::<Result<Vec<_>, _>>()?;
                 let values: Vec<f64> = all.iter().map(|(_, _, value)| *value).collect();
                 if values.len() < 2 {
-                    return Err(format!("there is only one {} record; this comparison needs several", side.in_words()));
+                    return Err(one_record(of.side));
                 }
                 let center = match center {
                     Center::Mean => statistics::mean(&values),
@@ -237,14 +253,36 @@ impl<'a> Sides<'a> {
                 };
                 let center = center.ok_or("the records have no mean")?;
                 let one = |(record, two, value): (Option<Arc<str>>, Two<'_>, f64)| {
-                    let samples = samples(&two, own(*side));
+                    let samples = samples(&two, own(of.side));
                     let difference = difference_of(difference, value, center)?;
                     Ok(Row { position, which, record, simulated: Some(value), measured: Some(center), value: difference, samples })
                 };
-                all.into_iter().map(one).collect()
+                alone(*of).map(|found| found.and_then(one)).collect()
             }
         }
     }
+}
+
+/// Two records that are compared.
+struct Joined<'a> {
+    /// The names of those of which there are several.
+    record: Option<Arc<str>>,
+    two: Two<'a>,
+    /// Each by itself.
+    first: Two<'a>,
+    second: Two<'a>,
+}
+
+/// `simpack`, and of several on both sides `simpack, run1`.
+fn names(first: Option<&Arc<str>>, second: Option<&Arc<str>>) -> Option<Arc<str>> {
+    match (first, second) {
+        (Some(first), Some(second)) => Some(format!("{first}, {second}").into()),
+        (one, other) => one.or(other).cloned(),
+    }
+}
+
+fn one_record(side: Side) -> String {
+    format!("there is one {} record, and several are compared", side.in_words())
 }
 
 fn own(side: Side) -> InputSide {
@@ -366,5 +404,5 @@ pub fn samples_of(found: &Evaluated, node: NodeId) -> Result<&Samples, String> {
 
 /// The same names, without inputs and sides.
 pub fn section<'a>(known: &Known<'a>) -> Known<'a> {
-    Known { facts: known.facts, columns: known.columns, extent: known.extent, inputs: &[], sides: None }
+    Known { vehicle: known.vehicle, columns: known.columns, extent: known.extent, inputs: &[], sides: None }
 }

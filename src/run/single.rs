@@ -2,8 +2,8 @@
 
 use super::section::{self, OneRecord};
 use super::{Found, Prepared};
-use crate::check::plan::{self, Evaluation, Plan, Records};
-use crate::data::Campaign;
+use crate::check::plan::{self, Evaluation, Pairing, Plan, Records};
+use crate::data::Campaigns;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::{FileHash, took_part};
@@ -39,14 +39,14 @@ pub struct Side {
 ///
 /// # Errors
 /// Reasons why the campaign cannot be used; `no-such-section`; `not-evaluated` with the reason.
-pub fn single(
+pub fn single<'a>(
     plan: &Plan,
     graph: &Graph,
-    campaign: &Campaign,
+    campaigns: impl Into<Campaigns<'a>>,
     (quantity, signal): (usize, usize),
     (section, record): (&str, Option<&str>),
 ) -> Result<Single, Problems> {
-    let prepared = Prepared::new(plan, graph, campaign)?;
+    let prepared = Prepared::new(plan, graph, campaigns.into())?;
     let unit = prepared.units.iter().find(|unit| unit.name == section).ok_or_else(|| {
         let problem = Problem::error("no-such-section", format!("the campaign has no section `{section}`"));
         one(problem.suggest(section, prepared.units.iter().map(|unit| unit.name.as_str())))
@@ -69,19 +69,31 @@ pub fn single(
     let assessed = matches!(evaluation, Evaluation::Values { records: Records::Of(_), .. });
     // The mean or median of several records needs all of them.
     let of_all = matches!(evaluation, Evaluation::Values { records: Records::Spread { .. }, .. });
-    let own = |one: &OneRecord| of_all || took_part(record, one.place == plan::Side::Simulated, one.name.as_deref());
+    // Of two records of one side, the first stands in the place of the simulation.
+    let within = evaluation.pairing().and_then(Pairing::within);
+    let both = record.filter(|_| within.is_some()).and_then(|record| record.split_once(", "));
+    let place = |one: &OneRecord| match both {
+        Some((first, _)) if one.name.as_deref() == Some(first) => plan::Side::Simulated,
+        Some(_) => plan::Side::Measured,
+        None => one.place,
+    };
+    let own = |one: &OneRecord| match both {
+        Some((first, second)) => one.name.as_deref().is_some_and(|name| name == first || name == second),
+        None => of_all || took_part(record, one.place == plan::Side::Simulated, one.name.as_deref()),
+    };
     let side = |one: OneRecord| {
         let reduced = one.found.iter().filter_map(|(node, found)| match found {
             Found::Number(value, samples) => Some((*node, *value, *samples)),
             Found::Samples(_) | Found::Failed(_) => None,
         });
-        let value = match one.place {
+        let place = place(&one);
+        let value = match place {
             _ if assessed => Some(row.value),
             _ if of_all => row.simulated.filter(|_| one.name.as_deref() == record),
             plan::Side::Simulated => row.simulated,
             plan::Side::Measured => row.measured,
         };
-        let column = if of_all { plan::Side::Simulated } else { one.place };
+        let column = if of_all { plan::Side::Simulated } else { place };
         let (inside, last) = one.opened.rows();
         let value = value.map(|value| of.from_si(value));
         Side { column: (!assessed).then_some(column), reduced: reduced.collect(), inside, last, value, file: one.opened.file }

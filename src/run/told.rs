@@ -1,6 +1,6 @@
 //! Findings about the vehicle data: assumed units, and limits with factors that depend on these data.
 
-use super::facts::{Facts, Known, vehicle_item};
+use super::facts::{Facts, Known, Vehicle, vehicle_item};
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{DatumKind, Expr, Kind, Limit, Operator, Plan};
 use crate::result::{Finding, LimitFactor, QuantityResult};
@@ -13,15 +13,15 @@ const LIMIT_FACTOR: &str = "limit-factor";
 
 /// Findings about the vehicle data; none of them changes the verdict.
 pub fn findings(plan: &Plan, facts: &Facts, quantities: &[QuantityResult]) -> Vec<Finding> {
-    assumed(plan, facts).into_iter().chain(multiplied(quantities)).collect()
+    facts.vehicles.iter().filter_map(|vehicle| assumed(plan, vehicle)).chain(multiplied(quantities)).collect()
 }
 
 /// One finding for all numbers without a unit whose size depends on one.
-fn assumed(plan: &Plan, facts: &Facts) -> Option<Finding> {
+fn assumed(plan: &Plan, vehicle: &Vehicle) -> Option<Finding> {
     let bare: Vec<String> = plan
         .vehicle
         .iter()
-        .zip(facts.vehicle.iter().zip(&facts.assumed))
+        .zip(vehicle.data.iter().zip(&vehicle.assumed))
         .filter(|(datum, (_, assumed))| **assumed && is_dimensioned(&datum.kind))
         .map(|(datum, (value, _))| {
             let item = vehicle_item(datum, value);
@@ -29,7 +29,8 @@ fn assumed(plan: &Plan, facts: &Facts) -> Option<Finding> {
         })
         .collect();
     (!bare.is_empty()).then(|| {
-        let says = format!("the vehicle file states no unit; read in the unit of the protocol: {}", bare.join(", "));
+        let of = vehicle.of.as_ref().map_or_else(String::new, |of| format!(" of {of}"));
+        let says = format!("the vehicle file{of} states no unit; read in the unit of the protocol: {}", bare.join(", "));
         Finding::note(UNIT_ASSUMED, says)
     })
 }
@@ -63,26 +64,38 @@ fn times(by: f64) -> String {
 }
 
 /// The factors of a limit that apply because of vehicle data alone, each with its reason.
-pub fn factors(plan: &Plan, facts: &Facts, limit: &Limit) -> Vec<LimitFactor> {
-    let known = Known::vehicle(facts);
+pub fn factors(plan: &Plan, vehicles: &[&Vehicle], limit: &Limit) -> Vec<LimitFactor> {
+    let mut found: Vec<LimitFactor> = Vec::new();
+    for vehicle in vehicles {
+        for factor in of_vehicle(plan, vehicle, limit) {
+            if !found.contains(&factor) {
+                found.push(factor);
+            }
+        }
+    }
+    found
+}
+
+fn of_vehicle(plan: &Plan, vehicle: &Vehicle, limit: &Limit) -> Vec<LimitFactor> {
+    let known = Known::vehicle(vehicle);
     let of = |(factor, condition): &(Expr, Expr)| {
         let on = flag(condition, &known).ok()?;
         let by = number(factor, &known).ok()?;
         let mut because = Vec::new();
-        reasons(plan, facts, condition, true, &mut because);
+        reasons(plan, vehicle, condition, true, &mut because);
         (on && !because.is_empty()).then(|| LimitFactor { by, because: because.join(" and ") })
     };
     limit.factors.iter().filter_map(of).collect()
 }
 
 /// The parts of a condition that decide its result, in words: `vehicle category is freight`.
-fn reasons(plan: &Plan, facts: &Facts, condition: &Expr, wanted: bool, found: &mut Vec<String>) {
+fn reasons(plan: &Plan, vehicle: &Vehicle, condition: &Expr, wanted: bool, found: &mut Vec<String>) {
     match &condition.kind {
-        Kind::Not(inner) => reasons(plan, facts, inner, !wanted, found),
+        Kind::Not(inner) => reasons(plan, vehicle, inner, !wanted, found),
         Kind::Binary(Operator::And | Operator::Or, a, b) => {
             for side in [a, b] {
-                if flag(side, &Known::vehicle(facts)) == Ok(wanted) {
-                    reasons(plan, facts, side, wanted, found);
+                if flag(side, &Known::vehicle(vehicle)) == Ok(wanted) {
+                    reasons(plan, vehicle, side, wanted, found);
                 }
             }
         }
@@ -90,7 +103,7 @@ fn reasons(plan: &Plan, facts: &Facts, condition: &Expr, wanted: bool, found: &m
             let mut read = Vec::new();
             vehicle_data(condition, &mut read);
             for index in read {
-                let item = vehicle_item(&plan.vehicle[index], &facts.vehicle[index]);
+                let item = vehicle_item(&plan.vehicle[index], &vehicle.data[index]);
                 let unit = item.unit.filter(|unit| unit != "-").map_or(String::new(), |unit| format!(" {unit}"));
                 let says = format!("{} is {}{unit}", item.name.to_lowercase(), item.value);
                 if !found.contains(&says) {

@@ -76,7 +76,6 @@ fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record
     // A loop is plotted from the signals that were compared; other signals from the record around the section as well.
     let node = if over.node.is_some() { nodes.processed } else { nodes.filtered };
     let wanted: BTreeSet<NodeId> = [node].into_iter().chain(over.node).collect();
-    let name = |which| work.campaign.record_name(which).map(|name| name.as_ref());
     let curve_of = |unit: &Section, which: WhichRecord| {
         let known = unit.known(work.facts);
         let needed = needed(work.graph, &wanted, &known)?;
@@ -95,8 +94,9 @@ fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record
         };
         Ok::<_, String>((thinned(samples, x, &quantity.signal_unit, &over.unit), opened.extent))
     };
+    let name = |which| work.campaign(unit).record_name(which).map(|name| name.as_ref());
     let curve = |unit: &Section, side: Side| {
-        let all = work.campaign.records(side.kind());
+        let all = work.campaign(unit).records(side.kind());
         let which = all.into_iter().find(|&which| took_part(record, side == Side::Simulated, name(which)));
         curve_of(unit, which.ok_or_else(|| format!("there is no {} record of it", side.in_words()))?)
     };
@@ -115,8 +115,8 @@ fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record
         None => (of(Side::Measured)?, of(Side::Simulated)?),
     };
     let mut others = Vec::new();
-    if let Evaluation::Values { records: Records::Spread { side, .. }, .. } = quantity.evaluation.as_ref() {
-        for which in work.campaign.records(side.kind()).into_iter().filter(|&which| name(which) != record) {
+    if let Evaluation::Values { records: Records::Spread { of, .. }, .. } = quantity.evaluation.as_ref() {
+        for which in work.campaign(unit).records(of.side.kind()).into_iter().filter(|&which| name(which) != record) {
             others.push((name(which).unwrap_or_default().to_string(), curve_of(unit, which)?.0));
         }
     }

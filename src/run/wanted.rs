@@ -1,15 +1,15 @@
 //! Wanted operation: the application table of the campaign, with section data in place of sections.
 
-use super::facts::{Facts, Known};
+use super::facts::{Facts, Known, Vehicle};
 use super::sections::{Row, column_missing};
 use crate::check::evaluate::number;
 use crate::check::plan::{Domain, Expr, Kind, Plan, Scalar};
-use crate::data::Campaign;
 use crate::data::table::{Cell, Table};
+use crate::data::{Campaign, Campaigns};
 use crate::problem::{Problem, Problems};
 
 /// A point of wanted operation in one domain.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     pub name: String,
     /// SI, in the order of the coordinates.
@@ -18,26 +18,30 @@ pub struct Point {
     pub group: Vec<String>,
 }
 
-/// For each domain of the plan, the points of the application table. Every cell that a domain needs must have a value.
-pub fn points(plan: &Plan, campaign: &Campaign, facts: &Facts, problems: &mut Problems) -> Vec<Vec<Point>> {
+/// For each domain of the plan, the points of the application tables. Every cell that a domain needs must have a value.
+pub fn points(plan: &Plan, campaigns: Campaigns<'_>, facts: &Facts, problems: &mut Problems) -> Vec<Vec<Point>> {
     let Some(first) = plan.domains.first() else { return Vec::new() };
-    let Some(table) = &campaign.application else {
+    let tables: Vec<(&Campaign, &Table)> = campaigns.iter().filter_map(|one| Some((one, one.application.as_ref()?))).collect();
+    if tables.is_empty() {
         problems.push(
             Problem::error("key-missing", format!("the campaign has no `application`, the wanted operation of domain `{}`", first.name))
-                .at(&campaign.tree.span.part(0..0))
+                .at(&campaigns.get(0).tree.span.part(0..0))
                 .also(&first.span, "the protocol needs it")
                 .help("name a table in campaign.yaml: `application: application.csv`, with a column `point` and those of the domain"),
         );
         return Vec::new();
-    };
+    }
     let mut missing = false;
     for index in plan.domains.iter().flat_map(columns).collect::<std::collections::BTreeSet<_>>() {
-        missing |= column_missing(&plan.columns[index], (table, "table of wanted operation"), problems);
+        for (_, table) in &tables {
+            missing |= column_missing(&plan.columns[index], (table, "table of wanted operation"), problems);
+        }
     }
     if missing {
         return Vec::new();
     }
-    plan.domains.iter().map(|domain| of_domain(plan, domain, (campaign, table), facts, problems)).collect()
+    let mut of = |domain| tables.iter().flat_map(|table| of_domain(plan, domain, *table, facts, problems)).collect();
+    plan.domains.iter().map(&mut of).collect()
 }
 
 /// Columns that a domain reads.
@@ -56,7 +60,7 @@ fn of_domain(plan: &Plan, domain: &Domain, (campaign, table): (&Campaign, &Table
     let needed = columns(domain);
     let mut found = Vec::new();
     for (row, name) in table.names().enumerate() {
-        let cells = Row { table, row, file: campaign.inside(&table.source.name) };
+        let cells = Row { table, row, campaign: &campaign.short_name.value, file: campaign.inside(&table.source.name) };
         let mut refused = None;
         let mut value = |index: usize| {
             if !needed.contains(&index) {
@@ -87,8 +91,20 @@ fn wrong(cell: &Cell, says: &str) -> Problem {
     Problem::error("wanted-value", format!("wanted operation: {says}")).at(&cell.span)
 }
 
+/// A point, which must be the same for every vehicle.
 fn point(domain: &Domain, name: &Cell, columns: &[Result<Scalar, String>], facts: &Facts) -> Result<Point, String> {
-    let known = Known { columns: Some(columns), ..Known::vehicle(facts) };
+    let mut of_vehicles = facts.vehicles.iter().map(|vehicle| of_vehicle(domain, name, columns, vehicle));
+    let first = of_vehicles.next().ok_or("there is no vehicle")??;
+    for other in of_vehicles {
+        if other? != first {
+            return Err(format!("it depends on the vehicle, and there are {}", facts.vehicles.len()));
+        }
+    }
+    Ok(first)
+}
+
+fn of_vehicle(domain: &Domain, name: &Cell, columns: &[Result<Scalar, String>], vehicle: &Vehicle) -> Result<Point, String> {
+    let known = Known { columns: Some(columns), ..Known::vehicle(vehicle) };
     let values = domain.over.iter().map(|coordinate| value(&coordinate.expr, &coordinate.name, &known)).collect::<Result<_, _>>()?;
     let group = domain.each.iter().map(|index| word(&columns[*index])).collect::<Result<_, _>>()?;
     Ok(Point { name: name.value.clone(), values, group })

@@ -190,6 +190,21 @@ pub const KINDS: &[Kind] = &[
         ],
     },
     Kind {
+        word: "record",
+        group: "records",
+        named: true,
+        single: false,
+        about: "A name for records of which a campaign has several: some of its simulations or measured runs.",
+        keys: &[
+            phrase(
+                "is",
+                "`simulated` or `measured`, and the names that the campaign gives to these records; all of the side without names.",
+                "simulated simpack, vampire",
+            ),
+            NOTE,
+        ],
+    },
+    Kind {
         word: "channel",
         group: "channels",
         named: true,
@@ -373,7 +388,11 @@ pub const KINDS: &[Kind] = &[
                 "Y at wheelsets 1, 3",
             )),
             phrase("filter", "Filters in order: names or steps.", "LP20, then sliding mean 2 m every 0.5 m"),
-            phrase("from", "In place of a comparison: the record whose values are assessed.", "measured"),
+            phrase(
+                "from",
+                "In place of a comparison: the records whose values are assessed: `simulated`, `measured`, or a declared record.",
+                "measured",
+            ),
             many(phrase(
                 "value",
                 "The value taken from the filtered signal of a section, for each record alike. Of several values, those whose case applies are used.",
@@ -381,7 +400,7 @@ pub const KINDS: &[Kind] = &[
             )),
             phrase(
                 "compare",
-                "The records that are compared: `simulated with measured` (the default), each record with the mean or median of all (`simulated with mean of simulated`), or `repeats with originals`.",
+                "The records that are compared: `simulated with measured` (the default), each record with the mean or median of all (`simulated with mean of simulated`), `measured with each other`, or `repeats with originals`. The name of a declared record may stand for a side.",
                 "simulated with mean of simulated",
             ),
             phrase("difference", "The difference of the two values.", "|simulated| - |measured|"),
@@ -424,7 +443,7 @@ pub const KINDS: &[Kind] = &[
             phrase("standard deviation", "Divisor of the variance: `n-1` or `n`.", "n-1"),
             phrase(
                 "independent",
-                "The independent unit: `site` (the default), `section`, or a section column. It is used for counts, for n and for confidence intervals.",
+                "The independent unit: `site` (the default), `section`, `campaign`, or a section column. It is used for counts, for n and for confidence intervals.",
                 "site",
             ),
             NOTE,

@@ -49,6 +49,8 @@ pub enum Node {
     Percentile(f64),
     /// `vehicle.category`, `Y`, `LP20`.
     Path(String),
+    /// `"series 2"`, on the right of a comparison.
+    Quoted(String),
     Binary(Operator, Box<Phrase>, Box<Phrase>),
     Negative(Box<Phrase>),
     Not(Box<Phrase>),
@@ -199,6 +201,7 @@ impl Phrase {
             Node::Number { value, unit } => number(*value, unit.as_ref()),
             Node::Percentile(percent) => format!("p{percent}"),
             Node::Path(path) => path.clone(),
+            Node::Quoted(name) => format!("\"{name}\""),
             Node::Binary(operator, left, right) => format!("({operator:?} {} {})", left.meaning(), right.meaning()),
             Node::Negative(inner) => format!("(neg {})", inner.meaning()),
             Node::Not(inner) => format!("(not {})", inner.meaning()),

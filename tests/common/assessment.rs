@@ -37,6 +37,7 @@ fn quantity(found: &Certification) -> QuantityResult {
         for (record, shift) in [("first run", 0.0), ("second run", 0.5)] {
             for wheelset in WHEELSETS {
                 values.push(PairValue {
+                    campaign: None,
                     taken: None,
                     section: section.section.clone(),
                     zone: section.zone.clone(),
@@ -91,6 +92,7 @@ fn quantity(found: &Certification) -> QuantityResult {
         among: None,
         repeats: false,
         spread: None,
+        against: None,
         statistics,
         n: 30,
         values,

@@ -184,6 +184,7 @@ pub fn empty() -> Certification {
             verdict_words: fishplate::result::VerdictWords::of(fishplate::result::Kind::Validation),
         },
         campaign: CampaignInfo {
+            members: Vec::new(),
             name: String::new(),
             files: Vec::new(),
             vehicle: Vec::new(),
@@ -234,8 +235,11 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
                 unit: Some(unit.into()),
                 used: true,
                 unit_assumed: false,
+                of: None,
             };
             SectionResult {
+                campaign: None,
+                vehicle: None,
                 section: if at == 12 { "S13_Brescia-Verona_up_line_2023-05-04_run07".into() } else { format!("S{:02}", at + 1) },
                 site: String::new(),
                 zone: Some(zone.to_string()),
@@ -291,6 +295,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
                 * if kind.processing == "median" && section.section.len() % 2 == 1 { -1.0 } else { 1.0 };
             let difference = kind.limit * wide * noise.next();
             values.push(PairValue {
+                campaign: None,
                 taken: None,
                 record: None,
                 section: section.section.clone(),
@@ -341,6 +346,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         among: None,
         repeats: false,
         spread: None,
+        against: None,
         id: kind.id.into(),
         title: kind.title.into(),
         symbol: kind.symbol.into(),
@@ -389,6 +395,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         .flat_map(|section| {
             let value = 0.15 + 0.1 * noise.next();
             [LONG, "ay_II"].map(|signal| PairValue {
+                campaign: None,
                 taken: None,
                 record: None,
                 section: section.section.clone(),
@@ -430,6 +437,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         among: None,
         repeats: false,
         spread: None,
+        against: None,
         id: "sprague_geers_ay".into(),
         title: format!("Sprague-Geers metric {HOSTILE}"),
         symbol: STRANGE.into(),
@@ -529,6 +537,7 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
         unit: unit.map(Into::into),
         used,
         unit_assumed: false,
+        of: None,
     };
     let hash = |at: usize| format!("{:064x}", (at as u128 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835));
     let mut files: Vec<FileHash> = ["campaign.yaml", "vehicle.yaml", "sections.csv"]
@@ -547,6 +556,7 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
         }
     }
     CampaignInfo {
+        members: Vec::new(),
         origin: None,
         name: "On-track tests of the coach, spring 2023".into(),
         files,

@@ -122,6 +122,8 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
             let used = number != 20;
             let name = if number == 12 { BREAKOUT.to_owned() } else { format!("S{number:02}") };
             sections.push(SectionResult {
+                campaign: None,
+                vehicle: None,
                 section: name,
                 site: String::new(),
                 zone: Some(zone.to_string()),
@@ -163,7 +165,7 @@ fn check(name: &str, title: &str, holds: Option<bool>, says: &str) -> CheckResul
 }
 
 fn item(name: &str, value: &str, unit: Option<&str>) -> DataItem {
-    DataItem { name: name.into(), value: value.into(), unit: unit.map(str::to_owned), used: true, unit_assumed: false }
+    DataItem { name: name.into(), value: value.into(), unit: unit.map(str::to_owned), used: true, unit_assumed: false, of: None }
 }
 
 fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
@@ -176,6 +178,7 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
             let measured = typical * (0.35 + 0.2 * zone + 0.12 * nth as f64 + 0.12 * noise.next());
             let difference = limit * (2.0 / 3.0 * bias + scatter * noise.bell());
             values.push(PairValue {
+                campaign: None,
                 taken: None,
                 record: None,
                 section: section.section.clone(),
@@ -195,6 +198,7 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
         among: None,
         repeats: false,
         spread: None,
+        against: None,
         id: id.into(),
         title: title.into(),
         symbol: symbol.into(),
@@ -352,6 +356,7 @@ fn campaign() -> CampaignInfo {
         });
     }
     CampaignInfo {
+        members: Vec::new(),
         origin: None,
         name: "Coach, line tests".into(),
         files,

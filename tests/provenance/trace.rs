@@ -94,9 +94,9 @@ fn every_value_can_be_traced() {
         for quantity in &carried.results.quantities {
             for (at, pair) in quantity.values.iter().enumerate() {
                 let asked = Asked { quantity: &quantity.id, section: &pair.section, signal: &pair.signal, record: None };
-                let campaign = (at % every == 0).then_some(campaign);
-                let found =
-                    trace(&carried, Some(&compiled), asked, campaign).unwrap_or_else(|problems| panic!("{}", problems.render(false)));
+                let campaigns: Vec<_> = (at % every == 0).then(|| campaign.to_path_buf()).into_iter().collect();
+                let found = trace(&carried, Some(&compiled), asked, &campaigns);
+                let found = found.unwrap_or_else(|problems| panic!("{}", problems.render(false)));
                 assert!(found.agrees, "{}", found.text);
                 assert!(found.text.contains("SHA-256") && found.text.contains("columns read: "), "{}", found.text);
                 *count += 1;

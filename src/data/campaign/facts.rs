@@ -23,7 +23,10 @@ pub struct Fact {
 }
 
 /// Keys of `campaign.yaml` beside those of the records.
-pub(super) const LAYOUT: [&str; 8] = ["name", "vehicle", "sections", APPLICATION, "parameters", "protocol", ORIGIN_KEY, REPORT_KEY];
+pub(super) const LAYOUT: [&str; 9] =
+    ["name", SHORT_NAME, "vehicle", "sections", APPLICATION, "parameters", "protocol", ORIGIN_KEY, REPORT_KEY];
+/// What the campaign is called where it stands beside others.
+pub(super) const SHORT_NAME: &str = "short name";
 
 /// Scalars at the top and one map below it, in the order written.
 pub(super) fn facts(tree: &Node) -> Vec<Fact> {

@@ -86,6 +86,11 @@ impl Campaign {
         self.folders_of(which.kind).nth(which.number)?.name.as_ref()
     }
 
+    /// What the campaign calls a record, also if it is the only one of its kind.
+    pub fn record_called(&self, which: WhichRecord) -> Option<&Arc<str>> {
+        self.folders_of(which.kind).nth(which.number)?.called.as_ref()
+    }
+
     /// `simulation`, and of several `simulation simpack`.
     pub fn record_in_words(&self, which: WhichRecord) -> String {
         let key = which.kind.key();

@@ -21,7 +21,12 @@ pub fn study(study: &Study) -> String {
         "protocol".into(),
         json!({"name": protocol.name, "title": protocol.title, "sha256": protocol.sha256, "parameters": protocol.parameters}),
     );
-    root.insert("campaign".into(), json!({"name": study.campaign.name, "files": study.campaign.files}));
+    let mut campaign = Map::from_iter([("name".to_string(), json!(study.campaign.name))]);
+    if !study.campaign.members.is_empty() {
+        campaign.insert("members".into(), json!(study.campaign.members));
+    }
+    campaign.insert("files".into(), json!(study.campaign.files));
+    root.insert("campaign".into(), Value::Object(campaign));
     match &study.found {
         Found::Sections(found) => selections(&mut root, found),
         Found::Sync(found) => sync(&mut root, found),

@@ -15,11 +15,12 @@ mod summary;
 mod verdicts;
 mod wording;
 
+use indexmap::IndexSet;
 use serde::Serialize;
 
 use crate::report::sides::{self, capital};
 use crate::report::{estimates, findings, number};
-use crate::result::{CampaignInfo, Certification, DataItem, Kind, QuantityResult, StatisticResult, Trace, Verdict};
+use crate::result::{CampaignInfo, CampaignMember, Certification, DataItem, Kind, QuantityResult, StatisticResult, Trace, Verdict};
 
 pub use groups::{EstimateRow, GroupRow, GroupTable};
 pub use identity::{IdentityRow, ReportHead};
@@ -281,7 +282,11 @@ fn key_facts(found: &Certification) -> Vec<Fact> {
         let of = found.quantities.iter().filter(|quantity| quantity.from.is_some() == assessed);
         of.map(|quantity| quantity.values.len()).sum::<usize>()
     };
-    let mut facts = vec![fact("Criteria by quantity", quantities), fact("Sections", format!("{used} of {} used", found.sections.len()))];
+    let mut facts = vec![fact("Criteria by quantity", quantities)];
+    if !found.campaign.members.is_empty() {
+        facts.push(fact("Campaigns", found.campaign.members.len().to_string()));
+    }
+    facts.push(fact("Sections", format!("{used} of {} used", found.sections.len())));
     match found.kind() {
         Kind::Validation => facts.push(fact("Compared pairs", number::count(rows(false) as u64))),
         Kind::Comparison => facts.push(fact("Compared values", number::count(rows(false) as u64))),
@@ -347,11 +352,14 @@ fn fact(name: &str, value: String) -> Fact {
 
 /// The campaign as printed.
 pub fn campaign(campaign: &CampaignInfo) -> CampaignView {
-    let of = |used: bool| campaign.vehicle.iter().filter(|item| item.used == used).map(data_row).collect();
+    let of = |used: bool| {
+        let items: Vec<&DataItem> = campaign.vehicle.iter().filter(|item| item.used == used).collect();
+        common(&items, campaign.vehicle.iter().filter_map(|item| item.of.as_deref()).collect::<IndexSet<_>>().len())
+    };
     CampaignView {
         name: campaign.name.clone(),
         report: identity::head(&campaign.report),
-        facts: campaign.facts.iter().map(data_row).collect(),
+        facts: campaign.members.iter().map(member_row).chain(campaign.facts.iter().map(data_row)).collect(),
         origin: campaign.origin.as_ref().map(|origin| format!("{}.", origin.says)),
         vehicle_used: of(true),
         vehicle_other: of(false),
@@ -364,9 +372,34 @@ pub fn campaign(campaign: &CampaignInfo) -> CampaignView {
     }
 }
 
+/// One of several campaigns.
+fn member_row(member: &CampaignMember) -> DataRow {
+    let sections = format!("{} sections", member.sections);
+    let value = if member.name == member.short_name { sections } else { format!("{}; {sections}", member.name) };
+    DataRow { name: format!("Campaign {}", member.short_name), value, unit: String::new(), numeric: false }
+}
+
+/// What several vehicles have alike is one row, what differs a row for each, together.
+fn common(items: &[&DataItem], vehicles: usize) -> Vec<DataRow> {
+    let mut done: IndexSet<&str> = IndexSet::new();
+    let mut rows = Vec::new();
+    for item in items.iter().filter(|item| item.of.is_none() || done.insert(&item.name)) {
+        let same: Vec<&&DataItem> = items.iter().filter(|other| other.name == item.name).collect();
+        let alike = item.of.is_none()
+            || same.len() == vehicles
+                && same.iter().all(|other| (&other.value, &other.unit, other.unit_assumed) == (&item.value, &item.unit, item.unit_assumed));
+        if alike {
+            rows.push(data_row(&DataItem { of: None, ..(*item).clone() }));
+        } else {
+            rows.extend(same.iter().map(|item| data_row(item)));
+        }
+    }
+    rows
+}
+
 fn data_row(item: &DataItem) -> DataRow {
     DataRow {
-        name: item.name.clone(),
+        name: item.of.as_ref().map_or_else(|| item.name.clone(), |of| format!("{} ({of})", item.name)),
         value: number::in_text(&item.value),
         unit: item.unit.as_deref().map(number::unit).unwrap_or_default() + if item.unit_assumed { " (unit assumed)" } else { "" },
         numeric: number::is_number(&item.value),

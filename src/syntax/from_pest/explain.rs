@@ -230,6 +230,7 @@ fn in_words(rule: Rule) -> &'static str {
         Rule::bound_of | Rule::end => "`upper 95 % of ...`",
         Rule::by_bootstrap => "`by bootstrap`",
         Rule::share | Rule::kw_share => "`share where ...`",
+        Rule::in_quotes => "a name in quotes",
         Rule::over | Rule::kw_over => "`over`",
         Rule::over_what => "a signal",
         Rule::verdict => "the rule of a verdict",

@@ -107,7 +107,12 @@ fn comparison(pair: Pair<'_, Rule>) -> Option<Phrase> {
     }
     let mut all: Option<Phrase> = None;
     while let (Some(op), Some(right)) = (inner.next(), inner.next()) {
-        let right = sum(right)?;
+        let right = if right.as_rule() == Rule::in_quotes {
+            let range = bytes(&right);
+            At { node: Node::Quoted(right.as_str().trim_matches('"').to_string()), range }
+        } else {
+            sum(right)?
+        };
         let words: String = op.as_str().split_whitespace().collect();
         let operator = match words.as_str() {
             "<=" | "≤" => Operator::LessEqual,

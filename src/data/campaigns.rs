@@ -1,0 +1,87 @@
+//! Several campaigns evaluated as one: a pool. A single campaign is a pool of one.
+
+use super::campaign::Campaign;
+use crate::problem::{Problem, Problems};
+
+/// The campaigns of a run, in the order given; at least one.
+#[derive(Clone, Copy, Debug)]
+pub struct Campaigns<'a>(&'a [Campaign]);
+
+impl<'a> From<&'a Campaign> for Campaigns<'a> {
+    fn from(one: &'a Campaign) -> Self {
+        Self(std::slice::from_ref(one))
+    }
+}
+
+impl<'a> From<&'a [Campaign]> for Campaigns<'a> {
+    fn from(all: &'a [Campaign]) -> Self {
+        Self(all)
+    }
+}
+
+impl<'a> From<&'a Vec<Campaign>> for Campaigns<'a> {
+    fn from(all: &'a Vec<Campaign>) -> Self {
+        Self(all)
+    }
+}
+
+/// What stands between the name of a campaign and that of a section or file of it. Section names contain none.
+const BETWEEN: char = '/';
+
+/// The name of a section or file in the results of a pool: `series 2/S01`.
+pub fn qualified(campaign: Option<&str>, name: &str) -> String {
+    campaign.map_or_else(|| name.to_string(), |campaign| format!("{campaign}{BETWEEN}{name}"))
+}
+
+impl<'a> Campaigns<'a> {
+    pub fn iter(self) -> std::slice::Iter<'a, Campaign> {
+        self.0.iter()
+    }
+
+    pub fn get(self, number: usize) -> &'a Campaign {
+        &self.0[number]
+    }
+
+    /// Whether there are several.
+    pub fn pooled(self) -> bool {
+        self.0.len() > 1
+    }
+
+    /// What one of several is called in results; nothing where there is one.
+    pub fn name_of(self, number: usize) -> Option<&'a str> {
+        self.pooled().then(|| self.0[number].short_name.value.as_str())
+    }
+
+    /// How many sections, or whole records, there are in all.
+    pub fn sections(self) -> usize {
+        self.0.iter().map(|campaign| campaign.names.len()).sum()
+    }
+
+    /// As [`Campaign::one_of_each`], of each campaign.
+    pub fn one_of_each(self) -> Result<(), Problem> {
+        self.0.iter().try_for_each(Campaign::one_of_each)
+    }
+
+    /// What campaigns need to stand side by side.
+    ///
+    /// Problems: `campaign-twice`, `duplicate-name`, `name-invalid`.
+    pub fn check(self, problems: &mut Problems) {
+        const HELP: &str = "give it a name of its own in campaign.yaml: `short name: series 2`";
+        for (at, campaign) in self.0.iter().enumerate().filter(|_| self.pooled()) {
+            let name = &campaign.short_name;
+            if name.value.contains(BETWEEN) || name.value.contains(char::is_control) {
+                let says = format!("`{}` cannot be the name of one of several campaigns: it contains `{BETWEEN}`", name.value);
+                problems.push(Problem::error("name-invalid", says).at(&name.span).help(HELP));
+            }
+            let before = &self.0[..at];
+            if before.iter().any(|other| other.folder() == campaign.folder()) {
+                let says = format!("the campaign `{}` is given twice", name.value);
+                problems.push(Problem::error("campaign-twice", says).at(&name.span).help("name each folder once"));
+            } else if let Some(other) = before.iter().find(|other| other.short_name.value == name.value) {
+                let says = format!("two campaigns are called `{}`", name.value);
+                let problem = Problem::error("duplicate-name", says).at(&name.span).also(&other.short_name.span, "the first");
+                problems.push(problem.help(HELP));
+            }
+        }
+    }
+}
