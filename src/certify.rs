@@ -114,7 +114,7 @@ pub fn campaign_info<'a>(plan: &Plan, campaigns: impl Into<Campaigns<'a>>, recor
             members: Vec::new(),
             origin: campaign.origin.as_ref().map(|origin| origin_info(origin, &files)),
             files,
-            vehicle: vehicle_items(plan, campaign, vehicle, None),
+            vehicle: vehicles(plan, campaigns, &vehicle),
             facts: campaign.facts.iter().map(fact_item).collect(),
             report: campaign.report.iter().map(report_item).collect(),
         };
@@ -127,17 +127,11 @@ pub fn campaign_info<'a>(plan: &Plan, campaigns: impl Into<Campaigns<'a>>, recor
         report: campaign.report.iter().map(report_item).collect(),
     };
     let members: Vec<CampaignMember> = campaigns.iter().map(member).collect();
-    let mut all = Vec::new();
-    for campaign in campaigns.iter() {
-        let of = &campaign.short_name.value;
-        let own = vehicle.iter().filter(|item| item.of.as_ref() == Some(of)).cloned().collect();
-        all.extend(vehicle_items(plan, campaign, own, Some(of)));
-    }
     CampaignInfo {
         name: pool::name(&members),
         origin: pool::origin(&members),
         files,
-        vehicle: all,
+        vehicle: vehicles(plan, campaigns, &vehicle),
         facts: pool::facts(
             campaigns
                 .iter()
@@ -299,11 +293,24 @@ fn fact_item(fact: &Fact) -> DataItem {
     }
 }
 
+/// The data of every vehicle: of each campaign and each state.
+fn vehicles(plan: &Plan, campaigns: Campaigns<'_>, used: &[DataItem]) -> Vec<DataItem> {
+    let mut all = Vec::new();
+    for (number, campaign) in campaigns.iter().enumerate() {
+        for vehicle in &campaign.vehicles {
+            let of = campaigns.vehicle_name(number, vehicle);
+            let own = used.iter().filter(|item| item.of == of).cloned().collect();
+            all.extend(vehicle_items(plan, &vehicle.data, own, of));
+        }
+    }
+    all
+}
+
 /// Values used by the protocol with their units, then all others of the file.
-fn vehicle_items(plan: &Plan, campaign: &Campaign, used: Vec<DataItem>, of: Option<&String>) -> Vec<DataItem> {
+fn vehicle_items(plan: &Plan, vehicle: &Node, used: Vec<DataItem>, of: Option<String>) -> Vec<DataItem> {
     let mut rest = Vec::new();
-    flatten("", &campaign.vehicle, &mut rest);
-    rest.iter_mut().for_each(|item| item.of = of.cloned());
+    flatten("", vehicle, &mut rest);
+    rest.iter_mut().for_each(|item| item.of.clone_from(&of));
     let unused = rest.into_iter().filter(|item| !plan.vehicle.iter().any(|datum| datum.key == item.name));
     used.into_iter().chain(unused).collect()
 }

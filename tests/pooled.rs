@@ -266,3 +266,75 @@ fn what_cannot_stand_side_by_side_is_told() {
     replace(&campaign(&a), "name: A", "name: A\nprotocol: other.fp");
     wrong(&[&a, &b], &[], &["each campaign has a protocol `other.fp` of its own"]);
 }
+
+/// [`tiny`] with a vehicle file for each state: the first six sections tare, the others laden.
+fn states() -> TempDir {
+    let folder = tiny();
+    let file = |name: &str| folder.path().join(name);
+    replace(&file("campaign.yaml"), "vehicle: vehicle.yaml", "vehicle: {tare: vehicle.yaml, laden: laden.yaml}");
+    fs::copy(file("vehicle.yaml"), file("laden.yaml")).expect("copied");
+    replace(&file("laden.yaml"), "static_wheel_load: 50", "static_wheel_load: 60 kN");
+    lines(&file("sections.csv"), |all| {
+        let states = std::iter::once("state").chain(["tare"; 6]).chain(["laden"; 6]);
+        *all = all.iter().zip(states).map(|(line, state)| format!("{line},{state}")).collect();
+    });
+    folder
+}
+
+#[test]
+fn each_state_has_its_vehicle() {
+    let folder = states();
+    let state = "section state \"State\"\n  one of  tare, laden\n\n";
+    let limits = ["each 2 * wheel_load", "mean 2 * wheel_load for each state"];
+    let found = pooled(&[&folder], &format!("{state}{}", assessed(&limits)));
+    assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
+    let results = found.results();
+    let limit = |scope: &str| number(&statistic(&results, "mean", scope)["limit"]);
+    assert_eq!((limit("state tare"), limit("state laden")), (100.0, 120.0));
+    assert_eq!((&results["sections"][0]["vehicle"], &results["sections"][11]["vehicle"]), (&Value::from("tare"), &Value::from("laden")));
+    assert!(results["sections"][0].get("campaign").is_none());
+    let found = pooled(&[&folder], &format!("{state}{}", assessed(&["mean 2 * wheel_load"])));
+    let reason = "Q_mean: mean: its limit cannot be evaluated: it depends on the vehicle: 100.0 kN for tare, 120.0 kN for laden; give each \
+                  its own: `for each state`";
+    assert_eq!(found.results()["reasons"][0], reason);
+    // A report of it is verified, and says which is which.
+    let protocol = protocol(folder.path(), &format!("{state}{}", assessed(&limits)));
+    let found = certify(folder.path(), &["--protocol", &protocol]);
+    let (report, campaign) = (found.folder().display().to_string(), folder.path().display().to_string());
+    let verified = fishplate(&["verify", &report, &campaign]);
+    assert_eq!(verified.code, 0, "{}", verified.stdout);
+    assert!(found.text("report.html").contains("Static wheel load (laden)"));
+    // Of two campaigns, every vehicle has a name of its own.
+    let other = called("B");
+    let results = pooled(&[&folder, &other], &assessed(&["each 2 * wheel_load"])).results();
+    let vehicles: Vec<&Value> = results["sections"].as_array().expect("a list").iter().map(|section| &section["vehicle"]).collect();
+    assert_eq!((vehicles[0], vehicles[6], vehicles[12]), (&Value::from("Tiny, tare"), &Value::from("Tiny, laden"), &Value::from("B")));
+}
+
+#[test]
+fn states_that_are_no_states_are_told() {
+    let rules = assessed(&["mean 100 kN"]);
+    let wrong = |folder: &TempDir, says: &[&str]| {
+        let found = pooled(&[folder], &rules);
+        assert_eq!(found.ran.code, 2, "{}", found.ran.stdout);
+        for says in says {
+            assert!(found.ran.stderr.contains(says), "{says}: {}", found.ran.stderr);
+        }
+    };
+    let folder = states();
+    let table = folder.path().join("sections.csv");
+    lines(&table, |all| all[3] = all[3].replace(",tare", ",tara"));
+    wrong(
+        &folder,
+        &["error[unknown-state]: section S03: there is no vehicle file for the state `tara`", "sections.csv:4:", "did you mean `tare`?"],
+    );
+    lines(&table, |all| all[3] = all[3].replace(",tara", ","));
+    wrong(&folder, &["error[missing-state]: section S03 has no state", "known here: tare, laden"]);
+    lines(&table, |all| all[0] = all[0].replace(",state", ",stat"));
+    wrong(&folder, &["error[missing-column]: the table of sections has no column `state`", "did you mean `stat`?"]);
+    let one = states();
+    let ran = fishplate(&["diagnose", &one.path().display().to_string(), "--out", "target/never"]);
+    assert!(ran.code == 2 && ran.stderr.contains("error[several-vehicles]"), "{}", ran.stderr);
+    replace(&one.path().join("campaign.yaml"), "{tare: vehicle.yaml, laden: laden.yaml}", "{}");
+    wrong(&one, &["error[wrong-kind]: `vehicle` names no file"]);
+}

@@ -174,10 +174,10 @@ pub fn diagnosed(
     let catalogue = load_catalogue(asked.catalogue, problems)?;
     let settings = Settings::read(&catalogue, problems)?;
     let sections = sections(&campaign, problems)?;
-    campaign.one_of_each().map_err(|problem| problems.push(problem)).ok()?;
+    campaign.one_of_each().and_then(|()| campaign.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
     let references: Vec<Campaign> = asked.references.iter().map(|folder| Campaign::open(folder, problems)).collect::<Option<_>>()?;
     for reference in &references {
-        reference.one_of_each().map_err(|problem| problems.push(problem)).ok()?;
+        reference.one_of_each().and_then(|()| reference.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
     }
     // A campaign as its own reference would remove the gap itself.
     if let Some(same) = asked.references.iter().find(|folder| same(folder, asked.folder)) {

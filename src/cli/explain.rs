@@ -131,6 +131,11 @@ fn plan_text(plan: &Plan) -> String {
     for parameter in &plan.parameters {
         let _ = writeln!(out, "parameter {} = {}", parameter.name, parameter.value);
     }
+    for record in &plan.records {
+        let members: Vec<&str> = record.members.iter().map(|member| member.value.as_str()).collect();
+        let members = if members.is_empty() { "all".to_string() } else { members.join(", ") };
+        let _ = writeln!(out, "record {}: {}, {members}", record.name, record.side.in_words());
+    }
     for zone in &plan.zones {
         let _ = writeln!(out, "zone {}: {}; at least {} sections", zone.name, zone.condition_words, zone.minimum_sections);
     }

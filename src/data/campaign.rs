@@ -35,6 +35,14 @@ pub struct Parameter {
     pub value: Node,
 }
 
+/// A vehicle file.
+#[derive(Clone, Debug)]
+pub struct VehicleState {
+    /// Where there is a file for each state.
+    pub state: Option<String>,
+    pub data: Node,
+}
+
 #[derive(Clone, Debug)]
 pub struct Campaign {
     pub name: String,
@@ -51,8 +59,11 @@ pub struct Campaign {
     pub protocol: Option<Spanned<String>>,
     /// Origin of the simulated records, if they were written by a program.
     pub origin: Option<Origin>,
-    /// The whole vehicle file; an empty map if the campaign has none.
+    /// The whole vehicle file; an empty map if the campaign has none. Of several states the first: who needs one vehicle asks
+    /// [`Campaign::one_vehicle`].
     pub vehicle: Node,
+    /// The vehicle in each of its states, at least one.
+    pub vehicles: Vec<VehicleState>,
     /// Absent if the campaign has no section table; every measured record is then evaluated as a whole.
     pub sections: Option<Table>,
     /// Wanted operation, a point in each row; absent if the campaign does not say.
@@ -102,7 +113,7 @@ impl Campaign {
         }
         let short_name = opening.text(&tree, facts::SHORT_NAME);
         opening.misspelt(&tree);
-        let vehicle = opening.vehicle(&tree);
+        let mut vehicles = opening.vehicles(&tree);
         let sections = opening.sections(&tree);
         let application = opening.application(&tree);
         let record_folders =
@@ -110,6 +121,10 @@ impl Campaign {
         let protocol = opening.text(&tree, "protocol");
         let parameters = opening.parameters(&tree);
         let origin = opening.origin(&tree);
+        if vehicles.is_empty() {
+            let data = Node { value: Value::Map(Vec::new()), span: tree.span.clone(), raw: String::new(), exact: false };
+            vehicles.push(VehicleState { state: None, data });
+        }
         let report = identification::read(&tree, opening.problems);
         let Opening { folder, files, .. } = opening;
         let mut campaign = Self {
@@ -123,12 +138,8 @@ impl Campaign {
             report,
             protocol,
             origin,
-            vehicle: vehicle.unwrap_or_else(|| Node {
-                value: Value::Map(Vec::new()),
-                span: tree.span.clone(),
-                raw: String::new(),
-                exact: false,
-            }),
+            vehicle: vehicles[0].data.clone(),
+            vehicles,
             names: Vec::new(),
             sections,
             application,
@@ -157,6 +168,19 @@ impl Campaign {
                 problems.push(problem);
             }
         }
+    }
+
+    /// # Errors
+    /// `several-vehicles`: who asks needs one vehicle, and the campaign has one for each state.
+    pub fn one_vehicle(&self) -> Result<(), Problem> {
+        let names: Vec<&str> = self.vehicles.iter().filter_map(|vehicle| vehicle.state.as_deref()).collect();
+        if names.len() < 2 {
+            return Ok(());
+        }
+        let says = format!("the campaign has a vehicle file for each state ({}), and one vehicle is needed here", names.join(", "));
+        let at = self.tree.get("vehicle").map_or_else(|| self.tree.span.part(0..0), |node| node.span.clone());
+        let help = "name one file in a copy of campaign.yaml, with the sections of that state: `vehicle: vehicle.yaml`";
+        Err(Problem::error("several-vehicles", says).at(&at).help(help))
     }
 
     /// The folder of the campaign, without symbolic links.

@@ -1,6 +1,6 @@
 //! Several campaigns evaluated as one: a pool. A single campaign is a pool of one.
 
-use super::campaign::Campaign;
+use super::campaign::{Campaign, VehicleState};
 use crate::problem::{Problem, Problems};
 
 /// The campaigns of a run, in the order given; at least one.
@@ -50,6 +50,12 @@ impl<'a> Campaigns<'a> {
     /// What one of several is called in results; nothing where there is one.
     pub fn name_of(self, number: usize) -> Option<&'a str> {
         self.pooled().then(|| self.0[number].short_name.value.as_str())
+    }
+
+    /// What a vehicle of a campaign is called, where there are several: `series 2`, `laden`, `series 2, laden`.
+    pub fn vehicle_name(self, number: usize, vehicle: &VehicleState) -> Option<String> {
+        let parts: Vec<&str> = self.name_of(number).into_iter().chain(vehicle.state.as_deref()).collect();
+        (!parts.is_empty()).then(|| parts.join(", "))
     }
 
     /// How many sections, or whole records, there are in all.

@@ -7,7 +7,8 @@ use super::table::Member;
 use super::told::is_dimensioned;
 use crate::check::evaluate::Values;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
-use crate::data::{Campaign, Campaigns};
+use crate::data::Campaigns;
+use crate::data::campaign::VehicleState;
 use crate::problem::{Problem, Problems};
 use crate::result::DataItem;
 use crate::units::{self, number::Refused};
@@ -15,7 +16,7 @@ use crate::units::{self, number::Refused};
 /// Values of one vehicle, one for each [`Plan::vehicle`].
 #[derive(Clone, Debug)]
 pub struct Vehicle {
-    /// Whose vehicle it is, where there are several: the campaign.
+    /// Which one it is, where there are several: the campaign, its state.
     pub of: Option<String>,
     /// An error states why a datum that may be absent has no value.
     pub data: Vec<Result<Scalar, String>>,
@@ -27,17 +28,22 @@ pub struct Vehicle {
 #[derive(Clone, Debug)]
 pub struct Facts {
     pub vehicles: Vec<Vehicle>,
+    /// Whether campaigns tell vehicles apart, and not only states.
+    pub by_campaign: bool,
 }
 
 impl Facts {
     /// Reads every vehicle datum that the protocol declares. A missing or ill-formed one is a problem.
     pub fn read(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> Self {
-        let vehicles = campaigns.iter().enumerate().map(|(number, campaign)| {
-            let read = |datum| vehicle_datum(datum, campaign, problems).unwrap_or((Ok(Scalar::Number(0.0)), false));
-            let (data, assumed) = plan.vehicle.iter().map(read).unzip();
-            Vehicle { of: campaigns.name_of(number).map(str::to_string), data, assumed }
-        });
-        Self { vehicles: vehicles.collect() }
+        let mut vehicles = Vec::new();
+        for (number, campaign) in campaigns.iter().enumerate() {
+            for vehicle in &campaign.vehicles {
+                let read = |datum| vehicle_datum(datum, vehicle, problems).unwrap_or((Ok(Scalar::Number(0.0)), false));
+                let (data, assumed) = plan.vehicle.iter().map(read).unzip();
+                vehicles.push(Vehicle { of: campaigns.vehicle_name(number, vehicle), data, assumed });
+            }
+        }
+        Self { vehicles, by_campaign: campaigns.pooled() }
     }
 
     pub fn of(&self, unit: &Unit) -> &Vehicle {
@@ -136,18 +142,18 @@ pub fn trimmed(value: f64) -> String {
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
-fn vehicle_datum(datum: &Datum, campaign: &Campaign, problems: &mut Problems) -> Option<(Result<Scalar, String>, bool)> {
-    let Some(node) = campaign.vehicle.lookup(&datum.key) else {
+fn vehicle_datum(datum: &Datum, vehicle: &VehicleState, problems: &mut Problems) -> Option<(Result<Scalar, String>, bool)> {
+    let Some(node) = vehicle.data.lookup(&datum.key) else {
         if let Some(default) = &datum.default {
             return Some((Ok(default.clone()), false));
         }
         if datum.may_be_absent {
             return Some((Err(absent(datum)), false));
         }
-        let known: Vec<&str> = campaign.vehicle.entries().iter().map(|(key, _)| key.text.as_str()).collect();
+        let known: Vec<&str> = vehicle.data.entries().iter().map(|(key, _)| key.text.as_str()).collect();
         problems.push(
             Problem::error("missing-vehicle-data", format!("the vehicle file has no `{}` ({})", datum.key, datum.title))
-                .at(&campaign.vehicle.span.part(0..0))
+                .at(&vehicle.data.span.part(0..0))
                 .also(&datum.span, "the protocol needs it")
                 .suggest(&datum.key, known),
         );

@@ -13,9 +13,6 @@ use crate::result::{RegressionFigure, RulePlace, Sample, StatisticResult};
 use crate::source::Span;
 use crate::units::Unit;
 
-/// Help where one limit of several vehicles has several values.
-const ONE_LIMIT: &str = "give each its own: `for each campaign`";
-
 /// Relative tolerance for rounding of units and sums. A value equal to its limit meets the limit.
 const EQUAL: f64 = 1e-12;
 
@@ -254,7 +251,13 @@ impl<'a> Judging<'a> {
         let unit = self.unit(limit);
         let of_vehicle = |vehicle: &Vehicle| self.bound(limit, part, members, &Known::vehicle(vehicle));
         let found = self.facts.agreed(members, of_vehicle, |bound| format!("{}{}", significant(unit.from_si(*bound), 4), unit.suffix()));
-        found.map_err(|reason| if self.facts.vehicles.len() > 1 { format!("{reason}; {ONE_LIMIT}") } else { reason })
+        found.map_err(|reason| {
+            if self.facts.vehicles.len() > 1 {
+                format!("{reason}; give each its own: `for each {}`", if self.facts.by_campaign { "campaign" } else { "state" })
+            } else {
+                reason
+            }
+        })
     }
 
     /// The limit of one value or group, SI, with what names stand for there.

@@ -131,7 +131,7 @@ fn which(evaluation: &Evaluation, taken: Option<&str>) -> usize {
 
 fn facts(plan: &Plan, recorded: &Recorded) -> Result<Facts, String> {
     let vehicles = recorded.vehicles.iter().map(|(of, data)| vehicle(plan, of.clone(), data)).collect::<Result<_, _>>()?;
-    Ok(Facts { vehicles })
+    Ok(Facts { vehicles, by_campaign: recorded.sections.iter().any(|section| section.campaign.is_some()) })
 }
 
 fn vehicle(plan: &Plan, of: Option<String>, data: &[String]) -> Result<Vehicle, String> {

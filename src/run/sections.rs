@@ -1,5 +1,7 @@
 //! Sections of the campaign: their data, and why one is not used.
 
+use std::collections::HashMap;
+
 use super::facts::{Facts, Known, item, scalar};
 use super::signal::Extent;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
@@ -64,11 +66,13 @@ pub fn units(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> 
     let mut all: Vec<Unit> = Vec::new();
     // Sections of different campaigns are of one site only if the column `site` says so.
     let mut sites: Vec<(String, usize, String)> = Vec::new();
+    let mut vehicles = 0;
     for (number, campaign) in campaigns.iter().enumerate() {
         let (before, called) = (all.len(), campaigns.name_of(number));
+        let states = states(campaign, problems);
         for mut unit in of_campaign(plan, campaign, problems) {
             unit.campaign = number;
-            unit.vehicle = number;
+            unit.vehicle = vehicles + states.get(unit.cell.value.as_str()).copied().unwrap_or(0);
             unit.site += before;
             unit.original = unit.original.map(|original| original + before);
             if campaigns.pooled() {
@@ -85,8 +89,51 @@ pub fn units(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> 
             }
             all.push(unit);
         }
+        vehicles += campaign.vehicles.len();
     }
     all
+}
+
+/// The column of the section table that says in which state the vehicle was, where there is a vehicle file for each.
+const STATE: &str = "state";
+
+/// For each section the number of its vehicle.
+///
+/// Problems: `missing-column`, `missing-state`, `unknown-state`, `no-sections`.
+fn states<'a>(campaign: &'a Campaign, problems: &mut Problems) -> HashMap<&'a str, usize> {
+    let names: Vec<&str> = campaign.vehicles.iter().filter_map(|vehicle| vehicle.state.as_deref()).collect();
+    let mut found = HashMap::new();
+    let Some(node) = campaign.tree.get("vehicle").filter(|_| !names.is_empty()) else { return found };
+    let Some(table) = &campaign.sections else {
+        let says = "the campaign has a vehicle file for each state, and no table of sections that says which is of which state";
+        problems.push(Problem::error("no-sections", says).at(&node.span).help("name it in campaign.yaml: `sections: sections.csv`"));
+        return found;
+    };
+    let Some(column) = table.column(STATE) else {
+        let says = format!("the table of sections has no column `{STATE}`, and there is a vehicle file for each state");
+        let header = table.columns[0].span.to(&table.columns[table.columns.len() - 1].span);
+        let known = table.columns.iter().map(|column| column.name.as_str());
+        problems.push(Problem::error("missing-column", says).at(&header).also(&node.span, "the states").suggest(STATE, known));
+        return found;
+    };
+    for row in 0..table.rows.len() {
+        let (Some(name), Some(cell)) = (campaign.names.get(row), table.cell(row, column)) else { continue };
+        let state = cell.value.trim();
+        match names.iter().position(|known| *known == state) {
+            Some(number) => drop(found.insert(name.value.as_str(), number)),
+            None => {
+                let problem = match state {
+                    "" => Problem::error("missing-state", format!("section {} has no state", name.value)),
+                    other => {
+                        Problem::error("unknown-state", format!("section {}: there is no vehicle file for the state `{other}`", name.value))
+                    }
+                };
+                let problem = problem.at(&cell.span).also(&node.span, "the states").suggest(state, names.iter().copied());
+                problems.push(problem);
+            }
+        }
+    }
+    found
 }
 
 /// Reads the sections with the columns that the protocol declares.

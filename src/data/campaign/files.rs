@@ -69,7 +69,7 @@ impl Campaign {
     /// A name leads outside.
     pub fn vehicle_files(&self) -> Result<Vec<Place>, Problem> {
         let mut named = vec!["profile.csv".to_string(), "profile_worn.csv".to_string()];
-        let maps = self.vehicle.entries().iter().flat_map(|(_, node)| node.entries());
+        let maps = self.vehicles.iter().flat_map(|vehicle| vehicle.data.entries()).flat_map(|(_, node)| node.entries());
         named.extend(maps.filter_map(|(_, node)| Some(node.scalar_text()?.to_string())).filter(|text| text.ends_with(".csv")));
         let mut found: Vec<Place> = Vec::new();
         for written in named {

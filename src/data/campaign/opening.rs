@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::facts::LAYOUT;
-use super::{Parameter, ReadFile, RecordKind};
+use super::{Parameter, ReadFile, RecordKind, VehicleState};
 use crate::data::folder::{Folder, Place};
 use crate::data::origin::{ORIGIN_KEY, Origin};
 use crate::data::table::Table;
@@ -69,8 +69,29 @@ impl Opening<'_> {
         }
     }
 
-    pub(super) fn vehicle(&mut self, tree: &Node) -> Option<Node> {
-        let written = self.text(tree, "vehicle")?;
+    /// The vehicle file, or one for each state.
+    pub(super) fn vehicles(&mut self, tree: &Node) -> Vec<VehicleState> {
+        let Some(node) = tree.get("vehicle") else { return Vec::new() };
+        let Value::Map(states) = &node.value else {
+            let written = self.text(tree, "vehicle");
+            let data = written.and_then(|written| self.vehicle(&written));
+            return data.map(|data| VehicleState { state: None, data }).into_iter().collect();
+        };
+        if states.is_empty() {
+            let problem = Problem::error("wrong-kind", "`vehicle` names no file").at(&node.span);
+            self.problems
+                .push(problem.help("`vehicle: vehicle.yaml`, or a file for each state: `vehicle: {tare: tare.yaml, laden: laden.yaml}`"));
+        }
+        let mut found = Vec::new();
+        for (state, _) in states {
+            let written = self.text(node, &state.text);
+            let data = written.and_then(|written| self.vehicle(&written));
+            found.extend(data.map(|data| VehicleState { state: Some(state.text.trim().to_string()), data }));
+        }
+        found
+    }
+
+    fn vehicle(&mut self, written: &Spanned<String>) -> Option<Node> {
         let place = self.folder.place(&written.value, &written.span);
         let place = self.keep(place)?;
         let (_, vehicle) = self.yaml(&place, Some(&written.span))?;

@@ -26,13 +26,13 @@ quantity SigmaY_qst
 quantity agreement "Correlation with the reference code"
   of       Q at wheelsets 1, 3
   filter   LP20
-  metric   correlation
   compare  codes with reference
+  metric   correlation
   limit    mean at least 0.9
 
 quantity level "Wheel force of the reference code"
   of     Q at wheelsets 1, 3
-  value  mean
   from   reference
+  value  mean
   limit  mean 100 kN for each campaign
   limit  p95 120 kN for sections where campaign is "series 2" or campaign is series_1
