@@ -88,6 +88,7 @@ mod tests {
 
     fn value(section: &str, zone: Option<&str>, record: &str, difference: f64) -> PairValue {
         PairValue {
+            campaign: None,
             section: section.into(),
             zone: zone.map(str::to_string),
             signal: "Y_1R".into(),
