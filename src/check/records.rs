@@ -15,8 +15,8 @@ pub(super) enum Compare {
     With(Chosen, Chosen, Center),
 }
 
-const WAYS: &str = "`simulated with measured`; `simulated with mean of simulated` where there are several; `measured with each other`; \
-    `repeats with originals`; the name of a record in place of `simulated` and `measured`";
+const WAYS: &str = "write `simulated with measured`, `simulated with mean of simulated` (for several records), `measured with each other` \
+    or `repeats with originals`; a record may stand in place of `simulated` and `measured`";
 
 impl Checker<'_> {
     /// `is simulated simpack, vampire`
@@ -81,7 +81,7 @@ impl Checker<'_> {
         if found.is_none() && !self.is_failed(word) {
             let declared: Vec<String> = self.names.records.iter().map(|record| record.name.clone()).collect();
             let known = Side::ALL.map(Side::in_words).into_iter().chain(declared.iter().map(String::as_str));
-            let problem = Problem::error("unknown-record", format!("`{word}` is no record of a campaign")).at(at).suggest(word, known);
+            let problem = Problem::error("unknown-record", format!("`{word}` is not a record of a campaign")).at(at).suggest(word, known);
             self.problems.push(match problem.help {
                 Some(_) => problem,
                 None => problem.help("`simulated`, `measured`, or the name of a block `record`"),
@@ -106,8 +106,8 @@ impl Checker<'_> {
         match self.compare(field)? {
             Compare::Pairs(pairing) => Some(pairing),
             Compare::With(..) => {
-                let problem = Problem::error("metric-and-spread", "a metric compares two signals, and there is no mean of signals");
-                let help = "take a `value` and a `difference`, or compare `simulated with measured` or `repeats with originals`";
+                let problem = Problem::error("metric-and-spread", "a metric compares two signals; a mean of several signals is not available");
+                let help = "use `value` and `difference`, or compare `simulated with measured` or `repeats with originals`";
                 self.problems.push(problem.at(&field.value.span).also(metric, "the metric").help(help));
                 None
             }
