@@ -33,6 +33,7 @@ fn case(seed: u64, rule: Rule, unused: &[usize]) -> Case {
         values: (0..all).map(|_| vec![(0, value()), (1, value())]).collect(),
         minimum_signals: 2,
         minimum_pairs: 16,
+        minimum_of_groups: Vec::new(),
         limits: vec![limit("std", 0.85), limit("mean", 0.3)],
     });
     let zone_of = ZONES.iter().enumerate().flat_map(|(zone, count)| (0..*count).map(move |_| (zone + 1).to_string()));

@@ -70,9 +70,14 @@ impl Checker<'_> {
         match &phrase.node {
             Node::Number { .. } | Node::Quoted(_) => Meaning::Closed,
             // Values of a signal, of one side or of other limits have no meaning before they are used.
-            Node::Percentile(_) | Node::Reduced(..) | Node::Over(..) | Node::Bound { .. } | Node::Share { .. } | Node::Fit(_) => {
-                Meaning::Open
-            }
+            Node::Percentile(_)
+            | Node::Reduced(..)
+            | Node::Over(..)
+            | Node::Bound { .. }
+            | Node::Share { .. }
+            | Node::Fit(_)
+            | Node::Weighted(..)
+            | Node::ForEach(..) => Meaning::Open,
             Node::Path(path)
                 if Reducer::named(path).is_some()
                     || MetricEntry::called(path).is_some()

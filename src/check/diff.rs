@@ -77,11 +77,11 @@ fn many(block: &Block, olds: &[&Field], news: &[&Field], found: &mut Vec<Deviati
         }
     }
     for new in changed {
-        let limit = new.key.text == "limit";
+        let limit = matches!(new.key.text.as_str(), "limit" | "minimum pairs");
         let partner = left
             .iter()
             .position(|old| slot(old) == slot(new))
-            .or_else(|| left.iter().position(|old| !limit || statistic(old) == statistic(new)));
+            .or_else(|| left.iter().position(|old| !limit || new.key.text == "limit" && statistic(old) == statistic(new)));
         one(block, &rule(new), partner.map(|at| left.remove(at)), Some(new), found);
     }
     for old in left {
@@ -130,6 +130,7 @@ fn meaning(kind: &str, field: &Field) -> Option<String> {
     match key.word {
         "over" => from_pest::domain(text, quiet).map(|domain| domain.meaning()),
         "limit" if kind == "quantity" => from_pest::limit(text, quiet).map(|limit| limit.meaning()),
+        "minimum pairs" => from_pest::minimum(text, quiet).map(|minimum| minimum.meaning()),
         "filter" | "step" | "metric" => {
             from_pest::chain(text, quiet).map(|chain| chain.iter().map(|step| step.node.meaning()).collect::<Vec<_>>().join("; "))
         }

@@ -4,6 +4,7 @@ use super::Checker;
 use super::names::normalised;
 use super::plan::{DataReducer, Estimate, EstimateKind, Expr, Fit, Kind, OfGroup, Origin, Taking, Type};
 use super::scalars::{Scope, in_words};
+use super::weights::{has_weights, is_mean};
 use crate::catalog::{STATISTICS, Statistic};
 use crate::problem::Problem;
 use crate::source::Span;
@@ -29,14 +30,14 @@ pub(super) struct Group {
 }
 
 impl Group {
-    fn take(&mut self, taking: Taking) -> Kind {
+    pub fn take(&mut self, taking: Taking) -> Kind {
         self.taken.push(taking);
         Kind::Input(self.taken.len() - 1)
     }
 }
 
 /// The name of a statistic as written: `p95`, `mean`.
-fn reducer_name(reducer: &Phrase) -> String {
+pub(super) fn reducer_name(reducer: &Phrase) -> String {
     match &reducer.node {
         Node::Percentile(percent) => format!("p{percent}"),
         Node::Path(path) => path.clone(),
@@ -65,7 +66,12 @@ impl Checker<'_> {
         let kind = self.of_values(&written.estimate, text, dimension?, zone)?;
         let title = self.blocks.iter().find(|block| block.kind.text == "estimate" && block.name_text() == name);
         let title = title.and_then(|block| block.title.as_ref()).map_or_else(|| self.with_values(&bare(&name)), |title| title.text.clone());
-        let of_scatter = matches!(&kind.taken[..], [Taking::Bound { of, .. }] if of.of_scatter && matches!(kind.expr.kind, Kind::Input(0)));
+        let of_scatter = match &kind.taken[..] {
+            [Taking::Bound { of, .. }] => of.of_scatter,
+            [Taking::Weighted { statistic, .. }] => statistic.of_scatter(),
+            _ => false,
+        };
+        let of_scatter = of_scatter && matches!(kind.expr.kind, Kind::Input(0));
         let found = self.number_type(&kind.expr)?;
         let of_data = kind.taken.iter().find_map(|taking| match taking {
             Taking::Data { of, .. } => self.datum_unit(of, found),
@@ -173,32 +179,46 @@ impl Checker<'_> {
         Some(Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() }))
     }
 
-    /// A number of the sections of a group: `mean of radius`, `total of length`.
+    /// A number of the sections of a group: `mean of radius`, `total of length`, `mean of radius weighted by length`.
     pub(super) fn group_data(&mut self, reducer: &Phrase, of: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
-        let name = reducer_name(reducer);
-        let found = match (name.as_str(), Statistic::named(&name)) {
-            ("total", _) => Some(DataReducer::Total),
-            (_, Some(Statistic::Each) | None) => None,
-            (_, Some(statistic)) => Some(DataReducer::Statistic(statistic, self.ddof)),
-        };
-        let Some(reducer_found) = found else {
-            let known = STATISTICS.iter().map(|entry| entry.name).chain(["total"]);
-            let says = format!("`{name} of` cannot be computed over the sections of a group");
-            self.problems.push(Problem::error("unknown-statistic", says).at(&text.place(reducer.range.clone())).suggest(&name, known));
-            return None;
+        let found = self.group_reducer(reducer, "the sections of a group", text)?;
+        // `mean of radius weighted by length` reads as `mean of (radius weighted by length)`.
+        let (of, by) = match &of.node {
+            Node::Weighted(of, by) => (of.as_ref(), Some(by.as_ref())),
+            _ => (of, None),
         };
         if let Node::Path(signal) = &of.node
             && (self.names.channels.contains_key(signal) || self.names.signals.contains_key(signal))
         {
+            let name = reducer_name(reducer);
             let says = format!("`{name} of {signal}` needs the records of a section, which are not available here");
             let help = "here only section data can be used: `mean of radius`";
             self.problems.push(Problem::error("no-records", says).at(span).help(help));
             return None;
         }
+        let by = match (by, found) {
+            (None, _) => None,
+            (Some(by), DataReducer::Statistic(statistic, _)) if has_weights(statistic) => Some(self.weight(by, text, scope)?),
+            (Some(_), _) => return self.no_weight(&format!("the {} of section data", reducer_name(reducer)), span),
+        };
         let of = self.expr(of, text, &mut Scope { zone: scope.zone.clone(), ..Scope::section() })?;
         let dimension = self.number_type(&of)?;
-        let kind = scope.group.as_mut()?.take(Taking::Data { reducer: reducer_found, of });
+        let kind = scope.group.as_mut()?.take(Taking::Data { reducer: found, of, by });
         Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+    }
+
+    /// A statistic, or `total`.
+    pub(super) fn group_reducer(&mut self, reducer: &Phrase, from: &str, text: &Text) -> Option<DataReducer> {
+        let name = reducer_name(reducer);
+        match (name.as_str(), Statistic::named(&name)) {
+            ("total", _) => return Some(DataReducer::Total),
+            (_, Some(Statistic::Each) | None) => {}
+            (_, Some(statistic)) => return Some(DataReducer::Statistic(statistic, self.ddof)),
+        }
+        let known = STATISTICS.iter().map(|entry| entry.name).chain(["total"]);
+        let says = format!("`{name} of` is nothing that is taken from {from}");
+        self.problems.push(Problem::error("unknown-statistic", says).at(&text.place(reducer.range.clone())).suggest(&name, known));
+        None
     }
 
     /// The quantity `NAME` in `p80 of NAME`, as its index and the index of its block. Only where the rows of a group are available.
@@ -308,10 +328,13 @@ impl Checker<'_> {
             }
             Estimate { title: name.clone(), name, kind: EstimateKind::Of(Box::new(kind)), of_scatter: false, unit: None }
         };
+        let of_scatter = estimate.weighted().is_some_and(|(statistic, ..)| statistic.of_scatter());
+        let estimate = Estimate { of_scatter: estimate.of_scatter || of_scatter, ..estimate };
         let closed = estimate.statistic().is_some_and(|(statistic, ddof)| match statistic {
             Statistic::Named(entry) => entry.name == "mean" || entry.name == "std" && ddof == 1,
             _ => false,
         });
+        let closed = closed || estimate.weighted().is_some_and(|(statistic, ..)| is_mean(statistic));
         if (bootstrap || !closed) && !(DRAWN.0..=DRAWN.1).contains(&confidence) {
             let says = "a bootstrap of 2000 draws cannot give a bound outside 0.5 % to 99.5 %";
             self.problems.push(Problem::error("out-of-range", says).at(span));
@@ -330,6 +353,7 @@ impl Checker<'_> {
         &mut self,
         of_sections: bool,
         condition: &Phrase,
+        by: Option<&Phrase>,
         text: &Text,
         span: &Origin,
         scope: &mut Scope,
@@ -345,7 +369,11 @@ impl Checker<'_> {
         let mut of_row = Scope { value, zone: scope.zone.clone(), ..Scope::section() };
         let condition = self.expr(condition, text, &mut of_row)?;
         self.flag_type(&condition)?;
-        let kind = scope.group.as_mut()?.take(Taking::Share { condition, of_sections, others: of_row.others });
+        let by = match by {
+            Some(by) => Some(self.weight(by, text, scope)?),
+            None => None,
+        };
+        let kind = scope.group.as_mut()?.take(Taking::Share { condition, of_sections, others: of_row.others, by });
         Some(Expr { kind, ty: Type::Number(Dimension::ONE), span: span.clone() })
     }
 
@@ -420,7 +448,7 @@ impl Checker<'_> {
         None
     }
 
-    fn no_values(&mut self, span: &Span) -> Option<Expr> {
+    pub(super) fn no_values(&mut self, span: &Span) -> Option<Expr> {
         self.problems.push(
             Problem::error("no-group", "this estimate needs values of a group, which are not available here")
                 .at(span)

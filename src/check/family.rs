@@ -185,8 +185,11 @@ pub(super) fn overlay(parent: &mut Block, variant: &Block) {
     parent.fields = fields;
 }
 
-/// What identifies a field when it is overridden: its key; for a limit also its statistic and its scope.
+/// What identifies a field when it is overridden: its key; for a limit also its statistic and its scope, for a minimum of which groups.
 pub(super) fn slot(field: &Field) -> String {
+    if field.key.text == "minimum pairs" {
+        return format!("minimum pairs {}", super::minima::groups_of(field).unwrap_or_default());
+    }
     if field.key.text != "limit" {
         return field.key.text.clone();
     }

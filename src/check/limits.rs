@@ -5,7 +5,7 @@ use super::names::normalised;
 use super::plan::{DatumKind, Estimate, EstimateKind, Expr, Key, Kind, Limit, OfGroup, Scalar, Scope as LimitScope, Type};
 use super::scalar_names::LIMITS_NOT_VALUES;
 use super::scalars::{Scope, in_words};
-use super::{Checker, overlap};
+use super::{Checker, Grouped, overlap};
 use crate::catalog::{Best, Statistic};
 use crate::metrics::rounded;
 use crate::problem::{Problem, Problems};
@@ -49,6 +49,7 @@ impl Checker<'_> {
             }
         }
         let common = Common { block, unit, best, names, places };
+        self.grouped = Grouped { quantity: block.name_text().to_string(), places: places.to_vec() };
         let mut limits = Vec::new();
         let mut ok = true;
         for field in fields {
@@ -91,7 +92,7 @@ impl Checker<'_> {
         let written = self.with_statistic(written, text);
         let dimension = common.unit.map(|(unit, _)| unit.dimension);
         let unconfirmed = common.block.field("unconfirmed").is_some();
-        let scope = self.limit_scope(&written.scope, text, common);
+        let scope = self.scope_of(&written.scope, text, common.block.name_text(), common.places);
         let zones = match &scope {
             Some((scope, true)) if !scope.zones.is_empty() => scope.zones.clone(),
             Some((_, true)) => self.zone_names.clone(),
@@ -228,7 +229,7 @@ impl Checker<'_> {
     /// Checks that the limit admits the best value and excludes worse ones.
     fn on_its_side(&mut self, bound: Expr, written: &Written, estimate: &Estimate, text: &Text, common: &Common<'_>) -> Option<Expr> {
         let scatter = estimate.of_scatter;
-        let of_values = matches!(estimate.kind, EstimateKind::Each) || estimate.statistic().is_some();
+        let of_values = matches!(estimate.kind, EstimateKind::Each) || estimate.statistic().is_some() || estimate.weighted().is_some();
         let (best, from) = match common.best {
             _ if scatter => (Best::Least(0.0), None),
             Some((best, from)) if of_values => (*best, Some(from)),
@@ -281,8 +282,14 @@ impl Checker<'_> {
         None
     }
 
-    /// The rows that the limit applies to, and whether there is one limit for every zone.
-    fn limit_scope(&mut self, scope: &At<WrittenScope>, text: &Text, common: &Common<'_>) -> Option<(LimitScope, bool)> {
+    /// The rows that a limit or a minimum applies to, and whether there is one limit for every zone.
+    pub(super) fn scope_of(
+        &mut self,
+        scope: &At<WrittenScope>,
+        text: &Text,
+        quantity: &str,
+        places: &[String],
+    ) -> Option<(LimitScope, bool)> {
         let written = &scope.node;
         let zones = self.limit_zones(&written.zones, text);
         let (mut each_zone, mut each, mut ok) = (false, Vec::new(), true);
@@ -296,7 +303,7 @@ impl Checker<'_> {
                 each_zone = true;
                 continue;
             }
-            match self.key(&key.node, &place, common) {
+            match self.key(&key.node, &place, quantity, places) {
                 Some(found) if !each.contains(&found) => each.push(found),
                 Some(_) => {}
                 None => ok = false,
@@ -338,14 +345,14 @@ impl Checker<'_> {
     }
 
     /// A key by which rows are grouped: section, site, record, a place of the signal, or a section column of words.
-    fn key(&mut self, name: &str, span: &Span, common: &Common<'_>) -> Option<Key> {
+    fn key(&mut self, name: &str, span: &Span, quantity: &str, places: &[String]) -> Option<Key> {
         match name {
             "section" => return Some(Key::Section),
             "site" => return Some(Key::Site),
             "record" => return Some(Key::Record),
             _ => {}
         }
-        if let Some(place) = common.places.iter().find(|place| *place == name || Some(place.as_str()) == name.strip_suffix('s')) {
+        if let Some(place) = places.iter().find(|place| *place == name || Some(place.as_str()) == name.strip_suffix('s')) {
             return Some(Key::Place(place.clone()));
         }
         if let Some(index) = self.campaign_column(name, span) {
@@ -358,14 +365,30 @@ impl Checker<'_> {
             return Some(Key::Column(index));
         }
         let columns: Vec<String> = self.names.columns.iter().map(|datum| datum.name.clone()).collect();
-        let known = ["zone", "section", "site", "record", "campaign"].into_iter().chain(common.places.iter().map(String::as_str));
+        let known = ["zone", "section", "site", "record", "campaign"].into_iter().chain(places.iter().map(String::as_str));
         let known = known.chain(columns.iter().map(String::as_str));
         self.problems.push(
-            Problem::error("unknown-key", format!("the values of `{}` cannot be grouped by `{name}`", common.block.name_text()))
+            Problem::error("unknown-key", format!("the values of `{quantity}` cannot be grouped by `{name}`"))
                 .at(span)
                 .suggest(name, known),
         );
         None
+    }
+
+    /// A key inside an estimate: there the zone is one like others.
+    pub(super) fn group_key(&mut self, key: &At<String>, text: &Text) -> Option<Key> {
+        let place = text.place(key.range.clone());
+        if !matches!(key.node.as_str(), "zone" | "zones") {
+            let Grouped { quantity, places } = self.grouped.clone();
+            return self.key(&key.node, &place, &quantity, &places);
+        }
+        match self.zone.as_ref().map(|zone| &zone.kind) {
+            Some(Kind::Column(index)) => Some(Key::Column(*index)),
+            _ => {
+                self.problems.push(Problem::error("unknown-zone", "the protocol has no zones").at(&place));
+                None
+            }
+        }
     }
 
     /// A limit that refers to other limits and is a constant must be above zero.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::Checker;
 use super::names::{Assignment, Written, bare_word, normalised};
-use super::plan::{Axis, Evaluation, Expr, Input, InputSide, Kind, Origin, Pairing, Position, Signal, SignalKind, Step, Taken, Type};
+use super::plan::{Axis, Evaluation, Expr, Input, InputSide, Kind, Origin, Pairing, Position, Side, Signal, SignalKind, Step, Taken, Type};
 use super::quantities::Compared;
 use super::scalar_names::add_input;
 use super::scalars::{Reduce, Scope};
@@ -123,7 +123,10 @@ impl Checker<'_> {
     fn by_expression(&mut self, field: &Field, positions: Option<&[(Position, Assignment)]>, chain: Option<&[Step]>) -> Option<Compared> {
         let phrase = self.metric_expression(&field.value)?;
         let (positions, chain) = (positions?, chain?);
-        let (valued, dimension) = self.valued(&phrase, field, positions, chain, Scope::comparing)?;
+        let (mut valued, dimension) = self.valued(&phrase, field, positions, chain, Scope::comparing)?;
+        if chain.iter().any(|step| !step.kind.keeps_samples()) {
+            valued.inputs.iter_mut().flatten().for_each(of_one_side);
+        }
         let inputs = valued.inputs.first()?;
         for input in inputs {
             if let (Taken::Reduced(reducer), InputSide::Own) = (input.taken, input.side) {
@@ -288,7 +291,7 @@ impl Checker<'_> {
             return None;
         }
         let taken = Taken::Compared(metric);
-        let input = Input { taken, signal: None, over, side: InputSide::Own, span: span.span.clone() };
+        let input = Input { taken, signal: None, chain: Vec::new(), over, side: InputSide::Own, span: span.span.clone() };
         let ty = Type::Number(taken.gives(dimension, axis));
         Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
     }
@@ -308,7 +311,8 @@ impl Checker<'_> {
             return self.own_reducer(reducer, span.clone(), scope);
         };
         let ty = Type::Number(reducer.gives(dimension, over.dimension * scope.factor));
-        let input = Input { taken: Taken::Reduced(reducer), signal: None, over: Some(over), side, span: span.span.clone() };
+        let input =
+            Input { taken: Taken::Reduced(reducer), signal: None, chain: Vec::new(), over: Some(over), side, span: span.span.clone() };
         Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
     }
 
@@ -362,10 +366,27 @@ impl Checker<'_> {
             return None;
         }
         let ty = Type::Number(reducer.gives(signal.dimension, axis));
-        let input =
-            Input { taken: Taken::OfBoth(reducer), signal: Some(signal), over: None, side: InputSide::Own, span: span.span.clone() };
+        let input = Input {
+            taken: Taken::OfBoth(reducer),
+            signal: Some(signal),
+            chain: Vec::new(),
+            over: None,
+            side: InputSide::Own,
+            span: span.span.clone(),
+        };
         Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
     }
+}
+
+/// `rms of simulated` after a window: the sides have no common points, and none are needed.
+fn of_one_side(input: &mut Input) {
+    let (Taken::OfBoth(reducer), Some(Signal { kind: SignalKind::Side(side), .. })) = (input.taken, &input.signal) else { return };
+    input.side = match side {
+        Side::Simulated => InputSide::Simulated,
+        Side::Measured => InputSide::Measured,
+    };
+    input.taken = Taken::Reduced(reducer);
+    input.signal = None;
 }
 
 /// The first part of an expression over both sides that is not allowed in it.
@@ -375,7 +396,9 @@ fn not_of_both(signal: &Signal) -> Option<Span> {
         SignalKind::Side(_) | SignalKind::Scalar(_) => None,
         SignalKind::Binary(_, left, right) => not_of_both(left).or_else(|| not_of_both(right)),
         SignalKind::OverAxis(AxisOperation::Shifted(_), inner) if !matches!(inner.kind, SignalKind::Side(_)) => Some(signal.span.clone()),
-        SignalKind::Negative(inner) | SignalKind::Power(inner, _) | SignalKind::OverAxis(_, inner) => not_of_both(inner),
+        SignalKind::Negative(inner) | SignalKind::Power(inner, _) | SignalKind::Level(_, inner) | SignalKind::OverAxis(_, inner) => {
+            not_of_both(inner)
+        }
         SignalKind::Call(_, arguments) => arguments.iter().find_map(not_of_both),
         SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => Some(signal.span.clone()),
     }

@@ -14,6 +14,7 @@ pub mod family;
 mod like;
 mod limits;
 mod metrics;
+mod minima;
 mod names;
 mod near;
 mod overlap;
@@ -31,6 +32,7 @@ mod signals;
 mod steps;
 mod transfer;
 mod verdicts;
+mod weights;
 
 pub use names::normalised;
 
@@ -38,9 +40,10 @@ use std::collections::BTreeSet;
 
 use indexmap::IndexMap;
 
+use crate::catalog::{Reducer, Statistic};
 use crate::problem::{Problem, Problems};
 use crate::source::{Span, Spanned};
-use crate::syntax::document::{Block, Document, Text};
+use crate::syntax::document::{Block, Document, Field, Text};
 use crate::units::Dimension;
 use names::Names;
 use plan::{Axis, Expr, NamedFilter, Parameter, Plan, SetBy, Step};
@@ -95,6 +98,17 @@ struct Checker<'a> {
     ddof: usize,
     minimum_signals: usize,
     minimum_pairs: usize,
+    /// Minimum counts of groups that every quantity has unless it gives its own.
+    minimum_of_groups: Vec<Field>,
+    /// The quantity whose limits are looked at, and the places of its signals.
+    grouped: Grouped,
+}
+
+/// A quantity and by what places its values can be grouped.
+#[derive(Clone, Debug, Default)]
+struct Grouped {
+    quantity: String,
+    places: Vec<String>,
 }
 
 /// The plan of a protocol with its parameters set; `None` after a problem of severity error.
@@ -133,9 +147,12 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
         ddof: 1,
         minimum_signals: 1,
         minimum_pairs: 1,
+        minimum_of_groups: Vec::new(),
+        grouped: Grouped::default(),
     };
     let before = checker.problems.0.len();
     let plan = checker.plan(document);
+    let names = std::mem::take(&mut checker.names);
     if plan.is_some() && !problems.any_error() {
         let checked = plan.as_ref().map_or(0, rule_count);
         let written = document.blocks.iter().map(written_rules).sum::<usize>();
@@ -147,8 +164,24 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
             ));
         }
     }
+    problems.0[before..].iter_mut().for_each(|problem| name_after_number(problem, &names));
     in_reading_order(problems, before);
     if problems.any_error() { None } else { plan }
+}
+
+/// `3 std`: what follows a number and is no unit may be a name that the parser of phrases does not know.
+fn name_after_number(problem: &mut Problem, names: &Names) {
+    let Some(word) = problem.says.strip_prefix('`').and_then(|rest| rest.strip_suffix("` is no unit")) else { return };
+    let is_name = Reducer::named(word).is_some()
+        || Statistic::named(word).is_some()
+        || names.parameter_blocks.contains_key(word)
+        || names.defines.contains_key(word)
+        || names.estimates.contains_key(word)
+        || names.vehicle.iter().chain(&names.columns).any(|datum| datum.name == word);
+    let likely_unit = problem.help.as_ref().is_some_and(|help| help.starts_with("did you mean"));
+    if problem.code == "unknown-unit" && is_name && likely_unit {
+        problem.help = Some(format!("a product is written with its sign: `... * {word}`"));
+    }
 }
 
 /// Sorts the problems from the given index on by their places, text by text.
@@ -277,7 +310,9 @@ impl Checker<'_> {
         self.ddof = self.divisor(verdict_block);
         if let Some(block) = verdict_block {
             self.minimum_signals = self.count(block, "minimum signals", 1).unwrap_or(1);
-            self.minimum_pairs = self.count(block, "minimum pairs", 1).unwrap_or(1);
+            let minima = self.minima(block);
+            self.minimum_pairs = minima.all.flatten().unwrap_or(1);
+            self.minimum_of_groups = minima.of_groups;
         }
         let zones = of("zone").filter_map(|block| self.zone(block)).collect();
         let checks = of("check").filter_map(|block| self.section_check(block)).collect();

@@ -264,6 +264,8 @@ pub enum SignalKind {
     Call(&'static Function, Vec<Signal>),
     Filtered(Box<Signal>, Vec<Step>),
     OverAxis(AxisOperation, Box<Signal>),
+    /// The number of a section that is taken from a signal, the same all along: `Y - mean of Y`.
+    Level(Reducer, Box<Signal>),
     /// The own processed signal of this side, at the points where both sides have one. Only in values taken from both sides.
     Side(Side),
     /// The signal of the first condition on the section that holds.
@@ -438,6 +440,8 @@ pub struct Input {
     pub taken: Taken,
     /// `None`: the quantity's own processed signal.
     pub signal: Option<Signal>,
+    /// Filters and windows that a named signal passes.
+    pub chain: Vec<Step>,
     /// The signal that a slope or a metric uses in place of the axis.
     pub over: Option<Signal>,
     pub side: InputSide,
@@ -500,7 +504,16 @@ pub struct Quantity {
     pub limits: Vec<Arc<Limit>>,
     pub minimum_signals: usize,
     pub minimum_pairs: usize,
+    /// Pairs that groups of values need.
+    pub minimum_of_groups: Vec<MinimumOfGroups>,
     pub span: Span,
+}
+
+/// How many pairs each group of some scope needs.
+#[derive(Clone, Debug)]
+pub struct MinimumOfGroups {
+    pub needed: usize,
+    pub scope: Scope,
 }
 
 impl Quantity {
@@ -770,6 +783,15 @@ impl Estimate {
             },
         }
     }
+
+    /// The weighted statistic that it is and nothing more: statistic, n - `ddof`, weight.
+    pub fn weighted(&self) -> Option<(Statistic, usize, &Expr)> {
+        let EstimateKind::Of(of) = &self.kind else { return None };
+        match (&of.expr.kind, of.taken.as_slice()) {
+            (Kind::Input(0), [Taking::Weighted { statistic, ddof, by }]) => Some((*statistic, *ddof, by)),
+            _ => None,
+        }
+    }
 }
 
 /// An expression over numbers taken from the rows of a group; [`Kind::Input`] is an index into `taken`.
@@ -787,8 +809,9 @@ impl OfGroup {
                 Taking::Other { quantity, .. } => vec![*quantity],
                 Taking::Share { others, .. } => others.iter().flat_map(of).collect(),
                 Taking::Bound { of, .. } => of.others(),
+                Taking::EachGroup { of, .. } => of.others(),
                 Taking::Fit(fit) => fit.at.iter().flat_map(OfGroup::others).collect(),
-                Taking::Statistic(..) | Taking::Count | Taking::Data { .. } => Vec::new(),
+                Taking::Statistic(..) | Taking::Weighted { .. } | Taking::Count | Taking::Data { .. } => Vec::new(),
             }
         }
         self.taken.iter().flat_map(of).collect()
@@ -800,6 +823,12 @@ impl OfGroup {
 pub enum Taking {
     /// A statistic of the values, with divisor n - `ddof`.
     Statistic(Statistic, usize),
+    /// The same with a weight for each value, from the data of its section.
+    Weighted {
+        statistic: Statistic,
+        ddof: usize,
+        by: Expr,
+    },
     /// Number of independent units.
     Count,
     /// An end of the confidence interval of an estimate.
@@ -815,6 +844,8 @@ pub enum Taking {
         condition: Expr,
         of_sections: bool,
         others: Vec<Taking>,
+        /// What rows or sections count by, if not all alike.
+        by: Option<Expr>,
     },
     /// A statistic of all rows of another quantity, an index into [`Plan::quantities`].
     Other {
@@ -827,6 +858,13 @@ pub enum Taking {
     Data {
         reducer: DataReducer,
         of: Expr,
+        by: Option<Expr>,
+    },
+    /// Of one number for each group that the rows form by some keys.
+    EachGroup {
+        reducer: DataReducer,
+        keys: Vec<Key>,
+        of: Box<OfGroup>,
     },
     Fit(Box<Fit>),
 }

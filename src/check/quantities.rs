@@ -106,6 +106,7 @@ impl Checker<'_> {
         let best = compared.as_ref().and_then(|compared| compared.best.as_ref());
         let places: Vec<String> = positions.iter().flatten().next().map_or_else(Vec::new, |(_, at)| at.keys().cloned().collect());
         let limits = self.limits(block, unit.as_ref().zip(from), best, &places);
+        let minima = self.minima(block);
         if let (Some(reported), Some(limit)) = (block.field("reported"), block.field("limit")) {
             let says = "a quantity is either reported without a limit, or has one";
             self.problems.push(Problem::error("reported-and-limit", says).at(&reported.key.span).also(&limit.key.span, "the limit"));
@@ -121,13 +122,15 @@ impl Checker<'_> {
                 .help("if that is meant, say why: `reported \"...\"`"),
             );
         }
-        if let (Some(only), None, 2..) = (block.field("where"), block.field("minimum pairs"), self.minimum_pairs) {
+        if let (Some(only), None, 2..) = (block.field("where"), minima.all, self.minimum_pairs) {
             let says = format!("quantity `{}` uses only some of the sections but needs {} pairs", block.name_text(), self.minimum_pairs);
             let problem = Problem::warning("minimum-inherited", says).at(&only.value.span);
             self.problems.push(problem.help("state the number for this quantity: `minimum pairs ...`"));
         }
         let minimum_signals = self.count(block, "minimum signals", self.minimum_signals);
-        let minimum_pairs = self.count(block, "minimum pairs", self.minimum_pairs);
+        let minimum_pairs = minima.all.unwrap_or(Some(self.minimum_pairs));
+        let of_groups = if minima.of_groups.is_empty() { self.minimum_of_groups.clone() } else { minima.of_groups };
+        let minimum_of_groups = self.minimum_of_groups(&of_groups, block, &places);
         let (of, chain, positions, compared, unit) = (of?, chain?, positions?, compared?, unit?);
         let dimension = dimension?;
         let signal_unit = from_pest::of_places(&of, self.problems).map(|written| self.own_unit(&written.signal.node, dimension))?;
@@ -160,6 +163,7 @@ impl Checker<'_> {
             limits: limits?.into_iter().map(Arc::new).collect(),
             minimum_signals: minimum_signals?,
             minimum_pairs: minimum_pairs?,
+            minimum_of_groups: minimum_of_groups?,
             span: block.span().clone(),
         })
     }

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use super::Checker;
 use super::names::bare_word;
-use super::plan::{Datum, DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Taken, Type};
+use super::plan::{Datum, DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Step, Taken, Type};
 use super::scalars::{Reduce, Scope};
+use super::steps::after;
 use crate::catalog::{METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
 use crate::problem::Problem;
 use crate::source::Span;
@@ -33,7 +34,7 @@ impl Checker<'_> {
         let ty = Type::Number(reducer.gives(dimension, axis));
         let kind = Kind::Input(add_input(
             scope,
-            Input { taken: Taken::Reduced(reducer), signal: None, over: None, side, span: span.span.clone() },
+            Input { taken: Taken::Reduced(reducer), signal: None, chain: Vec::new(), over: None, side, span: span.span.clone() },
         ));
         Some(Expr { kind, ty, span })
     }
@@ -49,8 +50,8 @@ impl Checker<'_> {
         }
     }
 
-    /// A value taken from a named signal: `range of curvature`.
-    pub(super) fn reduced(&mut self, reducer: &Phrase, signal: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+    /// The reducer of `NAME of signal`.
+    pub(super) fn reducer(&mut self, reducer: &Phrase, text: &Text, of_records: bool) -> Option<Reducer> {
         let place = text.place(reducer.range.clone());
         let found = match &reducer.node {
             Node::Percentile(percent) => Some(Reducer::Percentile(*percent)),
@@ -61,18 +62,21 @@ impl Checker<'_> {
             let word = if let Node::Path(path) = &reducer.node { path.as_str() } else { "" };
             if !self.is_failed(word) {
                 let numbers = self.names.parameter_blocks.keys().chain(self.names.defines.keys()).cloned().collect::<Vec<_>>();
-                let reducers = REDUCERS.iter().map(|entry| entry.name);
-                let known: Vec<&str> = if scope.reduce.is_some() {
-                    reducers.chain(numbers.iter().map(String::as_str)).collect()
-                } else {
-                    numbers.iter().map(String::as_str).collect()
-                };
+                let reducers = REDUCERS.iter().map(|entry| entry.name).filter(|_| of_records);
+                let known: Vec<&str> = reducers.chain(numbers.iter().map(String::as_str)).collect();
                 let says = format!("`{word} of` is neither a value of a signal nor a share of a number");
                 self.problems.push(Problem::error("unknown-reducer", says).at(&place).suggest(word, known));
             }
             return None;
         };
         self.percentile_range(found, &place)?;
+        Some(found)
+    }
+
+    /// `range of curvature`: a value taken from a named signal.
+    pub(super) fn reduced(&mut self, reducer: &Phrase, signal: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+        let place = text.place(reducer.range.clone());
+        let found = self.reducer(reducer, text, scope.reduce.is_some())?;
         let Some(Reduce { axis, side, .. }) = scope.reduce else {
             self.problems.push(
                 Problem::error(
@@ -92,6 +96,10 @@ impl Checker<'_> {
             Node::Over(signal, over) => (signal.as_ref(), Some(over.as_ref())),
             _ => (signal, None),
         };
+        let (signal, chain) = match &signal.node {
+            Node::Through(inner, filter) if over.is_none() => (inner.as_ref(), self.window_of(filter, text)?),
+            _ => (signal, Vec::new()),
+        };
         let signal = self.signal(signal, text, &at);
         let over = match over {
             None => None,
@@ -99,9 +107,16 @@ impl Checker<'_> {
         };
         let signal = signal?;
         let axis = over.as_ref().map_or(axis, |over| over.dimension);
-        let ty = Type::Number(found.gives(signal.dimension, axis));
-        let input = Input { taken: Taken::Reduced(found), signal: Some(signal), over, side, span: span.span.clone() };
+        let ty = Type::Number(found.gives(after(&chain, signal.dimension), axis));
+        let input = Input { taken: Taken::Reduced(found), signal: Some(signal), chain, over, side, span: span.span.clone() };
         Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
+    }
+
+    /// The steps of a filter that stands last before a number is taken: there, windows may be among them.
+    fn window_of(&mut self, filter: &At<String>, text: &Text) -> Option<Vec<Step>> {
+        let steps = self.filter_named(&filter.node, &text.place(filter.range.clone()))?;
+        self.step_order(&steps, false)?;
+        Some(steps)
     }
 
     /// The value of a fixed side, such as `measured(p99.85)`, whichever side is evaluated.

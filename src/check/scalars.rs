@@ -196,6 +196,11 @@ impl Checker<'_> {
                 let ty = self.binary_type(Operator::Multiply, &left, &right)?;
                 (Kind::Binary(Operator::Multiply, Box::new(left), Box::new(right)), ty)
             }
+            Node::Reduced(reducer, of) if let Node::ForEach(one, keys) = &of.node => {
+                return self.of_each_group(reducer, one, keys, text, &span, scope);
+            }
+            Node::ForEach(_, keys) => return self.many_numbers(keys, text, &span),
+            Node::Weighted(of, by) => return self.weighted(of, by, text, &span, scope),
             Node::Reduced(reducer, of) if self.other_quantity(of, scope).is_some() => {
                 return self.of_other(reducer, of, text, &span, scope);
             }
@@ -204,7 +209,7 @@ impl Checker<'_> {
             Node::Bound { upper, confidence, of, bootstrap } => {
                 return self.group_bound((*upper, *confidence, *bootstrap), of, text, &span, scope);
             }
-            Node::Share { of_sections, condition } => return self.group_share(*of_sections, condition, text, &span, scope),
+            Node::Share { of_sections, condition } => return self.group_share(*of_sections, condition, None, text, &span, scope),
             Node::Fit(fit) => return self.group_fit(fit, text, &span, scope),
             Node::Reduced(reducer, signal) => return self.reduced(reducer, signal, text, &span, scope),
             Node::Over(value, over) => return self.slope_over(value, over, text, &span, scope),

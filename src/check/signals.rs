@@ -115,6 +115,7 @@ impl Checker<'_> {
                 let product = Node::Binary(Operator::Multiply, factor.clone(), of.clone());
                 self.signal(&At { node: product, range: phrase.range.clone() }, text, at)
             }
+            Node::Reduced(reducer, of) => self.level(reducer, of, text, span, at),
             Node::Cases(arms, otherwise) => self.signal_cases(arms, otherwise.as_deref(), text, &span, at),
             _ => self.scalar_signal(phrase, text, span),
         }
@@ -165,6 +166,15 @@ impl Checker<'_> {
         };
         let track = signal.track;
         Some(Signal { dimension, track, kind: SignalKind::OverAxis(operation, Box::new(signal)), span })
+    }
+
+    /// `mean of Y` among samples: the number of the section, taken from each of them.
+    fn level(&mut self, reducer: &Phrase, of: &Phrase, text: &Text, span: Span, at: &Assignment) -> Option<Signal> {
+        let reducer = self.reducer(reducer, text, true)?;
+        let of = self.signal(of, text, at)?;
+        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+        let (dimension, track) = (reducer.gives(of.dimension, axis), of.track);
+        Some(Signal { dimension, track, kind: SignalKind::Level(reducer, Box::new(of)), span })
     }
 
     /// A number that is constant along the record.

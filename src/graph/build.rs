@@ -119,6 +119,13 @@ impl Builder {
                 steps.iter().fold(inner, |node, step| self.step(node, step))
             }
             SignalKind::OverAxis(operation, inner) => self.over_axis(operation, inner, signal),
+            SignalKind::Level(reducer, inner) => {
+                let (_, cut) = self.processed(inner, &[], from);
+                let label = format!("{} of {}", reducer.in_words(), self.origin(cut));
+                let kind = format!("reduce {}", reducer.in_words());
+                let number = self.add(Operation::Reduce(*reducer), vec![cut], dimension, from, reducer.in_words(), kind);
+                self.add(Operation::Level, vec![number], dimension, from, label, "level".into())
+            }
             // Not reached: the checker allows sides only in values taken from both sides.
             SignalKind::Side(_) => self.add(Operation::Cut, Vec::new(), dimension, from, String::new(), "nothing".into()),
             SignalKind::Select(arms, otherwise) => {
@@ -213,8 +220,8 @@ impl Builder {
     fn input(&mut self, input: &Input, own: Option<Own<'_>>) -> InputNode {
         let own = match (&input.signal, own) {
             (Some(signal), _) if !matches!(input.taken, Taken::OfBoth(_)) => {
-                let (filtered, processed) = self.processed(signal, &[], &input.span);
-                Own { filtered, processed, chain: &[] }
+                let (filtered, processed) = self.processed(signal, &input.chain, &input.span);
+                Own { filtered, processed, chain: &input.chain }
             }
             (_, Some(own)) => own,
             // Not reached: the checker allows an input without signal only where there is an own signal.

@@ -62,6 +62,8 @@ pub enum Operation {
     Apply(&'static Function),
     /// Shifted, differentiated or integrated along the axis.
     OverAxis(AxisOperation),
+    /// A number of the section, all along the record.
+    Level,
     /// The first input whose condition on the section holds, else the last.
     Select(Vec<Expr>),
     /// A step over the whole record.
@@ -95,6 +97,7 @@ impl Operation {
             | Self::Power(_)
             | Self::Apply(_)
             | Self::OverAxis(_)
+            | Self::Level
             | Self::Select(_) => Stage::Derive,
             Self::Step(_) => Stage::Filter,
             Self::Window(_) => Stage::Window,

@@ -15,6 +15,7 @@ use super::{
     statistics::{self, Divisor},
     student::student_quantile,
     sum::{sum, sum_of},
+    weighted,
 };
 
 /// Number of draws of a bootstrap. 50 of them lie beyond each of the 2.5 % and 97.5 % values.
@@ -217,6 +218,24 @@ impl Mean {
             design_effect: if of_values > 0.0 { count * variance / of_values } else { 1.0 },
         })
     }
+}
+
+/// The mean of values with weights by the same form: variance G/(G - 1) sum(S_j^2)/sum(w)^2, S_j being the sum of a site's weighted
+/// deviations from it. Each value stands before its weight; a site without weight does not count.
+///
+/// # Errors
+/// As [`Mean::of`], of the sites that count.
+pub fn weighted_mean(sites: &[Vec<(f64, f64)>]) -> Result<Estimate, ClusterError> {
+    let sites: Vec<&Vec<(f64, f64)>> = sites.iter().filter(|site| site.iter().any(|(_, weight)| *weight > 0.0)).collect();
+    enough(sites.len())?;
+    let (values, weights): (Vec<f64>, Vec<f64>) = sites.iter().flat_map(|site| site.iter().copied()).filter(|(_, w)| *w > 0.0).unzip();
+    let value = weighted::mean(&values, &weights).ok_or(ClusterError::OutOfRange)?;
+    let sums: Vec<f64> = sites.iter().map(|site| site.iter().map(|(own, weight)| weight * (own - value)).sum()).collect();
+    let groups = sites.len() as f64;
+    // Of equal values nothing but rounding is left.
+    let squares = if values.iter().all(|own| *own == values[0]) { 0.0 } else { sum_of(&sums, |sum| sum * sum) };
+    let standard_error = in_range((groups / (groups - 1.0) * squares).sqrt() / sum(&weights))?;
+    Ok(Estimate { value, standard_error, degrees: groups - 1.0 })
 }
 
 impl Bounds for Mean {

@@ -10,6 +10,7 @@
 //! | [`resample`] | signal over an axis | the signal at other points |
 //! | [`percentile`] | values | order statistics, interpolated |
 //! | [`statistics`], [`interval`] | values | mean, scatter, extremes, regression; confidence intervals |
+//! | [`weighted`] | values and weights | mean, scatter, order statistics |
 //! | [`cluster`] | values by site | bounds of any statistic: bootstrap and jackknife over sites, closed forms |
 //! | [`regression`] | values and regressors | least squares, bounds at a point |
 //! | [`student`] | probability | quantiles of Student's t |
@@ -40,6 +41,7 @@ pub mod statistics;
 pub mod student;
 mod sum;
 pub mod synchronise;
+pub mod weighted;
 pub mod window;
 
 /// A number for a message, with six significant digits to hide rounding of unit conversions.

@@ -131,6 +131,7 @@ mod tests {
             sample: Sample::default(),
             regression: None,
             divided_at: None,
+            outside: Vec::new(),
             holds,
             factors: Vec::new(),
             limit_text: "1 kN".into(),

@@ -314,6 +314,9 @@ pub struct StatisticResult {
     /// Of an estimate that is a share of the values: where it divides them, in the unit of the quantity.
     #[serde(skip)]
     pub divided_at: Option<f64>,
+    /// Of an estimate with regressions: regressors that are read outside their data.
+    #[serde(skip)]
+    pub outside: Vec<Outside>,
     pub holds: Option<bool>,
     /// Factors of the limit that depend on vehicle data.
     pub factors: Vec<LimitFactor>,
@@ -330,6 +333,18 @@ pub struct Sample {
     pub mean: Option<f64>,
     /// With the divisor n - 1.
     pub std: Option<f64>,
+}
+
+/// A regressor that is read outside the data of its group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outside {
+    /// The regressor in the words of the protocol.
+    pub regressor: String,
+    pub unit: String,
+    /// Where it is read, and the least and the largest of its data.
+    pub target: f64,
+    pub low: f64,
+    pub high: f64,
 }
 
 /// A regression of values over one regressor, ready to draw.

@@ -32,6 +32,21 @@ impl Common {
         let onto = if same { s.values.to_vec() } else { at(simulated, &m.along.axis, shift)? };
         Ok(Self { simulated: onto, measured: m })
     }
+
+    /// Samples of a signal that may be one number all along.
+    fn filled(&self, signal: Signal) -> Samples {
+        match signal {
+            Signal::Samples(samples) => samples,
+            Signal::Constant(value) => self.measured.with(vec![value; self.measured.values.len()]),
+        }
+    }
+}
+
+/// # Errors
+/// It is not defined for these samples.
+fn number_of(reducer: Reducer, samples: &Samples, method: Method) -> Result<f64, String> {
+    let value = reducer.run(&samples.along.axis, &samples.values, method).filter(|value| value.is_finite());
+    value.ok_or_else(|| format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len()))
 }
 
 /// The simulated signal, moved along the axis by `shift`, at the given points.
@@ -61,17 +76,12 @@ impl Both<'_> {
     /// The value of a reduced expression over both sides, and the number of samples.
     pub fn reduced(&self, reducer: Reducer, method: Method, of: &plan::Signal) -> Result<(f64, usize), String> {
         let common = Common::of(self.simulated, self.measured, self.extent, self.shift)?;
-        let samples = match self.signal(of, &common)? {
-            Signal::Samples(samples) => samples,
-            Signal::Constant(value) => common.measured.with(vec![value; common.measured.values.len()]),
-        };
-        let value = reducer.run(&samples.along.axis, &samples.values, method).filter(|value| value.is_finite());
-        let undefined = || format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len());
-        Ok((value.ok_or_else(undefined)?, samples.values.len()))
+        let samples = common.filled(self.signal(of, &common, method)?);
+        Ok((number_of(reducer, &samples, method)?, samples.values.len()))
     }
 
-    fn signal(&self, of: &plan::Signal, common: &Common) -> Result<Signal, String> {
-        let inner = |signal: &plan::Signal| self.signal(signal, common);
+    fn signal(&self, of: &plan::Signal, common: &Common, method: Method) -> Result<Signal, String> {
+        let inner = |signal: &plan::Signal| self.signal(signal, common, method);
         match &of.kind {
             SignalKind::Side(Side::Simulated) => Ok(Signal::Samples(common.measured.with(common.simulated.clone()))),
             SignalKind::Side(Side::Measured) => Ok(Signal::Samples(common.measured.clone())),
@@ -102,6 +112,7 @@ impl Both<'_> {
                 }
                 Signal::Constant(_) => Err("a constant number has no samples along the axis".into()),
             },
+            SignalKind::Level(reducer, signal) => Ok(Signal::Constant(number_of(*reducer, &common.filled(inner(signal)?), method)?)),
             // The checker does not allow these here.
             SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => Err("this signal has other samples".into()),
         }

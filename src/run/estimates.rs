@@ -2,15 +2,21 @@
 
 use std::collections::{BTreeSet, HashSet};
 
+use indexmap::IndexMap;
+
 use super::facts::{Facts, Known, Vehicle};
+use super::groups::of_key;
 use super::sections::Unit;
 use super::table::{Member, Table, independent};
 use crate::catalog::Statistic;
-use crate::check::evaluate::{Values, flag, number};
-use crate::check::plan::{DataReducer, DatumKind, Estimate, EstimateKind, Fit, Kind, OfGroup, Operator, Plan, Scalar, Taking, Type};
+use crate::check::evaluate::{Values, flag, number, words};
+use crate::check::plan::{
+    DataReducer, DatumKind, Estimate, EstimateKind, Expr, Fit, Key, Kind, OfGroup, Operator, Plan, Quantity, Scalar, Taking, Type,
+};
 use crate::metrics::cluster::{self, Bounds, Draws, Mean, StandardDeviation};
 use crate::metrics::percentile::{Method, percentile};
 use crate::metrics::regression::{self, Regression, Tails};
+use crate::metrics::weighted;
 use crate::result::{RegressionAt, RegressionFigure, RegressionPoint};
 use crate::units;
 
@@ -19,6 +25,7 @@ use crate::units;
 pub struct Group<'a> {
     pub plan: &'a Plan,
     pub facts: &'a Facts,
+    pub quantity: &'a Quantity,
     pub members: &'a [Member<'a>],
     pub table: &'a Table<'a>,
 }
@@ -64,17 +71,23 @@ impl Group<'_> {
         match taking {
             Taking::Statistic(statistic, ddof) => statistic_of(*statistic, *ddof, values),
             Taking::Count => Ok(self.units().into_iter().collect::<BTreeSet<_>>().len() as f64),
-            Taking::Share { condition, of_sections: true, .. } => {
-                let sections = self.sections();
-                share(sections.iter().map(|unit| flag(condition, &unit.known(self.facts))))
+            Taking::Weighted { statistic, ddof, by } => {
+                weighted_statistic(*statistic, *ddof, values, &self.weights(by, self.units_of_rows())?)
             }
-            Taking::Share { condition, of_sections: false, others } => {
+            Taking::EachGroup { reducer, keys, of } => self.of_each_group(*reducer, keys, of, values),
+            Taking::Share { condition, of_sections: true, by, .. } => {
+                let sections = self.sections();
+                let holds = sections.iter().map(|unit| flag(condition, &unit.known(self.facts)));
+                share(holds, by.as_ref().map(|by| self.weights(by, sections.iter().copied())))
+            }
+            Taking::Share { condition, of_sections: false, others, by } => {
                 let others: Vec<Result<f64, String>> = others.iter().map(|other| self.take(other, values)).collect();
                 let of_row = |(member, value): (&Member<'_>, &f64)| {
                     let inputs: Vec<Result<f64, String>> = [Ok(*value)].into_iter().chain(others.iter().cloned()).collect();
                     flag(condition, &Known { inputs: &inputs, ..member.unit.known(self.facts) })
                 };
-                share(self.members.iter().zip(values).map(of_row))
+                let weights = by.as_ref().map(|by| self.weights(by, self.units_of_rows()));
+                share(self.members.iter().zip(values).map(of_row), weights)
             }
             Taking::Other { quantity, id, statistic, ddof } => {
                 let rows = self.table.get(*quantity).ok_or_else(|| format!("{id} has no rows"))?;
@@ -84,18 +97,57 @@ impl Group<'_> {
                 });
                 found.map_err(|reason| format!("{} of {id}: {reason}", statistic.name()))
             }
-            Taking::Data { reducer, of } => {
-                let of_section =
-                    |unit: &&Unit| number(of, &unit.known(self.facts)).map_err(|reason| format!("section {}: {reason}", unit.name));
-                let data = self.sections().iter().map(of_section).collect::<Result<Vec<f64>, _>>()?;
-                match reducer {
-                    DataReducer::Total => Ok(data.iter().sum()),
-                    DataReducer::Statistic(statistic, ddof) => statistic_of(*statistic, *ddof, &data),
+            Taking::Data { reducer, of, by } => {
+                let sections = self.sections();
+                let data = self.data(of, sections.iter().copied())?;
+                match (reducer, by) {
+                    (DataReducer::Statistic(statistic, ddof), Some(by)) => {
+                        weighted_statistic(*statistic, *ddof, &data, &self.weights(by, sections.iter().copied())?)
+                    }
+                    _ => reduced(*reducer, &data),
                 }
             }
             Taking::Bound { of, upper, confidence, bootstrap } => self.bound(of, *upper, *confidence, *bootstrap, values),
             Taking::Fit(fit) => self.fit(fit, values),
         }
+    }
+
+    fn units_of_rows(&self) -> impl Iterator<Item = &Unit> + Clone {
+        self.members.iter().map(|member| member.unit)
+    }
+
+    /// A number of each section.
+    fn data<'u>(&self, of: &Expr, units: impl Iterator<Item = &'u Unit>) -> Result<Vec<f64>, String> {
+        units.map(|unit| number(of, &unit.known(self.facts)).map_err(|reason| format!("section {}: {reason}", unit.name))).collect()
+    }
+
+    /// Weights are not negative.
+    fn weights<'u>(&self, by: &Expr, units: impl Iterator<Item = &'u Unit> + Clone) -> Result<Vec<f64>, String> {
+        let weights = self.data(by, units.clone())?;
+        match units.zip(&weights).find(|(_, weight)| **weight < 0.0) {
+            Some((unit, _)) => Err(format!("section {}: its weight `{}` is negative", unit.name, words(by))),
+            None => Ok(weights),
+        }
+    }
+
+    /// The groups that the rows form by some keys: what each is called, and the numbers of its rows.
+    pub fn groups(&self, keys: &[Key]) -> IndexMap<String, Vec<usize>> {
+        let mut groups: IndexMap<String, Vec<usize>> = IndexMap::new();
+        for (row, member) in self.members.iter().enumerate() {
+            let name: Vec<String> = keys.iter().map(|key| of_key(self.plan, self.quantity, key, member).1).collect();
+            groups.entry(name.join(", ")).or_default().push(row);
+        }
+        groups
+    }
+
+    fn of_each_group(&self, reducer: DataReducer, keys: &[Key], of: &OfGroup, values: &[f64]) -> Result<f64, String> {
+        let one = |(name, rows): (String, Vec<usize>)| {
+            let members: Vec<Member<'_>> = rows.iter().map(|&row| self.members[row]).collect();
+            let values: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
+            Group { members: &members, ..*self }.over(of, &values).map_err(|reason| format!("{name}: {reason}"))
+        };
+        let numbers = self.groups(keys).into_iter().map(one).collect::<Result<Vec<f64>, String>>()?;
+        reduced(reducer, &numbers).map_err(|reason| reason.replace("value", "group"))
     }
 
     /// An end of the one-sided confidence interval of an estimate: in closed form for a mean or a standard deviation with divisor
@@ -104,6 +156,14 @@ impl Group<'_> {
         let EstimateKind::Of(of_group) = &of.kind else { return Err("a single value has no interval".into()) };
         let units = self.units();
         let probability = if upper { confidence } else { 1.0 - confidence };
+        if let Some((Statistic::Named(entry), _, by)) = of.weighted().filter(|_| !bootstrap)
+            && entry.name == "mean"
+        {
+            let weights = self.weights(by, self.units_of_rows())?;
+            let rows: Vec<(f64, f64)> = values.iter().copied().zip(weights).collect();
+            let found = cluster::by_site(&rows, &units).and_then(|sites| cluster::weighted_mean(&sites)?.bound(probability));
+            return found.map_err(|error| error.to_string());
+        }
         let found = match of.statistic() {
             Some((Statistic::Named(entry), _)) if !bootstrap && entry.name == "mean" => {
                 cluster::by_site(values, &units).and_then(|sites| Mean::of(&sites)?.bound(probability))
@@ -135,14 +195,8 @@ impl Group<'_> {
         }
     }
 
-    fn fitted(&self, fit: &Fit, values: &[f64]) -> Result<Fitted, String> {
-        let of_row = |regressor| {
-            let of = |member: &Member<'_>| {
-                number(regressor, &member.unit.known(self.facts)).map_err(|reason| format!("section {}: {reason}", member.unit.name))
-            };
-            self.members.iter().map(of).collect::<Result<Vec<f64>, String>>()
-        };
-        let regressors = fit.over.iter().map(of_row).collect::<Result<Vec<_>, _>>()?;
+    pub(super) fn fitted(&self, fit: &Fit, values: &[f64]) -> Result<Fitted, String> {
+        let regressors = fit.over.iter().map(|regressor| self.data(regressor, self.units_of_rows())).collect::<Result<Vec<_>, _>>()?;
         let at = fit.at.iter().map(|target| self.over(target, values)).collect::<Result<Vec<_>, _>>()?;
         let regression = Regression::fit(values, &regressors).map_err(|error| error.to_string())?;
         Ok(Fitted { regression, regressors, at })
@@ -151,7 +205,8 @@ impl Group<'_> {
     /// The bound of a share of the values: X of `share where value <= X`, in SI. `None` of other estimates, and of a bound that differs from
     /// section to section.
     pub fn divided_at(&self, of: &OfGroup) -> Option<f64> {
-        let (Kind::Input(0), [Taking::Share { condition, of_sections: false, others }]) = (&of.expr.kind, of.taken.as_slice()) else {
+        let (Kind::Input(0), [Taking::Share { condition, of_sections: false, others, by: None }]) = (&of.expr.kind, of.taken.as_slice())
+        else {
             return None;
         };
         let Kind::Binary(operator, left, right) = &condition.kind else { return None };
@@ -174,11 +229,7 @@ impl Group<'_> {
         let values = self.values();
         let Fitted { regression, regressors, at } = self.fitted(fit, &values).ok()?;
         let (xs, target) = (regressors.first()?, *at.first()?);
-        let x_unit = match (&over.kind, &over.ty) {
-            (Kind::Column(index), _) if let DatumKind::Number(unit) = &self.plan.columns[*index].kind => unit.clone(),
-            (_, Type::Number(dimension)) => units::Unit::si(*dimension),
-            _ => units::Unit::one(),
-        };
+        let x_unit = self.unit_of(over);
         let (low, high) = xs.iter().fold((target, target), |(low, high), x| (low.min(*x), high.max(*x)));
         let at_place = |step: usize| {
             let x = low + (high - low) * step as f64 / STEPS as f64;
@@ -212,14 +263,25 @@ impl Group<'_> {
     }
 }
 
+impl Group<'_> {
+    /// In which a regressor is printed.
+    pub(super) fn unit_of(&self, regressor: &Expr) -> units::Unit {
+        match (&regressor.kind, &regressor.ty) {
+            (Kind::Column(index), _) if let DatumKind::Number(unit) = &self.plan.columns[*index].kind => unit.clone(),
+            (_, Type::Number(dimension)) => units::Unit::si(*dimension),
+            _ => units::Unit::one(),
+        }
+    }
+}
+
 /// Number of pieces of a regression curve in a diagram. A hyperbola then looks smooth at a few centimetres.
 const STEPS: usize = 32;
 
 /// A regression with the numbers it was fitted to and the point at which it is evaluated.
-struct Fitted {
+pub(super) struct Fitted {
     regression: Regression,
-    regressors: Vec<Vec<f64>>,
-    at: Vec<f64>,
+    pub regressors: Vec<Vec<f64>>,
+    pub at: Vec<f64>,
 }
 
 fn bound_at(regression: &Regression, fit: &Fit, confidence: f64, at: &[f64]) -> Result<f64, String> {
@@ -249,10 +311,44 @@ pub fn statistic_of(statistic: Statistic, ddof: usize, values: &[f64]) -> Result
         .ok_or_else(|| format!("not defined for {} value{}", values.len(), if values.len() == 1 { "" } else { "s" }))
 }
 
-fn share(found: impl Iterator<Item = Result<bool, String>>) -> Result<f64, String> {
+/// Of numbers of sections or of groups.
+fn reduced(reducer: DataReducer, numbers: &[f64]) -> Result<f64, String> {
+    match reducer {
+        DataReducer::Total => Ok(numbers.iter().sum()),
+        DataReducer::Statistic(statistic, ddof) => statistic_of(statistic, ddof, numbers),
+    }
+}
+
+/// # Errors
+/// No weight is above zero, or too few are.
+fn weighted_statistic(statistic: Statistic, ddof: usize, values: &[f64], weights: &[f64]) -> Result<f64, String> {
+    let counting = weights.iter().filter(|weight| **weight > 0.0).count();
+    if counting == 0 {
+        return Err("no weight is above zero".into());
+    }
+    let found = match statistic {
+        Statistic::Percentile(percent) => weighted::percentile(values, weights, percent),
+        Statistic::Named(entry) => match entry.name {
+            "mean" => weighted::mean(values, weights),
+            "std" => weighted::standard_deviation(values, weights, ddof),
+            "rms" => weighted::rms(values, weights),
+            "median" => weighted::percentile(values, weights, 50.0),
+            _ => None,
+        },
+        Statistic::Each => None,
+    };
+    let s = if counting == 1 { "" } else { "s" };
+    found.ok_or_else(|| format!("not defined for {counting} value{s} with a weight above zero"))
+}
+
+fn share(found: impl Iterator<Item = Result<bool, String>>, weights: Option<Result<Vec<f64>, String>>) -> Result<f64, String> {
     let found = found.collect::<Result<Vec<bool>, _>>()?;
     if found.is_empty() {
         return Err("a share needs at least one value".into());
+    }
+    if let Some(weights) = weights {
+        let holds: Vec<f64> = found.iter().map(|holds| if *holds { 1.0 } else { 0.0 }).collect();
+        return weighted::mean(&holds, &weights?).ok_or_else(|| "no weight is above zero".into());
     }
     Ok(found.iter().filter(|holds| **holds).count() as f64 / found.len() as f64)
 }

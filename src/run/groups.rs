@@ -22,13 +22,12 @@ pub struct Part<'a> {
     rows: Vec<usize>,
 }
 
-/// The groups of a limit.
+/// The groups of a limit or a minimum.
 ///
 /// Left out are: zones that need no section and have none; zones that the condition of the quantity excludes or that have no
 /// repeats, unless all are excluded; groups in which a condition leaves no row, unless it leaves none in any group. A group of a
 /// place exists wherever the place was recorded.
-pub fn parts<'a>(plan: &Plan, quantity: &Quantity, limit: &'a Limit, members: &[Member<'_>], facts: &Facts) -> Vec<Part<'a>> {
-    let scope = &limit.scope;
+pub fn parts<'a>(plan: &Plan, quantity: &Quantity, scope: &'a Scope, members: &[Member<'_>], facts: &Facts) -> Vec<Part<'a>> {
     let selective = (quantity.only.is_some() || quantity.evaluation.of_repeats()) && !members.is_empty();
     let needed = |name: &str| !selective && plan.zones.iter().any(|zone| zone.name == name && zone.minimum_sections > 0);
     let filled = |zone: &str| members.iter().any(|member| member.unit.zone.as_deref() == Some(zone));
@@ -57,7 +56,7 @@ pub fn parts<'a>(plan: &Plan, quantity: &Quantity, limit: &'a Limit, members: &[
 }
 
 /// The member of a key that a row belongs to, and its printed name.
-fn of_key(plan: &Plan, quantity: &Quantity, key: &Key, member: &Member<'_>) -> (String, String) {
+pub(super) fn of_key(plan: &Plan, quantity: &Quantity, key: &Key, member: &Member<'_>) -> (String, String) {
     let named = |of: &str, name: String| (name.clone(), format!("{of} {name}"));
     match key {
         Key::Section => named("section", member.unit.name.clone()),

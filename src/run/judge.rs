@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 
 use super::facts::Facts;
 use super::limits::{self, Compared, Judging};
+use super::minima::{self, TooFew};
 use super::section::SectionValues;
 use super::sections::Unit;
 use super::spreads;
-use super::table::{Member, count_independent, independent};
+use super::table::{Member, count_independent};
 use super::verdicts;
 use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
 use crate::graph::{Graph, Operation, QuantityNodes};
@@ -46,10 +47,11 @@ pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: 
     }
     missing.extend(not_plausible(plan, told.findings, missing.is_empty()));
     missing.extend(told.barred.iter().cloned());
-    let rows: Vec<Rows<'_>> = plan.quantities.iter().enumerate().map(|(index, quantity)| rows(plan, quantity, index, &used)).collect();
+    let rows: Vec<Rows<'_>> =
+        plan.quantities.iter().enumerate().map(|(index, quantity)| rows(plan, quantity, index, &used, facts)).collect();
     let table: Vec<_> = rows.iter().map(Rows::usable).collect();
     let of_quantity = |(index, quantity): (usize, &Quantity)| {
-        let judging = Judging { plan, facts, quantity, members: &rows[index].members, table: &table };
+        let judging = Judging { plan, facts, quantity, members: &rows[index].members, table: &table, too_few: &rows[index].too_few };
         quantity_result(graph, index, &judging, rows[index].reason.clone())
     };
     let (quantities, fails): (Vec<QuantityResult>, Vec<Vec<String>>) = plan.quantities.iter().enumerate().map(of_quantity).unzip();
@@ -162,6 +164,7 @@ fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Vec<
 /// The rows of a quantity, or the reason why they are not sufficient.
 pub struct Rows<'a> {
     members: Vec<Member<'a>>,
+    too_few: Vec<TooFew>,
     reason: Option<String>,
 }
 
@@ -172,10 +175,11 @@ impl<'a> Rows<'a> {
     }
 }
 
-pub fn rows<'a>(plan: &Plan, quantity: &'a Quantity, index: usize, used: &[(&'a Unit, &'a SectionValues)]) -> Rows<'a> {
+pub fn rows<'a>(plan: &Plan, quantity: &'a Quantity, index: usize, used: &[(&'a Unit, &'a SectionValues)], facts: &Facts) -> Rows<'a> {
     let members = members(quantity, index, used);
     let recorded = members.iter().map(|member| member.signal).collect::<BTreeSet<_>>().len();
-    let pairs = independent(plan, &members).into_iter().zip(members.iter().map(|member| member.signal)).collect::<BTreeSet<_>>().len();
+    let pairs = minima::pairs(plan, &members);
+    let too_few = minima::too_few(plan, quantity, &members, facts);
     let impossible = impossible(index, used);
     let reason = if impossible.is_some() {
         impossible
@@ -184,12 +188,11 @@ pub fn rows<'a>(plan: &Plan, quantity: &'a Quantity, index: usize, used: &[(&'a 
     } else if recorded < quantity.minimum_signals {
         Some(format!("{} recorded; at least {} required", count(recorded, "signal"), quantity.minimum_signals))
     } else if pairs < quantity.minimum_pairs {
-        let of = if pairs == members.len() { "section and signal" } else { "site and signal (a repeat is no further section)" };
-        Some(format!("{} of {of}; at least {} required", count(pairs, "pair"), quantity.minimum_pairs))
+        Some(minima::in_words(pairs, members.len(), quantity.minimum_pairs))
     } else {
-        None
+        minima::reason(&too_few)
     };
-    Rows { members, reason }
+    Rows { members, too_few, reason }
 }
 
 /// The result, and a sentence for each limit that is not met.

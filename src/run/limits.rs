@@ -3,13 +3,14 @@
 use super::estimates::{Group, Taken};
 use super::facts::{Facts, Known, Vehicle};
 use super::groups::{Closeness, Part, parts};
+use super::minima::TooFew;
 use super::table::{Member, Table, count_independent};
 use super::told::factors;
 use crate::catalog::Statistic;
 use crate::check::evaluate::{Values, flag, number};
 use crate::check::plan::{EstimateKind, Limit, Plan, Quantity, Scalar};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
-use crate::result::{RegressionFigure, RulePlace, Sample, StatisticResult};
+use crate::result::{Outside, RegressionFigure, RulePlace, Sample, StatisticResult};
 use crate::source::Span;
 use crate::units::Unit;
 
@@ -27,6 +28,16 @@ pub struct Estimated<'a> {
     pub regression: Option<RegressionFigure>,
     /// In SI.
     pub divided_at: Option<f64>,
+    /// Regressors that are read outside their data.
+    pub outside: Vec<Outside>,
+}
+
+impl<'a> Estimated<'a> {
+    /// Of a group without an estimate.
+    fn empty(part: Part<'a>, members: Vec<Member<'a>>) -> Self {
+        let value = Err("no value is available".into());
+        Self { part, members, value, interval: None, regression: None, divided_at: None, outside: Vec::new() }
+    }
 }
 
 /// An estimate compared with its limit, and the sentence for the verdict where the limit is not met.
@@ -44,6 +55,8 @@ pub struct Judging<'a> {
     pub quantity: &'a Quantity,
     pub members: &'a [Member<'a>],
     pub table: &'a Table<'a>,
+    /// Groups with fewer pairs than the protocol requires.
+    pub too_few: &'a [TooFew],
 }
 
 fn applies(limit: &Limit, vehicle: &Vehicle) -> Result<bool, String> {
@@ -84,20 +97,17 @@ impl<'a> Judging<'a> {
             // Of several vehicles, those of each group decide.
             _ => {}
         }
-        let parts = parts(self.plan, self.quantity, limit, self.members, self.facts);
+        let parts = parts(self.plan, self.quantity, &limit.scope, self.members, self.facts);
         Ok(parts.into_iter().filter_map(|part| self.of_part(limit, part)).collect())
+    }
+
+    fn group<'g>(&'g self, members: &'g [Member<'g>]) -> Group<'g> {
+        Group { plan: self.plan, facts: self.facts, quantity: self.quantity, members, table: self.table }
     }
 
     /// `None` of a group whose vehicle the limit does not apply to.
     fn of_part(&self, limit: &Limit, part: Part<'a>) -> Option<Estimated<'a>> {
-        let none = |reason: String| Estimated {
-            part: part.clone(),
-            members: Vec::new(),
-            value: Err(reason),
-            interval: None,
-            regression: None,
-            divided_at: None,
-        };
+        let none = |reason: String| Estimated { value: Err(reason), ..Estimated::empty(part.clone(), Vec::new()) };
         let members = match part.members(self.facts, self.members).map(|members| applying(limit, self.facts, members)) {
             Ok(Ok(Some(members))) => members,
             Ok(Ok(None)) => return None,
@@ -109,18 +119,14 @@ impl<'a> Judging<'a> {
 
     fn estimated(&self, limit: &Limit, part: Part<'a>, members: Vec<Member<'a>>) -> Estimated<'a> {
         if members.is_empty() {
-            return Estimated {
-                part,
-                members,
-                value: Err("no value is available".into()),
-                interval: None,
-                regression: None,
-                divided_at: None,
-            };
+            return Estimated::empty(part, members);
         }
-        let group = Group { plan: self.plan, facts: self.facts, members: &members, table: self.table };
-        let (value, interval, regression, divided_at) = match &limit.estimate.kind {
-            EstimateKind::Each => (Ok(None), None, None, None),
+        if let Some(reason) = self.too_few.iter().find_map(|few| few.reason(&members)) {
+            return Estimated { value: Err(reason), ..Estimated::empty(part, members) };
+        }
+        let group = self.group(&members);
+        let (value, interval, regression, divided_at, outside) = match &limit.estimate.kind {
+            EstimateKind::Each => (Ok(None), None, None, None, Vec::new()),
             EstimateKind::Of(of) => {
                 let entry = match limit.estimate.statistic() {
                     Some((Statistic::Named(entry), _)) => Some(entry),
@@ -129,10 +135,10 @@ impl<'a> Judging<'a> {
                 let interval = entry.and_then(|entry| entry.interval);
                 let interval = interval.and_then(|interval| interval(&group.values(), &group.units()));
                 let divided_at = group.divided_at(of);
-                (group.number(of).map(Some), interval, group.figure(of, &self.quantity.unit), divided_at)
+                (group.number(of).map(Some), interval, group.figure(of, &self.quantity.unit), divided_at, group.outside(of))
             }
         };
-        Estimated { part, members, value, interval, regression, divided_at }
+        Estimated { part, members, value, interval, regression, divided_at, outside }
     }
 
     /// Compares the estimates with the limit, group by group.
@@ -164,6 +170,7 @@ impl<'a> Judging<'a> {
             sample: self.sample(members),
             regression: None,
             divided_at: None,
+            outside: Vec::new(),
             holds: None,
             factors: Vec::new(),
             limit_text: limit.words.clone(),
@@ -182,6 +189,7 @@ impl<'a> Judging<'a> {
         result.factors = factors(self.plan, &self.facts.among(&group.members), limit);
         result.regression = group.regression.clone().map(Box::new);
         result.divided_at = group.divided_at.map(|value| self.quantity.unit.from_si(value));
+        result.outside.clone_from(&group.outside);
         let outcome = match &group.value {
             Err(reason) => Err(reason.clone()),
             Ok(None) => self.each(limit, &group.members, &mut result),
@@ -262,7 +270,7 @@ impl<'a> Judging<'a> {
 
     /// The limit of one value or group, SI, with what names stand for there.
     pub fn bound(&self, limit: &Limit, part: &Part<'_>, members: &[Member<'_>], known: &Known<'_>) -> Result<f64, String> {
-        let group = Group { plan: self.plan, facts: self.facts, members, table: self.table };
+        let group = self.group(members);
         Bounds { quantity: self.quantity, part, group, known }.of(limit, 0)
     }
 }

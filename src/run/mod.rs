@@ -7,11 +7,13 @@ mod common;
 mod copies;
 mod domain;
 mod estimates;
+mod extrapolation;
 mod facts;
 mod groups;
 mod judge;
 mod limits;
 mod margins;
+mod minima;
 mod plausibility;
 pub mod pool;
 mod record;
@@ -116,6 +118,7 @@ pub fn run<'a>(
     let mut findings = findings.clone();
     findings.extend(requirements::findings(plan, &evaluated.facts, units));
     findings.extend(told::findings(plan, &evaluated.facts, &judged.quantities));
+    findings.extend(extrapolation::findings(&judged.quantities));
     let (mut traces, mut notes) = (Vec::new(), notes.clone());
     for trace in traces::traces(&prepared.work(), units, &judged.quantities, settings.traces) {
         match trace {

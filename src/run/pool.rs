@@ -14,7 +14,7 @@ use super::sections::Unit;
 use super::table::{Member, Row, Table};
 use crate::catalog::Statistic;
 use crate::check::evaluate::number;
-use crate::check::plan::{Decision, EstimateKind, Kind, Limit, OfGroup, Plan, Quantity, Taking};
+use crate::check::plan::{Decision, EstimateKind, Kind, Limit, MinimumOfGroups, OfGroup, Plan, Quantity, Taking};
 
 pub use crate::check::plan::Rule;
 
@@ -57,7 +57,15 @@ pub struct PooledQuantity {
     pub values: Vec<Vec<(usize, f64)>>,
     pub minimum_signals: usize,
     pub minimum_pairs: usize,
+    pub minimum_of_groups: Vec<PooledMinimum>,
     pub limits: Vec<PooledLimit>,
+}
+
+/// How many pairs a group needs, and how many each section has of it.
+#[derive(Clone, Debug)]
+pub struct PooledMinimum {
+    pub needed: usize,
+    pub pairs: Vec<usize>,
 }
 
 /// The estimate of a limit.
@@ -86,7 +94,7 @@ pub struct Estimator {
 
 impl Estimator {
     fn new(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Self {
-        let Judging { plan, facts, quantity, members, table } = *judging;
+        let Judging { plan, facts, quantity, members, table, .. } = *judging;
         let inside = part.members(facts, members).unwrap_or_default();
         let number = |unit: &Unit| units.iter().position(|known| known.name == unit.name).unwrap_or_default();
         let numbered = |member: &Member<'_>| (number(member.unit), member.unit.clone(), member.row.clone());
@@ -162,7 +170,7 @@ impl Estimator {
         let table: Vec<Result<&[Member<'_>], String>> =
             others.iter().map(|rows| rows.as_ref().map(Vec::as_slice).map_err(Clone::clone)).collect();
         let EstimateKind::Of(of) = &limit.estimate.kind else { return None };
-        let group = Group { plan, facts, members: &members, table: &table };
+        let group = Group { plan, facts, quantity, members: &members, table: &table };
         group.number(of).ok().map(|value| value / self.bound).filter(|value| value.is_finite())
     }
 }
@@ -266,7 +274,8 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
     };
     let rules = Arc::new((plan.clone(), facts.clone()));
     let used: Vec<(&Unit, &SectionValues)> = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
-    let rows: Vec<Rows<'_>> = plan.quantities.iter().enumerate().map(|(index, quantity)| rows(plan, quantity, index, &used)).collect();
+    let rows: Vec<Rows<'_>> =
+        plan.quantities.iter().enumerate().map(|(index, quantity)| rows(plan, quantity, index, &used, facts)).collect();
     let table: Vec<_> = rows.iter().map(Rows::usable).collect();
     Pool {
         sections: units
@@ -300,10 +309,10 @@ fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &[Unit], values: &[Se
         rows.map(|row| (row.position, quantity.unit.from_si(row.value))).collect::<Vec<_>>()
     };
     let impossible = used.iter().any(|(_, values)| values.impossible.iter().any(|(at, _)| *at == index));
-    let judging = Judging { plan, facts, quantity, members: &members, table };
+    let judging = Judging { plan, facts, quantity, members: &members, table, too_few: &[] };
     let mut limits = Vec::new();
     for limit in &quantity.limits {
-        for part in parts(plan, quantity, limit, &members, facts) {
+        for part in parts(plan, quantity, &limit.scope, &members, facts) {
             limits.extend(of_part(rules, &judging, limit, &part, units));
         }
     }
@@ -316,8 +325,23 @@ fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &[Unit], values: &[Se
         minimum_signals: quantity.minimum_signals,
         // A quantity that cannot be evaluated in some section is not assessable, however many pairs the others give.
         minimum_pairs: if impossible { usize::MAX } else { quantity.minimum_pairs },
+        minimum_of_groups: quantity.minimum_of_groups.iter().flat_map(|minimum| minima(minimum, &judging, units)).collect(),
         limits,
     }
+}
+
+/// A minimum, group by group. Where it cannot be told which rows belong to a group, no selection of sections has enough.
+fn minima(minimum: &MinimumOfGroups, judging: &Judging<'_>, units: &[Unit]) -> Vec<PooledMinimum> {
+    let Judging { plan, facts, quantity, members, .. } = *judging;
+    let of_part = |part: &Part<'_>| {
+        let inside = part.members(facts, members).unwrap_or_default();
+        let signals = |unit: &Unit| {
+            let own = inside.iter().filter(|member| member.unit.name == unit.name).map(|member| member.signal);
+            own.collect::<BTreeSet<_>>().len()
+        };
+        PooledMinimum { needed: minimum.needed, pairs: units.iter().map(signals).collect() }
+    };
+    parts(plan, quantity, &minimum.scope, members, facts).iter().map(of_part).collect()
 }
 
 fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Option<PooledLimit> {

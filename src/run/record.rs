@@ -475,6 +475,13 @@ impl State<'_> {
                 Ok(Signal::Samples(Samples { along: Arc::clone(&self.opened.along), values: Arc::clone(values) }))
             }
             Operation::Constant(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
+            Operation::Level => {
+                let of = |(id, found): &(NodeId, Found)| match found {
+                    Found::Number(value, _) if *id == node.inputs[0] => Some(*value),
+                    _ => None,
+                };
+                Ok(Signal::Constant(self.found.iter().find_map(of).ok_or("a number of the section is missing")?))
+            }
             Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?),
             Operation::Negative => each(input(0)?, |value| -value),
             Operation::Power(exponent) => each(input(0)?, |value| value.powi(i32::from(*exponent))),

@@ -1,7 +1,7 @@
 //! Values and limits of a campaign for a study, by stratum, section and quantity.
 
 use crate::catalog::Statistic;
-use crate::run::pool::{Estimator, Pool, Pooled, PooledLimit, PooledQuantity, Rule};
+use crate::run::pool::{Estimator, Pool, Pooled, PooledLimit, PooledMinimum, PooledQuantity, Rule};
 
 /// Tolerance for rounding where a value equals its limit, which counts as met. Relative to the limit.
 const EQUAL: f64 = 1e-12;
@@ -39,6 +39,7 @@ pub struct Quantity {
     pub signals: Vec<u128>,
     pub minimum_signals: usize,
     pub minimum_pairs: usize,
+    pub minimum_of_groups: Vec<PooledMinimum>,
     pub measures: Vec<Measure>,
 }
 
@@ -161,6 +162,10 @@ impl Case {
             let values = std::mem::take(&mut quantity.values[repeat]);
             quantity.values[first].extend(values);
             quantity.signals[first] |= std::mem::take(&mut quantity.signals[repeat]);
+            for minimum in &mut quantity.minimum_of_groups {
+                // A repeat has the signals of the section that it repeats.
+                minimum.pairs[first] = minimum.pairs[first].max(std::mem::take(&mut minimum.pairs[repeat]));
+            }
             for measure in &mut quantity.measures {
                 let values = std::mem::take(&mut measure.values[repeat]);
                 measure.values[first].extend(values);
@@ -226,6 +231,7 @@ fn quantity(pooled: &PooledQuantity) -> Quantity {
         signals: pooled.values.iter().map(|values| values.iter().fold(0, |all, (signal, _)| all | 1 << (signal % 128))).collect(),
         minimum_signals: pooled.minimum_signals,
         minimum_pairs: pooled.minimum_pairs,
+        minimum_of_groups: pooled.minimum_of_groups.clone(),
         measures: pooled.limits.iter().map(|limit| measure(pooled, limit)).collect(),
     }
 }

@@ -80,6 +80,16 @@ impl Tally {
 impl super::case::Quantity {
     /// Whether some sections have the number of signals and pairs that the protocol requires.
     pub fn enough(&self, sections: impl Iterator<Item = usize>) -> bool {
+        if !self.minimum_of_groups.is_empty() {
+            let sections: Vec<usize> = sections.collect();
+            let of_groups = self.minimum_of_groups.iter();
+            let of_all = of_groups.map(|group| (group.needed, sections.iter().map(|&at| group.pairs[at]).sum::<usize>()));
+            return { of_all }.all(|(needed, pairs)| pairs >= needed) && self.enough_in_all(sections.iter().copied());
+        }
+        self.enough_in_all(sections)
+    }
+
+    fn enough_in_all(&self, sections: impl Iterator<Item = usize>) -> bool {
         let mut pairs = 0;
         let mut signals = 0_u128;
         for at in sections {

@@ -93,6 +93,21 @@ fn extreme_ends(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -
 
 /// Marks selections with fewer signals or pairs than the protocol requires.
 pub fn too_few(quantity: &Quantity, halves: &Halves, undefined: &mut Option<Fails>) {
+    for group in &quantity.minimum_of_groups {
+        let of =
+            |half: &Half| -> Vec<usize> { half.choices().map(|choice| choice.iter().map(|&at| group.pairs[at as usize]).sum()).collect() };
+        let (rows, columns) = (of(&halves.rows), of(&halves.columns));
+        let least = |all: &[usize]| all.iter().min().copied().unwrap_or(0);
+        if least(&rows) + least(&columns) >= group.needed {
+            continue;
+        }
+        let fails = undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count));
+        for (row, pairs) in rows.iter().enumerate() {
+            for (column, _) in columns.iter().enumerate().filter(|(_, more)| pairs + **more < group.needed) {
+                fails.one(row as u32, column as u32);
+            }
+        }
+    }
     let of = |half: &Half| -> Vec<(usize, u128)> {
         half.choices()
             .map(|choice| {

@@ -408,7 +408,11 @@ pub const KINDS: &[Kind] = &[
             many(phrase("limit", "A statistic or estimate over all values, or over those of each group, and its limit.", "std 9 kN")),
             text("reported", "Why it has no limit: it is reported, and decides nothing.", "A factor of the metric above."),
             phrase("minimum signals", "The number of signals that it needs.", "2"),
-            phrase("minimum pairs", "The number of section x signal pairs that it needs.", "24"),
+            many(phrase(
+                "minimum pairs",
+                "The number of section x signal pairs that it needs: in all, or in each group (`3 for each zone and wheelset`).",
+                "24",
+            )),
             phrase("in", "The unit of printed values, if it is not that of the signal.", "kN"),
             phrase("where", "Only sections that satisfy this condition are used.", "direction is not straight"),
             UNCONFIRMED,
@@ -439,7 +443,11 @@ pub const KINDS: &[Kind] = &[
             ),
             WORDS,
             phrase("minimum signals", "The number of signals that a quantity needs, unless the quantity states it.", "2"),
-            phrase("minimum pairs", "The number of section x signal pairs that a quantity needs, unless the quantity states it.", "24"),
+            many(phrase(
+                "minimum pairs",
+                "The number of section x signal pairs that a quantity needs, in all or in each group, unless the quantity states it.",
+                "24",
+            )),
             phrase("standard deviation", "Divisor of the variance: `n-1` or `n`.", "n-1"),
             phrase(
                 "independent",

@@ -88,6 +88,10 @@ pub enum Node {
     },
     /// `prediction over cant_deficiency at 143 mm, confidence 99 %`.
     Fit(Box<Fit>),
+    /// `mean weighted by length`: a statistic or a share, and by what values count.
+    Weighted(Box<Phrase>, Box<Phrase>),
+    /// `(mean for each zone)`: one number for each group.
+    ForEach(Box<Phrase>, Vec<At<String>>),
     /// `a when b, c when d, otherwise e`.
     Cases(Vec<(Phrase, Phrase)>, Option<Box<Phrase>>),
 }
@@ -153,6 +157,20 @@ pub struct Limit {
     pub factors: Vec<(Phrase, Phrase)>,
     pub only_when: Option<Phrase>,
     pub scope: At<Scope>,
+}
+
+/// `24`, `3 for each zone`: how many there must be, and of which values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Minimum {
+    pub count: Phrase,
+    pub scope: At<Scope>,
+}
+
+impl Minimum {
+    /// As [`Phrase::meaning`].
+    pub fn meaning(&self) -> String {
+        format!("{} {}", self.count.meaning(), self.scope.node.meaning())
+    }
 }
 
 /// The values that a limit applies to, and their groups. By default, all values form one group.
@@ -223,6 +241,8 @@ impl Phrase {
                 format!("share{} where {}", if *of_sections { " of sections" } else { "" }, condition.meaning())
             }
             Node::Fit(fit) => fit.meaning(),
+            Node::Weighted(of, by) => format!("{} weighted {}", of.meaning(), by.meaning()),
+            Node::ForEach(of, keys) => format!("({} for each {})", of.meaning(), sorted(keys)),
             Node::Cases(arms, otherwise) => {
                 let arms = joined(arms, ", ", |(value, condition)| format!("{}?{}", value.meaning(), condition.meaning()));
                 format!("[{arms}; {}]", otherwise.as_ref().map_or(String::new(), |value| value.meaning()))
@@ -289,11 +309,6 @@ impl Scope {
 
     /// As [`Phrase::meaning`]: `for zones 2, 3 and each wheelset where ...`.
     pub fn meaning(&self) -> String {
-        let sorted = |names: &[At<String>]| {
-            let mut names: Vec<&str> = names.iter().map(|name| name.node.as_str()).collect();
-            names.sort_unstable();
-            names.join(", ")
-        };
         let mut parts = Vec::new();
         if !self.zones.is_empty() {
             parts.push(format!("zones {}", sorted(&self.zones)));
@@ -333,6 +348,12 @@ impl Step {
 
 fn joined<T>(items: &[T], between: &str, one: impl Fn(&T) -> String) -> String {
     items.iter().map(one).collect::<Vec<_>>().join(between)
+}
+
+fn sorted(names: &[At<String>]) -> String {
+    let mut names: Vec<&str> = names.iter().map(|name| name.node.as_str()).collect();
+    names.sort_unstable();
+    names.join(", ")
 }
 
 /// With twelve digits, so that rounding of a conversion makes no difference.

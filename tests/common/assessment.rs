@@ -148,6 +148,7 @@ fn estimate(name: &str, zone: &str, wheelset: &str, values: &[PairValue]) -> Sta
         normalised: (!open).then_some(value / 46.0),
         sample: Sample { mean: Some(23.25), std: Some(2.0) },
         regression,
+        outside: Vec::new(),
         divided_at: None,
         holds: (!open).then_some(value <= 46.0),
         factors: Vec::new(),

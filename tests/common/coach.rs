@@ -240,6 +240,7 @@ fn statistics(values: &[PairValue], unit: &str, limit: f64) -> Vec<StatisticResu
         sample: Sample::default(),
         regression: None,
         divided_at: None,
+        outside: Vec::new(),
         holds: Some(value.abs() <= limit),
         factors: Vec::new(),
         limit_text: text.into(),

@@ -46,6 +46,7 @@ pub fn quantity(id: &str, values: Vec<Vec<f64>>, limits: Vec<PooledLimit>) -> Po
         values: values.into_iter().map(|values| values.into_iter().enumerate().collect()).collect(),
         minimum_signals: 1,
         minimum_pairs: 1,
+        minimum_of_groups: Vec::new(),
         limits,
     }
 }

@@ -48,7 +48,7 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     }
     // Where an operator is possible, `at`, `through` and `over` are possible as well, but seldom meant.
     if expected.contains(&OPERATOR) {
-        expected.retain(|word| ![Rule::kw_at, Rule::kw_through, Rule::kw_over].map(in_words).contains(word));
+        expected.retain(|word| ![Rule::kw_at, Rule::kw_through, Rule::kw_over, Rule::kw_weighted].map(in_words).contains(word));
     }
     // In an exact text, the error is underlined at the word, or at the last word if the text ends too early.
     let end = text.text.trim_end().len();
@@ -118,10 +118,42 @@ fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Pro
     }
     let unknown = Unit::parse(found).err()?;
     let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&text.place(at..at + found.len()));
-    Some(match unknown.near {
+    Some(match unknown.near.filter(|_| !is_name(found)) {
         Some(near) => problem.help(format!("did you mean `{near}`?")),
-        None => problem.help("units are written like kN, m/s^2, km/h, mrad"),
+        None => {
+            let product = format!("{last} * {}", up_to_keyword(&text.text[at..]));
+            problem.help(format!("a product is written with its sign: `{product}`; units are written like kN, m/s^2, km/h, mrad"))
+        }
     })
+}
+
+/// Whether a word is rather a name than a misspelt unit: `Q0`, `k_1`.
+fn is_name(word: &str) -> bool {
+    let first = word.split(['/', '*', '^', '-']).next().unwrap_or(word);
+    first.contains('_') || first.contains(|c: char| c.is_ascii_digit())
+}
+
+/// The rest of a product: to the next comma, keyword, or parenthesis that closes more than it opens.
+fn up_to_keyword(text: &str) -> &str {
+    const END: [&str; 9] = ["when", "for", "only", "doubled", "times", "otherwise", "and", "or", "then"];
+    let mut depth = 0_i32;
+    let mut word_from = None;
+    for (at, c) in text.char_indices() {
+        if c.is_alphanumeric() || c == '_' {
+            let from = *word_from.get_or_insert(at);
+            let end = text[from..].find(|c: char| !(c.is_alphanumeric() || c == '_')).map_or(text.len(), |end| from + end);
+            if from == at && END.contains(&&text[from..end]) {
+                return text[..at].trim_end();
+            }
+            continue;
+        }
+        word_from = None;
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        if c == ',' && depth == 0 || depth < 0 {
+            return text[..at].trim_end();
+        }
+    }
+    text.trim_end()
 }
 
 /// Whether the text ends as `Y at wheelset 1 and side`, before `R`.
@@ -181,6 +213,8 @@ pub(super) fn is_keyword(rule: Rule) -> bool {
             | Rule::kw_over
             | Rule::kw_confidence
             | Rule::kw_share
+            | Rule::kw_weighted
+            | Rule::kw_by
             | Rule::kw_holds
             | Rule::then
             | Rule::comma
@@ -222,13 +256,18 @@ fn in_words(rule: Rule) -> &'static str {
             "`for zones`, `for each zone` or `for sections where`"
         }
         Rule::each_keys => "`each` and a key such as `zone` or `wheelset`",
-        Rule::key => "a key such as `zone` or `wheelset`",
+        Rule::key | Rule::key_word => "a key such as `zone` or `wheelset`",
         Rule::fit | Rule::fit_kind => "`prediction over ... at ...`",
         Rule::regressor => "section data, or an expression of them in parentheses",
         Rule::fit_option | Rule::tails => "`one-sided` or `two-sided`",
         Rule::confidence | Rule::kw_confidence => "`confidence` and a share",
         Rule::bound_of | Rule::end => "`upper 95 % of ...`",
         Rule::by_bootstrap => "`by bootstrap`",
+        Rule::weighted | Rule::kw_weighted => "`weighted by ...`",
+        Rule::kw_by => "`by`",
+        Rule::weight => "a weight: section data, or an expression of them in parentheses",
+        Rule::for_groups => "`for each ...`",
+        Rule::minimum => "a minimum",
         Rule::share | Rule::kw_share => "`share where ...`",
         Rule::in_quotes => "a name in quotes",
         Rule::over | Rule::kw_over => "`over`",

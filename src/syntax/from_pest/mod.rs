@@ -10,7 +10,7 @@ use pest::Parser;
 use pest::iterators::Pair;
 
 use super::document::Text;
-use super::phrase::{Alias, At, Domain, Limit, Node, OfPlaces, OverVerdicts, Phrase, Pick, Scope, Step, Verdict};
+use super::phrase::{Alias, At, Domain, Limit, Minimum, Node, OfPlaces, OverVerdicts, Phrase, Pick, Scope, Step, Verdict};
 use crate::problem::Problems;
 use tree::{cases, either, estimate, pick, step, sum};
 
@@ -126,12 +126,26 @@ pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
     Some(limit)
 }
 
+/// How many there must be: `24`, `3 for each zone and wheelset`.
+pub fn minimum(text: &Text, problems: &mut Problems) -> Option<Minimum> {
+    let mut inner = parts(parse(Rule::minimum, text, problems)?);
+    let count = cases(inner.next()?)?;
+    let scope = match inner.next() {
+        Some(pair) => {
+            let range = bytes(&pair);
+            At { node: scope(parts(pair).next()?)?, range }
+        }
+        None => At { node: Scope::default(), range: 0..0 },
+    };
+    Some(Minimum { count, scope })
+}
+
 fn scope(pair: Pair<'_, Rule>) -> Option<Scope> {
     let mut scope = Scope::default();
     for part in parts(pair) {
         match part.as_rule() {
             Rule::zone => scope.zones.push(named(&part)),
-            Rule::each_keys => scope.each = parts(part).map(|key| named(&key)).collect(),
+            Rule::each_keys => scope.each = keys(part),
             Rule::scope_where => scope.condition = Some(either(parts(part).next()?)?),
             _ => scope.condition = Some(either(part)?),
         }
@@ -203,6 +217,15 @@ fn parse<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Pair
             None
         }
     }
+}
+
+/// `each zone and running gear`: a name of several words has `_` between them, as where it is declared.
+fn keys(pair: Pair<'_, Rule>) -> Vec<At<String>> {
+    let key = |pair: Pair<'_, Rule>| {
+        let At { node, range } = named(&pair);
+        At { node: node.split_whitespace().collect::<Vec<_>>().join("_"), range }
+    };
+    parts(pair).map(key).collect()
 }
 
 /// The inner pairs, without keywords.
@@ -284,6 +307,16 @@ mod tests {
         assert!(found.scope.node.zones.len() == 2);
         let found = limit(&text("p95 at least 0.8 only when a is b for each zone"), &mut problems).expect("a limit");
         assert!(found.at_least && found.only_when.is_some() && found.scope.node.each[0].node == "zone");
+    }
+
+    #[test]
+    fn minima_have_scopes() {
+        let mut problems = Problems::default();
+        let found = minimum(&text("needed - 1 for each zone and running gear where v > 3"), &mut problems).expect("a minimum");
+        let keys: Vec<&str> = found.scope.node.each.iter().map(|key| key.node.as_str()).collect();
+        assert_eq!(keys, ["zone", "running_gear"]);
+        assert!(found.scope.node.condition.is_some());
+        assert!(minimum(&text("24"), &mut problems).expect("a minimum").scope.node.is_all());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use pest::iterators::Pair;
 
-use super::{Rule, bytes, named, parts};
+use super::{Rule, bytes, keys, named, parts};
 use crate::syntax::phrase::{At, Fit, Item, Node, Operator, Phrase, Pick, Step};
 use crate::units::Unit;
 
@@ -31,7 +31,7 @@ fn item(pair: Pair<'_, Rule>) -> Option<At<Item>> {
     let inner = parts(pair).next()?;
     let node = match inner.as_rule() {
         Rule::phrase_word => Item::Word(inner.as_str().trim().to_string()),
-        Rule::parens => Item::Value(cases(parts(inner).next()?)?),
+        Rule::parens => Item::Value(At { range: range.clone(), node: in_parens(inner)? }),
         _ => Item::Value(At { range: range.clone(), node: quantity(inner)? }),
     };
     Some(At { node, range })
@@ -180,7 +180,7 @@ fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
     let range = bytes(&first);
     let node = match first.as_rule() {
         Rule::magnitude => Node::Magnitude(Box::new(sum(parts(first).next()?)?)),
-        Rule::parens => cases(parts(first).next()?)?.node,
+        Rule::parens => in_parens(first)?,
         Rule::extreme => {
             let mut inner = parts(first).filter(|pair| pair.as_rule() != Rule::of);
             let which = named(&inner.next()?);
@@ -200,9 +200,14 @@ fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
         }
         Rule::bound_of => bound_of(first)?,
         Rule::share => {
-            let of_sections = first.as_str()["share".len()..].trim_start().starts_with("of");
-            let condition = parts(first).find(|pair| pair.as_rule() == Rule::either)?;
-            Node::Share { of_sections, condition: Box::new(either(condition)?) }
+            let all: Vec<Pair<'_, Rule>> = parts(first).collect();
+            let of_sections = all.iter().any(|pair| pair.as_rule() == Rule::of);
+            let condition = all.iter().find(|pair| pair.as_rule() == Rule::either)?;
+            let share = Node::Share { of_sections, condition: Box::new(either(condition.clone())?) };
+            match all.into_iter().find(|pair| pair.as_rule() == Rule::weighted) {
+                Some(by) => weighted(At { node: share, range: range.clone() }, by)?.node,
+                None => share,
+            }
         }
         Rule::fit => Node::Fit(Box::new(fit(first)?)),
         Rule::place_of => {
@@ -216,6 +221,10 @@ fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
     for after in inner {
         let range = whole.start..bytes(&after).end;
         let rule = after.as_rule();
+        if rule == Rule::weighted {
+            phrase = weighted(phrase, after)?;
+            continue;
+        }
         let what = parts(after).next()?;
         let node = match rule {
             Rule::over => Node::Over(Box::new(phrase), Box::new(primary(what)?)),
@@ -229,14 +238,43 @@ fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
 /// The estimate of a limit: the name of a statistic or estimate, a percentile, the end of an interval, or an expression in
 /// parentheses.
 pub(super) fn estimate(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    let inner = parts(pair).next()?;
-    let range = bytes(&inner);
+    let mut inner = parts(pair);
+    let first = inner.next()?;
+    let range = bytes(&first);
+    let node = match first.as_rule() {
+        Rule::bound_of => bound_of(first)?,
+        Rule::parens => in_parens(first)?,
+        _ => word(&first)?,
+    };
+    let found = At { node, range };
+    match inner.next() {
+        Some(by) => weighted(found, by),
+        None => Some(found),
+    }
+}
+
+/// What parentheses hold: an expression, or one number of it for each group.
+fn in_parens(pair: Pair<'_, Rule>) -> Option<Node> {
+    let mut inner = parts(pair);
+    let found = cases(inner.next()?)?;
+    match inner.next() {
+        Some(groups) => Some(Node::ForEach(Box::new(found), keys(parts(groups).next()?))),
+        None => Some(found.node),
+    }
+}
+
+/// `weighted by length` after what it is a weight of.
+fn weighted(of: Phrase, pair: Pair<'_, Rule>) -> Option<Phrase> {
+    let range = of.range.start..bytes(&pair).end.max(of.range.end);
+    let by = parts(pair).next()?;
+    let at = bytes(&by);
+    let inner = parts(by).next()?;
     let node = match inner.as_rule() {
-        Rule::bound_of => bound_of(inner)?,
-        Rule::parens => cases(parts(inner).next()?)?.node,
+        Rule::parens => in_parens(inner)?,
+        Rule::magnitude => Node::Magnitude(Box::new(sum(parts(inner).next()?)?)),
         _ => word(&inner)?,
     };
-    Some(At { node, range })
+    Some(At { node: Node::Weighted(Box::new(of), Box::new(At { node, range: at })), range })
 }
 
 /// The end of a confidence interval: `upper 95 % of std by bootstrap`.
@@ -246,8 +284,15 @@ fn bound_of(pair: Pair<'_, Rule>) -> Option<Node> {
     let Node::Number { value: confidence, .. } = quantity(inner.next()?)? else { return None };
     let of = inner.next()?;
     let range = bytes(&of);
-    let node = if of.as_rule() == Rule::parens { cases(parts(of).next()?)?.node } else { word(&of)? };
-    Some(Node::Bound { upper, confidence, of: Box::new(At { node, range }), bootstrap: inner.next().is_some() })
+    let node = if of.as_rule() == Rule::parens { in_parens(of)? } else { word(&of)? };
+    let (mut of, mut bootstrap) = (At { node, range }, false);
+    for part in inner {
+        match part.as_rule() {
+            Rule::weighted => of = weighted(of, part)?,
+            _ => bootstrap = true,
+        }
+    }
+    Some(Node::Bound { upper, confidence, of: Box::new(of), bootstrap })
 }
 
 /// A regression: `prediction over radius, speed at 300 m, 80 km/h, confidence 99 %`.
@@ -261,7 +306,7 @@ fn fit(pair: Pair<'_, Rule>) -> Option<Fit> {
                 let range = bytes(&part);
                 let of = parts(part).next()?;
                 let node = match of.as_rule() {
-                    Rule::parens => cases(parts(of).next()?)?.node,
+                    Rule::parens => in_parens(of)?,
                     Rule::magnitude => Node::Magnitude(Box::new(sum(parts(of).next()?)?)),
                     _ => word(&of)?,
                 };

@@ -134,3 +134,36 @@ quantity difference_of_slopes
   of      Y at wheelsets 1, 3
   metric  p90 of |derivative(simulated) - derivative(measured)|
   limit   maximum 1000 kN/m
+
+# ---- numbers among samples, and windows in a value
+
+signal Y_about_mean "Guiding force about its mean in the section"
+  at  each wheelset and side
+  is  Y - mean of Y
+  in  kN
+
+filter RMS_2M "Sliding rms over 2 m"
+  step  sliding rms 2 m every 0.5 m
+
+quantity about_mean "Guiding force about its mean, rms"
+  of          Y_about_mean at wheelsets 1, 3
+  value       rms
+  difference  signed
+  limit       std 100 kN
+
+quantity largest_rms_2m "Guiding force, largest rms over 2 m"
+  of          Y at wheelsets 1, 3
+  value       maximum of (Y through RMS_2M)
+  difference  signed
+  limit       std 100 kN
+
+quantity difference_about_mean "Guiding force, rms of the difference without its mean"
+  of      Y at wheelsets 1, 3
+  metric  rms of (simulated - measured - mean of (simulated - measured))
+  limit   p95 100 kN
+
+quantity ratio_of_windows "Guiding force, ratio of the largest rms over 2 m"
+  of      Y at wheelsets 1, 3
+  filter  RMS_2M
+  metric  maximum of simulated / maximum of measured
+  limit   p95 100

@@ -52,6 +52,9 @@ for row in csv.DictReader(open(os.path.join(campaign, "sections.csv"))):
         both("slope_rms", f"Y_slope_{place}", lambda r, c: rms(np.gradient(r[wheel], r["distance"])[c]))
         both("area", f"Y_area_{place}", lambda r, c: trapezoids(r[wheel], r["distance"])[c][-1] - trapezoids(r[wheel], r["distance"])[c][0])
         both("moved", f"Y_moved_{place}", lambda r, c: np.mean(np.interp(r["distance"] - 2.0, r["distance"], r[wheel])[c]))
+        both("largest_rms_2m", wheel, lambda r, c: max(
+            rms(r[wheel][c][(r["distance"][c] >= a - 1e-6) & (r["distance"][c] < a + 2.0 - 1e-6)])
+            for a in np.arange(start, end - 2.0 + 1e-9, 0.5)))
         for quantity in ("Y_over_Q", "Y_over_Q_named"):
             both(quantity, wheel, lambda r, c: np.cov(r[q][c], r[wheel][c])[0, 1] / np.var(r[q][c], ddof=1))
         s, m = records["simulation"], records["measurement"]
@@ -62,6 +65,8 @@ for row in csv.DictReader(open(os.path.join(campaign, "sections.csv"))):
         one("mean_difference", np.mean(np.abs(at(0.0) - measured)))
         one("apart", rms(at(0.0) - measured))
         one("difference_moved", rms(at(2.0) - measured))
+        one("difference_about_mean", np.std(at(0.0) - measured))
+        both("about_mean", f"Y_about_mean_{place}", lambda r, c: rms(r[wheel][c] - np.mean(r[wheel][c])))
         one("difference_of_slopes", np.percentile(np.abs(np.gradient(at(0.0), x) - np.gradient(measured, x)), 90))
 with open(os.path.join(here, "both_sides.json"), "w") as file:
     file.write("[\n" + ",\n".join(json.dumps(one) for one in out) + "\n]\n")

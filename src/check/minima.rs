@@ -1,0 +1,87 @@
+//! Checks how many pairs quantities need: in all, and in each group.
+
+use super::Checker;
+use super::names::normalised;
+use super::plan::{MinimumOfGroups, Scope};
+use crate::problem::{Problem, Problems};
+use crate::source::Span;
+use crate::syntax::document::{Block, Field};
+use crate::syntax::from_pest;
+use crate::syntax::phrase::Phrase;
+use crate::units::Dimension;
+
+/// The largest number that a protocol may require.
+const MOST: f64 = 1e6;
+
+/// The fields `minimum pairs` of a block.
+#[derive(Debug, Default)]
+pub(super) struct Minima {
+    /// The number in all; `None` inside where it was not understood.
+    pub all: Option<Option<usize>>,
+    /// Fields that say of which groups.
+    pub of_groups: Vec<Field>,
+}
+
+/// What of a minimum tells it from others: its groups. Empty where it is one of all values.
+pub(super) fn groups_of(field: &Field) -> Option<String> {
+    from_pest::minimum(&field.value, &mut Problems::default()).map(|minimum| minimum.scope.node.meaning())
+}
+
+impl Checker<'_> {
+    pub(super) fn minima(&mut self, block: &Block) -> Minima {
+        let mut found = Minima::default();
+        let mut seen: Vec<(String, Span)> = Vec::new();
+        for field in block.fields_named("minimum pairs") {
+            let Some(written) = from_pest::minimum(&field.value, self.problems) else {
+                found.all.get_or_insert(None);
+                continue;
+            };
+            let groups = written.scope.node.meaning();
+            if let Some((_, first)) = seen.iter().find(|(known, _)| *known == groups) {
+                let problem = Problem::error("duplicate-field", "there are two `minimum pairs` for the same values").at(&field.value.span);
+                self.problems.push(problem.also(first, "the first"));
+                continue;
+            }
+            seen.push((groups, field.value.span.clone()));
+            if written.scope.node.is_all() {
+                found.all = Some(self.pairs(&written.count, field));
+            } else {
+                found.of_groups.push(field.clone());
+            }
+        }
+        found
+    }
+
+    /// The minimum counts of groups of a quantity.
+    pub(super) fn minimum_of_groups(&mut self, fields: &[Field], block: &Block, places: &[String]) -> Option<Vec<MinimumOfGroups>> {
+        let mut all = Vec::new();
+        let mut ok = true;
+        for field in fields {
+            let Some(written) = from_pest::minimum(&field.value, &mut Problems::default()) else { continue };
+            let needed = self.pairs(&written.count, field);
+            let scope = self.scope_of(&written.scope, &field.value, block.name_text(), places);
+            let (Some(needed), Some((scope, each_zone))) = (needed, scope) else {
+                ok = false;
+                continue;
+            };
+            let zones = if scope.zones.is_empty() { self.zone_names.clone() } else { scope.zones.clone() };
+            let scopes: Vec<Scope> = match each_zone {
+                true => zones.into_iter().map(|zone| Scope { zones: vec![zone], ..scope.clone() }).collect(),
+                false => vec![scope],
+            };
+            all.extend(scopes.into_iter().map(|scope| MinimumOfGroups { needed, scope }));
+        }
+        ok.then_some(all)
+    }
+
+    fn pairs(&mut self, count: &Phrase, field: &Field) -> Option<usize> {
+        let (value, dimension) = self.constant_phrase(count, &field.value)?;
+        if dimension == Dimension::ONE && value.fract() == 0.0 && (0.0..=MOST).contains(&value) {
+            return Some(value as usize);
+        }
+        let words = normalised(field.value.text.get(count.range.clone()).unwrap_or_default());
+        let problem = Problem::error("not-a-count", format!("`{}` is a whole number, this is {words}", field.key.text));
+        self.problems.push(problem.at(&field.value.span));
+        None
+    }
+}

@@ -1,0 +1,126 @@
+//! Checks weights, and numbers of several groups: `mean weighted by length`, `mean of (mean for each zone)`.
+
+use super::Checker;
+use super::estimates::{Group, reducer_name};
+use super::plan::{Expr, Kind, Origin, Scalar, Taking, Type};
+use super::scalars::Scope;
+use crate::catalog::Statistic;
+use crate::problem::Problem;
+use crate::source::Span;
+use crate::syntax::document::Text;
+use crate::syntax::phrase::{At, Node, Phrase};
+
+/// Statistics that depend on weights, beside percentiles.
+const WITH_WEIGHTS: [&str; 4] = ["mean", "std", "rms", "median"];
+
+/// Whether values can count by a weight in a statistic.
+pub(super) fn has_weights(statistic: Statistic) -> bool {
+    match statistic {
+        Statistic::Each => false,
+        Statistic::Percentile(_) => true,
+        Statistic::Named(entry) => WITH_WEIGHTS.contains(&entry.name),
+    }
+}
+
+pub(super) fn is_mean(statistic: Statistic) -> bool {
+    matches!(statistic, Statistic::Named(entry) if entry.name == "mean")
+}
+
+impl Checker<'_> {
+    /// `mean weighted by length`, `share weighted by length where value <= 60 kN`.
+    pub(super) fn weighted(&mut self, of: &Phrase, by: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+        if scope.group.is_none() {
+            let says = "weights are those of the values of a group, and there is none here";
+            self.problems.push(Problem::error("no-group", says).at(span));
+            return None;
+        }
+        let name = match &of.node {
+            Node::Share { of_sections, condition } => {
+                return self.group_share(*of_sections, condition, Some(by), text, span, scope);
+            }
+            Node::Path(_) | Node::Percentile(_) => reducer_name(of),
+            _ => return self.no_weight("this", span),
+        };
+        if self.names.estimates.contains_key(&name) {
+            let says = format!("`{name}` is an estimate, and weights stand with the statistics that it is made of");
+            let help = "write them there: `mean weighted by length + 3 * std weighted by length`";
+            self.problems.push(Problem::error("no-weight", says).at(span).help(help));
+            return None;
+        }
+        if name == "n" {
+            return self.no_weight("`n`", span);
+        }
+        let Some(dimension) = scope.group.as_ref().and_then(|group| group.values) else { return self.no_values(span) };
+        let statistic = self.statistic(&At { node: name, range: of.range.clone() }, text)?;
+        if !has_weights(statistic) {
+            return self.no_weight(&format!("`{}`", statistic.name()), span);
+        }
+        let by = self.weight(by, text, scope)?;
+        let ddof = self.ddof;
+        let kind = scope.group.as_mut()?.take(Taking::Weighted { statistic, ddof, by });
+        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+    }
+
+    /// A number from the data of a section.
+    pub(super) fn weight(&mut self, by: &Phrase, text: &Text, scope: &Scope) -> Option<Expr> {
+        let by = self.expr(by, text, &mut Scope { zone: scope.zone.clone(), ..Scope::section() })?;
+        self.number_type(&by)?;
+        match by.kind {
+            Kind::Constant(Scalar::Number(weight)) if weight <= 0.0 => {
+                self.problems.push(Problem::error("out-of-range", "a weight is above zero").at(&by.span));
+                None
+            }
+            _ => Some(by),
+        }
+    }
+
+    pub(super) fn no_weight(&mut self, what: &str, span: &Span) -> Option<Expr> {
+        let problem = Problem::error("no-weight", format!("{what} does not depend on weights")).at(span);
+        self.problems.push(problem.help("`mean`, `std`, `rms`, `median`, `p80` and `share` can be weighted"));
+        None
+    }
+
+    /// `mean of (mean for each zone)`: of one number for each group of the rows.
+    pub(super) fn of_each_group(
+        &mut self,
+        reducer: &Phrase,
+        one: &Phrase,
+        keys: &[At<String>],
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let Some(group) = &scope.group else {
+            let says = "groups are formed of the values of a quantity, and there are none here";
+            self.problems.push(Problem::error("no-group", says).at(span));
+            return None;
+        };
+        let Some(values) = group.values else { return self.no_values(span) };
+        let reducer = self.group_reducer(reducer, "numbers of groups", text);
+        let keys: Option<Vec<_>> = keys.iter().map(|key| self.group_key(key, text)).collect();
+        let mut inside =
+            Scope { zone: scope.zone.clone(), group: Some(Group { values: Some(values), taken: Vec::new() }), ..Scope::vehicle() };
+        let expr = self.expr(one, text, &mut inside)?;
+        let dimension = self.number_type(&expr)?;
+        let taken = inside.group.map_or_else(Vec::new, |group| group.taken);
+        if taken.is_empty() {
+            let problem = Problem::error("estimate-of-nothing", "this takes nothing from the values of a group").at(&expr.span);
+            self.problems.push(problem.help("for instance `mean of (mean for each zone)`"));
+            return None;
+        }
+        let of = Box::new(super::plan::OfGroup { expr, taken });
+        let kind = scope.group.as_mut()?.take(Taking::EachGroup { reducer: reducer?, keys: keys?, of });
+        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+    }
+
+    /// `(mean for each zone)` where one number is needed.
+    pub(super) fn many_numbers(&mut self, keys: &[At<String>], text: &Text, span: &Origin) -> Option<Expr> {
+        let keys: Vec<&str> = keys.iter().filter_map(|key| text.text.get(key.range.clone())).collect();
+        let keys = keys.join(" and ");
+        let problem = Problem::error("many-numbers", format!("this is one number for each {keys}, and one number is needed")).at(span);
+        self.problems.push(problem.help(format!(
+            "take one of them: `mean of (... for each {keys})`; a limit of each group ends with its groups: `limit mean 9 kN for each {keys}`"
+        )));
+        None
+    }
+}
