@@ -106,7 +106,8 @@ impl Checker<'_> {
         match self.compare(field)? {
             Compare::Pairs(pairing) => Some(pairing),
             Compare::With(..) => {
-                let problem = Problem::error("metric-and-spread", "a metric compares two signals; a mean of several signals is not available");
+                let problem =
+                    Problem::error("metric-and-spread", "a metric compares two signals; a mean of several signals is not available");
                 let help = "use `value` and `difference`, or compare `simulated with measured` or `repeats with originals`";
                 self.problems.push(problem.at(&field.value.span).also(metric, "the metric").help(help));
                 None

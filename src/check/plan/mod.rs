@@ -1,0 +1,159 @@
+//! The checked protocol: names resolved, numbers in SI, dimensions checked, parameters inserted.
+
+mod estimate;
+mod expression;
+mod filter;
+mod quantity;
+mod section;
+mod signal;
+mod verdict;
+
+use crate::result;
+use crate::source::{Span, Spanned};
+use crate::units::Unit;
+
+pub use estimate::*;
+pub use expression::*;
+pub use filter::*;
+pub use quantity::*;
+pub use section::*;
+pub use signal::*;
+pub use verdict::*;
+
+#[derive(Clone, Debug)]
+pub struct Plan {
+    pub name: String,
+    pub title: String,
+    pub edition: Option<String>,
+    pub source: Option<String>,
+    pub scope: Option<String>,
+    pub notes: Vec<String>,
+    pub axis: Axis,
+    pub time: Option<Axis>,
+    pub parameters: Vec<Parameter>,
+    /// Definitions and quantities with numbers that are to be confirmed against the standard, and why.
+    pub unconfirmed: Vec<(String, String)>,
+    pub vehicle: Vec<Datum>,
+    pub columns: Vec<Datum>,
+    /// Names of campaigns that conditions ask for, where they stand.
+    pub campaigns: Vec<Spanned<String>>,
+    pub records: Vec<DeclaredRecord>,
+    pub filters: Vec<NamedFilter>,
+    pub zones: Vec<Zone>,
+    pub checks: Vec<Check>,
+    pub plausibility: Vec<Plausibility>,
+    pub sections: SectionRules,
+    pub domains: Vec<Domain>,
+    pub quantities: Vec<Quantity>,
+    pub independent: Independent,
+    /// The overall verdict first, the others in the order of the text.
+    pub verdicts: Vec<VerdictRule>,
+}
+
+impl Plan {
+    /// Whether a quantity needs records of this side.
+    pub fn reads(&self, side: Side) -> bool {
+        self.quantities.iter().any(|quantity| quantity.evaluation.reads(side))
+    }
+
+    /// What the protocol is about.
+    pub fn kind(&self) -> result::Kind {
+        result::Kind::of_all(self.quantities.iter().map(|quantity| quantity.evaluation.kind()))
+    }
+
+    /// The overall verdict in the protocol's own words, or in those of its kind.
+    pub fn verdict_words(&self) -> result::VerdictWords {
+        let rule = self.overall();
+        if !rule.has_words() {
+            return result::VerdictWords::of(self.kind());
+        }
+        let [good, bad] = rule.words.clone();
+        result::VerdictWords { good, bad }
+    }
+
+    /// The verdict of the protocol as a whole: the one without a name, else the first.
+    pub fn overall(&self) -> &VerdictRule {
+        &self.verdicts[0]
+    }
+
+    /// The same plan, with all plausibility findings as notes: they are reported and exclude no section.
+    #[must_use]
+    pub fn only_telling(&self) -> Self {
+        let mut plan = self.clone();
+        plan.plausibility.iter_mut().for_each(|rule| rule.otherwise = OnFault::Note);
+        plan
+    }
+}
+
+/// A column that records are sampled along: distance or time.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    pub column: String,
+    pub unit: Unit,
+}
+
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    pub name: String,
+    pub title: String,
+    pub value: String,
+    pub default: String,
+    pub set_by: SetBy,
+    /// Why its value is to be confirmed against the standard.
+    pub unconfirmed: Option<String>,
+    /// The words of a choice; empty otherwise.
+    pub choices: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SetBy {
+    Default,
+    Campaign,
+    CommandLine,
+}
+
+/// A value that the vehicle file or the table of sections must contain.
+#[derive(Clone, Debug)]
+pub struct Datum {
+    pub name: String,
+    pub title: String,
+    /// Path in the vehicle file, or column header without unit.
+    pub key: String,
+    pub kind: DatumKind,
+    pub default: Option<Scalar>,
+    /// Whether the vehicle file may omit it. Rules that depend on it then apply as far as they hold for every value.
+    pub may_be_absent: bool,
+    /// Allowed values of a number; `None` where the protocol states none.
+    pub range: Option<DatumRange>,
+    pub span: Span,
+}
+
+/// The least and the greatest value of a datum, both allowed.
+#[derive(Clone, Debug)]
+pub struct DatumRange {
+    /// In SI.
+    pub low: f64,
+    /// In SI.
+    pub high: f64,
+    /// As written: `10 kN to 200 kN`.
+    pub words: String,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum DatumKind {
+    Number(Unit),
+    Words(Vec<String>),
+    Flag,
+    /// The name of the section's campaign, which is not known before the run.
+    Campaign,
+}
+
+/// A value of an expression.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Scalar {
+    /// In SI.
+    Number(f64),
+    Word(String),
+    Flag(bool),
+}

@@ -1,0 +1,132 @@
+//! Zones, checks, plausibility rules, the rules of sections, domains.
+
+use super::{Expr, Input, Signal, Step};
+use crate::metrics::percentile::Method;
+use crate::source::Span;
+use crate::units::Unit;
+
+#[derive(Clone, Debug)]
+pub struct Zone {
+    pub name: String,
+    pub title: String,
+    pub condition: Option<Expr>,
+    pub condition_words: String,
+    pub minimum_sections: usize,
+    pub minimum_length: Option<Expr>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub struct Check {
+    pub name: String,
+    pub title: String,
+    pub require: Expr,
+    pub inputs: Vec<Input>,
+    pub unless: Option<Expr>,
+    pub words: String,
+    pub otherwise: OnFault,
+    pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnFault {
+    NotUsed,
+    Note,
+    Stop,
+    /// The campaign is not assessable. Only for plausibility rules or a domain.
+    NotAssessable,
+}
+
+/// A condition that sound data satisfy, checked in every section and at every position. A violation is reported as a finding.
+///
+/// A block with several fields `of` gives one rule for each of them.
+#[derive(Clone, Debug)]
+pub struct Plausibility {
+    pub name: String,
+    pub title: String,
+    /// Each position with the name of its signal; empty where the rule uses only data or named signals.
+    pub signals: Vec<(String, Signal)>,
+    pub chain: Vec<Step>,
+    pub test: Test,
+    pub unless: Option<Expr>,
+    pub otherwise: OnFault,
+    pub cause: Option<String>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub enum Test {
+    Require(Box<Requirement>),
+    Distinct(Distinct),
+}
+
+/// A condition on data and on values taken from signals.
+#[derive(Clone, Debug)]
+pub struct Requirement {
+    pub holds: Expr,
+    pub inputs: Vec<Input>,
+    pub of: Looks,
+    /// The two numbers compared and the unit in which both are printed, where the condition is one comparison.
+    pub compared: Option<(Expr, Expr, Unit)>,
+    pub words: String,
+}
+
+/// The records that a requirement uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Looks {
+    /// No record: section and vehicle data only.
+    Data,
+    Track,
+    /// Simulation and measurement, each separately.
+    EachSide,
+    /// Both together: metrics, `simulated(...)`, `measured(...)`.
+    BothSides,
+}
+
+/// Between which signals equality is reported.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Distinct {
+    /// Channels of one record.
+    pub channels: bool,
+    /// One channel in several sections.
+    pub sections: bool,
+    /// Simulation and measurement.
+    pub sides: bool,
+}
+
+#[derive(Clone, Debug)]
+pub struct SectionRules {
+    pub whole_records: bool,
+    /// Index of the column of the zone.
+    pub zone: Option<usize>,
+    pub only: Option<Expr>,
+    pub only_words: String,
+    pub faulty: OnFault,
+    pub minimum: usize,
+    pub percentiles: Method,
+}
+
+/// What sections cover, and wanted operation is compared with.
+#[derive(Clone, Debug)]
+pub struct Domain {
+    pub name: String,
+    pub title: String,
+    pub over: Vec<Coordinate>,
+    /// Indices into [`Plan::columns`]: sections of other words are of another hull.
+    pub each: Vec<usize>,
+    /// Either a note, or not assessable.
+    pub otherwise: OnFault,
+    pub clause: Option<String>,
+    pub source: Option<String>,
+    pub notes: Vec<String>,
+    pub span: Span,
+}
+
+/// One of the numbers that span a domain.
+#[derive(Clone, Debug)]
+pub struct Coordinate {
+    pub expr: Expr,
+    /// As printed.
+    pub name: String,
+    pub unit: Unit,
+}

@@ -1,0 +1,88 @@
+//! Verdicts, and the unit of independence.
+
+use crate::source::Span;
+
+/// What counts as one independent unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Independent {
+    #[default]
+    Site,
+    Section,
+    /// Index into [`Plan::columns`].
+    Column(usize),
+}
+
+/// A verdict: its rule and its words.
+#[derive(Clone, Debug)]
+pub struct VerdictRule {
+    /// `None` for the verdict without a name, which is the overall one.
+    pub name: Option<String>,
+    pub title: String,
+    pub decision: Decision,
+    /// The word if it holds, and the word if it does not.
+    pub words: [String; 2],
+    /// Whether the protocol states the words.
+    pub own_words: bool,
+    /// The rule in words: `validated when every limit holds`.
+    pub criterion: String,
+    pub clause: Option<String>,
+    pub source: Option<String>,
+    pub notes: Vec<String>,
+    pub span: Span,
+}
+
+impl VerdictRule {
+    /// Whether its words are its own, and not those of the kind of the protocol.
+    pub fn has_words(&self) -> bool {
+        self.name.is_some() || self.own_words
+    }
+}
+
+#[derive(Clone, Debug)]
+pub enum Decision {
+    /// By the limits of quantities, given by index.
+    Limits { rule: Rule, quantities: Vec<usize> },
+    /// By other verdicts.
+    Verdicts(Over),
+    /// By a person.
+    Person(String),
+}
+
+/// A condition on other verdicts, given by their index in [`Plan::verdicts`].
+#[derive(Clone, Debug)]
+pub enum Over {
+    Holds(usize),
+    /// Both hold, or neither holds.
+    Same(usize, usize),
+    AtLeast(usize, Vec<usize>),
+    Not(Box<Over>),
+    All(Vec<Over>),
+    Any(Vec<Over>),
+}
+
+impl Over {
+    /// The verdicts that the condition uses, each once.
+    pub fn verdicts(&self) -> Vec<usize> {
+        let all = match self {
+            Self::Holds(one) => vec![*one],
+            Self::Same(one, other) => vec![*one, *other],
+            Self::AtLeast(_, of) => of.clone(),
+            Self::Not(inner) => inner.verdicts(),
+            Self::All(parts) | Self::Any(parts) => parts.iter().flat_map(Self::verdicts).collect(),
+        };
+        let mut once = Vec::new();
+        for one in all {
+            if !once.contains(&one) {
+                once.push(one);
+            }
+        }
+        once
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    EveryLimit,
+    AtLeastQuantities(usize),
+    AtLeastLimits(usize),
+}
