@@ -131,8 +131,10 @@ fn every_fault_has_a_case() {
     // Faults of the program, which nothing written can bring about, and what needs a campaign or command line (tested below).
     given.extend(["internal", "not-constant", "unknown-parameter"].map(String::from));
     let mut missing = BTreeSet::new();
-    for entry in fs::read_dir(root().join("src/check")).expect("sources") {
-        let text = fs::read_to_string(entry.expect("an entry").path()).expect("a source");
+    let folders = ["src/check", "src/check/plan"].map(|folder| fs::read_dir(root().join(folder)).expect("sources"));
+    let sources = folders.into_iter().flatten().map(|entry| entry.expect("an entry").path()).filter(|path| path.is_file());
+    for path in sources {
+        let text = fs::read_to_string(path).expect("a source");
         for part in text.split("Problem::error(").chain(text.split("Problem::warning(")).skip(1) {
             let code = part.trim_start().split('"').nth(1).filter(|_| part.trim_start().starts_with('"'));
             missing.extend(code.map(String::from).filter(|code| !given.contains(code)));

@@ -216,7 +216,7 @@ impl Checker<'_> {
             (_, Some(statistic)) => return Some(DataReducer::Statistic(statistic, self.ddof)),
         }
         let known = STATISTICS.iter().map(|entry| entry.name).chain(["total"]);
-        let says = format!("`{name} of` is nothing that is taken from {from}");
+        let says = format!("`{name} of` cannot be computed over {from}");
         self.problems.push(Problem::error("unknown-statistic", says).at(&text.place(reducer.range.clone())).suggest(&name, known));
         None
     }

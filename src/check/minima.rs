@@ -58,10 +58,12 @@ impl Checker<'_> {
         let mut ok = true;
         for field in fields {
             let Some(written) = from_pest::minimum(&field.value, &mut Problems::default()) else { continue };
+            let before = self.problems.0.len();
             let needed = self.pairs(&written.count, field);
             let scope = self.scope_of(&written.scope, &field.value, block.name_text(), places);
             let (Some(needed), Some((scope, each_zone))) = (needed, scope) else {
                 ok = false;
+                self.once(before);
                 continue;
             };
             let zones = if scope.zones.is_empty() { self.zone_names.clone() } else { scope.zones.clone() };
@@ -74,13 +76,21 @@ impl Checker<'_> {
         ok.then_some(all)
     }
 
+    /// Drops a problem that another quantity has already met in the same field, that of the verdict.
+    fn once(&mut self, before: usize) {
+        let (known, new) = self.problems.0.split_at(before);
+        if new.iter().all(|new| known.iter().any(|known| known.at == new.at && known.code == new.code)) {
+            self.problems.0.truncate(before);
+        }
+    }
+
     fn pairs(&mut self, count: &Phrase, field: &Field) -> Option<usize> {
         let (value, dimension) = self.constant_phrase(count, &field.value)?;
         if dimension == Dimension::ONE && value.fract() == 0.0 && (0.0..=MOST).contains(&value) {
             return Some(value as usize);
         }
         let words = normalised(field.value.text.get(count.range.clone()).unwrap_or_default());
-        let problem = Problem::error("not-a-count", format!("`{}` is a whole number, this is {words}", field.key.text));
+        let problem = Problem::error("not-a-count", format!("`{}` must be a whole number, this is {words}", field.key.text));
         self.problems.push(problem.at(&field.value.span));
         None
     }
