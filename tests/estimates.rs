@@ -124,7 +124,7 @@ fn weights_without_a_number_are_a_reason() {
         &coach(),
     );
     let reason = |name: &str| all(&found).find(|one| one.name.contains(name)).and_then(|one| one.reason.clone()).expect("a reason");
-    assert_eq!(reason("mean weighted by (speed"), "section S01: its weight `speed - 135 km/h` is negative");
+    assert_eq!(reason("mean weighted by (speed"), "section S01: its weight `(speed - 135 km/h)` is negative");
     assert_eq!(reason("p80"), "no weight is above zero");
     assert_eq!(reason("share"), "no weight is above zero");
     assert!(reason("mean of (std").contains(", wheelset 1: not defined for 1 value"), "{}", reason("mean of (std"));

@@ -67,7 +67,7 @@ impl Checker<'_> {
         self.number_type(&by)?;
         match by.kind {
             Kind::Constant(Scalar::Number(weight)) if weight <= 0.0 => {
-                self.problems.push(Problem::error("out-of-range", "a weight is above zero").at(&by.span));
+                self.problems.push(Problem::error("out-of-range", "a weight must be above zero").at(&by.span));
                 None
             }
             _ => Some(by),
