@@ -49,6 +49,7 @@ fn pool(counts: &[usize]) -> Pool {
             values: values.collect(),
             minimum_signals: 2,
             minimum_pairs: 24,
+            minimum_of_groups: Vec::new(),
             limits: vec![limit("std", 1.0), limit("mean", 2.0 / 3.0)],
         }
     });

@@ -16,6 +16,7 @@ pub mod catalog;
 pub mod certify;
 pub mod check;
 pub mod cli;
+pub mod compare;
 pub mod data;
 pub mod diagnose;
 pub mod disk;

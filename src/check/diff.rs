@@ -13,19 +13,89 @@ use super::names::normalised;
 
 /// Rules added, removed or changed from the first document to the second, in the order of the second.
 pub fn diff(before: &Document, after: &Document) -> Vec<Deviation> {
+    changes(before, after).into_iter().map(|change| change.deviation).collect()
+}
+
+/// The same, each as a change that can be made to the first document by itself.
+pub fn changes(before: &Document, after: &Document) -> Vec<Change> {
     let mut found = Vec::new();
-    for block in &after.blocks {
+    for (at, block) in after.blocks.iter().enumerate() {
         match before.blocks.iter().find(|old| same(old, block)) {
-            None => found.push(Deviation { rule: head(block), before: None, after: Some(in_words(block)) }),
+            None => found.push(Change {
+                deviation: Deviation { rule: head(block), before: None, after: Some(in_words(block)) },
+                edit: Edit::Add { block: Box::new(block.clone()), after: after.blocks[..at].to_vec() },
+            }),
             Some(old) => fields(old, block, &mut found),
         }
     }
     for block in &before.blocks {
         if !after.blocks.iter().any(|new| same(block, new)) {
-            found.push(Deviation { rule: head(block), before: Some(in_words(block)), after: None });
+            found.push(Change {
+                deviation: Deviation { rule: head(block), before: Some(in_words(block)), after: None },
+                edit: Edit::Remove(Box::new(block.clone())),
+            });
         }
     }
     found
+}
+
+/// A difference of two documents and how it is made.
+#[derive(Clone, Debug)]
+pub struct Change {
+    pub deviation: Deviation,
+    edit: Edit,
+}
+
+#[derive(Clone, Debug)]
+enum Edit {
+    /// A block, behind the last of these that is there.
+    Add {
+        block: Box<Block>,
+        after: Vec<Block>,
+    },
+    Remove(Box<Block>),
+    Title {
+        of: Box<Block>,
+        title: Option<Text>,
+    },
+    /// A field of a block in place of another.
+    Field {
+        of: Box<Block>,
+        old: Option<Box<Field>>,
+        new: Option<Box<Field>>,
+    },
+}
+
+impl Change {
+    /// A document with this change alone.
+    #[must_use]
+    pub fn applied(&self, document: &Document) -> Document {
+        let mut document = document.clone();
+        let blocks = &mut document.blocks;
+        match &self.edit {
+            Edit::Add { block, after } => {
+                let place = after.iter().rev().find_map(|known| blocks.iter().position(|block| same(known, block)));
+                blocks.insert(place.map_or(0, |place| place + 1), block.as_ref().clone());
+            }
+            Edit::Remove(gone) => blocks.retain(|block| !same(block, gone)),
+            Edit::Title { of, title } => {
+                blocks.iter_mut().filter(|block| same(block, of)).for_each(|block| block.title.clone_from(title));
+            }
+            Edit::Field { of, old, new } => {
+                for block in blocks.iter_mut().filter(|block| same(block, of)) {
+                    let alike = |field: &Field, old: &Field| field.key.text == old.key.text && field.value.text == old.value.text;
+                    let place = old.as_ref().and_then(|old| block.fields.iter().position(|field| alike(field, old)));
+                    match (place, new) {
+                        (Some(place), Some(new)) => block.fields[place] = new.as_ref().clone(),
+                        (Some(place), None) => drop(block.fields.remove(place)),
+                        (None, Some(new)) => block.fields.push(new.as_ref().clone()),
+                        (None, None) => {}
+                    }
+                }
+            }
+        }
+        document
+    }
 }
 
 fn same(a: &Block, b: &Block) -> bool {
@@ -41,7 +111,7 @@ fn in_words(block: &Block) -> String {
     block.fields.iter().map(|field| format!("{} {}", field.key.text, normalised(&field.value.text))).collect::<Vec<_>>().join("; ")
 }
 
-fn fields(old: &Block, new: &Block, found: &mut Vec<Deviation>) {
+fn fields(old: &Block, new: &Block, found: &mut Vec<Change>) {
     if old.kind.text == "protocol" {
         // Name, title and scope always differ and are not rules.
         for key in ["axis", "time", "edition"] {
@@ -51,7 +121,8 @@ fn fields(old: &Block, new: &Block, found: &mut Vec<Deviation>) {
     }
     let title = |block: &Block| block.title.as_ref().map(|title| normalised(&title.text));
     if title(old) != title(new) {
-        found.push(Deviation { rule: format!("{}, title", head(new)), before: title(old), after: title(new) });
+        let deviation = Deviation { rule: format!("{}, title", head(new)), before: title(old), after: title(new) };
+        found.push(Change { deviation, edit: Edit::Title { of: Box::new(new.clone()), title: new.title.clone() } });
     }
     for key in keys::of_block(new).map_or(&[][..], |kind| kind.keys) {
         let olds: Vec<&Field> = old.fields_named(key.word).collect();
@@ -66,7 +137,7 @@ fn fields(old: &Block, new: &Block, found: &mut Vec<Deviation>) {
 
 /// Compares fields that may occur several times. Equal ones are removed first. A limit is then compared with the one of the same
 /// statistic and zones; other fields in their order.
-fn many(block: &Block, olds: &[&Field], news: &[&Field], found: &mut Vec<Deviation>) {
+fn many(block: &Block, olds: &[&Field], news: &[&Field], found: &mut Vec<Change>) {
     let kind = &block.kind.text;
     let mut left: Vec<&Field> = olds.to_vec();
     let mut changed: Vec<&Field> = Vec::new();
@@ -102,7 +173,7 @@ fn statistic(field: &Field) -> String {
     from_pest::limit(&field.value, &mut Problems::default()).map_or_else(first, |limit| limit.statistic.node)
 }
 
-fn one(block: &Block, rule: &str, old: Option<&Field>, new: Option<&Field>, found: &mut Vec<Deviation>) {
+fn one(block: &Block, rule: &str, old: Option<&Field>, new: Option<&Field>, found: &mut Vec<Change>) {
     let differs = match (old, new) {
         (None, None) => false,
         (Some(old), Some(new)) => !equal(&block.kind.text, old, new),
@@ -110,7 +181,11 @@ fn one(block: &Block, rule: &str, old: Option<&Field>, new: Option<&Field>, foun
     };
     if differs {
         let words = |field: Option<&Field>| field.map(|field| normalised(&field.value.text));
-        found.push(Deviation { rule: format!("{}, {rule}", head(block)), before: words(old), after: words(new) });
+        let deviation = Deviation { rule: format!("{}, {rule}", head(block)), before: words(old), after: words(new) };
+        found.push(Change {
+            deviation,
+            edit: Edit::Field { of: Box::new(block.clone()), old: old.cloned().map(Box::new), new: new.cloned().map(Box::new) },
+        });
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod blind;
 mod certify;
+mod compare;
 mod diagnose;
 mod effects;
 mod explain;
@@ -73,6 +74,11 @@ enum Command {
         #[command(subcommand)]
         study: study::Study,
     },
+    /// Compare protocols side by side over campaigns: verdicts, agreement, sensitivity, applicability, and what each difference does.
+    #[command(
+        after_help = "Example:\n  fishplate compare examples/coach --protocol en14363-2016-annex-t --protocol sprague-geers --out target/coach-compared"
+    )]
+    Compare(compare::Compare),
     /// Simulate one section or a whole campaign, with the reference vehicle model or another simulator; effects can be added.
     #[command(
         after_help = "Example:\n  fishplate simulate examples/coach --effect friction=0.5 --out target/coach-wet\n  fishplate simulate examples/coach --simulator sim.yaml --increment --effect friction=0.5 --out target/coach-wet\n  fishplate simulate --vehicle examples/coach/vehicle.yaml --track examples/coach/track/S13.csv --speed '70 km/h' -o S13.csv"
@@ -185,6 +191,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Keygen(keygen) => keygen.run(&console),
         Command::Sign(sign) => sign.run(&console),
         Command::Study { study } => study.run(&console),
+        Command::Compare(compare) => compare.run(&console),
         Command::Simulate(simulate) => simulate.run(&console),
         Command::Diagnose(diagnose) => diagnose.run(&console),
         Command::Blind(blinded) => blinded.run(&console),

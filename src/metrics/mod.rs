@@ -21,11 +21,14 @@
 //! | [`synchronise`] | signals of two records | the shift between them |
 //! | [`coherence`] | simulated and measured signal | the linear dependence as a function of frequency |
 //! | [`along`] | signal over an axis | derivative, integral, shifted signal |
+//! | [`rank`] | pairs of values | rank correlation |
+//! | [`disturb`] | signal | the signal with an offset, a gain, a delay or noise of a stated size |
 //! | [`hysteresis`] | two loops of output over input | their difference, branch by branch |
 
 pub mod along;
 pub mod cluster;
 pub mod coherence;
+pub mod disturb;
 pub mod filter;
 pub mod hull;
 pub mod hysteresis;
@@ -34,6 +37,7 @@ pub mod interval;
 pub mod pair;
 pub mod percentile;
 pub mod random_effects;
+pub mod rank;
 pub mod regression;
 pub mod resample;
 pub mod sampling;

@@ -4,6 +4,7 @@
 
 pub mod attached;
 pub mod blind;
+pub mod comparison;
 pub mod diagnosis;
 pub mod estimates;
 pub mod figure;

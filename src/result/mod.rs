@@ -3,6 +3,7 @@
 //! Numbers are in the unit named beside them. A value that could not be computed is `None` with a reason, never NaN.
 
 pub mod blind;
+pub mod comparison;
 pub mod diagnosis;
 pub mod domain;
 pub mod finding;

@@ -21,6 +21,8 @@ pub mod replay;
 mod requirements;
 mod section;
 mod sections;
+pub mod several;
+mod shared;
 mod sides;
 mod signal;
 pub mod single;
@@ -29,6 +31,7 @@ mod synchronisation;
 mod table;
 mod told;
 mod traces;
+pub mod trial;
 mod verdicts;
 mod wanted;
 
@@ -50,6 +53,7 @@ use pool::Pool;
 use record::Found;
 use section::SectionValues;
 use sections::Unit;
+pub use shared::Counts;
 pub use synchronisation::{Offset, Shifts};
 
 /// The results of a run. The report adds the descriptions of protocol and campaign.
@@ -256,6 +260,7 @@ impl<'a> Prepared<'a> {
             units: &self.units,
             present: &self.present,
             recorded: &self.recorded,
+            shared: None,
         }
     }
 

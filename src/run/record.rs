@@ -9,13 +9,15 @@ use std::sync::Arc;
 
 use super::facts::{Facts, Known};
 use super::sections::Unit;
+use super::shared::{Kept, Keys, Memo, Sharing};
 use super::signal::{Along, Cutter, Extent, Rate, Samples, Signal, apply, arithmetic, each};
 use crate::catalog::Reducer;
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Plan, Side, StepSpec};
+use crate::data::campaign::ReadFile;
 use crate::data::checks::{Section, check_axis};
 use crate::data::record::Wanted;
-use crate::data::{Campaign, Campaigns, RecordKind, WhichRecord, qualified};
+use crate::data::{Campaign, Campaigns, Record, RecordKind, WhichRecord, qualified};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::{Method, percentiles};
 use crate::problem::Problem;
@@ -35,12 +37,19 @@ pub struct Work<'a> {
     pub present: &'a [Vec<Vec<bool>>],
     /// The same for each position of each plausibility rule.
     pub recorded: &'a [Vec<Vec<bool>>],
+    /// What is shared with other protocols, of the section that is worked on.
+    pub shared: Option<Sharing<'a>>,
 }
 
 impl<'a> Work<'a> {
     /// The campaign of a section.
     pub fn campaign(&self, unit: &Unit) -> &'a Campaign {
         self.campaigns.get(unit.campaign)
+    }
+
+    /// What is shared of a section.
+    pub fn sharing(&self, unit: &Unit) -> Option<Sharing<'a>> {
+        self.shared.filter(|shared| shared.store.is_of(unit))
     }
 
     /// Whether the protocol evaluates records of a side.
@@ -70,15 +79,17 @@ impl Fault {
 }
 
 /// A record that was read and covers the section.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Opened {
     /// Name and samples.
-    columns: Vec<(String, Arc<Vec<f64>>)>,
+    columns: Arc<Vec<(String, Arc<Vec<f64>>)>>,
     along: Arc<Along>,
     pub extent: Extent,
     pub file: FileHash,
     /// Time recorded before and after the section, in s, where records have a time.
     pub margins: Option<(f64, f64)>,
+    /// What protocols that share the record have computed of it.
+    pub memo: Option<Arc<Memo>>,
 }
 
 /// Value of a requested node.
@@ -109,7 +120,7 @@ pub fn needed(graph: &Graph, wanted: &BTreeSet<NodeId>, known: &Known<'_>) -> Re
 }
 
 /// The input of a `Select` that applies in this section.
-fn chosen(conditions: &[crate::check::plan::Expr], inputs: &[NodeId], known: &Known<'_>) -> Result<usize, String> {
+pub fn chosen(conditions: &[crate::check::plan::Expr], inputs: &[NodeId], known: &Known<'_>) -> Result<usize, String> {
     for (index, condition) in conditions.iter().enumerate() {
         if flag(condition, known)? {
             return Ok(index);
@@ -139,13 +150,27 @@ pub fn open(work: &Work<'_>, unit: &Unit, which: WhichRecord, needed: &BTreeSet<
             wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
         }
     }
-    let campaign = work.campaign(unit);
-    let fault = |problems: Vec<Problem>| Fault { says: said(campaign, &problems), problems };
-    let (record, read) = campaign.read(which, &unit.cell, &wanted).map_err(fault)?;
+    let sharing = work.sharing(unit);
+    if let Some(opened) = sharing.and_then(|sharing| sharing.store.open(work, unit, which, &wanted)) {
+        return opened;
+    }
+    let read = match sharing {
+        Some(sharing) => sharing.store.read(which, &wanted),
+        None => work.campaign(unit).read(which, &unit.cell, &wanted),
+    };
+    let (record, read) = read.map_err(|problems| Fault { says: said(work.campaign(unit), &problems), problems })?;
+    opened(work, unit, which, record, read)
+}
+
+/// A record that was read, checked for the section.
+pub fn opened(work: &Work<'_>, unit: &Unit, which: WhichRecord, record: Record, read: ReadFile) -> Result<Opened, Fault> {
+    let fault = |problems: Vec<Problem>| Fault { says: said(work.campaign(unit), &problems), problems };
+    let axis = &work.plan.axis;
+    let time = work.plan.time.as_ref().filter(|time| which.kind != RecordKind::Track && time.column != axis.column);
     let clock = time.map_or(axis.column.as_str(), |time| time.column.as_str());
     let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
     let checked = check_axis(&record, clock, &axis.column, section.as_ref()).map_err(fault)?;
-    let name = campaign.record_name(which).map(ToString::to_string);
+    let name = work.campaign(unit).record_name(which).map(ToString::to_string);
     let of = RecordOf { kind: which.kind.key().into(), section: unit.name.clone(), name };
     let path = qualified(unit.campaign_name.as_deref(), &read.path);
     let file = FileHash { path, sha256: read.sha256, bytes: read.bytes, record: Some(of) };
@@ -162,7 +187,7 @@ pub fn open(work: &Work<'_>, unit: &Unit, which: WhichRecord, needed: &BTreeSet<
         first_row: Some(2),
     });
     let margins = in_time.then_some((checked.before, checked.after));
-    Ok(Opened { columns, along, extent, file, margins })
+    Ok(Opened { columns: Arc::new(columns), along, extent, file, margins, memo: None })
 }
 
 /// Several problems in one line, each with its place unless the text already names it, and with its help.
@@ -212,9 +237,12 @@ impl Opened {
         wanted: &BTreeSet<NodeId>,
         known: &Known<'_>,
         method: Method,
+        keys: Option<&Keys>,
     ) -> Result<Vec<(NodeId, Found)>, String> {
         let mut state = State::new(self, graph, known, method);
-        let levels = state.count(needed);
+        state.memo = self.memo.as_deref().zip(keys);
+        let left = state.recall(needed, wanted);
+        let levels = state.count(left.as_ref().unwrap_or(needed));
         state.run(&levels, wanted, |_| true)?;
         Ok(state.found)
     }
@@ -256,6 +284,8 @@ struct State<'a> {
     /// The part of the section that is evaluated.
     extent: Extent,
     found: Vec<(NodeId, Found)>,
+    /// Where results are kept for other protocols, and under which numbers.
+    memo: Option<(&'a Memo, &'a Keys)>,
 }
 
 impl<'a> State<'a> {
@@ -273,6 +303,7 @@ impl<'a> State<'a> {
             cutter,
             extent: opened.extent,
             found: Vec::new(),
+            memo: None,
         }
     }
 
@@ -297,6 +328,7 @@ impl<'a> State<'a> {
     fn run(&mut self, levels: &[Vec<NodeId>], wanted: &BTreeSet<NodeId>, chosen: impl Fn(NodeId) -> bool) -> Result<(), String> {
         for level in levels {
             let here: Vec<NodeId> = level.iter().copied().filter(|&id| chosen(id)).collect();
+            let before = self.found.len();
             self.filters(&here)?;
             self.reducers(&here)?;
             for &id in &here {
@@ -305,6 +337,7 @@ impl<'a> State<'a> {
                     self.value(id)?;
                 }
             }
+            self.keep(&here, before);
             for &id in &here {
                 if wanted.contains(&id) {
                     if let Some(reason) = &self.failed[id] {
@@ -322,6 +355,53 @@ impl<'a> State<'a> {
 }
 
 impl State<'_> {
+    /// Takes what others have computed of this record already; what is left to compute, where results are shared.
+    fn recall(&mut self, needed: &BTreeSet<NodeId>, wanted: &BTreeSet<NodeId>) -> Option<BTreeSet<NodeId>> {
+        let (memo, keys) = self.memo?;
+        let filters = |id: &&NodeId| matches!(&self.graph.nodes[**id].operation, Operation::Step(spec) if spec.is_filter());
+        memo.count_asked(needed.iter().filter(filters).count());
+        let mut left = BTreeSet::new();
+        let mut seen = BTreeSet::new();
+        let mut open: Vec<NodeId> = wanted.iter().copied().collect();
+        while let Some(id) = open.pop() {
+            if !seen.insert(id) {
+                continue;
+            }
+            match keys[id].and_then(|key| memo.get(key)) {
+                Some(Kept::Signal(signal)) => {
+                    self.values[id] = Some(signal);
+                    if wanted.contains(&id)
+                        && let Ok(samples) = self.samples(id)
+                    {
+                        self.found.push((id, Found::Samples(samples)));
+                    }
+                }
+                Some(Kept::Number(value, samples)) => self.found.push((id, Found::Number(value, samples))),
+                None => {
+                    left.insert(id);
+                    open.extend(self.graph.nodes[id].inputs.iter().filter(|input| needed.contains(input)));
+                }
+            }
+        }
+        Some(left)
+    }
+
+    /// Keeps the results of a level; those before `from` were there already.
+    fn keep(&self, here: &[NodeId], from: usize) {
+        let Some((memo, keys)) = self.memo else { return };
+        let key = |id: NodeId| keys.get(id).copied().flatten();
+        for &id in here {
+            if let (Some(key), Some(signal)) = (key(id), &self.values[id]) {
+                memo.put(key, Kept::Signal(signal.clone()));
+            }
+        }
+        for (id, found) in &self.found[from..] {
+            if let (Some(key), Found::Number(value, samples)) = (key(*id), found) {
+                memo.put(key, Kept::Number(*value, *samples));
+            }
+        }
+    }
+
     /// Frees inputs that no later node needs.
     fn release(&mut self, id: NodeId) {
         for &input in &self.graph.nodes[id].inputs {
@@ -400,6 +480,9 @@ impl State<'_> {
                 Some((_, members)) => members.push((id, samples)),
                 None => groups.push((spec.clone(), vec![(id, samples)])),
             }
+        }
+        if let Some((memo, _)) = self.memo {
+            memo.count_filtered(groups.iter().map(|(_, members)| members.len()).sum());
         }
         for (spec, members) in groups {
             let signals: Vec<&[f64]> = members.iter().map(|(_, samples)| samples.values.as_slice()).collect();

@@ -310,8 +310,9 @@ pub fn one_record(
     let needed = needed(work.graph, wanted, known).map_err(Fault::new)?;
     let opened = open(work, unit, which, &needed)?;
     values.files.push(opened.file.clone());
+    let keys = work.sharing(unit).map(|sharing| sharing.keys);
     let found = opened
-        .evaluate(work.graph, &needed, wanted, known, work.plan.sections.percentiles)
+        .evaluate(work.graph, &needed, wanted, known, work.plan.sections.percentiles, keys)
         .map_err(|says| Fault::new(format!("{}: {says}", opened.file.path)))?;
     note_margins(work, unit, &needed, &opened, values);
     Ok((found, opened))

@@ -80,7 +80,7 @@ fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record
         let known = unit.known(work.facts);
         let needed = needed(work.graph, &wanted, &known)?;
         let opened = open(work, unit, which, &needed).map_err(|fault| fault.says)?;
-        let found = opened.evaluate(work.graph, &needed, &wanted, &known, work.plan.sections.percentiles)?;
+        let found = opened.evaluate(work.graph, &needed, &wanted, &known, work.plan.sections.percentiles, None)?;
         let of = |node: NodeId| {
             found
                 .iter()

@@ -1,0 +1,144 @@
+//! `compare`: protocols side by side over campaigns.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::inputs::{progress_bar, start_jobs};
+use super::output::{Console, Exit, reports};
+use super::places::{REPORT, check_folder};
+use super::protocols::load;
+use super::values::numbers;
+use crate::compare::{Prepared, SIZES, Settings};
+use crate::data::Campaign;
+use crate::disk::SetKind;
+use crate::problem::{Problem, Problems, plain};
+use crate::report::comparison as report;
+use crate::result::comparison::Comparison;
+
+#[derive(Debug, Args)]
+pub struct Compare {
+    /// Folders of the campaigns; each is evaluated by itself.
+    #[arg(required = true, value_name = "CAMPAIGN")]
+    campaigns: Vec<PathBuf>,
+    /// Path of a protocol, or name of a shipped one; repeated for each. With two, every rule that differs is applied alone too.
+    #[arg(long, short, required = true)]
+    protocol: Vec<String>,
+    /// Output folder; created if missing.
+    #[arg(long, short)]
+    out: PathBuf,
+    /// Set a parameter of every protocol that has it.
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Sizes of the disturbances, in standard deviations of the measured signal; `none` for no sensitivities [default: 0.1,0.2,0.4]
+    #[arg(long, value_name = "SIZES")]
+    sizes: Option<String>,
+    /// Write comparison.json and the tables only, without the report.
+    #[arg(long)]
+    no_report: bool,
+    /// Number of records processed in parallel [default: one per core]
+    #[arg(long, short)]
+    jobs: Option<NonZeroUsize>,
+}
+
+impl Compare {
+    pub fn run(self, console: &Console) -> Exit {
+        if let Err(exit) = start_jobs(self.jobs, console) {
+            return exit;
+        }
+        let mut problems = Problems::default();
+        let prepared = self.prepared(&mut problems);
+        console.problems(&problems);
+        let Some(prepared) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let bar = progress_bar(console, prepared.steps());
+        let found = prepared.compare(&|step| {
+            bar.set_message(plain(step));
+            bar.inc(1);
+        });
+        bar.finish_and_clear();
+        self.write(&found, console)
+    }
+
+    fn prepared(&self, problems: &mut Problems) -> Option<Prepared> {
+        let sizes = self.sizes(problems);
+        let set = self.set.iter().filter_map(|set| match set.split_once('=') {
+            Some((name, value)) => Some((name.trim().to_owned(), value.trim().to_owned())),
+            None => {
+                problems.push(Problem::error("set", format!("`--set {set}` has no `=`")).help("write `--set name=value`"));
+                None
+            }
+        });
+        let set = set.collect();
+        let campaigns: Vec<Option<Campaign>> = self.campaigns.iter().map(|folder| Campaign::open(folder, problems)).collect();
+        let families: Vec<_> = self.protocol.iter().map(|name| load(name, problems)).collect();
+        let campaigns: Vec<Campaign> = campaigns.into_iter().collect::<Option<_>>()?;
+        let families = families.into_iter().collect::<Option<_>>()?;
+        for campaign in &campaigns {
+            if let Err(problem) = check_folder(&self.out, REPORT, campaign) {
+                problems.push(problem);
+            }
+        }
+        Prepared::new(families, campaigns, Settings { sizes: sizes?, set }, problems)
+    }
+
+    fn sizes(&self, problems: &mut Problems) -> Option<Vec<f64>> {
+        let Some(text) = self.sizes.as_deref() else { return Some(SIZES.to_vec()) };
+        if text == "none" {
+            return Some(Vec::new());
+        }
+        let wrong = |says: String| Problem::error("sizes", format!("`--sizes {text}`: {says}")).help("for example `--sizes 0.1,0.2,0.4`");
+        match numbers(text) {
+            Ok(sizes) if sizes.iter().all(|size| *size > 0.0 && *size <= 1.0) => Some(sizes),
+            Ok(_) => {
+                problems.push(wrong("each size must be above 0 and at most 1".into()));
+                None
+            }
+            Err(says) => {
+                problems.push(wrong(says));
+                None
+            }
+        }
+    }
+
+    /// Writes all files or none.
+    fn write(&self, found: &Comparison, console: &Console) -> Exit {
+        let files = match self.files(found) {
+            Ok(files) => files,
+            Err(problems) => {
+                console.problems(&problems);
+                return Exit::Unfinished;
+            }
+        };
+        if let Err(exit) = console.write_all(SetKind::Report, &self.out, &files) {
+            return exit;
+        }
+        if !console.quiet {
+            let cells: Vec<String> = found
+                .verdicts
+                .iter()
+                .map(|cell| {
+                    let why = cell.decided_by.clone().or_else(|| cell.reasons.first().cloned()).unwrap_or_default();
+                    format!("  {}, {}: {} ({why})\n", cell.campaign, cell.protocol, cell.verdict)
+                })
+                .collect();
+            let document = report::document(found);
+            console.print(&format!("{}\n\n{}\n{}\n{}", document.title, document.headline.word, document.sentence, cells.concat()));
+            console.say(&format!("written: {}", self.out.display()));
+        }
+        Exit::Done
+    }
+
+    fn files(&self, found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+        let tables = report::tables::tables(found).map_err(|error| Problems(vec![Problem::error("table", error.to_string())]))?;
+        let mut files: Vec<(String, Vec<u8>)> = tables.into_iter().map(|(name, bytes)| (format!("tables/{name}"), bytes)).collect();
+        let json = report::json(found);
+        if self.no_report {
+            files.push(("comparison.json".into(), json.into_bytes()));
+            return Ok(files);
+        }
+        let (data, figures) = (report::document(found), report::figures(found));
+        files.extend(reports(("comparison.json", "Every number of this comparison"), json, &data, &figures)?);
+        Ok(files)
+    }
+}

@@ -1,0 +1,87 @@
+//! Agreement of protocols and of metrics, section by section.
+
+use super::campaign::Found;
+use crate::metrics::rank::spearman;
+use crate::result::comparison::{Agreement, Cell, Score};
+
+/// Every pair of protocols, then every pair of metrics of each protocol.
+pub fn agreement(names: &[&str], found: &[Found]) -> Vec<Agreement> {
+    let scores: Vec<&Score> = found.iter().flat_map(|found| &found.scores).collect();
+    let of = |protocol: &str, metric: Option<&str>| -> Vec<&Score> {
+        scores.iter().copied().filter(|score| score.protocol == protocol && score.metric.as_deref() == metric).collect()
+    };
+    let mut all = Vec::new();
+    for (at, a) in names.iter().enumerate() {
+        for (later, b) in names.iter().enumerate().skip(at + 1) {
+            let pair = pair(&of(a, None), &of(b, None));
+            let verdicts = Some(verdicts(found, at, later));
+            all.push(Agreement { of: "protocols".into(), a: (*a).into(), b: (*b).into(), verdicts, ..pair });
+        }
+    }
+    for protocol in names {
+        let mut metrics: Vec<&str> = Vec::new();
+        for metric in scores.iter().filter(|score| score.protocol == *protocol).filter_map(|score| score.metric.as_deref()) {
+            if !metrics.contains(&metric) {
+                metrics.push(metric);
+            }
+        }
+        for (at, a) in metrics.iter().enumerate() {
+            for b in &metrics[at + 1..] {
+                let pair = pair(&of(protocol, Some(a)), &of(protocol, Some(b)));
+                let protocol = Some((*protocol).to_string());
+                all.push(Agreement { of: "metrics".into(), protocol, a: (*a).into(), b: (*b).into(), ..pair });
+            }
+        }
+    }
+    all
+}
+
+/// Two lists of scores by section.
+fn pair(a: &[&Score], b: &[&Score]) -> Agreement {
+    let mut scores = Vec::new();
+    let mut contingency = [[0; 2]; 2];
+    for one in a {
+        let same = |other: &&&Score| other.campaign == one.campaign && other.section == one.section;
+        let Some(other) = b.iter().find(same) else { continue };
+        scores.push((one.score, other.score));
+        contingency[usize::from(!meets(one))][usize::from(!meets(other))] += 1;
+    }
+    let limited = a.iter().chain(b).all(|score| score.limited);
+    let spearman = spearman(&scores);
+    let reason = match scores.len() {
+        _ if spearman.is_some() => None,
+        0 => Some("no section has a score of both".to_string()),
+        1 | 2 => Some("fewer than three sections have a score of both".to_string()),
+        _ => Some("all scores of one are equal".to_string()),
+    };
+    Agreement {
+        of: String::new(),
+        protocol: None,
+        a: String::new(),
+        b: String::new(),
+        sections: scores.len(),
+        contingency: limited.then_some(contingency),
+        spearman,
+        reason,
+        verdicts: None,
+    }
+}
+
+/// A value equal to its limit meets it; this much room is for the rounding of units and sums, as in a verdict.
+const EQUAL: f64 = 1e-12;
+
+fn meets(score: &Score) -> bool {
+    score.score <= 1.0 + EQUAL
+}
+
+/// Campaigns by verdict: holds, does not hold, not assessable.
+fn verdicts(found: &[Found], a: usize, b: usize) -> [[usize; 3]; 3] {
+    let place = |cell: &Cell| cell.holds.map_or(2, |holds| usize::from(!holds));
+    let mut counts = [[0; 3]; 3];
+    for found in found {
+        if let (Some(a), Some(b)) = (found.judgements.get(a), found.judgements.get(b)) {
+            counts[place(&a.cell)][place(&b.cell)] += 1;
+        }
+    }
+    counts
+}

@@ -1,0 +1,139 @@
+//! What a metric can be applied to, found by trying: one quantity, one section, doubled and exchanged records.
+
+use super::campaign::{Base, Found};
+use super::metric;
+use crate::check::plan::Plan;
+use crate::result::comparison::{Applicability, Tried};
+use crate::result::{PairValue, QuantityResult, Verdict};
+use crate::run::{Evaluated, Judged};
+
+/// Values are the same, or twice as large, to this share of the largest: the rounding of filters over doubled records.
+const SAME: f64 = 1e-9;
+
+/// Tries every metric of a protocol.
+pub fn tried(
+    base: &Base<'_>,
+    doubled: Option<&Evaluated>,
+    exchanged: Option<&Evaluated>,
+    (protocol, campaign): (&str, &str),
+) -> Vec<Applicability> {
+    let plan = &base.compiled.plan;
+    let judge = |evaluated: &Evaluated| evaluated.judge(plan, &base.compiled.graph);
+    let (doubled, exchanged) = (doubled.map(judge), exchanged.map(judge));
+    let mut found: Vec<Applicability> = metric::all(plan)
+        .into_iter()
+        .map(|(name, limited)| {
+            let own = quantities(plan, &name);
+            Applicability {
+                protocol: protocol.into(),
+                quantities: own.len(),
+                scale: doubled.as_ref().map(|judged| pairs(base.judged, judged, &own)).as_deref().and_then(scale).map(str::to_string),
+                symmetric: exchanged.as_ref().map(|judged| pairs(base.judged, judged, &own)).as_deref().and_then(symmetric),
+                campaign: Some(campaign.into()),
+                metric: if limited { name } else { name + WITHOUT },
+                number_of_one_quantity: Tried::default(),
+                number_of_one_section: Tried::default(),
+                verdict_of_one_quantity: Tried::default(),
+                verdict_of_one_section: Tried::default(),
+            }
+        })
+        .collect();
+    for at in 0..plan.quantities.len() {
+        if base.judged.quantities[at].values.is_empty() {
+            continue;
+        }
+        let judged = judge(&base.evaluated.with_quantity(at));
+        let numbers = numbers(plan, &judged, at);
+        for one in &mut found {
+            if quantities(plan, one.metric.trim_end_matches(WITHOUT)).contains(&at) {
+                one.number_of_one_quantity.add(numbers.contains(&one.metric));
+                one.verdict_of_one_quantity.add(judged.verdict != Verdict::NotAssessable);
+            }
+        }
+    }
+    let used: Vec<&str> = base.evaluated.sections().filter(|(_, fault)| fault.is_none()).map(|(name, _)| name).collect();
+    for section in used {
+        let judged = judge(&base.evaluated.with_sections(&|name| name == section));
+        let numbers: Vec<String> = (0..plan.quantities.len()).flat_map(|at| numbers(plan, &judged, at)).collect();
+        for one in &mut found {
+            let own = quantities(plan, one.metric.trim_end_matches(WITHOUT));
+            // A section that a quantity leaves out says nothing about the metric.
+            if own.iter().any(|&at| !judged.quantities[at].values.is_empty()) {
+                one.number_of_one_section.add(numbers.contains(&one.metric));
+                one.verdict_of_one_section.add(judged.verdict != Verdict::NotAssessable);
+            }
+        }
+    }
+    found
+}
+
+/// Behind the name of a metric whose quantities have no limit.
+const WITHOUT: &str = " (no limit)";
+
+/// The quantities with a metric.
+fn quantities(plan: &Plan, name: &str) -> Vec<usize> {
+    let has = |at: &usize| {
+        let quantity = &plan.quantities[*at];
+        let limits = quantity.limits.iter().any(|limit| metric::name(quantity, Some(limit)) == name);
+        limits || quantity.limits.is_empty() && metric::name(quantity, None) == name
+    };
+    (0..plan.quantities.len()).filter(has).collect()
+}
+
+/// The metrics that have a number of a quantity.
+fn numbers(plan: &Plan, judged: &Judged, at: usize) -> Vec<String> {
+    let quantity = &judged.quantities[at];
+    let statistics = quantity.statistics.iter().filter(|statistic| statistic.value.is_some());
+    let mut found: Vec<String> = statistics.map(|statistic| metric::of(plan, at, statistic)).collect();
+    if quantity.statistics.is_empty() && !quantity.values.is_empty() {
+        found.push(metric::name(&plan.quantities[at], None) + WITHOUT);
+    }
+    found
+}
+
+/// Values of some quantities before and in a trial.
+type Pairs<'a> = Vec<(&'a PairValue, &'a PairValue)>;
+
+fn pairs<'a>(before: &'a Judged, now: &'a Judged, quantities: &[usize]) -> Pairs<'a> {
+    let same = |(a, b): &(&PairValue, &PairValue)| a.section == b.section && a.signal == b.signal && a.taken == b.taken;
+    let of = |(a, b): (&'a QuantityResult, &'a QuantityResult)| a.values.iter().zip(&b.values).filter(same).collect::<Vec<_>>();
+    quantities.iter().flat_map(|&at| of((&before.quantities[at], &now.quantities[at]))).collect()
+}
+
+/// Whether values stay (`relative`) or double (`absolute`) with the records. Differences of values that do not double themselves, such as
+/// those of a ratio of two channels, say nothing.
+fn scale(pairs: &[(&PairValue, &PairValue)]) -> Option<&'static str> {
+    let says = |(before, now): &&(&PairValue, &PairValue)| match (before.measured.or(before.simulated), now.measured.or(now.simulated)) {
+        (Some(before), Some(now)) => (now - before).abs() > SAME * before.abs(),
+        _ => true,
+    };
+    let told: Vec<(f64, f64)> = pairs.iter().filter(says).map(|(before, now)| (before.difference, now.difference)).collect();
+    let largest = told.iter().map(|(before, now)| before.abs().max(now.abs())).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return None;
+    }
+    let all = |factor: f64| told.iter().all(|(before, now)| (now - factor * before).abs() <= SAME * largest);
+    Some(match (all(1.0), all(2.0)) {
+        (true, _) => "relative",
+        (_, true) => "absolute",
+        _ => "neither",
+    })
+}
+
+/// Whether magnitudes stay the same; `None` where there is nothing to compare.
+fn symmetric(pairs: &[(&PairValue, &PairValue)]) -> Option<bool> {
+    let largest = pairs.iter().map(|(before, now)| before.difference.abs().max(now.difference.abs())).fold(0.0, f64::max);
+    let same = |(before, now): &(&PairValue, &PairValue)| (before.difference.abs() - now.difference.abs()).abs() <= SAME * largest;
+    (!pairs.is_empty()).then(|| pairs.iter().all(same))
+}
+
+/// For each protocol the first campaign on which it has a verdict, else the first on which it can be evaluated.
+pub fn put_together(found: &[Found]) -> Vec<Applicability> {
+    let protocols = found.first().map_or(0, |found| found.judgements.len());
+    let of_protocol = |at: usize| {
+        let assessable = found.iter().find(|found| found.judgements[at].cell.holds.is_some());
+        let any = || found.iter().find(|found| !found.applicability[at].is_empty());
+        assessable.or_else(any).map_or_else(Vec::new, |found| found.applicability[at].clone())
+    };
+    (0..protocols).flat_map(of_protocol).collect()
+}

@@ -1,0 +1,92 @@
+//! The metrics of a protocol: limits about the same kind of number.
+
+use crate::check::plan::{EstimateKind, Evaluation, Limit, Plan, Quantity, Records};
+use crate::result::{QuantityResult, StatisticResult};
+use crate::run::Judged;
+
+/// The metric of a limit, or of a quantity without one.
+pub fn name(quantity: &Quantity, limit: Option<&Limit>) -> String {
+    let title = limit.map(|limit| limit.estimate.title.as_str());
+    let each = limit.is_some_and(|limit| matches!(limit.estimate.kind, EstimateKind::Each));
+    named(quantity, title, each)
+}
+
+fn named(quantity: &Quantity, title: Option<&str>, each: bool) -> String {
+    let title = title.unwrap_or("value");
+    match quantity.evaluation.as_ref() {
+        Evaluation::Values { records: Records::Of(of), .. } => format!("{title} of {} values", of.side.in_words()),
+        Evaluation::Values { .. } if quantity.evaluation.of_repeats() => format!("{title} of repeats"),
+        Evaluation::Values { records: Records::Spread { .. }, .. } => format!("{title} of the spread"),
+        Evaluation::Values { .. } if each => "each difference".to_string(),
+        Evaluation::Values { .. } => title.to_string(),
+        Evaluation::Metric { .. } | Evaluation::Combined { .. } if each || title == "value" => quantity.words.comparison.clone(),
+        Evaluation::Metric { .. } | Evaluation::Combined { .. } => format!("{}, {title}", quantity.words.comparison),
+    }
+}
+
+/// The metric of a result.
+pub fn of(plan: &Plan, quantity: usize, statistic: &StatisticResult) -> String {
+    plan.quantities.get(quantity).map_or_else(String::new, |quantity| named(quantity, Some(&statistic.title), statistic.name == "each"))
+}
+
+/// The metrics of a protocol in the order of its quantities, and whether they have limits.
+pub fn all(plan: &Plan) -> Vec<(String, bool)> {
+    let mut found: Vec<(String, bool)> = Vec::new();
+    for quantity in &plan.quantities {
+        let limits = quantity.limits.iter().map(|limit| (name(quantity, Some(limit)), true));
+        let own = quantity.limits.is_empty().then(|| (name(quantity, None), false));
+        for metric in limits.chain(own) {
+            if !found.contains(&metric) {
+                found.push(metric);
+            }
+        }
+    }
+    found
+}
+
+pub fn names(plan: &Plan) -> Vec<String> {
+    let mut names: Vec<String> = all(plan).into_iter().map(|(name, _)| name).collect();
+    names.dedup();
+    names
+}
+
+/// A number of a metric: what its change is measured on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    pub metric: String,
+    pub limited: bool,
+    /// The limit that it is of, among those of the protocol.
+    pub of: String,
+    /// With its sign where that has a meaning.
+    pub value: f64,
+}
+
+/// The numbers of every metric.
+pub fn numbers(plan: &Plan, judged: &Judged) -> Vec<Number> {
+    let mut found = Vec::new();
+    for (at, quantity) in judged.quantities.iter().enumerate() {
+        for statistic in &quantity.statistics {
+            let Some(ratio) = signed(statistic) else { continue };
+            let limit = format!("{} {} {}", quantity.id, statistic.title, statistic.scope);
+            found.push(Number { metric: of(plan, at, statistic), limited: true, of: limit, value: ratio });
+        }
+        if quantity.statistics.is_empty()
+            && let (Some(value), Some(rule)) = (mean(quantity), plan.quantities.get(at))
+        {
+            found.push(Number { metric: name(rule, None), limited: false, of: quantity.id.clone(), value });
+        }
+    }
+    found
+}
+
+fn signed(statistic: &StatisticResult) -> Option<f64> {
+    let ratio = statistic.normalised?;
+    // The worst of several values may be of either sign.
+    let sign = if statistic.name != "each" && statistic.value? < 0.0 { -1.0 } else { 1.0 };
+    Some(sign * ratio)
+}
+
+fn mean(quantity: &QuantityResult) -> Option<f64> {
+    let sum: f64 = quantity.values.iter().map(|value| value.difference).sum();
+    (!quantity.values.is_empty()).then(|| sum / quantity.values.len() as f64)
+}

@@ -1,0 +1,53 @@
+//! Sensitivity of metrics to disturbances.
+
+use super::{metric, table, three};
+use crate::report::study::{Chapter, Head, Item};
+use crate::result::comparison::{Comparison, Sensitivity};
+
+/// A curve: its name, and its values by size.
+pub type Curve = (String, Vec<(f64, f64)>);
+
+/// Each disturbance with the curves of the metrics that have limits, in their order.
+pub fn disturbances(found: &Comparison) -> Vec<(&str, Vec<Curve>)> {
+    let mut all: Vec<(&str, Vec<Curve>)> = Vec::new();
+    for one in found.sensitivity.iter().filter(|one| one.limited) {
+        let points = one.sizes.iter().zip(&one.values).filter_map(|(size, value)| Some((*size, (*value)?))).collect();
+        let curve = (metric(one, found), points);
+        match all.iter_mut().find(|(name, _)| *name == one.disturbance) {
+            Some((_, curves)) => curves.push(curve),
+            None => all.push((&one.disturbance, vec![curve])),
+        }
+    }
+    all.retain(|(_, curves)| curves.iter().any(|(_, points)| !points.is_empty()));
+    all
+}
+
+pub fn chapter(found: &Comparison) -> Option<Chapter> {
+    let first = found.sensitivity.first()?;
+    let mut items = vec![Item::text(
+        "A disturbance of size x changes the measured samples of a section by x times their standard deviation, as an rms over the section, before any filter. This holds for an offset, a gain, a shift in time and white noise, so that the same size is the same change. The choice of sections of size x leaves out the share x of the sections, drawn at random. The sensitivity is the root mean square of the change of value / limit, over all requirements of the metric and all campaigns.",
+    )];
+    for (at, (name, _)) in disturbances(found).iter().enumerate() {
+        items.push(Item::figure(
+            format!("sensitivity-{at}"),
+            format!("Sensitivity to {name}: rms change of value / limit over the size of the disturbance"),
+            format!("Curves of the sensitivity to {name}; the numbers are in the table."),
+        ));
+    }
+    let mut head = vec![Head::text("Metric"), Head::short("Disturbance")];
+    head.extend(first.sizes.iter().map(|size| Head::number(&format!("Size {size}"))));
+    head.push(Head::number("Verdicts changed"));
+    let row = |one: &Sensitivity| {
+        let mut row = vec![metric(one, found), one.disturbance.clone()];
+        row.extend(one.values.iter().map(|value| three(*value)));
+        let changed: Vec<String> = one.verdicts_changed.iter().map(ToString::to_string).collect();
+        row.push(format!("{} of {}", changed.join(", "), one.verdicts));
+        row
+    };
+    items.push(table(
+        "Sensitivity by size; at the end, the number of verdicts of the protocol that change at each size",
+        head,
+        found.sensitivity.iter().filter(|one| one.limited).map(row).collect(),
+    ));
+    Some(Chapter { id: "sensitivity".into(), title: "Sensitivity".into(), items })
+}
