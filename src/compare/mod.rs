@@ -24,7 +24,7 @@
 //!
 //! **Disturbance of size x.** It changes the measured samples of a section by x times their standard deviation, as an rms over the section,
 //! before any filter: an offset of x standard deviations; a gain, and white noise, of that rms; for a shift in time, which all channels
-//! share, the rms is over the channels. `choice of sections` of size x leaves out the share x of the sections, drawn [`sensitivity::DRAWS`]
+//! share, the rms is over the channels. `choice of sections` of size x leaves out the share x of the sections, drawn `sensitivity::DRAWS`
 //! times. The sensitivity is the root mean square of the change of a metric's numbers. Sections that are not used stay unused, and
 //! plausibility rules are not asked again.
 //!

@@ -73,7 +73,7 @@ pub fn delayed(values: &[f64], samples: f64) -> Vec<f64> {
     (0..values.len()).map(|row| at(row, back) * (1.0 - part) + at(row, back + 1) * part).collect()
 }
 
-/// The smallest delay [samples] that changes signals by a size: the root mean square over samples and signals of the change divided by the
+/// The smallest delay, in samples, that changes signals by a size: the root mean square over samples and signals of the change divided by the
 /// standard deviation of each signal. Each signal is given with this deviation.
 ///
 /// `None` where no delay up to half of the range does.

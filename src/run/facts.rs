@@ -24,7 +24,7 @@ pub struct Vehicle {
     pub assumed: Vec<bool>,
 }
 
-/// The vehicles of a run, to which [`Unit::vehicle`] refers; at least one.
+/// The vehicles of a run, to which `Unit::vehicle` refers; at least one.
 #[derive(Clone, Debug)]
 pub struct Facts {
     pub vehicles: Vec<Vehicle>,

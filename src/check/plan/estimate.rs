@@ -122,7 +122,7 @@ pub enum Taking {
         /// What rows or sections count by, if not all alike.
         by: Option<Expr>,
     },
-    /// A statistic of all rows of another quantity, an index into [`Plan::quantities`].
+    /// A statistic of all rows of another quantity, an index into [`Plan::quantities`](super::Plan::quantities).
     Other {
         quantity: usize,
         id: String,
@@ -192,6 +192,6 @@ pub enum Key {
     /// The record, where a side has several.
     Record,
     Place(String),
-    /// Index into [`Plan::columns`].
+    /// Index into [`Plan::columns`](super::Plan::columns).
     Column(usize),
 }

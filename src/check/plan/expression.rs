@@ -41,9 +41,9 @@ pub enum Type {
 #[derive(Clone, Debug)]
 pub enum Kind {
     Constant(Scalar),
-    /// Index into [`Plan::vehicle`].
+    /// Index into [`Plan::vehicle`](super::Plan::vehicle).
     Vehicle(usize),
-    /// Index into [`Plan::columns`].
+    /// Index into [`Plan::columns`](super::Plan::columns).
     Column(usize),
     /// Start, end or length of the section on the axis.
     Start,

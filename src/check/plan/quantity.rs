@@ -152,7 +152,7 @@ pub enum Records {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chosen {
     pub side: Side,
-    /// Index into [`Plan::records`].
+    /// Index into [`Plan::records`](super::Plan::records).
     pub record: Option<usize>,
 }
 

@@ -112,7 +112,7 @@ pub struct Domain {
     pub name: String,
     pub title: String,
     pub over: Vec<Coordinate>,
-    /// Indices into [`Plan::columns`]: sections of other words are of another hull.
+    /// Indices into [`Plan::columns`](super::Plan::columns): sections of other words are of another hull.
     pub each: Vec<usize>,
     /// Either a note, or not assessable.
     pub otherwise: OnFault,

@@ -8,7 +8,7 @@ pub enum Independent {
     #[default]
     Site,
     Section,
-    /// Index into [`Plan::columns`].
+    /// Index into [`Plan::columns`](super::Plan::columns).
     Column(usize),
 }
 
@@ -48,7 +48,7 @@ pub enum Decision {
     Person(String),
 }
 
-/// A condition on other verdicts, given by their index in [`Plan::verdicts`].
+/// A condition on other verdicts, given by their index in [`Plan::verdicts`](super::Plan::verdicts).
 #[derive(Clone, Debug)]
 pub enum Over {
     Holds(usize),
