@@ -323,7 +323,7 @@ impl Checker<'_> {
     fn channel_at(&mut self, name: &str, channel: &Channel, span: &Span, at: &Assignment) -> Option<Signal> {
         let column = self.fill(name, &channel.column, &channel.places, &channel.span, span, at)?;
         Some(Signal {
-            kind: SignalKind::Column { column, channel: name.to_string() },
+            kind: SignalKind::Column { column, channel: name.to_string(), unit: channel.unit.clone() },
             dimension: channel.unit.dimension,
             track: channel.track,
             span: span.clone(),

@@ -12,6 +12,7 @@ use crate::catalog::entries;
 use crate::check::{self, Overrides, plan::Plan};
 use crate::graph;
 use crate::problem::{Problem, Problems};
+use crate::run::needs;
 use crate::syntax::document::Document;
 use crate::units::SYMBOLS;
 
@@ -38,13 +39,19 @@ enum Stage {
     Plan,
     /// The processing graph.
     Graph,
+    /// The channels, section data and vehicle data that a campaign must have.
+    Needs,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum Format {
     Text,
     Json,
+    /// Of the needs only.
+    Csv,
+    /// Of the graph only.
     Dot,
+    /// Of the graph only.
     Svg,
 }
 
@@ -70,6 +77,9 @@ impl Explain {
         if stage != Stage::Graph && matches!(self.format, Format::Dot | Format::Svg) {
             return Err(console.fail(Problem::error("format", "only the graph can be drawn: add `--stage graph`"), Exit::Wrong));
         }
+        if stage != Stage::Needs && self.format == Format::Csv {
+            return Err(console.fail(Problem::error("format", "only the needs are a table: add `--stage needs`"), Exit::Wrong));
+        }
         let mut problems = Problems::default();
         let family = load(name, &mut problems);
         // The AST is printed as written; rules are checked for the later stages only.
@@ -85,10 +95,18 @@ impl Explain {
             (Stage::Graph, format) => {
                 let graph = graph::from_plan(&plan);
                 match format {
-                    Format::Text => graph::text(&graph),
+                    Format::Text | Format::Csv => graph::text(&graph),
                     Format::Json => pretty(&graph::json(&graph)),
                     Format::Dot => graph::dot(&graph),
                     Format::Svg => graph::svg(&graph),
+                }
+            }
+            (Stage::Needs, format) => {
+                let needs = needs::needs(&plan, &graph::from_plan(&plan));
+                match format {
+                    Format::Json => pretty(&super::needs::json(&plan, &needs)),
+                    Format::Csv => super::needs::csv(&needs),
+                    _ => super::needs::text(&plan, &needs),
                 }
             }
             (_, Format::Json) => pretty(&plan_json(&plan)),

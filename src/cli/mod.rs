@@ -7,6 +7,7 @@ mod diagnose;
 mod effects;
 mod explain;
 mod inputs;
+mod needs;
 mod output;
 mod places;
 mod protocols;
@@ -120,9 +121,9 @@ enum Command {
         #[arg(long, short)]
         output: Option<PathBuf>,
     },
-    /// Show a protocol at any stage of its processing; without a protocol, list the functions of the language.
+    /// Show a protocol at any stage of its processing, or what it needs; without a protocol, list the functions of the language.
     #[command(
-        after_help = "Example:\n  fishplate explain en14363-2016-annex-t --stage graph --format svg -o graph.svg\n  fishplate explain"
+        after_help = "Example:\n  fishplate explain en14363-2016-annex-t --stage graph --format svg -o graph.svg\n  fishplate explain en14363-2016-annex-t --stage needs --format csv -o needs.csv\n  fishplate explain"
     )]
     Explain(explain::Explain),
     /// Show the differences in meaning between two protocols, rule by rule.

@@ -82,7 +82,7 @@ impl Builder {
     fn signal(&mut self, signal: &Signal) -> NodeId {
         let (dimension, from) = (signal.dimension, &signal.span);
         match &signal.kind {
-            SignalKind::Column { column, channel } => {
+            SignalKind::Column { column, channel, .. } => {
                 let record = if signal.track { "track" } else { "record" };
                 self.add(
                     Operation::Read { column: column.clone() },

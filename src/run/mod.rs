@@ -14,6 +14,7 @@ mod judge;
 mod limits;
 mod margins;
 mod minima;
+pub mod needs;
 mod plausibility;
 pub mod pool;
 mod record;

@@ -233,7 +233,7 @@ fn wanted(work: &Work<'_>, unit: &Unit, known: &Known<'_>, active: &Active, shif
 }
 
 /// Nodes that one position of a quantity needs.
-fn wanted_of(quantity: &Quantity, signal: &SignalNodes, wanted: &mut BTreeSet<NodeId>) {
+pub(super) fn wanted_of(quantity: &Quantity, signal: &SignalNodes, wanted: &mut BTreeSet<NodeId>) {
     match quantity.evaluation.as_ref() {
         Evaluation::Values { .. } => wanted.extend(signal.values.iter().flat_map(|value| value.inputs.iter().flat_map(InputNode::nodes))),
         Evaluation::Combined { .. } => wanted.extend(signal.inputs.iter().flat_map(InputNode::nodes)),

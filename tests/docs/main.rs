@@ -109,6 +109,16 @@ fn protocols_check() {
     assert!(count > 10, "{count} protocols were checked");
 }
 
+/// The steps of the guide, one after the other, are the file with which its commands run.
+#[test]
+fn the_guide_is_one_file() {
+    let guide = pages().into_iter().find(|page| page.name().ends_with("write-your-own.md")).expect("the guide");
+    let (whole, steps): (Vec<Block>, Vec<Block>) = guide.blocks().into_iter().filter(is_fp).partition(|block| file_of(block).is_some());
+    let steps: Vec<String> = steps.into_iter().map(|block| block.text).collect();
+    assert_eq!((whole.len(), steps.len()), (1, 5));
+    assert_eq!(whole[0].text, steps.join("\n"));
+}
+
 #[track_caller]
 fn excerpt(at: &str, text: &str, path: &str) {
     let whole = fs::read_to_string(root().join(path)).expect("a readable file");

@@ -3,7 +3,7 @@
 use super::{Expr, Operator, Side, Step};
 use crate::catalog::{Function, Reducer};
 use crate::source::Span;
-use crate::units::Dimension;
+use crate::units::{Dimension, Unit};
 
 /// A signal expression: how the signal of one position is computed from channels.
 #[derive(Clone, Debug)]
@@ -21,6 +21,8 @@ pub enum SignalKind {
     Column {
         column: String,
         channel: String,
+        /// The unit that the protocol declares.
+        unit: Unit,
     },
     /// A number that is constant along the record.
     Scalar(Expr),

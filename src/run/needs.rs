@@ -1,0 +1,412 @@
+//! What a run reads: columns of records and of the table of sections, vehicle data, and the rules that need each of them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::facts::trimmed;
+use super::section::wanted_of;
+use crate::check::plan::{
+    AxisOperation, Datum, DatumKind, Estimate, EstimateKind, Evaluation, Expr, Independent, Input, Key, Kind, Limit, OfGroup, Plan,
+    Quantity, Records, Scalar, Scope, Side, Signal, SignalKind, Taking, Test, Valued,
+};
+use crate::graph::{Graph, InputNode, NodeId, Operation};
+use crate::units::Unit;
+
+#[derive(Clone, Debug, Default)]
+pub struct Needs {
+    pub channels: Vec<ChannelNeed>,
+    /// Columns of the table of sections; none where whole records are evaluated.
+    pub sections: Vec<DatumNeed>,
+    pub vehicle: Vec<DatumNeed>,
+}
+
+/// Who needs something.
+#[derive(Clone, Debug, Default)]
+pub struct Users {
+    pub quantities: Vec<String>,
+    /// Other rules: `zone 1`, `check full_curve`.
+    pub rules: Vec<String>,
+}
+
+/// A column of the records.
+#[derive(Clone, Debug)]
+pub struct ChannelNeed {
+    /// `simulated`, `measured` or `track`.
+    pub record: &'static str,
+    pub column: String,
+    /// The channel of the protocol; `None` for an axis that is no channel.
+    pub channel: Option<String>,
+    pub unit: String,
+    /// Whether a number depends on it. Otherwise a rule looks at it only where it was recorded.
+    pub required: bool,
+    pub users: Users,
+}
+
+/// A column of the table of sections, or a value of the vehicle file.
+#[derive(Clone, Debug)]
+pub struct DatumNeed {
+    pub key: String,
+    pub title: String,
+    /// The unit of a number.
+    pub unit: Option<String>,
+    /// The possible words.
+    pub words: Vec<String>,
+    pub range: Option<String>,
+    pub default: Option<String>,
+    pub required: bool,
+    pub users: Users,
+}
+
+/// Name of the records of the track.
+const TRACK: &str = "track";
+
+pub fn needs(plan: &Plan, graph: &Graph) -> Needs {
+    let [columns, vehicle] = data_users(plan);
+    let mut sections = Vec::new();
+    if !plan.sections.whole_records {
+        let given = |key: &str, title: &str, unit: Option<&Unit>| DatumNeed {
+            key: key.into(),
+            title: title.into(),
+            unit: unit.map(|unit| unit.text.clone()),
+            words: Vec::new(),
+            range: None,
+            default: None,
+            required: true,
+            users: Users { quantities: Vec::new(), rules: vec!["sections".into()] },
+        };
+        sections.push(given("section", "Name of the section and of its records", None));
+        sections.push(given("start", "Start of the section", Some(&plan.axis.unit)));
+        sections.push(given("end", "End of the section", Some(&plan.axis.unit)));
+        let own = plan.columns.iter().zip(columns).filter(|(datum, _)| datum.kind != DatumKind::Campaign);
+        sections.extend(own.map(|(datum, users)| datum_need(datum, users)));
+    }
+    let vehicle = plan.vehicle.iter().zip(vehicle).map(|(datum, users)| datum_need(datum, users)).collect();
+    Needs { channels: channels(plan, graph), sections, vehicle }
+}
+
+fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
+    let unit = if let DatumKind::Number(unit) = &datum.kind { Some(unit) } else { None };
+    let words = match &datum.kind {
+        DatumKind::Words(words) => words.clone(),
+        DatumKind::Flag => vec!["true".into(), "false".into()],
+        _ => Vec::new(),
+    };
+    let default = datum.default.as_ref().map(|default| match default {
+        Scalar::Number(value) => unit.map_or_else(|| trimmed(*value), |unit| trimmed(unit.from_si(*value)) + &unit.suffix()),
+        Scalar::Word(word) => word.clone(),
+        Scalar::Flag(flag) => flag.to_string(),
+    });
+    let range = datum.range.as_ref().map(|range| range.words.clone());
+    let default = default.or_else(|| datum.may_be_absent.then(|| super::facts::NOT_STATED.to_string()));
+    DatumNeed {
+        key: datum.key.clone(),
+        title: datum.title.clone(),
+        unit: unit.map(|unit| unit.text.clone()),
+        words,
+        range,
+        required: default.is_none(),
+        default,
+        users,
+    }
+}
+
+/// By record and column: whether a number depends on it, and its users. In the order of the records and of the protocol.
+type Read = BTreeMap<(usize, usize), (bool, Users)>;
+
+fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
+    let declared = declared(plan);
+    let mut names: Vec<String> = Vec::new();
+    let mut read = Read::new();
+    let number = |names: &mut Vec<String>, column: &str| {
+        names.iter().position(|known| known == column).unwrap_or_else(|| {
+            names.push(column.to_string());
+            names.len() - 1
+        })
+    };
+    // Time and axis stand first; the track record needs no time.
+    let axes: Vec<_> = plan.time.iter().chain([&plan.axis]).collect();
+    let axes_at: Vec<usize> = axes.iter().map(|axis| number(&mut names, &axis.column)).collect();
+    let sides =
+        |reads: &dyn Fn(Side) -> bool| (0..).zip(Side::ALL).filter(|(_, side)| reads(*side)).map(|(at, _)| at).collect::<Vec<usize>>();
+    let all = sides(&|side| plan.reads(side));
+    for &side in &all {
+        axes_at
+            .iter()
+            .for_each(|&at| drop(read.insert((side, at), (true, Users { quantities: Vec::new(), rules: vec!["records".into()] }))));
+    }
+    let mut add = |nodes: BTreeSet<NodeId>, records: &[usize], user: &str, is_quantity: bool, required: bool| {
+        for (column, of_track) in reads(graph, nodes) {
+            let at = number(&mut names, &column);
+            let of: &[usize] = if of_track { &[Side::ALL.len()] } else { records };
+            for &record in of {
+                let (is_required, users) = read.entry((record, at)).or_default();
+                *is_required |= required && !of_track;
+                let list = if is_quantity { &mut users.quantities } else { &mut users.rules };
+                push(list, user);
+            }
+        }
+    };
+    for (quantity, nodes) in plan.quantities.iter().zip(&graph.quantities) {
+        let mut wanted = BTreeSet::new();
+        nodes.signals.iter().for_each(|signal| wanted_of(quantity, signal, &mut wanted));
+        add(wanted, &sides(&|side| quantity.evaluation.reads(side)), &quantity.id, true, true);
+    }
+    let nodes_of = |inputs: &[InputNode]| inputs.iter().flat_map(InputNode::nodes).collect::<BTreeSet<_>>();
+    for (check, inputs) in plan.checks.iter().zip(&graph.checks) {
+        add(nodes_of(inputs), &all, &format!("check {}", check.name), false, true);
+    }
+    for (rule, nodes) in plan.plausibility.iter().zip(&graph.plausibility) {
+        let of = nodes.positions.iter().flat_map(|position| position.own.into_iter().chain(nodes_of(&position.inputs))).collect();
+        add(of, &all, &format!("plausibility {}", rule.name), false, false);
+    }
+    let track = Side::ALL.len();
+    if read.keys().any(|(record, _)| *record == track) {
+        let at = axes_at[axes_at.len() - 1];
+        read.entry((track, at)).or_default().1.rules.insert(0, "records".into());
+    }
+    read.into_iter()
+        .map(|((record, at), (required, users))| {
+            let column = names[at].clone();
+            let axis = axes.iter().find(|axis| axis.column == column).map(|axis| (None, axis.unit.text.clone()));
+            let found = declared.get(&(column.clone(), record == track)).map(|(channel, unit)| (Some(channel.clone()), unit.text.clone()));
+            let (channel, unit) = found.or(axis).unwrap_or_default();
+            ChannelNeed { record: Side::ALL.get(record).map_or(TRACK, |side| side.in_words()), column, channel, unit, required, users }
+        })
+        .collect()
+}
+
+/// The columns that nodes are computed from, and whether each is of the track record.
+fn reads(graph: &Graph, wanted: BTreeSet<NodeId>) -> Vec<(String, bool)> {
+    let (mut seen, mut open) = (BTreeSet::new(), wanted.into_iter().collect::<Vec<_>>());
+    while let Some(id) = open.pop() {
+        if seen.insert(id) {
+            open.extend(&graph.nodes[id].inputs);
+        }
+    }
+    let of = |id: NodeId| match &graph.nodes[id].operation {
+        Operation::Read { column } => Some((column.clone(), graph.nodes[id].track)),
+        _ => None,
+    };
+    seen.into_iter().filter_map(of).collect()
+}
+
+fn push(list: &mut Vec<String>, name: &str) {
+    if !list.iter().any(|known| known == name) {
+        list.push(name.to_string());
+    }
+}
+
+/// Parts of rules: expressions, and columns of records with channel and unit.
+trait See {
+    fn expr(&mut self, expr: &Expr);
+    fn column(&mut self, _index: usize) {}
+    fn channel(&mut self, _column: &str, _channel: &str, _unit: &Unit, _track: bool) {}
+}
+
+/// Channel and unit of each column, with whether it is of the track record.
+fn declared(plan: &Plan) -> BTreeMap<(String, bool), (String, Unit)> {
+    struct Declared(BTreeMap<(String, bool), (String, Unit)>);
+    impl See for Declared {
+        fn expr(&mut self, _: &Expr) {}
+        fn channel(&mut self, column: &str, channel: &str, unit: &Unit, track: bool) {
+            self.0.entry((column.to_string(), track)).or_insert_with(|| (channel.to_string(), unit.clone()));
+        }
+    }
+    let mut found = Declared(BTreeMap::new());
+    plan.quantities.iter().for_each(|rule| quantity(rule, &mut found));
+    other_rules(plan).iter().for_each(|(_, see)| see(&mut found));
+    found.0
+}
+
+/// The users of each section datum and of each vehicle datum.
+fn data_users(plan: &Plan) -> [Vec<Users>; 2] {
+    #[derive(Default)]
+    struct Data([BTreeSet<usize>; 2]);
+    impl See for Data {
+        fn expr(&mut self, expr: &Expr) {
+            expr.visit(&mut |part| match part.kind {
+                Kind::Column(index) => drop(self.0[0].insert(index)),
+                Kind::Vehicle(index) => drop(self.0[1].insert(index)),
+                _ => {}
+            });
+        }
+        fn column(&mut self, index: usize) {
+            self.0[0].insert(index);
+        }
+    }
+    let mut users = [vec![Users::default(); plan.columns.len()], vec![Users::default(); plan.vehicle.len()]];
+    for rule in &plan.quantities {
+        let mut data = Data::default();
+        quantity(rule, &mut data);
+        for (users, found) in users.iter_mut().zip(&data.0) {
+            found.iter().for_each(|&index| push(&mut users[index].quantities, &rule.id));
+        }
+    }
+    for (name, see) in other_rules(plan) {
+        let mut data = Data::default();
+        see(&mut data);
+        for (users, found) in users.iter_mut().zip(&data.0) {
+            found.iter().for_each(|&index| push(&mut users[index].rules, &name));
+        }
+    }
+    users
+}
+
+/// Shows the parts of a rule.
+type Parts<'a> = Box<dyn Fn(&mut dyn See) + 'a>;
+
+/// The rules that are no quantity, each with its parts.
+fn other_rules(plan: &Plan) -> Vec<(String, Parts<'_>)> {
+    let mut rules: Vec<(String, Parts<'_>)> = Vec::new();
+    rules.push((
+        "sections".into(),
+        Box::new(|see| {
+            plan.sections.zone.into_iter().for_each(|index| see.column(index));
+            plan.sections.only.iter().for_each(|only| see.expr(only));
+        }),
+    ));
+    for zone in &plan.zones {
+        let parts = move |see: &mut dyn See| zone.condition.iter().chain(&zone.minimum_length).for_each(|part| see.expr(part));
+        rules.push((format!("zone {}", zone.name), Box::new(parts)));
+    }
+    for check in &plan.checks {
+        let parts = move |see: &mut dyn See| {
+            std::iter::once(&check.require).chain(&check.unless).for_each(|part| see.expr(part));
+            check.inputs.iter().for_each(|part| input(part, see));
+        };
+        rules.push((format!("check {}", check.name), Box::new(parts)));
+    }
+    for rule in &plan.plausibility {
+        let parts = move |see: &mut dyn See| {
+            rule.signals.iter().for_each(|(_, part)| signal(part, see));
+            rule.unless.iter().for_each(|part| see.expr(part));
+            if let Test::Require(requirement) = &rule.test {
+                see.expr(&requirement.holds);
+                requirement.inputs.iter().for_each(|part| input(part, see));
+            }
+        };
+        rules.push((format!("plausibility {}", rule.name), Box::new(parts)));
+    }
+    for domain in &plan.domains {
+        let parts = move |see: &mut dyn See| {
+            domain.over.iter().for_each(|coordinate| see.expr(&coordinate.expr));
+            domain.each.iter().for_each(|&index| see.column(index));
+        };
+        rules.push((format!("domain {}", domain.name), Box::new(parts)));
+    }
+    if let Independent::Column(index) = plan.independent {
+        rules.push(("verdict".into(), Box::new(move |see| see.column(index))));
+    }
+    rules
+}
+
+fn quantity(rule: &Quantity, see: &mut dyn See) {
+    rule.only.iter().for_each(|only| see.expr(only));
+    for position in &rule.positions {
+        signal(&position.signal, see);
+        position.only.iter().for_each(|only| see.expr(only));
+    }
+    match rule.evaluation.as_ref() {
+        Evaluation::Values { values, records } => {
+            values.iter().for_each(|value| valued(value, see));
+            match records {
+                Records::Compared { difference, .. } | Records::Spread { difference, .. } => see.expr(difference),
+                Records::Of(_) => {}
+            }
+        }
+        Evaluation::Metric { over, .. } => over.iter().for_each(|part| signal(part, see)),
+        Evaluation::Combined { of, .. } => valued(of, see),
+    }
+    rule.limits.iter().for_each(|one| limit(one, see));
+    rule.minimum_of_groups.iter().for_each(|minimum| scope(&minimum.scope, see));
+}
+
+fn valued(value: &Valued, see: &mut dyn See) {
+    see.expr(&value.expr);
+    value.inputs.iter().flatten().for_each(|part| input(part, see));
+}
+
+fn input(input: &Input, see: &mut dyn See) {
+    input.signal.iter().chain(&input.over).for_each(|part| signal(part, see));
+}
+
+fn signal(of: &Signal, see: &mut dyn See) {
+    match &of.kind {
+        SignalKind::Column { column, channel, unit } => see.channel(column, channel, unit, of.track),
+        SignalKind::Scalar(expr) => see.expr(expr),
+        SignalKind::Binary(_, left, right) => [left, right].into_iter().for_each(|part| signal(part, see)),
+        SignalKind::Negative(inner) | SignalKind::Power(inner, _) | SignalKind::Filtered(inner, _) | SignalKind::Level(_, inner) => {
+            signal(inner, see)
+        }
+        SignalKind::Call(_, parts) => parts.iter().for_each(|part| signal(part, see)),
+        SignalKind::OverAxis(operation, inner) => {
+            if let AxisOperation::Shifted(by) = operation {
+                see.expr(by);
+            }
+            signal(inner, see);
+        }
+        SignalKind::Side(_) => {}
+        SignalKind::Select(cases, otherwise) => {
+            for (condition, part) in cases {
+                see.expr(condition);
+                signal(part, see);
+            }
+            otherwise.iter().for_each(|part| signal(part, see));
+        }
+    }
+}
+
+fn limit(limit: &Limit, see: &mut dyn See) {
+    estimate(&limit.estimate, see);
+    of_group(&limit.bound, see);
+    limit.factors.iter().flat_map(|(factor, when)| [factor, when]).chain(&limit.only_when).for_each(|part| see.expr(part));
+    scope(&limit.scope, see);
+}
+
+fn scope(scope: &Scope, see: &mut dyn See) {
+    scope.condition.iter().for_each(|(condition, _)| see.expr(condition));
+    keys(&scope.each, see);
+}
+
+fn keys(keys: &[Key], see: &mut dyn See) {
+    for key in keys {
+        if let Key::Column(index) = key {
+            see.column(*index);
+        }
+    }
+}
+
+fn estimate(of: &Estimate, see: &mut dyn See) {
+    if let EstimateKind::Of(group) = &of.kind {
+        of_group(group, see);
+    }
+}
+
+fn of_group(group: &OfGroup, see: &mut dyn See) {
+    see.expr(&group.expr);
+    group.taken.iter().for_each(|taken| taking(taken, see));
+}
+
+fn taking(of: &Taking, see: &mut dyn See) {
+    match of {
+        Taking::Bound { of, .. } => estimate(of, see),
+        Taking::Weighted { by, .. } => see.expr(by),
+        Taking::EachGroup { keys: each, of, .. } => {
+            keys(each, see);
+            of_group(of, see);
+        }
+        Taking::Share { condition, others, by, .. } => {
+            see.expr(condition);
+            by.iter().for_each(|by| see.expr(by));
+            others.iter().for_each(|other| taking(other, see));
+        }
+        Taking::Data { of, by, .. } => {
+            see.expr(of);
+            by.iter().for_each(|by| see.expr(by));
+        }
+        Taking::Fit(fit) => {
+            fit.over.iter().for_each(|part| see.expr(part));
+            fit.at.iter().for_each(|part| of_group(part, see));
+        }
+        Taking::Statistic(..) | Taking::Count | Taking::Other { .. } => {}
+    }
+}
