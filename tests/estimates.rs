@@ -271,6 +271,29 @@ fn repeats_are_values_of_a_regression() {
     }
 }
 
+/// The recipe for a verdict with 95 % confidence in `docs/language.md`: bounds of Y_max by NumPy and SciPy from the differences of an
+/// independent program (`cases/peer/coach-good.csv`, formulas of `docs/definitions.md`). Limits between a value and its bound fail.
+#[test]
+fn a_verdict_with_confidence() {
+    let (low, high, std, upper) = (-2.209_897_730_287_58, 0.454_416_129_764_01, 3.055_178_902_694_35, 5.113_682_324_030_08);
+    let page = fs::read_to_string(root().join("docs/language.md")).expect("the page");
+    let recipe = page.split("```fp\n").skip(1).filter_map(|rest| rest.split("```").next()).find(|text| text.contains("with-confidence"));
+    let recipe = recipe.expect("the recipe").replace("\nquantity Y_max\n", "  quantity  Y_qst\n\nquantity Y_max\n");
+    let others = ["Q_qst", "YQ_qst", "SigmaY_qst", "Q_max", "YQ_max", "SigmaY_max", "ay_rms", "az_rms", "ay_max", "az_max"];
+    let removed: String = others.map(|name| format!("  quantity  {name}\n")).concat();
+    let recipe = recipe.replace("  quantity  Y_qst\n", &format!("  quantity  Y_qst\n{removed}"));
+    let found = certified(&compiled("with-confidence.fp", &recipe), &coach());
+    for (name, want) in [("upper 95 % of std", upper), ("upper 95 % of mean", high), ("lower 95 % of mean", low), ("n", 13.0)] {
+        let value = all(&found).find(|one| one.name == name).and_then(|one| one.value).expect("a value");
+        assert!((value - want).abs() <= 1e-9 * want.abs(), "{name}: {value} in place of {want}");
+    }
+    assert_eq!(found.verdict, Verdict::Validated, "{:?}", found.reasons);
+    let between = recipe.replace("of std 9 kN", &format!("of std {:.3} kN", f64::midpoint(std, upper)));
+    assert_eq!(certified(&compiled("with-confidence.fp", &between), &coach()).verdict, Verdict::NotValidated);
+    let between = recipe.replace("lower 95 % of mean 6 kN", "lower 95 % of mean 2.2 kN");
+    assert_eq!(certified(&compiled("with-confidence.fp", &between), &coach()).verdict, Verdict::NotValidated);
+}
+
 fn copy(from: &Path, to: &Path) {
     for entry in fs::read_dir(from).expect("a folder") {
         let path = entry.expect("an entry").path();

@@ -169,9 +169,9 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
     if problems.any_error() { None } else { plan }
 }
 
-/// `3 std`: what follows a number and is no unit may be a name that the parser of phrases does not know.
+/// Better help where the unknown unit after a number is a name, which the parser does not know: `3 std`.
 fn name_after_number(problem: &mut Problem, names: &Names) {
-    let Some(word) = problem.says.strip_prefix('`').and_then(|rest| rest.strip_suffix("` is no unit")) else { return };
+    let Some(word) = problem.says.strip_prefix('`').and_then(|rest| rest.strip_suffix("` is not a known unit")) else { return };
     let is_name = Reducer::named(word).is_some()
         || Statistic::named(word).is_some()
         || names.parameter_blocks.contains_key(word)

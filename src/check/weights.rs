@@ -30,8 +30,9 @@ impl Checker<'_> {
     /// `mean weighted by length`, `share weighted by length where value <= 60 kN`.
     pub(super) fn weighted(&mut self, of: &Phrase, by: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         if scope.group.is_none() {
-            let says = "weights are those of the values of a group, and there is none here";
-            self.problems.push(Problem::error("no-group", says).at(span));
+            let says = "weights need the values of a group, which are not available here";
+            let help = "weights are used in a limit or an estimate: `limit mean weighted by length 9 kN`";
+            self.problems.push(Problem::error("no-group", says).at(span).help(help));
             return None;
         }
         let name = match &of.node {
@@ -42,7 +43,7 @@ impl Checker<'_> {
             _ => return self.no_weight("this", span),
         };
         if self.names.estimates.contains_key(&name) {
-            let says = format!("`{name}` is an estimate, and weights stand with the statistics that it is made of");
+            let says = format!("`{name}` is an estimate; only the statistics in it can be weighted");
             let help = "write them there: `mean weighted by length + 3 * std weighted by length`";
             self.problems.push(Problem::error("no-weight", says).at(span).help(help));
             return None;
@@ -91,8 +92,9 @@ impl Checker<'_> {
         scope: &mut Scope,
     ) -> Option<Expr> {
         let Some(group) = &scope.group else {
-            let says = "groups are formed of the values of a quantity, and there are none here";
-            self.problems.push(Problem::error("no-group", says).at(span));
+            let says = "groups need the values of a quantity, which are not available here";
+            let help = "they are used in a limit or an estimate: `limit (mean of (mean for each zone)) 9 kN`";
+            self.problems.push(Problem::error("no-group", says).at(span).help(help));
             return None;
         };
         let Some(values) = group.values else { return self.no_values(span) };
@@ -104,7 +106,7 @@ impl Checker<'_> {
         let dimension = self.number_type(&expr)?;
         let taken = inside.group.map_or_else(Vec::new, |group| group.taken);
         if taken.is_empty() {
-            let problem = Problem::error("estimate-of-nothing", "this takes nothing from the values of a group").at(&expr.span);
+            let problem = Problem::error("estimate-of-nothing", "this expression uses no statistic of the values").at(&expr.span);
             self.problems.push(problem.help("for instance `mean of (mean for each zone)`"));
             return None;
         }
@@ -117,9 +119,9 @@ impl Checker<'_> {
     pub(super) fn many_numbers(&mut self, keys: &[At<String>], text: &Text, span: &Origin) -> Option<Expr> {
         let keys: Vec<&str> = keys.iter().filter_map(|key| text.text.get(key.range.clone())).collect();
         let keys = keys.join(" and ");
-        let problem = Problem::error("many-numbers", format!("this is one number for each {keys}, and one number is needed")).at(span);
+        let problem = Problem::error("many-numbers", format!("this gives a number for each {keys}, but one number is needed")).at(span);
         self.problems.push(problem.help(format!(
-            "take one of them: `mean of (... for each {keys})`; a limit of each group ends with its groups: `limit mean 9 kN for each {keys}`"
+            "take one number of them: `mean of (... for each {keys})`; a limit for each group has `for each {keys}` at its end"
         )));
         None
     }

@@ -48,8 +48,10 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     }
     // Where an operator is possible, `at`, `through` and `over` are possible as well, but seldom meant.
     if expected.contains(&OPERATOR) {
-        expected.retain(|word| ![Rule::kw_at, Rule::kw_through, Rule::kw_over, Rule::kw_weighted].map(in_words).contains(word));
+        expected.retain(|word| ![Rule::kw_at, Rule::kw_through, Rule::kw_over].map(in_words).contains(word));
     }
+    // So are weights and the groups of an estimate in parentheses.
+    expected.retain(|word| *word != in_words(Rule::kw_weighted) && (rule != Rule::expression || *word != in_words(Rule::kw_for)));
     // In an exact text, the error is underlined at the word, or at the last word if the text ends too early.
     let end = text.text.trim_end().len();
     let last = text.text[..end].rfind(char::is_whitespace).map_or(0, |at| at + 1);
