@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 use crate::check::plan::{DatumKind, Parameter, Plan, Scalar, SetBy};
 use crate::check::{self, Overrides, diff, family::Family};
 use crate::data::campaign::Fact;
+use crate::data::hash::{hexadecimal, sha256};
 use crate::data::identification::Stated;
 use crate::data::origin::Origin;
 use crate::data::{Campaign, Campaigns, qualified};
@@ -187,7 +188,7 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
         source: plan.source.clone(),
         scope: plan.scope.clone(),
         notes: plan.notes.clone(),
-        sha256: hex(&all.finalize()),
+        sha256: hexadecimal(&all.finalize()),
         files,
         deviations: family.parent.as_ref().map_or_else(Vec::new, |parent| diff::diff(parent, &family.merged)),
         parameters: plan.parameters.iter().map(parameter_info).collect(),
@@ -340,12 +341,4 @@ fn number_and_unit(text: &str) -> (String, Option<String>) {
         Some((number, unit)) if number.parse::<f64>().is_ok_and(f64::is_finite) => (number.to_string(), Some(unit.trim().to_string())),
         _ => (text.to_string(), None),
     }
-}
-
-fn sha256(bytes: &[u8]) -> String {
-    hex(&Sha256::digest(bytes))
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

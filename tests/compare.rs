@@ -130,6 +130,16 @@ fn each_difference_is_applied_alone() {
         .map(|count| count.as_u64().expect("a count"))
         .collect();
     assert_eq!((cells.iter().sum::<u64>(), agreement["sections"].as_u64()), (13, Some(13)));
+    // The same counts from the scores of the sections: up to 1, the requirement is met.
+    let scores = |protocol: &str| -> Vec<bool> {
+        let all = found["scores"].as_array().expect("a list").iter();
+        let own = all.filter(|one| one["protocol"] == protocol && one["metric"].is_null());
+        own.map(|one| one["score"].as_f64().expect("a number") <= 1.0).collect()
+    };
+    let pairs: Vec<(bool, bool)> = scores("en14363-2016-annex-t").into_iter().zip(scores("variant")).collect();
+    let counted =
+        [(true, true), (true, false), (false, true), (false, false)].map(|cell| pairs.iter().filter(|pair| **pair == cell).count() as u64);
+    assert_eq!((pairs.len(), cells), (13, counted.to_vec()));
     assert_eq!(fs::read(out.join("report.pdf")).expect("a report")[..5], *b"%PDF-");
     let page = fs::read_to_string(out.join("report.html")).expect("a page");
     for part in ["Comparison of protocols", "Differences, rule by rule", "Applicability", "Agreement"] {
@@ -154,6 +164,38 @@ fn cells_without_a_verdict_and_bytes() {
     let of = |at: usize| (cells[at]["verdict"].as_str().expect("a word"), cells[at]["reasons"][0].as_str().unwrap_or_default().to_string());
     assert_eq!((of(0).0, of(1).0, of(2).0, of(3).0), ("validated", "not assessable", "not assessable", "validated"));
     assert!(of(2).1.contains("no table of sections"), "{}", of(2).1);
+}
+
+/// More protocols than stand side by side in a table, with titles that must not act.
+#[test]
+fn many_protocols_and_strange_titles_make_a_report() {
+    let temp = tempfile::tempdir().expect("a folder");
+    let protocols: Vec<String> = (1..=8)
+        .map(|at| {
+            let path = temp.path().join(format!("v{at}.fp"));
+            let title = "#panic() <script>alert(1)</script> $x$ {{ 7 * 7 }}";
+            let text =
+                format!("protocol v{at} \"{title} {at}\"\n  extends  en14363-2016-annex-t\n\nquantity Y_max\n  limit  mean {at} kN\n");
+            fs::write(&path, text).expect("written");
+            path.display().to_string()
+        })
+        .collect();
+    let mut arguments = vec!["examples/coach-good", "--sizes", "none"];
+    protocols.iter().for_each(|protocol| arguments.extend(["--protocol", protocol]));
+    let out = temp.path().join("out");
+    let found = compare(&out, &arguments);
+    assert_eq!(found["agreement"].as_array().expect("a list").iter().filter(|one| one["of"] == "protocols").count(), 8 * 7 / 2);
+    assert_eq!((found["sensitivity"].as_array().map(Vec::len), found["differences"].as_array().map(Vec::len)), (Some(0), Some(0)));
+    let page = fs::read_to_string(out.join("report.html")).expect("a page");
+    assert!(page.contains("&lt;script&gt;alert(1)") && !page.contains("<script>alert(1)") && page.contains("{{ 7 * 7 }}"));
+    let Ok(text) = Command::new("pdftotext").arg(out.join("report.pdf")).arg("-").output() else {
+        eprintln!("pdftotext is missing: skipped");
+        return;
+    };
+    let text = String::from_utf8_lossy(&text.stdout).into_owned();
+    for part in ["Ratios by quantity", "v8", "#panic()"] {
+        assert!(text.contains(part), "{part}");
+    }
 }
 
 #[test]

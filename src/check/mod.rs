@@ -171,7 +171,7 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
 
 /// Better help where the unknown unit after a number is a name, which the parser does not know: `3 std`.
 fn name_after_number(problem: &mut Problem, names: &Names) {
-    let Some(word) = problem.says.strip_prefix('`').and_then(|rest| rest.strip_suffix("` is not a known unit")) else { return };
+    let Some(word) = problem.at.as_ref().filter(|_| problem.code == "unknown-unit").map(Span::text) else { return };
     let is_name = Reducer::named(word).is_some()
         || Statistic::named(word).is_some()
         || names.parameter_blocks.contains_key(word)
@@ -179,8 +179,9 @@ fn name_after_number(problem: &mut Problem, names: &Names) {
         || names.estimates.contains_key(word)
         || names.vehicle.iter().chain(&names.columns).any(|datum| datum.name == word);
     let likely_unit = problem.help.as_ref().is_some_and(|help| help.starts_with("did you mean"));
-    if problem.code == "unknown-unit" && is_name && likely_unit {
-        problem.help = Some(format!("a product is written with its sign: `... * {word}`"));
+    if is_name && likely_unit {
+        let help = format!("a product is written with its sign: `... * {word}`");
+        problem.help = Some(help);
     }
 }
 

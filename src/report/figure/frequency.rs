@@ -17,11 +17,14 @@ const HEIGHT: f64 = 140.0;
 /// Most limits that are drawn one by one; of more, the smallest and the largest.
 const LIMITS: usize = 6;
 
+/// Fewest values that are drawn: a curve of fewer says no more than the table of values.
+const FEWEST: usize = 5;
+
 /// Whether it is drawn: of an assessed quantity, and of a metric with a limit of the distribution of its values.
 pub fn has_frequency(quantity: &QuantityResult) -> bool {
     let percentile = |name: &str| name.strip_prefix('p').is_some_and(|percent| percent.parse::<f64>().is_ok());
     let of_distribution = || quantity.statistics.iter().any(|one| one.divided_at.is_some() || percentile(&one.name));
-    !quantity.values.is_empty() && (quantity.from.is_some() || !quantity.has_sides && of_distribution())
+    quantity.values.len() >= FEWEST && (quantity.from.is_some() || !quantity.has_sides && of_distribution())
 }
 
 /// Values in increasing order, each at the share of values of its curve that do not exceed it.
