@@ -130,11 +130,13 @@ pub fn percentile(values: &[f64], percent: f64, method: Method) -> Result<f64, P
 /// As [`percentile`].
 pub fn percentiles(values: &[f64], percents: &[f64], method: Method) -> Result<Vec<f64>, PercentileError> {
     check(values, percents)?;
-    let found: Vec<Option<f64>> = percents.iter().map(|&percent| near_an_end(values, percent, method)).collect();
-    let inside = found.iter().filter(|value| value.is_none()).count();
-    let mut values = if inside > 0 { values.to_vec() } else { Vec::new() };
     // Selection reads each value about three times, sorting about log2(n) times.
-    let sorted = inside > 0 && inside * 3 >= values.len().ilog2() as usize;
+    let pays = |wanted: usize| wanted > 0 && wanted * 3 >= values.len().ilog2() as usize;
+    let near = |percent: &f64| if pays(percents.len()) { None } else { near_an_end(values, *percent, method) };
+    let found: Vec<Option<f64>> = percents.iter().map(near).collect();
+    let inside = found.iter().filter(|value| value.is_none()).count();
+    let sorted = pays(inside);
+    let mut values = if inside > 0 { values.to_vec() } else { Vec::new() };
     if sorted {
         values.sort_unstable_by(f64::total_cmp);
     }
