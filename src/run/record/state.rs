@@ -1,0 +1,333 @@
+//! Evaluation of the nodes of a graph on one record.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::{Found, Opened, chosen};
+use crate::catalog::Reducer;
+use crate::check::evaluate::number;
+use crate::check::plan::StepSpec;
+use crate::graph::{Graph, NodeId, Operation};
+use crate::metrics::percentile::{Method, percentiles};
+use crate::run::facts::Known;
+use crate::run::shared::{Kept, Keys, Memo};
+use crate::run::signal::{Cutter, Extent, Samples, Signal, apply, arithmetic, each};
+
+/// The nodes of a graph on one record, level by level.
+#[derive(Clone, Debug)]
+pub(super) struct State<'a> {
+    pub(super) opened: &'a Opened,
+    pub(super) graph: &'a Graph,
+    pub(super) known: &'a Known<'a>,
+    pub(super) method: Method,
+    pub(super) values: Vec<Option<Signal>>,
+    /// Why a node has no value. Nodes that depend on it have none either; the others run on.
+    pub(super) failed: Vec<Option<String>>,
+    /// Number of nodes that still need the value.
+    pub(super) uses: Vec<usize>,
+    pub(super) cutter: Cutter,
+    /// The part of the section that is evaluated.
+    pub(super) extent: Extent,
+    pub(super) found: Vec<(NodeId, Found)>,
+    /// Where results are kept for other protocols, and under which numbers.
+    pub(super) memo: Option<(&'a Memo, &'a Keys)>,
+}
+
+impl<'a> State<'a> {
+    pub(super) fn new(opened: &'a Opened, graph: &'a Graph, known: &'a Known<'a>, method: Method) -> Self {
+        let nodes = graph.nodes.len();
+        let cutter = Cutter::new(opened.extent);
+        Self {
+            opened,
+            graph,
+            known,
+            method,
+            values: vec![None; nodes],
+            failed: vec![None; nodes],
+            uses: vec![0; nodes],
+            cutter,
+            extent: opened.extent,
+            found: Vec::new(),
+            memo: None,
+        }
+    }
+
+    /// The needed nodes by level, inputs before the nodes that use them, and the number of uses of each.
+    pub(super) fn count(&mut self, needed: &BTreeSet<NodeId>) -> Vec<Vec<NodeId>> {
+        let mut level = vec![0_usize; self.graph.nodes.len()];
+        let mut levels: Vec<Vec<NodeId>> = Vec::new();
+        for &id in needed {
+            for &input in &self.graph.nodes[id].inputs {
+                if needed.contains(&input) {
+                    self.uses[input] += 1;
+                    level[id] = level[id].max(level[input] + 1);
+                }
+            }
+            levels.resize_with(levels.len().max(level[id] + 1), Vec::new);
+            levels[level[id]].push(id);
+        }
+        levels
+    }
+
+    /// Runs the chosen nodes and keeps the values of the requested ones.
+    pub(super) fn run(&mut self, levels: &[Vec<NodeId>], wanted: &BTreeSet<NodeId>, chosen: impl Fn(NodeId) -> bool) -> Result<(), String> {
+        for level in levels {
+            let here: Vec<NodeId> = level.iter().copied().filter(|&id| chosen(id)).collect();
+            let before = self.found.len();
+            self.filters(&here)?;
+            self.reducers(&here)?;
+            for &id in &here {
+                if self.values[id].is_none() && self.failed[id].is_none() && !matches!(self.graph.nodes[id].operation, Operation::Reduce(_))
+                {
+                    self.value(id)?;
+                }
+            }
+            self.keep(&here, before);
+            for &id in &here {
+                if wanted.contains(&id) {
+                    if let Some(reason) = &self.failed[id] {
+                        self.found.push((id, Found::Failed(reason.clone())));
+                    } else if self.values[id].is_some() {
+                        let samples = self.samples(id)?;
+                        self.found.push((id, Found::Samples(samples)));
+                    }
+                }
+                self.release(id);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl State<'_> {
+    /// Takes what others have computed of this record already; what is left to compute, where results are shared.
+    pub(super) fn recall(&mut self, needed: &BTreeSet<NodeId>, wanted: &BTreeSet<NodeId>) -> Option<BTreeSet<NodeId>> {
+        let (memo, keys) = self.memo?;
+        let filters = |id: &&NodeId| matches!(&self.graph.nodes[**id].operation, Operation::Step(spec) if spec.is_filter());
+        memo.count_asked(needed.iter().filter(filters).count());
+        let mut left = BTreeSet::new();
+        let mut seen = BTreeSet::new();
+        let mut open: Vec<NodeId> = wanted.iter().copied().collect();
+        while let Some(id) = open.pop() {
+            if !seen.insert(id) {
+                continue;
+            }
+            match keys[id].and_then(|key| memo.get(key)) {
+                Some(Kept::Signal(signal)) => {
+                    self.values[id] = Some(signal);
+                    if wanted.contains(&id)
+                        && let Ok(samples) = self.samples(id)
+                    {
+                        self.found.push((id, Found::Samples(samples)));
+                    }
+                }
+                Some(Kept::Number(value, samples)) => self.found.push((id, Found::Number(value, samples))),
+                None => {
+                    left.insert(id);
+                    open.extend(self.graph.nodes[id].inputs.iter().filter(|input| needed.contains(input)));
+                }
+            }
+        }
+        Some(left)
+    }
+
+    /// Keeps the results of a level; those before `from` were there already.
+    fn keep(&self, here: &[NodeId], from: usize) {
+        let Some((memo, keys)) = self.memo else { return };
+        let key = |id: NodeId| keys.get(id).copied().flatten();
+        for &id in here {
+            if let (Some(key), Some(signal)) = (key(id), &self.values[id]) {
+                memo.put(key, Kept::Signal(signal.clone()));
+            }
+        }
+        for (id, found) in &self.found[from..] {
+            if let (Some(key), Found::Number(value, samples)) = (key(*id), found) {
+                memo.put(key, Kept::Number(*value, *samples));
+            }
+        }
+    }
+
+    /// Frees inputs that no later node needs.
+    fn release(&mut self, id: NodeId) {
+        for &input in &self.graph.nodes[id].inputs {
+            if self.uses[input] > 0 {
+                self.uses[input] -= 1;
+                if self.uses[input] == 0 {
+                    self.values[input] = None;
+                }
+            }
+        }
+    }
+
+    fn signal(&self, id: NodeId) -> Result<&Signal, String> {
+        self.values[id].as_ref().ok_or_else(|| self.failed[id].clone().unwrap_or_else(|| "an input is missing".to_string()))
+    }
+
+    /// Whether an input has no value. Then this node has none for the same reason.
+    fn without_input(&mut self, id: NodeId) -> bool {
+        let reason = self.graph.nodes[id].inputs.iter().find_map(|&input| self.failed[input].clone());
+        let failed = reason.is_some();
+        if failed {
+            self.failed[id] = reason;
+        }
+        failed
+    }
+
+    fn fail(&mut self, id: NodeId, reason: &str) {
+        self.failed[id] = Some(format!("{reason} ({})", self.graph.nodes[id].label));
+    }
+
+    /// Computes a node. Where a step of a quantity is not possible, only this node has no value. Samples without a finite result
+    /// are a fault of the record.
+    fn value(&mut self, id: NodeId) -> Result<(), String> {
+        if self.without_input(id) {
+            return Ok(());
+        }
+        match self.one(id) {
+            Ok(value) => self.values[id] = Some(value),
+            Err(reason) if self.asks(id) => self.fail(id, &reason),
+            Err(reason) => return Err(format!("{reason} ({})", self.graph.nodes[id].label)),
+        }
+        Ok(())
+    }
+
+    fn asks(&self, id: NodeId) -> bool {
+        matches!(self.graph.nodes[id].operation, Operation::Step(_) | Operation::Window(_) | Operation::OverAxis(_))
+    }
+
+    fn samples(&self, id: NodeId) -> Result<Samples, String> {
+        match self.signal(id)? {
+            Signal::Samples(samples) => Ok(samples.clone()),
+            // A constant becomes a signal of equal samples where a signal is needed.
+            Signal::Constant(value) => {
+                Ok(Samples { along: Arc::clone(&self.opened.along), values: Arc::new(vec![*value; self.opened.along.axis.len()]) })
+            }
+        }
+    }
+
+    /// Filters of one level: all channels with the same design together.
+    fn filters(&mut self, here: &[NodeId]) -> Result<(), String> {
+        let mut groups: Vec<(StepSpec, Vec<(NodeId, Samples)>)> = Vec::new();
+        for &id in here {
+            let node = &self.graph.nodes[id];
+            let Operation::Step(spec) = &node.operation else { continue };
+            if !spec.is_filter() {
+                continue;
+            }
+            if self.without_input(id) {
+                continue;
+            }
+            let samples = self.samples(node.inputs[0])?;
+            let same = groups.iter_mut().find(|(known, members)| {
+                known == spec && members[0].1.along.rate == samples.along.rate && members[0].1.values.len() == samples.values.len()
+            });
+            match same {
+                Some((_, members)) => members.push((id, samples)),
+                None => groups.push((spec.clone(), vec![(id, samples)])),
+            }
+        }
+        if let Some((memo, _)) = self.memo {
+            memo.count_filtered(groups.iter().map(|(_, members)| members.len()).sum());
+        }
+        for (spec, members) in groups {
+            let signals: Vec<&[f64]> = members.iter().map(|(_, samples)| samples.values.as_slice()).collect();
+            let designed = members[0].1.designed(&spec);
+            let filtered = designed.and_then(|filter| filter.apply_many(&signals).map_err(|error| error.to_string()));
+            let filtered = match filtered {
+                Ok(filtered) => filtered,
+                Err(reason) => {
+                    members.iter().for_each(|(id, _)| self.fail(*id, &reason));
+                    continue;
+                }
+            };
+            for ((id, samples), values) in members.iter().zip(filtered) {
+                self.values[*id] = Some(Signal::Samples(samples.with(values)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Reducers of one level: percentiles of one signal share one sorting.
+    fn reducers(&mut self, here: &[NodeId]) -> Result<(), String> {
+        let mut sorted: Vec<(NodeId, Vec<(NodeId, f64)>)> = Vec::new();
+        for &id in here {
+            let node = &self.graph.nodes[id];
+            let Operation::Reduce(reducer) = &node.operation else { continue };
+            if self.without_input(id) {
+                continue;
+            }
+            let percent = match reducer {
+                Reducer::Percentile(percent) => *percent,
+                Reducer::Named(_) => {
+                    let samples = self.samples(node.inputs[0])?;
+                    let over = node.inputs.get(1).map(|&over| self.samples(over)).transpose()?;
+                    let axis = over.as_ref().map_or(&samples.along.axis, |over| &over.values);
+                    let value = reducer.run(axis, &samples.values, self.method).filter(|value| value.is_finite());
+                    match value {
+                        Some(value) => self.found.push((id, Found::Number(value, samples.values.len()))),
+                        None => {
+                            let says = format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len());
+                            self.failed[id] = Some(says);
+                        }
+                    }
+                    continue;
+                }
+            };
+            match sorted.iter_mut().find(|(input, _)| *input == node.inputs[0]) {
+                Some((_, members)) => members.push((id, percent)),
+                None => sorted.push((node.inputs[0], vec![(id, percent)])),
+            }
+        }
+        for (input, members) in sorted {
+            let samples = self.samples(input)?;
+            let percents: Vec<f64> = members.iter().map(|(_, percent)| *percent).collect();
+            let values = match percentiles(&samples.values, &percents, self.method) {
+                Ok(values) => values,
+                Err(error) => {
+                    members.iter().for_each(|(id, _)| self.failed[*id] = Some(error.to_string()));
+                    continue;
+                }
+            };
+            self.found.extend(members.iter().zip(values).map(|((id, _), value)| (*id, Found::Number(value, samples.values.len()))));
+        }
+        Ok(())
+    }
+
+    fn one(&mut self, id: NodeId) -> Result<Signal, String> {
+        let node = &self.graph.nodes[id];
+        let input = |index: usize| self.signal(node.inputs[index]);
+        match &node.operation {
+            Operation::Read { column } => {
+                let found = self.opened.columns.iter().find(|(name, _)| name == column);
+                let (_, values) = found.ok_or_else(|| format!("no column `{column}`"))?;
+                Ok(Signal::Samples(Samples { along: Arc::clone(&self.opened.along), values: Arc::clone(values) }))
+            }
+            Operation::Constant(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
+            Operation::Level => {
+                let of = |(id, found): &(NodeId, Found)| match found {
+                    Found::Number(value, _) if *id == node.inputs[0] => Some(*value),
+                    _ => None,
+                };
+                Ok(Signal::Constant(self.found.iter().find_map(of).ok_or("a number of the section is missing")?))
+            }
+            Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?),
+            Operation::Negative => each(input(0)?, |value| -value),
+            Operation::Power(exponent) => each(input(0)?, |value| value.powi(i32::from(*exponent))),
+            Operation::Apply(function) => {
+                let inputs = node.inputs.iter().map(|&input| self.signal(input)).collect::<Result<Vec<_>, _>>()?;
+                apply(&inputs, function.run)
+            }
+            Operation::Select(conditions) => Ok(input(chosen(conditions, &node.inputs, self.known)?)?.clone()),
+            Operation::OverAxis(operation) => {
+                Ok(Signal::Samples(self.samples(node.inputs[0])?.over_axis(operation, self.known, self.extent)?))
+            }
+            Operation::Step(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.stepped(spec)?)),
+            Operation::Cut => {
+                let samples = self.samples(node.inputs[0])?;
+                Ok(Signal::Samples(self.cutter.cut(&samples)?))
+            }
+            Operation::Window(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.extent)?)),
+            _ => Err("this node combines records".into()),
+        }
+    }
+}
