@@ -83,6 +83,16 @@ fn a_finding_says_what_was_found_what_was_expected_and_why() {
     assert!(found.reasons.iter().any(|reason| reason.contains("Vertical wheel force against the static load")), "{:?}", found.reasons);
 }
 
+/// A ratio of two correlations is no ratio of two units.
+#[test]
+fn a_plain_number_suggests_no_unit() {
+    let found =
+        with(|folder| folder.channels(Side::Simulation, &["S05".to_string()], &["ay_I"], |values| values.iter().map(|y| -y).collect()));
+    let finding = found.findings.iter().find(|finding| finding.code == "same_sign").expect("told");
+    assert_eq!(finding.channel.as_deref(), Some("ay_I"));
+    assert!(finding.cause.as_deref().is_some_and(|cause| !cause.contains("in place of") && !cause.contains("factor")), "{finding:?}");
+}
+
 #[test]
 fn a_section_that_is_not_plausible_is_not_used_and_the_others_are() {
     let found = with(|folder| folder.channels(Side::Measurement, &["S05".to_string()], &["Q_3L"], |values| vec![54.0; values.len()]));

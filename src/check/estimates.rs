@@ -6,6 +6,7 @@ use super::plan::{DataReducer, Estimate, EstimateKind, Expr, Fit, Kind, OfGroup,
 use super::scalars::{Scope, in_words};
 use super::weights::{has_weights, is_mean};
 use crate::catalog::{STATISTICS, Statistic};
+use crate::metrics::rounded;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::{Block, Text};
@@ -17,6 +18,10 @@ const MOST_REGRESSORS: usize = 8;
 
 /// Confidence levels that a bootstrap of 2000 draws can resolve: 10 draws lie beyond each of these limits.
 const DRAWN: (f64, f64) = (0.005, 0.995);
+
+/// Smallest confidence level. Below it, the upper end of a one-sided interval lies below the estimate: `upper 5 %` would accept more than
+/// no confidence at all, and is usually an error probability.
+const LEAST_CONFIDENCE: f64 = 0.5;
 
 /// Name of the number of independent units of a group.
 const COUNT: &str = "n";
@@ -440,11 +445,15 @@ impl Checker<'_> {
     }
 
     fn confidence(&mut self, share: f64, at: &Span) -> Option<()> {
-        if share > 0.0 && share < 1.0 {
+        if (LEAST_CONFIDENCE..1.0).contains(&share) {
             return Some(());
         }
-        let problem = Problem::error("out-of-range", "a confidence level must be between 0 and 100 %").at(at);
-        self.problems.push(problem.help("write it as a percentage: `95 %`"));
+        let problem = Problem::error("out-of-range", "a confidence level must be at least 50 % and below 100 %").at(at);
+        self.problems.push(problem.help(if share > 0.0 && share < LEAST_CONFIDENCE {
+            format!("an error probability of {0} % is a confidence of {1} %", rounded(100.0 * share), rounded(100.0 * (1.0 - share)))
+        } else {
+            "write it as a percentage: `95 %`".into()
+        }));
         None
     }
 

@@ -18,6 +18,9 @@ use crate::units::{Dimension, Unit};
 /// Behind a number that is not from a checked source.
 pub(super) const TO_BE_CONFIRMED: &str = ", to be confirmed against the standard";
 
+/// Keys of groups that every campaign has.
+const KEYS: [&str; 5] = ["zone", "section", "site", "record", super::scalar_names::CAMPAIGN];
+
 /// What all limits of a quantity have in common.
 struct Common<'a> {
     block: &'a Block,
@@ -140,7 +143,15 @@ impl Checker<'_> {
         };
         let bound = bound.and_then(|bound| {
             let of = estimate.unit.as_ref().zip(Some(&text.span)).or(common.unit);
+            if applies.is_all() {
+                self.of_own_values(estimate, &bound, common.block);
+            }
+            let signed = matches!(common.best, Some((Best::Near(best), _)) if *best == 0.0);
+            if signed && !written.at_least {
+                self.signed_estimate(estimate, &text.place(written.statistic.range.clone()));
+            }
             let expr = self.suitable_bound(bound.expr, written.at_least, of, common)?;
+            self.share_above_one(estimate, &expr)?;
             Some(OfGroup { expr: self.on_its_side(expr, written, estimate, text, common)?, ..bound })
         });
         let mut factors = Vec::new();
@@ -296,6 +307,7 @@ impl Checker<'_> {
         for key in &written.each {
             let place = text.place(key.range.clone());
             if matches!(key.node.as_str(), "zone" | "zones") {
+                ok &= !each_zone || self.key_twice(&key.node, &place);
                 if self.zone_names.is_empty() {
                     self.problems.push(Problem::error("unknown-zone", "the protocol has no zones").at(&place));
                     ok = false;
@@ -305,7 +317,7 @@ impl Checker<'_> {
             }
             match self.key(&key.node, &place, quantity, places) {
                 Some(found) if !each.contains(&found) => each.push(found),
-                Some(_) => {}
+                Some(_) => ok = self.key_twice(&key.node, &place),
                 None => ok = false,
             }
         }
@@ -337,11 +349,18 @@ impl Checker<'_> {
                     problem.help(format!("known zones: {}", known.join(", ")))
                 });
                 ok = false;
-            } else if !found.contains(&zone.node) {
+            } else if found.contains(&zone.node) {
+                ok = self.key_twice(&format!("zone {}", zone.node), &place);
+            } else {
                 found.push(zone.node.clone());
             }
         }
         ok.then_some(found)
+    }
+
+    fn key_twice(&mut self, key: &str, at: &Span) -> bool {
+        self.problems.push(Problem::error("duplicate-name", format!("`{key}` is named twice in the scope")).at(at));
+        false
     }
 
     /// A key by which rows are grouped: section, site, record, a place of the signal, or a section column of words.
@@ -364,8 +383,9 @@ impl Checker<'_> {
             }
             return Some(Key::Column(index));
         }
-        let columns: Vec<String> = self.names.columns.iter().map(|datum| datum.name.clone()).collect();
-        let known = ["zone", "section", "site", "record", "campaign"].into_iter().chain(places.iter().map(String::as_str));
+        let words = self.names.columns.iter().filter(|datum| !matches!(datum.kind, DatumKind::Number(_)));
+        let columns: Vec<String> = words.map(|datum| datum.name.clone()).filter(|name| !KEYS.contains(&name.as_str())).collect();
+        let known = KEYS.into_iter().chain(places.iter().map(String::as_str));
         let known = known.chain(columns.iter().map(String::as_str));
         self.problems.push(
             Problem::error("unknown-key", format!("the values of `{quantity}` cannot be grouped by `{name}`"))

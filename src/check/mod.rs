@@ -11,6 +11,7 @@ mod domains;
 mod estimates;
 pub mod evaluate;
 pub mod family;
+mod idle;
 mod like;
 mod limits;
 mod metrics;

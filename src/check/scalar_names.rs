@@ -18,6 +18,9 @@ use crate::units::Unit;
 pub(super) const LIMITS_NOT_VALUES: &str = "in a limit, the name of a statistic stands for the limit of that statistic, not for its \
     value; an expression of values stands before the limit: `limit (mean + 3 * std) 60 kN`";
 
+/// Where a section is on the axis.
+const EXTENT: [&str; 3] = ["start", "end", "length"];
+
 /// What says to which campaign of several a section belongs.
 pub(super) const CAMPAIGN: &str = "campaign";
 
@@ -347,6 +350,7 @@ impl Checker<'_> {
         }
         if scope.section {
             known.push(CAMPAIGN.into());
+            known.extend(EXTENT.map(String::from));
             known.extend(self.names.columns.iter().map(|datum| datum.name.clone()));
         }
         if scope.vehicle {

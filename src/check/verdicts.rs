@@ -117,6 +117,7 @@ impl Checker<'_> {
         let wrong = match parts.as_slice() {
             [good, bad] if good == bad => Some("the two words of a verdict are the same".to_string()),
             [good, bad] if good.is_empty() || bad.is_empty() => Some("one of the two words is missing".to_string()),
+            [good, bad] if *good == format!("not {bad}") => Some(format!("`{good}` stands first, as the word if the verdict holds")),
             [good, bad] => [good, bad]
                 .into_iter()
                 .find(|word| NEITHER.contains(&word.as_str()))

@@ -31,7 +31,11 @@ impl Checker<'_> {
     pub(super) fn weighted(&mut self, of: &Phrase, by: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         if scope.group.is_none() {
             let says = "weights need the values of a group, which are not available here";
-            let help = "weights are used in a limit or an estimate: `limit mean weighted by length 9 kN`";
+            let help = if scope.value.is_some() {
+                "the weight stands before the condition: `share weighted by length where value <= 60 kN`"
+            } else {
+                "weights are used in a limit or an estimate: `limit mean weighted by length 9 kN`"
+            };
             self.problems.push(Problem::error("no-group", says).at(span).help(help));
             return None;
         }

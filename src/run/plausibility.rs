@@ -13,6 +13,7 @@ use crate::check::evaluate::{flag, number, words};
 use crate::check::plan::{InputSide, Looks, OnFault, Plausibility, Requirement, Test};
 use crate::graph::{InputNode, NodeId, PositionNodes};
 use crate::result::{Consequence, Finding};
+use crate::units::Dimension;
 
 /// Significant digits of a number in the sentence of a finding; the result file has all digits.
 const DIGITS: usize = 4;
@@ -128,7 +129,9 @@ impl Position<'_> {
             }
             None => format!("{}; required: {}", self.rule.title, self.requirement.words),
         };
-        let guessed = numbers.as_ref().and_then(|(value, expected, ..)| causes::likely(*value, *expected));
+        // Units explain a ratio of two amounts, not of two correlations or shares.
+        let amounts = numbers.as_ref().filter(|(_, _, unit, _)| unit.dimension != Dimension::ONE);
+        let guessed = amounts.and_then(|(value, expected, ..)| causes::likely(*value, *expected));
         let cause: Vec<String> = guessed.into_iter().chain(self.rule.cause.clone()).collect();
         Some(Finding {
             code: self.rule.name.clone(),

@@ -115,6 +115,10 @@ impl<'a> Reader<'a> {
         }
         self.problems.push(if written == "title" {
             problem.help("write the title in quotes on the first line of its block")
+        } else if let ("remove", ["every", of, ..]) = (kind.word, words)
+            && kind.key(of).is_some()
+        {
+            problem.help(format!("write `{of} every`"))
         } else if let Some((near, _)) = near {
             problem.help(format!("did you mean `{}`?", near.word))
         } else if !other.is_empty() {

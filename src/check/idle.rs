@@ -1,0 +1,92 @@
+//! Limits that are not what they seem: they hold, or fail, whatever the values are.
+
+use super::Checker;
+use super::evaluate::words;
+use super::plan::{Estimate, EstimateKind, Expr, Kind, OfGroup, Operator, Scalar, Taking};
+use crate::catalog::Statistic;
+use crate::metrics::rounded;
+use crate::problem::Problem;
+use crate::source::Span;
+use crate::syntax::document::Block;
+
+/// Statistics that are never negative, beside those of scatter.
+const OF_MAGNITUDES: [&str; 2] = ["rms", "peak"];
+
+impl Checker<'_> {
+    /// A share is at most 1: a limit above it always holds, and with `at least` never. Usually `%` is missing.
+    pub(super) fn share_above_one(&mut self, estimate: &Estimate, bound: &Expr) -> Option<()> {
+        let Kind::Constant(Scalar::Number(value)) = bound.kind else { return Some(()) };
+        if value <= 1.0 || !is_share(estimate) {
+            return Some(());
+        }
+        let problem = Problem::error("out-of-range", format!("a share is at most 1; `{}` is above it", words(bound))).at(&bound.span);
+        self.problems.push(if value <= 100.0 { problem.help(format!("write `{} %`", rounded(value))) } else { problem });
+        None
+    }
+
+    /// The estimate of a whole quantity with a bound from the same values: the two grow together.
+    pub(super) fn of_own_values(&mut self, estimate: &Estimate, bound: &OfGroup, block: &Block) {
+        let own = |taking: &Taking| matches!(taking, Taking::Other { id, .. } if id == block.name_text());
+        if matches!(estimate.kind, EstimateKind::Each) || !bound.taken.iter().any(own) {
+            return;
+        }
+        let says = format!("this bound is taken from the values of `{}`, which it limits", block.name_text());
+        let help = "it says nothing about their size; name another quantity, or write a number";
+        self.problems.push(Problem::warning("own-values", says).at(&bound.expr.span).help(help));
+    }
+
+    /// `mean + 3 * std` of differences: its magnitude is small where the mean is negative, so a bad model can pass.
+    pub(super) fn signed_estimate(&mut self, estimate: &Estimate, at: &Span) {
+        let EstimateKind::Of(of) = &estimate.kind else { return };
+        let Kind::Binary(Operator::Add, left, right) = &of.expr.kind else { return };
+        let (mut signed, mut scatter) = (false, false);
+        for part in [left, right] {
+            let mut named = Vec::new();
+            outside_magnitudes(part, &mut named);
+            let statistics = named.into_iter().filter_map(|index| match of.taken.get(index) {
+                Some(Taking::Statistic(statistic, _) | Taking::Weighted { statistic, .. }) => Some(*statistic),
+                _ => None,
+            });
+            for statistic in statistics {
+                let magnitude = matches!(statistic, Statistic::Named(entry) if OF_MAGNITUDES.contains(&entry.name));
+                scatter |= statistic.of_scatter();
+                signed |= !statistic.of_scatter() && !magnitude;
+            }
+        }
+        if signed && scatter {
+            let says = "the magnitude of this estimate is small where the differences are negative on average";
+            let help = "write it with the magnitude of the mean: `(|mean| + 3 * std)`";
+            // A limit for each zone is checked once for each.
+            let told = |problem: &Problem| problem.code == "signed-estimate" && problem.at.as_ref() == Some(at);
+            if !self.problems.0.iter().any(told) {
+                self.problems.push(Problem::warning("signed-estimate", says).at(at).help(help));
+            }
+        }
+    }
+}
+
+/// Whether the estimate is a share, or an end of its confidence interval.
+fn is_share(estimate: &Estimate) -> bool {
+    let EstimateKind::Of(of) = &estimate.kind else { return false };
+    match (&of.expr.kind, &of.taken[..]) {
+        (Kind::Input(0), [Taking::Share { .. }]) => true,
+        (Kind::Input(0), [Taking::Bound { of, .. }]) => is_share(of),
+        _ => false,
+    }
+}
+
+/// The inputs of an expression that are not inside `|...|`.
+fn outside_magnitudes(expr: &Expr, found: &mut Vec<usize>) {
+    match &expr.kind {
+        Kind::Input(index) => found.push(*index),
+        Kind::Negative(inner) | Kind::Power(inner, _) => outside_magnitudes(inner, found),
+        Kind::Binary(_, left, right) => {
+            outside_magnitudes(left, found);
+            outside_magnitudes(right, found);
+        }
+        Kind::Call(function, arguments) if function.name != "magnitude" => {
+            arguments.iter().for_each(|argument| outside_magnitudes(argument, found));
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,5 @@
+protocol several "A word in the wrong place"
+  extends  en14363-2016-annex-t
+
+remove
+  every quantity
