@@ -93,6 +93,26 @@ fn a_plain_number_suggests_no_unit() {
     assert!(finding.cause.as_deref().is_some_and(|cause| !cause.contains("in place of") && !cause.contains("factor")), "{finding:?}");
 }
 
+/// Without the direction of curves no rule can find that forces are turned on both sides: that is said.
+#[test]
+fn a_rule_that_cannot_be_asked_is_told() {
+    let found = with(|folder| {
+        let table = folder.tables.get_mut("sections.csv").expect("a table");
+        let direction = table.column("direction").expect("a column");
+        for row in &mut table.rows {
+            if row[direction] != "straight" {
+                row[direction].clear();
+            }
+        }
+    });
+    let finding = found.findings.iter().find(|finding| finding.code == "plausibility-not-checked").expect("told");
+    assert_eq!((finding.channel.as_deref(), finding.consequence), (Some("direction"), Consequence::Note));
+    let says = "the table of sections does not state `direction` (sections S05,";
+    assert!(finding.says.starts_with(says) && finding.says.contains("Guiding force of the outer leading wheel"), "{finding:?}");
+    let sound = done(Path::new(SOUND));
+    assert!(sound.findings.iter().all(|finding| finding.code != "plausibility-not-checked"), "{:?}", sound.findings);
+}
+
 #[test]
 fn a_section_that_is_not_plausible_is_not_used_and_the_others_are() {
     let found = with(|folder| folder.channels(Side::Measurement, &["S05".to_string()], &["Q_3L"], |values| vec![54.0; values.len()]));

@@ -193,6 +193,10 @@ fn a_record_in_two_campaigns_is_a_copy() {
     let findings = found.results()["findings"].clone();
     let copy = findings.as_array().expect("a list").iter().find(|finding| finding["code"] == "copies").expect("a finding").clone();
     assert_eq!((&copy["campaign"], &copy["section"]), (&Value::from("B"), &Value::from("B/S01")));
+    // A verdict on both needs something of both.
+    let results = found.results();
+    assert_eq!((found.ran.code, &results["verdict"]), (1, &Value::from("not assessable")));
+    assert_eq!(results["reasons"][0], "no section of campaign B is used");
 }
 
 #[test]

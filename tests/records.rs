@@ -202,6 +202,45 @@ fn several_codes_are_no_further_pairs() {
     assert_eq!(found.results()["reasons"][0], "Q: 24 pairs of site and signal (a repeat is no further section); at least 25 required");
 }
 
+/// The offsets of the codes are 1, 2 and 6 kN, on average 3 kN.
+#[test]
+fn a_good_simulation_does_not_hide_a_bad_one() {
+    let folder = three_codes();
+    let path = folder.path();
+    let of = |limit: &str| {
+        format!("quantity Q \"Q\"\n  of  Q at wheelset 1\n  value  mean\n  difference  simulated - measured\n  limit  {limit}\n")
+    };
+    let verdict = |rules: &str| run(path, rules).results()["verdict"].clone();
+    assert_eq!(verdict(&of("mean 7 kN")), "validated");
+    assert_eq!(verdict(&of("mean 2.5 kN")), "not validated");
+    assert_eq!(verdict(&of("mean 4 kN for each record")), "not validated");
+    let found = run(path, &of("mean 4 kN"));
+    let reason = "Q: 3 simulations together meet the limits, but gamma by itself does not: mean 6.00 kN exceeds the limit 4.00 kN by 50 %; \
+                  add `for each record` to the limits, or certify one simulation at a time";
+    assert_eq!((found.ran.code, &found.results()["reasons"][0]), (1, &Value::from(reason)));
+    let report = found.folder().join("results.json").display().to_string();
+    let (here, small) = (path.display().to_string(), path.join("small.fp").display().to_string());
+    let verified = fishplate(&["verify", &report, &here, "--protocol", &small]);
+    assert_eq!(verified.code, 0, "{}{}", verified.stdout, verified.stderr);
+    // The same for values of the simulations alone: the largest mean of all is far above that of alpha and beta.
+    let assessed = |limit: String| of(&limit).replace("  difference  simulated - measured", "  from  simulated");
+    let mean_of =
+        |at: usize| by_record(quantity(&run(path, &assessed("mean 1000 kN for each record".into())).results(), "Q"), "mean")[at].1;
+    let between = (mean_of(0) + mean_of(1) + mean_of(2)) / 3.0 + 1.0;
+    let found = run(path, &assessed(format!("mean {between} kN")));
+    assert!(found.results()["reasons"][0].as_str().is_some_and(|reason| reason.contains("but gamma by itself does not")));
+    assert_eq!(run(path, &assessed(format!("mean {} kN", mean_of(2) + 0.5))).ran.code, 0);
+    // Who names records knows of several.
+    let codes = "record codes \"Codes\"\n  is  simulated alpha, beta, gamma\n\n";
+    let named = of("mean 4 kN").replace("  difference", "  compare  codes with measured\n  difference");
+    assert_eq!(verdict(&format!("{codes}{named}")), "validated");
+    // Two runs of the measurement are no two models.
+    let campaign = path.join("campaign.yaml");
+    replace(&campaign, "[simulation/alpha, simulation/beta, simulation/gamma]", "simulation/alpha");
+    replace(&campaign, "measurement: measurement", "measurement: [simulation/beta, simulation/gamma]");
+    assert_eq!(verdict(&of("mean 4 kN")), "validated");
+}
+
 /// Runs and codes: every pair has a name, and reports of them can be verified and traced.
 #[test]
 fn runs_and_codes_are_paired_verified_and_traced() {

@@ -1,8 +1,8 @@
 //! Limits that are not what they seem: they hold, or fail, whatever the values are.
 
 use super::Checker;
-use super::evaluate::words;
-use super::plan::{Estimate, EstimateKind, Expr, Kind, OfGroup, Operator, Scalar, Taking};
+use super::evaluate::{Values, number, words};
+use super::plan::{Estimate, EstimateKind, Expr, InputSide, Kind, OfGroup, Operator, Scalar, Taking, Valued};
 use crate::catalog::Statistic;
 use crate::metrics::rounded;
 use crate::problem::Problem;
@@ -13,6 +13,38 @@ use crate::syntax::document::Block;
 const OF_MAGNITUDES: [&str; 2] = ["rms", "peak"];
 
 impl Checker<'_> {
+    /// A difference that does not depend on the two values, such as `measured - measured`.
+    pub(super) fn depends_on_values(&mut self, difference: &Expr, at: &Span) -> Option<()> {
+        /// Values of both signs, without a simple ratio.
+        const TRIED: [(f64, f64); 3] = [(1.0, -1.7), (2.9, 1.0), (-1.7, 2.9)];
+        let mut found = TRIED.iter().map(|&(simulated, measured)| number(difference, &Apart { simulated, measured }));
+        let Some(Ok(first)) = found.next() else { return Some(()) };
+        if !found.all(|other| other == Ok(first)) {
+            return Some(());
+        }
+        let says = "this difference is the same whatever the two values are";
+        let help = "a difference uses `simulated` and `measured`: `simulated - measured`";
+        self.problems.push(Problem::error("constant-difference", says).at(at).help(help));
+        None
+    }
+
+    /// Values that are compared although all of them are taken from the same record: `value measured(p99.85)`.
+    pub(super) fn of_both_records(&mut self, values: &[Valued], difference: &Expr, at: &Span) -> Option<()> {
+        let mut sides = values.iter().flat_map(|value| value.inputs.iter().flatten()).map(|input| input.side);
+        let (mut simulated, mut measured) = (false, false);
+        difference.visit(&mut |part| {
+            simulated |= matches!(part.kind, Kind::Simulated);
+            measured |= matches!(part.kind, Kind::Measured);
+        });
+        let first = sides.next().filter(|side| *side != InputSide::Own && simulated && measured);
+        let Some(side) = first.filter(|first| sides.all(|side| side == *first)) else { return Some(()) };
+        let name = if side == InputSide::Measured { "measured" } else { "simulated" };
+        let says = format!("this value is taken from the {name} record for both sides, so that the two are always equal");
+        let help = format!("write the value without `{name}(...)`: it is taken from each record");
+        self.problems.push(Problem::error("value-of-one-record", says).at(at).help(help));
+        None
+    }
+
     /// A share is at most 1: a limit above it always holds, and with `at least` never. Usually `%` is missing.
     pub(super) fn share_above_one(&mut self, estimate: &Estimate, bound: &Expr) -> Option<()> {
         let Kind::Constant(Scalar::Number(value)) = bound.kind else { return Some(()) };
@@ -62,6 +94,18 @@ impl Checker<'_> {
                 self.problems.push(Problem::warning("signed-estimate", says).at(at).help(help));
             }
         }
+    }
+}
+
+/// A pair of values; nothing else is known.
+struct Apart {
+    simulated: f64,
+    measured: f64,
+}
+
+impl Values for Apart {
+    fn sides(&self) -> Result<(f64, f64), String> {
+        Ok((self.simulated, self.measured))
     }
 }
 

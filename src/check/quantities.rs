@@ -298,6 +298,9 @@ impl Checker<'_> {
             return Some(Compared { evaluation, dimension: result, processing, comparison, best: None, from });
         };
         let (difference, compared) = difference?;
+        let place = |key: &str| block.field(key).map_or_else(|| block.span().clone(), |field| field.value.span.clone());
+        self.depends_on_values(&difference, &place("difference"))?;
+        self.of_both_records(&values, &difference, &place("value"))?;
         let compare = match compare {
             // An error in it was reported; the limits are checked all the same.
             Some(compare) => compare.unwrap_or(Compare::Pairs(Pairing::SIDES)),

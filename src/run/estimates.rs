@@ -154,6 +154,7 @@ impl Group<'_> {
     /// n-1, else by a bootstrap of the independent units.
     fn bound(&self, of: &Estimate, upper: bool, confidence: f64, bootstrap: bool, values: &[f64]) -> Result<f64, String> {
         let EstimateKind::Of(of_group) = &of.kind else { return Err("a single value has no interval".into()) };
+        some_scatter(values)?;
         let units = self.units();
         let probability = if upper { confidence } else { 1.0 - confidence };
         if let Some((Statistic::Named(entry), _, by)) = of.weighted().filter(|_| !bootstrap)
@@ -191,7 +192,10 @@ impl Group<'_> {
         let Fitted { regression, at, .. } = self.fitted(fit, values)?;
         match fit.confidence {
             None => regression.at(&at).map_err(|error| error.to_string()),
-            Some(confidence) => bound_at(&regression, fit, confidence, &at),
+            Some(confidence) => {
+                some_scatter(values)?;
+                bound_at(&regression, fit, confidence, &at)
+            }
         }
     }
 
@@ -289,6 +293,16 @@ fn bound_at(regression: &Regression, fit: &Fit, confidence: f64, at: &[f64]) -> 
     let side = if fit.lower { regression::Side::Lower } else { regression::Side::Upper };
     let tails = if fit.one_sided { Tails::One } else { Tails::Two };
     regression.bound(at, kind, side, tails, confidence).map_err(|error| error.to_string())
+}
+
+/// Values that are all equal have no scatter from which an interval could follow: one of width zero would claim certainty.
+fn some_scatter(values: &[f64]) -> Result<(), String> {
+    match values {
+        [first, rest @ ..] if !rest.is_empty() && rest.iter().all(|value| value == first) => {
+            Err(format!("all {} values are equal, so their scatter is not known", values.len()))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A percentage without rounding errors of its conversion from a share: 99.9, not 99.90000000000001.

@@ -9,6 +9,7 @@ use super::section::SectionValues;
 use super::sections::Unit;
 use super::spreads;
 use super::table::{Member, count_independent};
+use super::together;
 use super::verdicts;
 use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
 use crate::graph::{Graph, Operation, QuantityNodes};
@@ -45,6 +46,7 @@ pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: 
     if sites < plan.sections.minimum {
         missing.push(format!("{}; at least {} required", usable(used.len(), sites), plan.sections.minimum));
     }
+    missing.extend(without_sections(units));
     missing.extend(not_plausible(plan, told.findings, missing.is_empty()));
     missing.extend(told.barred.iter().cloned());
     let rows: Vec<Rows<'_>> =
@@ -64,6 +66,19 @@ pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: 
         _ => overall.outcome.word(&rule.words).to_string(),
     });
     Judged { verdict, own_word: own, reasons: overall.reasons, verdicts: named, quantities, zones }
+}
+
+/// One reason for each of several campaigns of which no section is used: the verdict names it, but nothing of it was assessed.
+fn without_sections(units: &[Unit]) -> Vec<String> {
+    let mut used: Vec<(&str, bool)> = Vec::new();
+    for unit in units {
+        let Some(name) = unit.campaign_name.as_deref() else { continue };
+        match used.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, any)) => *any |= unit.fault.is_none(),
+            None => used.push((name, unit.fault.is_none())),
+        }
+    }
+    used.iter().filter(|(_, any)| !any).map(|(name, _)| format!("no section of campaign {name} is used")).collect()
 }
 
 /// Number of different sites of the sections.
@@ -150,7 +165,7 @@ pub fn members<'a>(quantity: &'a Quantity, index: usize, used: &[(&'a Unit, &'a 
 }
 
 /// Evaluates the estimates and limits of a quantity, group by group.
-fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Vec<Compared> {
+pub fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Vec<Compared> {
     let of_limit = |nodes: &crate::graph::LimitNodes| match (&graph.nodes[nodes.estimate].operation, &graph.nodes[nodes.limit].operation) {
         (Operation::Estimate(estimate), Operation::Limit(limit)) => {
             let judging = *judging;
@@ -204,8 +219,10 @@ fn quantity_result(graph: &Graph, index: usize, judging: &Judging<'_>, reason: O
         let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
         format!("{}{scope}: {}", statistic.title, statistic.reason.as_deref().unwrap_or_default())
     });
-    let reason = reason.or(undefined);
-    let holds = if reason.is_some() { None } else { Some(statistics.iter().all(|statistic| statistic.holds == Some(true))) };
+    let met = statistics.iter().all(|statistic| statistic.holds == Some(true));
+    let alone = || together::fails_alone(graph, &graph.quantities[index], judging);
+    let reason = reason.or(undefined).or_else(|| if met { alone() } else { None });
+    let holds = if reason.is_some() { None } else { Some(met) };
     let show = |value: f64| quantity.unit.from_si(value);
     let value = |member: &Member<'_>| PairValue {
         campaign: member.unit.campaign_name.clone(),

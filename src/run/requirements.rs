@@ -135,7 +135,7 @@ fn asked<'a>(plan: &'a Plan, unit: &Unit, check: &CheckResult) -> Option<&'a Exp
     plan.checks.iter().find(|rule| rule.name == check.name).map(|rule| &rule.require)
 }
 
-fn sections_in_words(names: &[&str], of: usize) -> String {
+pub fn sections_in_words(names: &[&str], of: usize) -> String {
     match names {
         all if all.len() == of => "all sections".to_string(),
         [one] => format!("section {one}"),

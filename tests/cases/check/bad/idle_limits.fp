@@ -24,3 +24,9 @@ quantity Q_max
 
 verdict
   words  not validated, validated
+
+quantity Q_qst
+  difference  |measured| - |measured|
+
+quantity ay_max
+  value  measured(p99.85)
