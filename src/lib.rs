@@ -22,6 +22,7 @@ pub mod diagnose;
 pub mod disk;
 pub mod effects;
 pub mod graph;
+pub mod init;
 pub mod library;
 pub mod metrics;
 pub mod model;

@@ -28,6 +28,8 @@ pub struct Problem {
     pub also: Vec<(Span, String)>,
     /// The correction.
     pub help: Option<String>,
+    /// The known word that the help proposes.
+    pub near: Option<String>,
     /// For a family of blocks: the other members with the same problem, each with its message.
     pub members: Vec<(String, String)>,
 }
@@ -45,6 +47,7 @@ impl Problem {
             label: None,
             also: Vec::new(),
             help: None,
+            near: None,
             members: Vec::new(),
         }
     }
@@ -77,12 +80,20 @@ impl Problem {
         self
     }
 
+    /// Adds the help "did you mean ...?" with a known word.
+    #[must_use]
+    pub fn meant(mut self, near: &str) -> Self {
+        self.help = Some(format!("did you mean `{near}`?"));
+        self.near = Some(near.to_owned());
+        self
+    }
+
     /// Adds the help "did you mean ...?" if a candidate is similar, else the list of candidates if it is short.
     #[must_use]
     pub fn suggest<'a>(mut self, word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Self {
         let all: Vec<&str> = candidates.into_iter().collect();
         if let Some(near) = nearest(word, all.iter().copied()) {
-            self.help = Some(format!("did you mean `{near}`?"));
+            return self.meant(near);
         } else if !all.is_empty() && all.len() <= 16 {
             self.help = Some(format!("known here: {}", all.join(", ")));
         }

@@ -619,6 +619,43 @@ fn a_record_too_short_for_the_filter() {
     assert!(reasons.contains("ay_rms: it cannot be evaluated in section S01") && reasons.contains(reason), "{reasons}");
 }
 
+/// A metric whose denominator is zero in one section: its quantity is not assessable, the section serves the others.
+#[test]
+fn a_metric_without_a_value_affects_its_quantity_only() {
+    let folder = tiny();
+    let record = folder.path().join("measurement/S01.csv");
+    lines(&record, |lines| {
+        let at = lines[0].split(',').position(|heading| heading.starts_with("ay_I ")).expect("the channel");
+        for line in &mut lines[1..] {
+            *line = line.split(',').enumerate().map(|(column, cell)| if column == at { "0" } else { cell }).collect::<Vec<_>>().join(",");
+        }
+    });
+    let protocol = folder.path().join("metrics.fp");
+    let quantity = |name: &str, of: &str, metric: &str| format!("quantity {name}\n  of  {of}\n  metric  {metric}\n  limit  mean 10\n\n");
+    let text = format!(
+        "protocol metrics \"Metrics\"\n  axis  distance in m\n  time  time in s\n\nchannel ay\n  in  m/s^2\n  column  \"ay_I\"\n\n\
+        channel Y\n  in  kN\n  column  \"Y_1R\"\n\n{}{}{}",
+        quantity("ay_magnitude", "ay", "sprague-geers magnitude"),
+        quantity("ay_share", "ay", "rms of (simulated - measured) / measured(rms)"),
+        quantity("Y_magnitude", "Y", "sprague-geers magnitude"),
+    );
+    fs::write(&protocol, text).expect("written");
+    let found = certify(folder.path(), &["--protocol", protocol.to_str().expect("UTF-8"), "--only", "results"]);
+    assert_eq!(found.reason("S01"), None, "{}", found.ran.stderr);
+    let results = found.results();
+    let quantity = |name: &str| {
+        let all = results["quantities"].as_array().expect("a list");
+        all.iter().find(|quantity| quantity["id"] == name).unwrap_or_else(|| panic!("no {name}")).clone()
+    };
+    for name in ["ay_magnitude", "ay_share"] {
+        let reason = quantity(name)["reason"].to_string();
+        assert!(reason.contains("it cannot be evaluated in section S01"), "{name}: {reason}");
+    }
+    assert!(quantity("Y_magnitude")["reason"].is_null());
+    let sections = results["sections"].as_array().map_or(0, Vec::len);
+    assert_eq!(quantity("Y_magnitude")["values"].as_array().map(Vec::len), Some(sections));
+}
+
 /// A quantity that a record is sampled too slowly for is not assessable; its section serves the others.
 #[test]
 fn a_record_sampled_too_slowly_for_a_filter() {

@@ -140,8 +140,50 @@ fn each_need_has_its_unit_and_users() {
     );
     let ran = fishplate(&["explain", PROTOCOL, "--stage", "needs", "--format", "csv"]);
     assert!(ran.stdout.starts_with("kind,record,name,channel,title,unit,words,range,default,required,needed by\n"), "{}", ran.stdout);
-    let listed = ["channels", "sections", "vehicle"].iter().map(|list| needs[list].as_array().map_or(0, Vec::len)).sum::<usize>();
+    let listed =
+        ["channels", "sections", "application", "vehicle"].iter().map(|list| needs[list].as_array().map_or(0, Vec::len)).sum::<usize>();
     assert_eq!(ran.stdout.lines().count(), listed + 1);
     assert_eq!(fishplate(&["explain", PROTOCOL, "--stage", "plan", "--format", "csv"]).code, 2);
     assert_eq!(fishplate(&["explain", PROTOCOL, "--stage", "needs", "--format", "svg"]).code, 2);
+}
+
+/// The table of wanted operation, and columns of every table of sections.
+#[test]
+fn wanted_operation_sites_and_states_are_listed() {
+    let of = |protocol: &str| -> Value {
+        let ran = fishplate(&["explain", protocol, "--stage", "needs", "--format", "json"]);
+        serde_json::from_str(&ran.stdout).expect("JSON")
+    };
+    let names = |list: &Value| -> Vec<String> {
+        list.as_array().expect("a list").iter().map(|need| need["name"].as_str().expect("a name").to_string()).collect()
+    };
+    let application = of("en14363-2016-annex-t-application");
+    let table = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good/application.csv")).expect("a table");
+    let mut given: Vec<&str> =
+        table.lines().next().expect("a header").split(',').filter_map(|heading| heading.split(" [").next()).collect();
+    let mut listed = names(&application["application"]);
+    assert_eq!(listed[0], "point");
+    given.retain(|name| listed.iter().any(|known| known == name));
+    given.sort_unstable();
+    listed.sort();
+    assert_eq!(listed, given, "every column that the domain reads is in the example");
+    assert!(names(&needs()["application"]).is_empty());
+    let need = |needs: &Value, name: &str| {
+        needs["sections"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .find(|need| need["name"] == name)
+            .unwrap_or_else(|| panic!("no {name}"))
+            .clone()
+    };
+    for name in ["site", "state", "repeat of", "track"] {
+        assert_eq!(need(&application, name)["required"], false, "{name}");
+    }
+    let repeats = of("kraft");
+    assert_eq!(need(&repeats, "repeat of")["required"], true);
+    assert!(need(&repeats, "repeat of")["quantities"].as_array().is_some_and(|users| !users.is_empty()));
+    assert!(of("stationary-sway")["sections"].as_array().is_some_and(Vec::is_empty), "whole records have no sections");
+    let text = fishplate(&["explain", "en14363-2016-annex-t-application", "--stage", "needs"]).stdout;
+    assert!(text.contains("columns of the table of wanted operation\n  point"), "{text}");
 }

@@ -179,10 +179,8 @@ fn name_after_number(problem: &mut Problem, names: &Names) {
         || names.defines.contains_key(word)
         || names.estimates.contains_key(word)
         || names.vehicle.iter().chain(&names.columns).any(|datum| datum.name == word);
-    let likely_unit = problem.help.as_ref().is_some_and(|help| help.starts_with("did you mean"));
-    if is_name && likely_unit {
-        let help = format!("a product is written with its sign: `... * {word}`");
-        problem.help = Some(help);
+    if is_name && problem.near.take().is_some() {
+        problem.help = Some(format!("a product is written with its sign: `... * {word}`"));
     }
 }
 

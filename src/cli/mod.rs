@@ -6,6 +6,7 @@ mod compare;
 mod diagnose;
 mod effects;
 mod explain;
+mod init;
 mod inputs;
 mod needs;
 mod output;
@@ -94,6 +95,11 @@ enum Command {
     /// List the effects that can be added to a simulation, or print a shipped catalogue.
     #[command(after_help = "Example:\n  fishplate effects\n  fishplate effects --text > mine.yaml")]
     Effects(effects::Effects),
+    /// Write the draft of a protocol and an empty campaign, from a list of channels or from what a protocol needs.
+    #[command(
+        after_help = "Examples:\n  fishplate init target/new --channels \"Y_1R [kN], Y_1L [kN], ay_I [m/s^2]\"\n  fishplate init target/new --channels-from examples/coach/measurement/S01.csv\n  fishplate init target/new --extends en14363-2016-annex-t"
+    )]
+    Init(init::Init),
     /// Check protocols, and show every problem with its place.
     #[command(after_help = "Example:\n  fishplate check protocols/en14363-2016-annex-t.fp my-variant.yaml")]
     Check {
@@ -197,6 +203,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Diagnose(diagnose) => diagnose.run(&console),
         Command::Blind(blinded) => blinded.run(&console),
         Command::Effects(effects) => effects.run(&console),
+        Command::Init(init) => init.run(&console),
         Command::Check { protocols } => protocols::check(&protocols, &console),
         Command::Fmt { protocols, check } => protocols::fmt(&protocols, check, &console),
         Command::Convert { protocol, to, output } => protocols::convert(&protocol, matches!(to, Form::Yaml), output.as_deref(), &console),

@@ -38,7 +38,12 @@ pub fn text(plan: &Plan, needs: &Needs) -> String {
             let _ = writeln!(out, "  {} [{}], {}\n      {}", need.column, need.unit, records.join(" and "), users(&need.users, required));
         }
     }
-    for (heading, data) in [("columns of the table of sections", &needs.sections), ("vehicle data", &needs.vehicle)] {
+    let tables = [
+        ("columns of the table of sections", &needs.sections),
+        ("columns of the table of wanted operation", &needs.application),
+        ("vehicle data", &needs.vehicle),
+    ];
+    for (heading, data) in tables {
         if !data.is_empty() {
             let _ = writeln!(out, "\n{heading}");
         }
@@ -79,6 +84,7 @@ pub fn json(plan: &Plan, needs: &Needs) -> Value {
     json!({
         "protocol": plan.name, "title": plan.title, "channels": channels,
         "sections": needs.sections.iter().map(datum).collect::<Vec<_>>(),
+        "application": needs.application.iter().map(datum).collect::<Vec<_>>(),
         "vehicle": needs.vehicle.iter().map(datum).collect::<Vec<_>>(),
     })
 }
@@ -102,7 +108,7 @@ pub fn csv(needs: &Needs) -> String {
             need.users.all().join("; "),
         ]);
     }
-    for (kind, data) in [("section", &needs.sections), ("vehicle", &needs.vehicle)] {
+    for (kind, data) in [("section", &needs.sections), ("application", &needs.application), ("vehicle", &needs.vehicle)] {
         for need in data {
             rows.push(vec![
                 kind.into(),

@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 pub use facts::Fact;
 pub use files::{Inputs, ReadFile};
+pub use opening::POINT_KEY;
 pub use records::RecordKind;
 
 use super::folder::{Folder, Place, check_file_name};

@@ -99,7 +99,7 @@ impl Heading {
                 Problem::error("unknown-unit", format!("the unit of the column `{name}`: `{}` is not a known unit", unknown.word))
                     .at(&written.span);
             match unknown.near {
-                Some(near) => problem.help(format!("did you mean `{near}`?")),
+                Some(near) => problem.meant(near),
                 None => problem,
             }
         })?;

@@ -147,6 +147,14 @@ pub fn read_headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Probl
     header(text, shown).map(|(headings, _)| headings)
 }
 
+/// The headings of a list in the form of a header, such as `Y_1R [kN], ay_I [m/s^2]`.
+///
+/// # Errors
+/// As of a header; `file-empty`.
+pub fn listed_headings(text: &str, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
+    header(text, shown).map(|(headings, _)| headings)
+}
+
 /// The headings, and the start of the first row.
 fn header(text: &str, shown: &str) -> Result<(Vec<Heading>, usize), Vec<Problem>> {
     let end = text.find('\n').unwrap_or(text.len());

@@ -4,9 +4,9 @@ use super::table::{Cell, Table};
 use crate::problem::{Problem, Problems};
 
 /// Columns of the section table that define the site of a section.
-const SITE: &str = "site";
-const REPEAT_OF: &str = "repeat of";
-const TRACK: &str = "track";
+pub const SITE: &str = "site";
+pub const REPEAT_OF: &str = "repeat of";
+pub const TRACK: &str = "track";
 const START: &str = "start";
 const END: &str = "end";
 /// Two sections of one track are one site if they share at least this part of the shorter one. Successive sections may share a few metres;

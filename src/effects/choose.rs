@@ -204,7 +204,7 @@ fn number(parameter: &Parameter, written: &str, place: &dyn Fn(&str) -> Span) ->
     }
     let unit = Unit::parse(unit).map_err(|unknown| {
         let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&place(unit));
-        Box::new(unknown.near.map_or(problem.clone(), |near| problem.help(format!("did you mean `{near}`?"))))
+        Box::new(unknown.near.map_or(problem.clone(), |near| problem.meant(near)))
     })?;
     if unit.dimension != parameter.unit.dimension {
         let says = format!("`{}` is in {}, not in {unit}", parameter.name, parameter.unit);

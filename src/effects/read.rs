@@ -367,7 +367,7 @@ impl Reader<'_> {
             .map_err(|unknown| {
                 let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&node.span);
                 self.problems.push(match unknown.near {
-                    Some(near) => problem.help(format!("did you mean `{near}`?")),
+                    Some(near) => problem.meant(near),
                     None => problem,
                 });
             })

@@ -277,6 +277,24 @@ pub struct ZoneResult {
     pub holds: bool,
 }
 
+impl ZoneResult {
+    /// Why the zone has too few sections.
+    pub fn lack(&self) -> Option<String> {
+        let says = || format!("zone {} has {}; at least {} required", self.zone, usable_sections(self.used, self.sites), self.minimum);
+        (!self.holds).then(says)
+    }
+}
+
+/// `2 usable sections`; with repeats, `3 usable sections of 2 sites (a repeat is no further section)`.
+pub fn usable_sections(sections: usize, sites: usize) -> String {
+    let plural = |count: usize| if count == 1 { "" } else { "s" };
+    let in_words = format!("{sections} usable section{}", plural(sections));
+    if sections == sites {
+        return in_words;
+    }
+    format!("{in_words} of {sites} site{} (a repeat is no further section)", plural(sites))
+}
+
 /// Range of a numeric section column over the sections used.
 #[derive(Clone, Debug, Serialize)]
 pub struct DomainRange {

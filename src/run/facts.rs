@@ -12,6 +12,7 @@ use crate::data::campaign::VehicleState;
 use crate::problem::{Problem, Problems};
 use crate::result::DataItem;
 use crate::units::{self, number::Refused};
+use crate::yaml::Value;
 
 /// Values of one vehicle, one for each [`Plan::vehicle`].
 #[derive(Clone, Debug)]
@@ -159,6 +160,15 @@ fn vehicle_datum(datum: &Datum, vehicle: &VehicleState, problems: &mut Problems)
         );
         return None;
     };
+    if node.value == Value::Null {
+        let problem = Problem::error("vehicle-data", format!("`{}` has no value", datum.key)).at(&node.span);
+        problems.push(problem.also(&datum.span, "declared here").help(format!(
+            "{}: write its value{}",
+            datum.title,
+            with_unit(&datum.kind)
+        )));
+        return None;
+    }
     let text = node.scalar_text().unwrap_or("").trim();
     let read = match &datum.kind {
         DatumKind::Number(unit) => units::number::read(text, unit).map(|read| (Scalar::Number(read.si), !read.unit_stated)),
@@ -178,6 +188,16 @@ fn vehicle_datum(datum: &Datum, vehicle: &VehicleState, problems: &mut Problems)
         None => problem,
     });
     None
+}
+
+/// ` with its unit, such as kN`, or the possible words.
+fn with_unit(kind: &DatumKind) -> String {
+    match kind {
+        DatumKind::Number(unit) if unit.text != "-" => format!(" with its unit, such as {unit}"),
+        DatumKind::Words(words) => format!(", one of {}", words.join(", ")),
+        DatumKind::Flag => ", true or false".into(),
+        DatumKind::Number(_) | DatumKind::Campaign => String::new(),
+    }
 }
 
 /// Why a number is not allowed. If its unit was assumed, the help names a unit in which the number would be allowed.

@@ -13,7 +13,7 @@ use super::together;
 use super::verdicts;
 use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
 use crate::graph::{Graph, Operation, QuantityNodes};
-use crate::result::{Consequence, Finding, PairValue, QuantityResult, Verdict, VerdictResult, ZoneResult};
+use crate::result::{Consequence, Finding, PairValue, QuantityResult, Verdict, VerdictResult, ZoneResult, usable_sections};
 
 #[derive(Debug)]
 pub struct Judged {
@@ -37,14 +37,12 @@ pub struct Told<'a> {
 
 pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: &[SectionValues], told: &Told<'_>) -> Judged {
     let used: Vec<(&Unit, &SectionValues)> = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
-    let mut missing = Vec::new();
+    let mut missing: Vec<String> = Vec::new();
     let zones: Vec<ZoneResult> = plan.zones.iter().map(|zone| zone_result(zone, units)).collect();
-    for zone in zones.iter().filter(|zone| !zone.holds) {
-        missing.push(format!("zone {} has {}; at least {} required", zone.zone, usable(zone.used, zone.sites), zone.minimum));
-    }
+    missing.extend(zones.iter().filter_map(ZoneResult::lack));
     let sites = sites(used.iter().map(|(unit, _)| *unit));
     if sites < plan.sections.minimum {
-        missing.push(format!("{}; at least {} required", usable(used.len(), sites), plan.sections.minimum));
+        missing.push(format!("{}; at least {} required", usable_sections(used.len(), sites), plan.sections.minimum));
     }
     missing.extend(without_sections(units));
     missing.extend(not_plausible(plan, told.findings, missing.is_empty()));
@@ -84,15 +82,6 @@ fn without_sections(units: &[Unit]) -> Vec<String> {
 /// Number of different sites of the sections.
 fn sites<'a>(units: impl Iterator<Item = &'a Unit>) -> usize {
     units.map(|unit| unit.site).collect::<BTreeSet<_>>().len()
-}
-
-/// `2 usable sections`; with repeats, `3 usable sections of 2 sites (a repeat is no further section)`.
-fn usable(sections: usize, sites: usize) -> String {
-    let sections_in_words = count(sections, "usable section");
-    if sections == sites {
-        return sections_in_words;
-    }
-    format!("{sections_in_words} of {} (a repeat is no further section)", count(sites, "site"))
 }
 
 /// One reason for each plausibility rule that makes the campaign not assessable. If sections are missing, also one for each rule

@@ -4,10 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::facts::trimmed;
 use super::section::wanted_of;
+use super::sections::STATE;
+use super::wanted::columns as columns_of;
 use crate::check::plan::{
     AxisOperation, Datum, DatumKind, Estimate, EstimateKind, Evaluation, Expr, Independent, Input, Key, Kind, Limit, OfGroup, Plan,
     Quantity, Records, Scalar, Scope, Side, Signal, SignalKind, Taking, Test, Valued,
 };
+use crate::data::campaign::POINT_KEY;
+use crate::data::sites;
 use crate::graph::{Graph, InputNode, NodeId, Operation};
 use crate::units::Unit;
 
@@ -17,6 +21,8 @@ pub struct Needs {
     /// Columns of the table of sections; none where whole records are evaluated.
     pub sections: Vec<DatumNeed>,
     pub vehicle: Vec<DatumNeed>,
+    /// Columns of the table of wanted operation; none where the protocol has no domain.
+    pub application: Vec<DatumNeed>,
 }
 
 /// Who needs something.
@@ -41,7 +47,7 @@ pub struct ChannelNeed {
     pub users: Users,
 }
 
-/// A column of the table of sections, or a value of the vehicle file.
+/// A column of the table of sections or of wanted operation, or a value of the vehicle file.
 #[derive(Clone, Debug)]
 pub struct DatumNeed {
     pub key: String,
@@ -63,24 +69,69 @@ pub fn needs(plan: &Plan, graph: &Graph) -> Needs {
     let [columns, vehicle] = data_users(plan);
     let mut sections = Vec::new();
     if !plan.sections.whole_records {
-        let given = |key: &str, title: &str, unit: Option<&Unit>| DatumNeed {
-            key: key.into(),
-            title: title.into(),
-            unit: unit.map(|unit| unit.text.clone()),
-            words: Vec::new(),
-            range: None,
-            default: None,
-            required: true,
-            users: Users { quantities: Vec::new(), rules: vec!["sections".into()] },
-        };
-        sections.push(given("section", "Name of the section and of its records", None));
-        sections.push(given("start", "Start of the section", Some(&plan.axis.unit)));
-        sections.push(given("end", "End of the section", Some(&plan.axis.unit)));
+        sections.push(given("section", "Name of the section and of its records", None, "sections"));
+        sections.push(given("start", "Start of the section", Some(&plan.axis.unit), "sections"));
+        sections.push(given("end", "End of the section", Some(&plan.axis.unit), "sections"));
         let own = plan.columns.iter().zip(columns).filter(|(datum, _)| datum.kind != DatumKind::Campaign);
         sections.extend(own.map(|(datum, users)| datum_need(datum, users)));
+        let others: Vec<DatumNeed> =
+            of_every_table(plan).into_iter().filter(|need| sections.iter().all(|known| known.key != need.key)).collect();
+        sections.extend(others);
     }
     let vehicle = plan.vehicle.iter().zip(vehicle).map(|(datum, users)| datum_need(datum, users)).collect();
-    Needs { channels: channels(plan, graph), sections, vehicle }
+    Needs { channels: channels(plan, graph), sections, vehicle, application: application(plan) }
+}
+
+/// A column that the program itself reads.
+fn given(key: &str, title: &str, unit: Option<&Unit>, rule: &str) -> DatumNeed {
+    DatumNeed {
+        key: key.into(),
+        title: title.into(),
+        unit: unit.map(|unit| unit.text.clone()),
+        words: Vec::new(),
+        range: None,
+        default: None,
+        required: true,
+        users: Users { quantities: Vec::new(), rules: vec![rule.into()] },
+    }
+}
+
+/// Columns that every table of sections may have: they say which sections are one site, and the state of the vehicle.
+fn of_every_table(plan: &Plan) -> Vec<DatumNeed> {
+    let optional = |key: &str, title: &str, rule: &str| DatumNeed {
+        required: false,
+        default: Some(super::facts::NOT_STATED.into()),
+        ..given(key, title, None, rule)
+    };
+    let of_repeats = |quantity: &&Quantity| quantity.evaluation.of_repeats();
+    let repeats: Vec<String> = plan.quantities.iter().filter(of_repeats).map(|quantity| quantity.id.clone()).collect();
+    let mut repeat =
+        optional(sites::REPEAT_OF, "Name of the section that was measured before, where this one repeats it", "independent site");
+    if !repeats.is_empty() {
+        repeat.required = true;
+        repeat.default = None;
+        repeat.users.quantities = repeats;
+    }
+    vec![
+        repeat,
+        optional(sites::SITE, "The same text for all sections of one site", "independent site"),
+        optional(sites::TRACK, "Name of the track; sections that overlap on it are one site", "independent site"),
+        optional(STATE, "State of the vehicle, where the campaign has a vehicle file for each state", "vehicle states"),
+    ]
+}
+
+/// Columns of the table of wanted operation, in the order of the protocol.
+fn application(plan: &Plan) -> Vec<DatumNeed> {
+    let Some(first) = plan.domains.first() else { return Vec::new() };
+    let users = |index: usize| {
+        let of = plan.domains.iter().filter(|domain| columns_of(domain).contains(&index));
+        Users { quantities: Vec::new(), rules: of.map(|domain| format!("domain {}", domain.name)).collect() }
+    };
+    let mut point = given(POINT_KEY, "Name of the point of wanted operation", None, &format!("domain {}", first.name));
+    point.users.rules = plan.domains.iter().map(|domain| format!("domain {}", domain.name)).collect();
+    let read = plan.columns.iter().enumerate().map(|(index, datum)| (datum, users(index)));
+    let read = read.filter(|(datum, users)| datum.kind != DatumKind::Campaign && !users.rules.is_empty());
+    std::iter::once(point).chain(read.map(|(datum, users)| datum_need(datum, users))).collect()
 }
 
 fn datum_need(datum: &Datum, users: Users) -> DatumNeed {

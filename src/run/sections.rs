@@ -95,7 +95,7 @@ pub fn units(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> 
 }
 
 /// The column of the section table that says in which state the vehicle was, where there is a vehicle file for each.
-const STATE: &str = "state";
+pub(super) const STATE: &str = "state";
 
 /// For each section the number of its vehicle.
 ///

@@ -45,7 +45,7 @@ pub fn points(plan: &Plan, campaigns: Campaigns<'_>, facts: &Facts, problems: &m
 }
 
 /// Columns that a domain reads.
-fn columns(domain: &Domain) -> Vec<usize> {
+pub(super) fn columns(domain: &Domain) -> Vec<usize> {
     let mut found = domain.each.clone();
     let mut see = |part: &Expr| {
         if let Kind::Column(index) = part.kind {

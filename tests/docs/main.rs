@@ -187,12 +187,24 @@ fn console(page: &Page, block: &Block, folder: &Path) -> usize {
     count
 }
 
+/// The words of a line, as a shell takes them apart: what stands in double quotes is one word.
+fn words(line: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    for (at, part) in line.split('"').enumerate() {
+        match at % 2 {
+            0 => words.extend(part.split_whitespace().map(str::to_string)),
+            _ => words.push(part.to_string()),
+        }
+    }
+    words
+}
+
 /// Runs the program as a line of a shell would; what it prints, errors last.
 fn run(line: &str, folder: &Path, code: &mut i32, at: &str) -> String {
     let line = line.replace("cargo run --release -- ", "fishplate ");
     let (line, to) = line.split_once(" > ").map_or((line.as_str(), None), |(line, to)| (line, Some(to)));
-    let mut words = line.split_whitespace();
-    assert_eq!(words.next(), Some("fishplate"), "{at}: only the program itself is run");
+    let mut words = words(line).into_iter();
+    assert_eq!(words.next().as_deref(), Some("fishplate"), "{at}: only the program itself is run");
     let mut command = Command::new(env!("CARGO_BIN_EXE_fishplate"));
     command.current_dir(folder).args(words);
     // A page may call the program by its name in a file of its own.

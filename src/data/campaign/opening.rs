@@ -19,7 +19,7 @@ const SECTION_KEY: &str = "section";
 /// The key of the table of wanted operation.
 pub(super) const APPLICATION: &str = "application";
 /// The column of that table that names the points of operation.
-const POINT_KEY: &str = "point";
+pub const POINT_KEY: &str = "point";
 
 /// A campaign that is being opened, and what was wrong with it so far.
 pub(super) struct Opening<'a> {

@@ -12,15 +12,32 @@ const PANEL: f64 = 130.0;
 /// Largest number of curves that can be told apart; further metrics are in the table only.
 const MOST: usize = 12;
 
+/// The axis ends at so many times the median of what the curves reach: one metric that is much more sensitive than the others would
+/// press them onto the axis.
+const HIGHEST: f64 = 5.0;
+
+/// Where the axis ends: at the largest value, or below it.
+fn highest(curves: &[(String, Vec<(f64, f64)>)]) -> f64 {
+    let mut reached: Vec<f64> = curves.iter().map(|(_, points)| points.iter().map(|(_, value)| *value).fold(0.0, f64::max)).collect();
+    reached.sort_by(f64::total_cmp);
+    let most = reached.last().copied().unwrap_or(0.0);
+    let end = HIGHEST * reached.get(reached.len() / 2).copied().unwrap_or(0.0);
+    (if end > 0.0 { most.min(end) } else { most }).max(f64::MIN_POSITIVE)
+}
+
 /// One curve for each metric: its name, and pairs of size and sensitivity.
 pub fn sensitivity(disturbance: &str, curves: &[(String, Vec<(f64, f64)>)]) -> String {
     let curves = &curves[..curves.len().min(MOST)];
-    let entries = curves.iter().enumerate().map(|(n, (name, _))| Entry::mark(Mark::nth(n), color(n), cut(name, 8.0, 0.45 * WIDTH)));
+    let high = highest(curves);
+    let entry = |(n, (name, points)): (usize, &(String, Vec<(f64, f64)>))| {
+        let name = cut(name, 8.0, 0.35 * WIDTH);
+        let beyond = points.iter().any(|(_, value)| *value > high);
+        Entry::mark(Mark::nth(n), color(n), if beyond { format!("{name} (beyond the axis)") } else { name })
+    };
+    let entries = curves.iter().enumerate().map(entry);
     let legend = Legend::new(entries.collect(), WIDTH - 40.0);
     let top = legend.height() + 8.0;
-    let values = curves.iter().flat_map(|(_, points)| points.iter().map(|(_, value)| *value));
     let sizes = curves.iter().flat_map(|(_, points)| points.iter().map(|(size, _)| *size));
-    let high = values.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
     let y = Scale { low: 0.0, high: 1.05 * high, from: top + PANEL, to: top };
     let ticks = y.ticks(6);
     let frame =
@@ -31,7 +48,7 @@ pub fn sensitivity(disturbance: &str, curves: &[(String, Vec<(f64, f64)>)]) -> S
     frame.x_axis(&mut canvas, &frame.x.ticks(8), &format!("size of the disturbance ({disturbance})"));
     for (n, (name, points)) in curves.iter().enumerate() {
         let placed: Vec<(f64, f64)> =
-            [(0.0, 0.0)].iter().chain(points).map(|(size, value)| (frame.x.at(*size), frame.y.at(*value))).collect();
+            [(0.0, 0.0)].iter().chain(points).map(|(size, value)| (frame.x.at(*size), frame.y.at(value.min(1.05 * high)))).collect();
         canvas.draw(|layer| layer.path(&placed, color(n), 0.9));
         for ((size, value), point) in points.iter().zip(&placed[1..]) {
             let title = format!("{name}, size {size}: {}", number::significant(*value, 3));
@@ -42,4 +59,18 @@ pub fn sensitivity(disturbance: &str, curves: &[(String, Vec<(f64, f64)>)]) -> S
     }
     frame.spine(&mut canvas);
     canvas.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_metric_does_not_press_the_others_onto_the_axis() {
+        let curve = |high: f64| (String::new(), vec![(0.1, 0.5 * high), (0.2, high)]);
+        assert_eq!(highest(&[curve(1.0), curve(2.0), curve(3.0)]), 3.0);
+        assert_eq!(highest(&[curve(1.0), curve(2.0), curve(1e15)]), 10.0);
+        assert_eq!(highest(&[curve(0.0), curve(0.0), curve(2.0)]), 2.0);
+        assert!(highest(&[]) > 0.0);
+    }
 }

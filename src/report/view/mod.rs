@@ -207,7 +207,7 @@ pub fn view(found: &Certification) -> ReportData {
     let quantities: Vec<QuantityView> =
         found.quantities.iter().enumerate().map(|(at, quantity)| quantity::view(at, quantity, found.protocol.source.as_deref())).collect();
     let (summary, further) = summary::tables(&found.quantities);
-    let reasons: Vec<String> = found.reasons.iter().map(|reason| in_symbols(reason, found)).collect();
+    let reasons = verdicts::reasons(found);
     ReportData {
         title: title(found),
         program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned(),
@@ -220,8 +220,8 @@ pub fn view(found: &Certification) -> ReportData {
         measurement_statement: wording::measurement_statement(found),
         verdict_sentence: wording::sentence(found).to_owned(),
         cover_reasons: reasons.iter().take(REASONS_ON_COVER).cloned().collect(),
+        more_reasons: more_reasons(reasons.len()),
         reasons,
-        more_reasons: more_reasons(found.reasons.len()),
         identity: identity::checklist(found),
         symbols: quantities.iter().map(|quantity| quantity.symbol.clone()).collect(),
         notation: notation::view(found),

@@ -13,15 +13,61 @@ pub struct VerdictRow {
     pub verdict: VerdictResult,
 }
 
+/// In place of the reasons of the overall verdict, in the table beside it.
+const TOO_FEW: &str = "too few usable sections, see the reasons of the verdict";
+
 pub(super) fn rows(found: &Certification) -> Vec<VerdictRow> {
+    let together = lacks(found).map(|(_, together)| together);
+    let above = together.filter(|together| reasons(found).contains(together));
+    let short = |reason: String| if above.as_ref() == Some(&reason) { TOO_FEW.to_owned() } else { reason };
     let row = |verdict: &VerdictResult| VerdictRow {
         finding: Finding::new(verdict.outcome.holds(), &verdict.word, &verdict.word, &verdict.word),
-        verdict: VerdictResult {
-            reasons: verdict.reasons.iter().map(|reason| super::in_symbols(reason, found)).collect(),
-            ..verdict.clone()
-        },
+        verdict: VerdictResult { reasons: merged(&verdict.reasons, found).into_iter().map(short).collect(), ..verdict.clone() },
     };
     found.verdicts.iter().map(row).collect()
+}
+
+/// The reasons of the overall verdict.
+pub(super) fn reasons(found: &Certification) -> Vec<String> {
+    merged(&found.reasons, found)
+}
+
+/// Reasons in symbols. Zones with too few sections are one reason, also where a verdict has it from others.
+fn merged(reasons: &[String], found: &Certification) -> Vec<String> {
+    let lacks = lacks(found);
+    let mut all: Vec<String> = Vec::new();
+    for reason in reasons {
+        let shown = match &lacks {
+            Some((each, together)) if each.iter().any(|lack| lack == own(reason, found)) => together.clone(),
+            _ => super::in_symbols(reason, found),
+        };
+        if !all.contains(&shown) {
+            all.push(shown);
+        }
+    }
+    all
+}
+
+/// The reason without the titles of the verdicts that it comes through.
+fn own<'a>(reason: &'a str, found: &Certification) -> &'a str {
+    let mut rest = reason;
+    let through = |rest: &'a str| found.verdicts.iter().find_map(|verdict| rest.strip_prefix(verdict.title.as_str())?.strip_prefix(": "));
+    while let Some(inner) = through(rest) {
+        rest = inner;
+    }
+    rest
+}
+
+/// The reasons of zones with too few sections, and one sentence for them, if there are several that it can stand for.
+fn lacks(found: &Certification) -> Option<(Vec<String>, String)> {
+    let short: Vec<_> = found.zones.iter().filter_map(|zone| Some((zone, zone.lack()?))).collect();
+    let (first, _) = short.first()?;
+    if short.len() < 2 || short.iter().any(|(zone, _)| zone.minimum != first.minimum || zone.used != zone.sites) {
+        return None;
+    }
+    let each: Vec<String> = short.iter().map(|(zone, _)| format!("zone {} has {}", zone.zone, zone.used)).collect();
+    let together = format!("too few usable sections: {}; at least {} required in each", each.join(", "), first.minimum);
+    Some((short.into_iter().map(|(_, lack)| lack).collect(), together))
 }
 
 /// Title of the overall verdict, if it has a name.

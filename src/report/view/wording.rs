@@ -25,6 +25,7 @@ pub struct Wording {
 
 pub(super) fn wording(found: &Certification) -> Wording {
     let (report, domain, outside, rows) = match found.kind() {
+        Kind::Validation if found.own_word.is_some() => ("Comparison report", "Validity domain", NOT_DEMONSTRATED, "Pairs"),
         Kind::Validation => ("Validation report", "Validity domain", NOT_DEMONSTRATED, "Pairs"),
         Kind::Assessment => {
             ("Assessment report", "Test conditions", "The requirements have not been assessed outside these ranges.", "Values")
@@ -51,6 +52,8 @@ fn over(found: &Certification) -> String {
         _ => "simulated and measured",
     };
     match found.kind() {
+        // A protocol that does not speak of validation gives its verdict in words of its own.
+        Kind::Validation if found.own_word.is_some() => "Comparison of simulated and measured records".into(),
         Kind::Validation => "Validation of a vehicle simulation model".into(),
         Kind::Assessment => format!("Assessment of a vehicle by {of_sides} records"),
         Kind::Comparison if found.reads() == (true, false) => "Comparison of simulation codes".into(),

@@ -121,7 +121,7 @@ fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Pro
     let unknown = Unit::parse(found).err()?;
     let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&text.place(at..at + found.len()));
     Some(match unknown.near.filter(|_| !is_name(found)) {
-        Some(near) => problem.help(format!("did you mean `{near}`?")),
+        Some(near) => problem.meant(near),
         None => {
             let product = format!("{last} * {}", up_to_keyword(&text.text[at..]));
             problem.help(format!("a product is written with its sign: `{product}`; units are written like kN, m/s^2, km/h, mrad"))

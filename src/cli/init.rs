@@ -1,0 +1,214 @@
+//! `init`: the draft of a protocol and an empty campaign.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::Args;
+
+use super::output::{Console, Exit};
+use super::protocols::load;
+use crate::check::{self, Overrides, family, family::Family};
+use crate::data::record::{listed_headings, read_headings};
+use crate::graph;
+use crate::init::channels::{Listed, channels, listed};
+use crate::init::protocol::Parent;
+use crate::init::{File, campaign, protocol};
+use crate::problem::{Problem, Problems};
+use crate::run::needs;
+use crate::source::Source;
+use crate::{disk, library};
+
+const PROTOCOL: &str = "protocol.fp";
+
+#[derive(Debug, Args)]
+pub struct Init {
+    /// Folder to create; it must not exist, or be empty.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Channels with their units, separated by commas: "Y_1R [kN], Y_1L [kN], ay_I [m/s^2]".
+    #[arg(long, value_name = "LIST", conflicts_with = "channels_from", required_unless_present_any = ["channels_from", "extends"])]
+    channels: Option<String>,
+    /// A record whose header lists the channels.
+    #[arg(long, value_name = "RECORD.csv")]
+    channels_from: Option<PathBuf>,
+    /// Protocol that the new one extends: a shipped name, or a path; the campaign then has what it needs.
+    #[arg(long, value_name = "PROTOCOL")]
+    extends: Option<String>,
+}
+
+impl Init {
+    pub fn run(self, console: &Console) -> Exit {
+        let mut problems = Problems::default();
+        if let Err(problem) = self.check_folder() {
+            problems.push(problem);
+        }
+        let files = self.files(&mut problems);
+        console.problems(&problems);
+        let Some(files) = files.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        if let Err(problem) = write(&self.folder, &files) {
+            return console.fail(problem, Exit::Unfinished);
+        }
+        console.say(&format!("written: {}", self.folder.display()));
+        files.iter().for_each(|(path, _)| console.say(&format!("  {path}")));
+        Exit::Done
+    }
+
+    /// Nothing that is there is changed.
+    fn check_folder(&self) -> Result<(), Problem> {
+        let shown = self.folder.display();
+        if !disk::may_exist(&self.folder) {
+            return Ok(());
+        }
+        let names = disk::names(&self.folder).map_err(|error| {
+            Problem::error("folder-not-empty", format!("`{shown}` is there and is no folder that can be read: {error}"))
+                .help("give another folder")
+        })?;
+        match names.iter().map(|name| name.to_string_lossy().into_owned()).min() {
+            None => Ok(()),
+            Some(first) => Err(Problem::error("folder-not-empty", format!("the folder `{shown}` is not empty: it has `{first}`"))
+                .help("give a folder that does not exist; nothing is overwritten")),
+        }
+    }
+
+    fn listed(&self, problems: &mut Problems) -> Option<Listed> {
+        let headings = match (&self.channels, &self.channels_from) {
+            (Some(list), _) => listed_headings(list, "--channels"),
+            (None, Some(path)) => read_headings(path, &path.display().to_string()),
+            (None, None) => return None,
+        };
+        let headings = match headings {
+            Ok(headings) => headings,
+            Err(found) => {
+                found.into_iter().for_each(|problem| problems.push(problem));
+                return None;
+            }
+        };
+        let found = channels(&headings, problems);
+        if problems.any_error() {
+            return None;
+        }
+        let listed = match listed(found, self.channels_from.is_some()) {
+            Ok(listed) => listed,
+            Err(problem) => {
+                problems.push(match headings.first() {
+                    Some(first) => problem.at(&first.span),
+                    None => *problem,
+                });
+                return None;
+            }
+        };
+        if listed.groups.is_empty() && self.extends.is_none() {
+            let at = headings.first().zip(headings.last()).map(|(first, last)| first.span.to(&last.span));
+            let problem =
+                Problem::error("no-channels", "there is no channel besides axis and time").help("add those that are to be compared");
+            problems.push(at.map_or(problem.clone(), |at| problem.at(&at)));
+            return None;
+        }
+        Some(listed)
+    }
+
+    fn files(&self, problems: &mut Problems) -> Option<Vec<File>> {
+        let mut listed = self.listed(problems);
+        let family = match &self.extends {
+            Some(name) => Some(load(name, problems)?),
+            None => None,
+        };
+        if problems.any_error() {
+            return None;
+        }
+        let copies = family.as_ref().map(|family| copies(family, problems)).unwrap_or_default();
+        if let (Some(family), Some(listed)) = (&family, &mut listed) {
+            without_known(family, listed, problems)?;
+        }
+        let parent = family.as_ref().map(parent);
+        let name = self.name();
+        let text = protocol::text(&name, listed.as_ref(), parent.as_ref()).map_err(|problem| problems.push(*problem)).ok()?;
+        let source = Source::new(PROTOCOL, text);
+        let find = |name: &str, from: &Source| match copies.iter().find(|(path, _)| path == name) {
+            Some((_, source)) => Ok(Arc::clone(source)),
+            None => library::parent(name, from),
+        };
+        let family = family::read(&source, &find, problems);
+        let plan = check::check(&family, &Overrides::new(), problems)?;
+        let needs = needs::needs(&plan, &graph::from_plan(&plan));
+        let mut files = vec![(PROTOCOL.to_string(), source.text.clone())];
+        files.extend(copies.into_iter().map(|(path, source)| (path, source.text.clone())));
+        files.extend(campaign::files(&name, &needs).map_err(|problem| problems.push(*problem)).ok()?);
+        Some(files)
+    }
+
+    /// The campaign is called as its folder.
+    fn name(&self) -> String {
+        let name = self.folder.file_name().map(|name| name.to_string_lossy().into_owned());
+        name.filter(|name| !name.is_empty()).unwrap_or_else(|| "campaign".into())
+    }
+}
+
+/// What a protocol in the draft says of its parent.
+fn parent(family: &Family) -> Parent<'_> {
+    let document = &family.merged;
+    let named = document.blocks.iter().filter(|block| block.kind.text != "protocol").map(|block| block.name_text().to_string());
+    let name = document.blocks.iter().find(|block| block.kind.text == "protocol").map_or("", |block| block.name_text());
+    let own = &family.sources[0];
+    let extends = if is_shipped(own) { name.to_string() } else { format!("\"{}\"", file_name(own)) };
+    Parent { name, extends, names: named.collect() }
+}
+
+fn is_shipped(source: &Source) -> bool {
+    library::names()
+        .any(|name| source.name == format!("protocols/{name}.fp") && library::shipped(name).is_some_and(|known| known.text == source.text))
+}
+
+fn file_name(source: &Source) -> String {
+    Path::new(&source.name).file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// The protocols of the chain that are not shipped. They go into the campaign, which can extend nothing outside of it.
+fn copies(family: &Family, problems: &mut Problems) -> Vec<(String, Arc<Source>)> {
+    let own: Vec<&Arc<Source>> = family.sources.iter().filter(|source| !is_shipped(source)).collect();
+    let folder = |source: &Source| Path::new(&source.name).parent().map(Path::to_path_buf);
+    for source in &own {
+        if folder(source) != folder(own[0]) || file_name(source) == PROTOCOL {
+            let says = format!("`{}` cannot be copied beside the new protocol", source.name);
+            let problem = Problem::error("extends-outside", says).at(&source.span(0..source.text.lines().next().map_or(0, str::len)));
+            problems.push(problem.help(format!("the protocols that are extended stand in one folder, and none is called {PROTOCOL}")));
+        }
+    }
+    own.into_iter().map(|source| (file_name(source), Arc::clone(source))).collect()
+}
+
+/// Takes the columns that the parent reads out of a list; axis and time are those of the parent.
+fn without_known(family: &Family, listed: &mut Listed, problems: &mut Problems) -> Option<()> {
+    let plan = check::check(family, &Overrides::new(), problems)?;
+    let known = needs::needs(&plan, &graph::from_plan(&plan)).channels;
+    let is_known = |column: &str| known.iter().any(|need| need.column == column);
+    listed.groups.retain_mut(|group| {
+        let single = group.positions.is_empty();
+        group.positions.retain(|position| !is_known(&format!("{}{}{position}", group.stem, group.separator)));
+        if single { !is_known(&group.stem) } else { !group.positions.is_empty() }
+    });
+    listed.time = listed.time.take().filter(|_| plan.time.is_some());
+    Some(())
+}
+
+/// Writes all files, or none.
+fn write(folder: &Path, files: &[File]) -> Result<(), Problem> {
+    let failed =
+        |path: &Path, error: &std::io::Error| Problem::error("write-failed", format!("`{}` cannot be written: {error}", path.display()));
+    let mut written: Vec<PathBuf> = Vec::new();
+    let mut one = |(inside, text): &File| {
+        let path = folder.join(inside);
+        let parent = path.parent().unwrap_or(folder);
+        disk::make_folder(parent).map_err(|error| failed(parent, &error))?;
+        disk::create_new(&path, text.as_bytes(), false).map_err(|error| failed(&path, &error))?;
+        written.push(path);
+        Ok(())
+    };
+    let result = files.iter().try_for_each(&mut one);
+    if result.is_err() {
+        for path in &written {
+            let _ = disk::remove(path);
+        }
+    }
+    result
+}
