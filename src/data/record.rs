@@ -8,9 +8,11 @@ mod fault;
 mod header_fault;
 mod marks;
 mod number;
+mod raw;
 mod rows;
 mod runs;
 
+pub use raw::read_raw;
 pub use runs::{Block, Run, read_stretch, stream};
 
 use std::cell::RefCell;

@@ -3,8 +3,8 @@
 mod columnar;
 mod format;
 
-pub use columnar::{DECIMALS_KEY, FileColumn, Values, parquet};
-pub use format::{Entry, OutColumn, campaign_yaml, record_csv, table_csv, yaml_text};
+pub use columnar::{DECIMALS_KEY, FileColumn, Values, csv, parquet};
+pub use format::{Entry, OutColumn, campaign_yaml, record, record_csv, table_csv, yaml_text};
 
 use std::io;
 use std::path::Path;

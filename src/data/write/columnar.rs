@@ -1,6 +1,7 @@
 //! Records as Parquet files. The settings are fixed, so that the same numbers give the same bytes.
 
 use std::collections::HashMap;
+use std::fmt::Write;
 use std::sync::Arc;
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray};
@@ -9,6 +10,7 @@ use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 
+use super::table_csv;
 use crate::problem::Problem;
 
 /// Rows of a row group: 80 s at 200 Hz, so that the record of a section is one group, and a stretch of a long run needs one or two groups of
@@ -24,6 +26,19 @@ pub const DECIMALS_KEY: &str = "decimals";
 pub enum Values {
     Numbers(Vec<f64>),
     Texts(Vec<String>),
+}
+
+impl Values {
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Numbers(values) => values.len(),
+            Self::Texts(texts) => texts.len(),
+        }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
 }
 
 /// A column as it is in the file.
@@ -61,6 +76,44 @@ pub fn parquet(columns: Vec<FileColumn>) -> Result<Vec<u8>, Problem> {
     writer.write(&batch).map_err(|error| failed(&error))?;
     writer.close().map_err(|error| failed(&error))?;
     Ok(bytes)
+}
+
+/// The bytes of a text with the same columns. Numbers have the decimals of their column, or else the fewest digits that give the same
+/// double again.
+pub fn csv(columns: &[FileColumn]) -> Vec<u8> {
+    let rows = columns.iter().map(|column| column.values.len()).max().unwrap_or(0);
+    let mut text = table_csv(&[columns.iter().map(|column| column.heading.as_str()).collect::<Vec<_>>()]);
+    for row in 0..rows {
+        for (at, column) in columns.iter().enumerate() {
+            text.push_str(if at == 0 { "" } else { "," });
+            match &column.values {
+                Values::Numbers(values) => push_exact(&mut text, values.get(row).copied().unwrap_or(f64::NAN), column.decimals),
+                Values::Texts(texts) => push_cell(&mut text, texts.get(row).map_or("", String::as_str)),
+            }
+        }
+        text.push('\n');
+    }
+    text.into_bytes()
+}
+
+fn push_exact(text: &mut String, value: f64, decimals: Option<usize>) {
+    // Beyond these, plain digits would be long rows of zeros.
+    let plain = value == 0.0 || (1e-5..1e16).contains(&value.abs());
+    // Writing to a string cannot fail.
+    let _ = match decimals {
+        Some(decimals) => write!(text, "{value:.decimals$}"),
+        None if plain => write!(text, "{value}"),
+        None => write!(text, "{value:e}"),
+    };
+}
+
+/// Line breaks cannot stand in a cell of a record: they become blanks.
+fn push_cell(text: &mut String, cell: &str) {
+    if cell.contains([',', '"', '\n', '\r']) || cell.trim() != cell {
+        let _ = write!(text, "\"{}\"", cell.replace('"', "\"\"").replace(['\n', '\r'], " "));
+    } else {
+        text.push_str(cell);
+    }
 }
 
 fn properties() -> Result<WriterProperties, parquet::errors::ParquetError> {

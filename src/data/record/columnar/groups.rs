@@ -18,7 +18,6 @@ use parquet::basic::Type;
 use super::open::{Opened, damaged, guarded};
 use super::{Column, guard, value_at};
 use crate::data::faults::Faults;
-use crate::data::text::LARGEST_RECORD;
 use crate::problem::Problem;
 
 /// Rows decoded at a time: the numbers of twenty channels take 1 MB, which stays in the second-level cache.
@@ -65,6 +64,28 @@ impl Opened<'_> {
         Err(self.where_damaged(group, &rows, &chunks, columns, &why))
     }
 
+    /// All values of a column of texts.
+    pub(super) fn texts(&mut self, column: &Column) -> Result<Vec<String>, Problem> {
+        let mut texts: Vec<String> = Vec::new();
+        let columns = std::slice::from_ref(column);
+        for group in 0..self.groups() {
+            let rows = self.rows_of(group);
+            if rows.is_empty() {
+                continue;
+            }
+            let chunks = self.chunks(group, columns)?;
+            let mut one = [Column { values: Vec::new(), ..column.clone() }];
+            let decoded = self.decode(group, &rows, &chunks, &mut one, &mut |batch, _, _| {
+                let array = batch.columns().first().and_then(|array| array.as_string_opt::<i32>());
+                let array = array.ok_or("an array of another type than its schema says")?;
+                texts.extend(array.iter().map(|text| text.unwrap_or_default().to_string()));
+                Ok(())
+            });
+            decoded.map_err(|why| self.where_damaged(group, &rows, &chunks, columns, &why))?;
+        }
+        Ok(texts)
+    }
+
     /// Ranges and bytes of the wanted columns of a group, with checked sizes.
     fn chunks(&mut self, group: usize, columns: &[Column]) -> Result<Vec<(Range<u64>, Vec<u8>)>, Problem> {
         let shown = self.shown;
@@ -86,11 +107,11 @@ impl Opened<'_> {
             };
             let values = u64::try_from(chunk.num_values()).unwrap_or(0);
             memory += range.end - range.start;
-            within(memory, shown)?;
+            self.within(memory, "a row group")?;
             let bytes = self.store.read(range.clone(), shown)?;
             let pages = guard::pages(&bytes, values, width).map_err(|why| damaged(shown, &format!("{}: {why}", place())))?;
             memory += pages.memory;
-            within(memory, shown)?;
+            self.within(memory, "a row group")?;
             chunks.push((range, bytes));
         }
         Ok(chunks)
@@ -170,14 +191,6 @@ impl Opened<'_> {
             group + 1
         ))
     }
-}
-
-fn within(memory: u64, shown: &str) -> Result<(), Problem> {
-    if memory <= LARGEST_RECORD {
-        return Ok(());
-    }
-    let says = format!("a row group of `{shown}` needs more than {} MB for the wanted columns", LARGEST_RECORD >> 20);
-    Err(Problem::error("file-too-large", says).help("write it with smaller row groups, of 10 000 to 100 000 rows"))
 }
 
 type Fault<'f> = &'f mut dyn FnMut(usize, &Column, Option<f64>);

@@ -14,6 +14,9 @@ pub(super) const LARGEST_PAGE: u64 = 64 << 20;
 
 const STOP: u8 = 0;
 const DICTIONARY_PAGE: i64 = 2;
+/// Encodings of Parquet that are read, by number: plain, dictionary (both forms), run lengths, deltas of integers, split bytes. Those of
+/// texts by deltas declare sizes inside the page.
+const ENCODINGS: [i64; 6] = [0, 2, 3, 5, 8, 9];
 
 /// Walks the bytes of a structure.
 struct Walk<'a> {
@@ -167,6 +170,10 @@ pub(super) fn pages(chunk: &[u8], values: u64, width: u64) -> Checked<Pages> {
         // Fields 5, 7 and 8 are the headers of data pages, dictionary pages and data pages of version 2.
         let counts = [5, 7, 8].into_iter().filter_map(|kind| walk.field(&[kind, 1]));
         let count = counts.map(|count| u64::try_from(count).unwrap_or(u64::MAX)).max().unwrap_or(0);
+        let encoding = [[5, 2], [7, 2], [8, 4]].into_iter().find_map(|path| walk.field(&path)).unwrap_or(0);
+        if !ENCODINGS.contains(&encoding) {
+            return Err(format!("a page has the encoding {encoding} of Parquet, which is not read; write it with dictionaries or plain"));
+        }
         if walk.field(&[1]) == Some(DICTIONARY_PAGE) {
             if count.saturating_mul(width) > inflated {
                 return Err(format!("a dictionary of {count} values in {inflated} bytes"));

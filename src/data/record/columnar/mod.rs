@@ -22,9 +22,11 @@ use super::{Column, Format, Record, Wanted, find_columns};
 use crate::data::cells::Heading;
 use crate::data::faults::Faults;
 use crate::data::hash::sha256;
-use crate::data::text::{LARGEST_RECORD, read_plain};
+use crate::data::text::read_plain;
+use crate::data::write::{FileColumn, Values};
 use crate::problem::Problem;
 use crate::source::{Source, Span};
+use crate::units::Unit;
 
 /// First and last bytes of each Parquet file.
 pub(super) const MAGIC: &[u8; 4] = b"PAR1";
@@ -41,11 +43,7 @@ pub(super) fn read(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record
     if rows == 0 {
         return Err(vec![no_rows(shown)]);
     }
-    if (rows as u64).saturating_mul(8 * columns.len() as u64) > LARGEST_RECORD {
-        let says =
-            format!("`{shown}` has {rows} samples of {} channels; the maximum is {} MB of numbers", columns.len(), LARGEST_RECORD >> 20);
-        return Err(vec![Problem::error("file-too-large", says).help("split it, or leave out samples that are not needed")]);
-    }
+    opened.within((rows as u64).saturating_mul(8 * columns.len() as u64), "the record").map_err(one)?;
     for column in &mut columns {
         column.values.reserve_exact(rows);
     }
@@ -69,6 +67,37 @@ pub(super) fn read(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record
 
 fn no_rows(shown: &str) -> Problem {
     Problem::error("no-rows", format!("`{shown}` has columns and no samples"))
+}
+
+/// Every column as it is in the file: numbers in the unit of the file, or texts.
+pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Problem>> {
+    let one = |problem: Problem| vec![problem];
+    let mut opened = open_file(path, shown)?;
+    let headings = opened.headings().to_vec();
+    opened.within((opened.rows() as u64).saturating_mul(8 * headings.len() as u64), "the record").map_err(one)?;
+    let mut columns = Vec::new();
+    for (position, heading) in headings.iter().enumerate() {
+        let mut column = [Column { name: heading.name.clone(), unit: Unit::one(), values: Vec::new(), position }];
+        if let Some(problem) = opened.other_codec(&column[0]) {
+            return Err(one(problem));
+        }
+        let values = if opened.is_text(position) {
+            Values::Texts(opened.texts(&column[0]).map_err(one)?)
+        } else {
+            if let Some(problem) = opened.not_numbers(&column[0]) {
+                return Err(one(problem));
+            }
+            let mut faults = Faults::new(shown);
+            for group in 0..opened.groups() {
+                opened.group(group, &mut column, &mut faults, &mut |_, _| {}).map_err(one)?;
+            }
+            faults.finish(())?;
+            let [column] = column;
+            Values::Numbers(column.values)
+        };
+        columns.push(FileColumn { heading: heading.span.text().to_string(), values, decimals: opened.decimals(position) });
+    }
+    Ok(columns)
 }
 
 /// The headings of a record.

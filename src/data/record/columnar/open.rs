@@ -14,7 +14,8 @@ use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 
 use super::{Column, Heading, MAGIC, Wanted, find_columns, guard};
 use crate::data::cells::{HeadingUnit, duplicates, name_and_unit, shortened};
-use crate::data::text::{plain_size, unreadable};
+use crate::data::text::{LARGEST_RECORD, plain_size, unreadable};
+use crate::data::write::DECIMALS_KEY;
 use crate::disk;
 use crate::problem::Problem;
 use crate::source::Source;
@@ -26,6 +27,15 @@ const LARGEST_FOOTER: u64 = 32 << 20;
 const TAIL: u64 = 8;
 /// Key of the metadata of a field that holds its unit.
 const UNIT_KEY: &str = "unit";
+
+/// Most decimals of a number in a text: those of the smallest double.
+const MOST_DECIMALS: usize = 324;
+
+/// Most bytes of numbers and pages for a byte of the file, above [`FREE`]: a record of one section has 10 to 50, a column that never
+/// changes more. A file of some kilobytes can declare gigabytes.
+const MOST_INFLATION: u64 = 1000;
+/// Bytes of numbers and pages that any file may need: a page of the maximum size.
+const FREE: u64 = guard::LARGEST_PAGE;
 
 /// Where the bytes are.
 pub(super) enum Store {
@@ -116,6 +126,7 @@ pub(super) struct Opened<'a> {
     pub(super) metadata: ArrowReaderMetadata,
     fields: Vec<Field>,
     headings: Vec<Heading>,
+    decimals: Vec<Option<usize>>,
     /// Row before the first one of each group, and the number of rows of the file.
     starts: Vec<usize>,
 }
@@ -137,7 +148,20 @@ impl<'a> Opened<'a> {
         let starts = starts(metadata.metadata(), shown)?;
         let headings = headings(metadata.schema(), &described, shown)?;
         let fields = fields(&metadata);
-        Ok(Self { store, shown, metadata, fields, headings, starts })
+        let decimals =
+            described.fields().iter().map(|field| field.metadata().get(DECIMALS_KEY)?.parse().ok().filter(|count| *count <= MOST_DECIMALS));
+        let decimals = decimals.collect();
+        Ok(Self { store, shown, metadata, fields, headings, decimals, starts })
+    }
+
+    /// Refuses a part of the file that needs too much memory.
+    pub fn within(&self, memory: u64, what: &str) -> Result<(), Problem> {
+        let most = LARGEST_RECORD.min(FREE.saturating_add(MOST_INFLATION.saturating_mul(self.store.size())));
+        if memory <= most {
+            return Ok(());
+        }
+        let says = format!("{what} of `{}` needs {} MB for the wanted columns; the maximum is {} MB", self.shown, memory >> 20, most >> 20);
+        Err(Problem::error("file-too-large", says).help("split the record, or write it with row groups of 10 000 to 100 000 rows"))
     }
 
     pub fn headings(&self) -> &[Heading] {
@@ -176,7 +200,18 @@ impl<'a> Opened<'a> {
         if problems.is_empty() { Ok(columns) } else { Err(problems) }
     }
 
-    fn not_numbers(&self, column: &Column) -> Option<Problem> {
+    /// Whether a column holds texts.
+    pub fn is_text(&self, position: usize) -> bool {
+        self.fields.get(position).is_some_and(|field| field.kind == DataType::Utf8 && field.leaf.is_some())
+    }
+
+    /// How many decimals the numbers of a column have in a text.
+    pub fn decimals(&self, position: usize) -> Option<usize> {
+        self.decimals.get(position).copied().flatten()
+    }
+
+    /// A problem for a column that does not hold numbers.
+    pub(super) fn not_numbers(&self, column: &Column) -> Option<Problem> {
         let kind = &self.fields.get(column.position)?.kind;
         let what = match kind {
             DataType::Float16 | DataType::Float32 | DataType::Float64 => return None,
@@ -196,7 +231,8 @@ impl<'a> Opened<'a> {
         Some(Problem::error("not-a-number", says).at(at).help("convert the column to float64 where the file is written"))
     }
 
-    fn other_codec(&self, column: &Column) -> Option<Problem> {
+    /// A problem for a column with a compression that is not read.
+    pub(super) fn other_codec(&self, column: &Column) -> Option<Problem> {
         let leaf = self.leaf(column.position)?;
         let codecs = self.metadata.metadata().row_groups().iter().map(|group| group.column(leaf).compression());
         let other =
