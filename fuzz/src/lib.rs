@@ -16,12 +16,13 @@ mod simulators;
 type Try = fn(&[u8]);
 
 /// Every target: its name and what it is given.
-pub const TARGETS: [(&str, Try); 13] = [
+pub const TARGETS: [(&str, Try); 14] = [
     ("protocol_text", language::protocol_text),
     ("protocol_yaml", language::protocol_yaml),
     ("check", language::check),
     ("phrase", language::phrase),
     ("record", records::record),
+    ("parquet", records::parquet),
     ("table", records::table),
     ("campaign", campaign::campaign),
     ("vehicle", campaign::vehicle),

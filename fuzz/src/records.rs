@@ -1,9 +1,9 @@
-//! Records and tables: CSV with units in the header.
+//! Records and tables: CSV with units in the header, and records as Parquet files.
 
 use std::path::{Path, PathBuf};
 
 use fishplate::data::checks::check_axis;
-use fishplate::data::record::{Record, Wanted, read_headings, read_record};
+use fishplate::data::record::{Record, Wanted, read_headings, read_raw, read_record, read_stretch, stream};
 use fishplate::data::table::Table;
 use fishplate::problem::Problems;
 
@@ -55,6 +55,43 @@ pub fn record(input: &[u8]) {
             {
                 promise::told(&problems);
             }
+        }
+    }
+}
+
+/// A Parquet file, all of its columns. What is accepted holds finite numbers, the same whole, in blocks and as a
+/// stretch; what is refused says why, without a panic of the decoder.
+pub fn parquet(input: &[u8]) {
+    let path = folder().join("record.parquet");
+    write(&path, input);
+    let headings = match read_headings(&path, "record.parquet") {
+        Ok(headings) => headings,
+        Err(problems) => return promise::told(&problems),
+    };
+    if let Err(problems) = read_raw(&path, "record.parquet") {
+        promise::told(&problems);
+    }
+    for heading in headings.into_iter().filter(|heading| !heading.name.is_empty()) {
+        let wanted = [Wanted { name: heading.name.clone(), dimension: None, required: true }];
+        let record = match read_record(&path, "record.parquet", &wanted) {
+            Ok(record) => record,
+            Err(problems) => {
+                assert!(!problems.is_empty(), "refused without a word");
+                promise::told(&problems);
+                continue;
+            }
+        };
+        let values = &record.columns[0].values;
+        assert_eq!(values.len(), record.rows, "{}", heading.name);
+        assert!(values.iter().all(|value| value.is_finite()), "{}", heading.name);
+        let mut rows = 0;
+        let run = stream(&path, "record.parquet", &wanted, |block| {
+            assert_eq!(block.columns[0].values, values[rows..rows + block.rows]);
+            rows += block.rows;
+        });
+        assert!(run.is_ok() && rows == record.rows, "{}", heading.name);
+        if let Err(problems) = read_stretch(&path, "record.parquet", &wanted, &heading.name, 0.0..1.0) {
+            promise::told(&problems);
         }
     }
 }

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use fishplate::catalog;
+use fishplate::data::record::read_raw;
+use fishplate::data::write;
 use fishplate::problem::Problems;
 use fishplate::source::Source;
 use fishplate::syntax::keys::KINDS;
@@ -85,7 +87,9 @@ fn of_file(path: &Path, bytes: Vec<u8>, seeds: &mut Vec<Seed>) {
             protocol(&name, bytes, seeds);
         }
         Some("csv") if inside("record") || inside("measurement") || inside("simulation") => {
-            seeds.push(("record", first_rows(bytes)));
+            let rows = first_rows(bytes);
+            seeds.extend(parquet(&rows).map(|bytes| ("parquet", bytes)));
+            seeds.push(("record", rows));
         }
         Some("csv") => {
             let rows = first_rows(bytes);
@@ -96,6 +100,13 @@ fn of_file(path: &Path, bytes: Vec<u8>, seeds: &mut Vec<Seed>) {
         }
         _ => {}
     }
+}
+
+/// The same record as a Parquet file, where it is one.
+fn parquet(rows: &[u8]) -> Option<Vec<u8>> {
+    let path = super::records::folder().join("seed.csv");
+    super::records::write(&path, rows);
+    write::parquet(read_raw(&path, "seed.csv").ok()?).ok()
 }
 
 fn first_rows(bytes: Vec<u8>) -> Vec<u8> {

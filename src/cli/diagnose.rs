@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::convert_records::Records;
 use super::inputs::{Prepared, prepare, start_jobs};
 use super::output::{Console, Exit, reports};
 use super::places::{CAMPAIGN, REPORT, check_folder, same};
@@ -43,6 +44,9 @@ pub struct Diagnose {
     /// Folder for a copy of the campaign whose simulation includes the named effects.
     #[arg(long, value_name = "DIR")]
     write_improved: Option<PathBuf>,
+    /// Format of the simulated records of that copy.
+    #[arg(long, value_enum, default_value_t, requires = "write_improved")]
+    records: Records,
     #[command(flatten)]
     simulator: SimulatorChoice,
     /// Folder for intermediate results, so that an interrupted diagnosis can be resumed.
@@ -121,7 +125,7 @@ impl Diagnose {
         let mut all = vec![outputs];
         if let Some(folder) = &self.write_improved {
             let mut outputs = Outputs::of(SetKind::Campaign, folder);
-            write_improved(&mut outputs, campaign, outcome)?;
+            write_improved(&mut outputs, campaign, outcome, self.records.into())?;
             all.push(outputs);
         }
         console.problems(&Problems(all.iter().filter_map(Outputs::mended).collect()));

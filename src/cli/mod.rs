@@ -3,6 +3,7 @@
 mod blind;
 mod certify;
 mod compare;
+mod convert_records;
 mod diagnose;
 mod effects;
 mod explain;
@@ -127,6 +128,9 @@ enum Command {
         #[arg(long, short)]
         output: Option<PathBuf>,
     },
+    /// Copy a campaign with its records in another format, CSV or Parquet; no number changes.
+    #[command(after_help = "Example:\n  fishplate convert-records examples/coach --to parquet --out target/coach-parquet")]
+    ConvertRecords(convert_records::ConvertRecords),
     /// Show a protocol at any stage of its processing, or what it needs; without a protocol, list the functions of the language.
     #[command(
         after_help = "Example:\n  fishplate explain en14363-2016-annex-t --stage graph --format svg -o graph.svg\n  fishplate explain en14363-2016-annex-t --stage needs --format csv -o needs.csv\n  fishplate explain"
@@ -207,6 +211,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Check { protocols } => protocols::check(&protocols, &console),
         Command::Fmt { protocols, check } => protocols::fmt(&protocols, check, &console),
         Command::Convert { protocol, to, output } => protocols::convert(&protocol, matches!(to, Form::Yaml), output.as_deref(), &console),
+        Command::ConvertRecords(convert) => convert.run(&console),
         Command::Explain(explain) => explain.run(&console),
         Command::Diff { before, after } => protocols::diff(&before, &after, &console),
         Command::Protocols { name } => protocols::list(name.as_deref(), &console),

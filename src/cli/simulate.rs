@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 
+use super::convert_records::Records;
 use super::inputs::{progress_bar, start_jobs};
 use super::output::{Console, Exit};
 use super::places::{CAMPAIGN, check_file, check_folder};
 use super::simulator::{Chosen, SimulatorChoice};
+use crate::data::record::Format;
 use crate::data::text::read_text;
 use crate::data::write::{Outputs, write_whole};
 use crate::data::{Campaign, RecordKind};
@@ -20,7 +22,7 @@ use crate::model::CHANNELS;
 use crate::model::integrate::{MOST_STEPS, Method, SAMPLE, Steps};
 use crate::problem::{Problem, Problems, plain};
 use crate::simulate::{
-    Deviation, Made, Plan, Section, check_confined, effects_of_origin, model_parameters, record_text, sections, simulate, single,
+    Deviation, Made, Plan, Section, check_confined, effects_of_origin, model_parameters, record_file, sections, simulate, single,
     write_campaign,
 };
 use crate::units::{Dimension, Unit, number};
@@ -64,7 +66,10 @@ pub struct Simulate {
     /// Compare the simulator without effects with the campaign's simulation first, and print the deviation.
     #[arg(long, requires = "campaign")]
     baseline: bool,
-    /// Output file for the record.
+    /// Format of the simulated records of a campaign.
+    #[arg(long, value_enum, default_value_t, conflicts_with = "output")]
+    records: Records,
+    /// Output file for the record: Parquet if its name ends in `.parquet`, else CSV.
     #[arg(long, short)]
     output: Option<PathBuf>,
     /// Number of sections processed in parallel [default: one per core]
@@ -149,13 +154,14 @@ impl Simulate {
             }
         }
         let bar = progress_bar(console, sections.len());
-        let made: Vec<Result<String, Problem>> = sections
+        let format = Format::from(self.records);
+        let made: Vec<Result<Vec<u8>, Problem>> = sections
             .par_iter()
             .map(|section| {
-                let text = self.record(&chosen, campaign, catalogue, effects, section);
+                let file = self.record(format, &chosen, campaign, (catalogue, effects), section);
                 bar.set_message(plain(section.name()));
                 bar.inc(1);
-                text
+                file
             })
             .collect();
         bar.finish_and_clear();
@@ -174,7 +180,7 @@ impl Simulate {
         };
         console.problems(&Problems(chosen.warning().into_iter().collect()));
         let mut outputs = Outputs::of(SetKind::Campaign, out);
-        let added = write_campaign(&mut outputs, campaign, records, Some(&made));
+        let added = write_campaign(&mut outputs, campaign, (format, records), Some(&made));
         match console.commit(added.map(|()| outputs)) {
             Ok(()) => {
                 console.say(&format!("written: {} sections to {}{}", sections.len(), out.display(), chosen.effort()));
@@ -184,23 +190,23 @@ impl Simulate {
         }
     }
 
-    /// The text of a section's record.
+    /// The file of a section's record.
     fn record(
         &self,
+        format: Format,
         chosen: &Chosen<'_>,
         campaign: &Campaign,
-        catalogue: &Catalogue,
-        effects: &[Applied],
+        (catalogue, effects): (&Catalogue, &[Applied]),
         section: &Section,
-    ) -> Result<String, Problem> {
+    ) -> Result<Vec<u8>, Problem> {
         if !self.increment {
             let made = simulate(chosen.simulator(), catalogue, effects, section, None)?;
-            return record_text(&made.signals, &|channel| chosen.unit(section, channel));
+            return record_file(format, &made.signals, &|channel| chosen.unit(section, channel));
         }
         let (recorded, units) = chosen.recorded(campaign, section)?;
         let made = simulate(chosen.simulator(), catalogue, effects, section, Some(&recorded))?;
         let unit = |channel: &str| units.iter().find(|(name, _)| name == channel).map_or_else(Unit::one, |(_, unit)| unit.clone());
-        record_text(&made.signals, &unit)
+        record_file(format, &made.signals, &unit)
     }
 
     /// Simulates one vehicle on one track.
@@ -227,12 +233,12 @@ impl Simulate {
             Err(problem) => return console.fail(problem, Exit::Wrong),
         };
         let made = single((vehicle, &tree), track, speed, (&plan.settings, plan.shift()), steps);
-        let text = made.and_then(|mut signals| {
-            let done = plan.operate(&mut signals, &nowhere).and_then(|()| record_text(&signals, &unit));
+        let file = made.and_then(|mut signals| {
+            let done = plan.operate(&mut signals, &nowhere).and_then(|()| record_file(Format::of(output), &signals, &unit));
             done.map_err(|problem| Problems(vec![problem]))
         });
-        match text {
-            Ok(text) => match write_whole(output, text.as_bytes()) {
+        match file {
+            Ok(bytes) => match write_whole(output, &bytes) {
                 Ok(()) => Exit::Done,
                 Err(problem) => console.fail(problem, Exit::Unfinished),
             },

@@ -7,7 +7,8 @@
 //! | `campaigns` | several campaigns evaluated as one |
 //! | `identification` | identification of the report |
 //! | `members` | the folders of records, one or several of a kind |
-//! | `record` | one sampled record; optimised for speed |
+//! | `record` | one sampled record, as text or as Parquet; optimised for speed |
+//! | `conversion` | a copy of a campaign with its records in another format |
 //! | `table` | a small table such as `sections.csv` |
 //! | `crate::yaml` | YAML with places of all values |
 //! | `origin` | origin of the records of a campaign written by a program |
@@ -20,6 +21,7 @@ pub mod campaign;
 mod campaigns;
 mod cells;
 pub mod checks;
+pub mod conversion;
 mod faults;
 pub mod fingerprint;
 mod folder;

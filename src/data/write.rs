@@ -1,8 +1,10 @@
 //! Output files, written completely or not at all.
 
+mod columnar;
 mod format;
 
-pub use format::{Entry, OutColumn, campaign_yaml, record_csv, table_csv, yaml_text};
+pub use columnar::{DECIMALS_KEY, FileColumn, Values, csv, parquet};
+pub use format::{Entry, OutColumn, campaign_yaml, record, record_csv, table_csv, yaml_text};
 
 use std::io;
 use std::path::Path;

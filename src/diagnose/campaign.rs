@@ -9,6 +9,7 @@ use super::settings::Settings;
 use crate::certify::{Compiled, certify};
 use crate::data::Campaign;
 use crate::data::origin::OriginEffect;
+use crate::data::record::Format;
 use crate::data::text::UNREADABLE;
 use crate::data::write::Outputs;
 use crate::disk::{self, SetKind};
@@ -17,7 +18,7 @@ use crate::problem::{Problem, Problems};
 use crate::result::Certification;
 use crate::result::diagnosis::Diagnosis;
 use crate::run::Settings as RunSettings;
-use crate::simulate::{Made, Section, Simulator, Units, effects_of_origin, record_text, recorded, write_campaign};
+use crate::simulate::{Made, Section, Simulator, Units, effects_of_origin, record_file, recorded, write_campaign};
 use crate::units::Unit;
 
 /// The diagnosis and the data it was derived from.
@@ -233,7 +234,7 @@ fn evaluated(
     let one = |problem: Problem| Problems(vec![problem]);
     let folder = disk::scratch().map_err(|error| one(Problem::error("unwritable", format!("no temporary folder: {error}"))))?;
     let mut outputs = Outputs::of(SetKind::Campaign, folder.path()).for_this_run();
-    write_records(&mut outputs, campaign, found, records, units, None).and_then(|()| outputs.commit()).map_err(one)?;
+    write_records(&mut outputs, campaign, found, (Format::Csv, records, units), None).and_then(|()| outputs.commit()).map_err(one)?;
     let mut problems = Problems::default();
     let Some(copy) = Campaign::open(folder.path(), &mut problems) else { return Err(problems) };
     certify(compiled, &copy, settings, &|_| {})
@@ -244,7 +245,7 @@ fn evaluated(
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write_improved(outputs: &mut Outputs, campaign: &Campaign, outcome: &Outcome) -> Result<(), Problem> {
+pub fn write_improved(outputs: &mut Outputs, campaign: &Campaign, outcome: &Outcome, format: Format) -> Result<(), Problem> {
     let as_read = || outcome.found.seen.sections.iter().map(|observed| observed.simulated.clone()).collect();
     let records = if outcome.improved.is_empty() { as_read() } else { outcome.improved.clone() };
     let made = Made {
@@ -254,7 +255,7 @@ pub fn write_improved(outputs: &mut Outputs, campaign: &Campaign, outcome: &Outc
         added: true,
         fitted: !outcome.added.is_empty(),
     };
-    write_records(outputs, campaign, &outcome.found, &records, &outcome.units, Some(&made))
+    write_records(outputs, campaign, &outcome.found, (format, &records, &outcome.units), Some(&made))
 }
 
 /// Writes a copy of a campaign with other simulated records.
@@ -262,19 +263,18 @@ fn write_records(
     outputs: &mut Outputs,
     campaign: &Campaign,
     found: &Found,
-    records: &[Signals],
-    units: &Units,
+    (format, records, units): (Format, &[Signals], &Units),
     made: Option<&Made<'_>>,
 ) -> Result<(), Problem> {
     let unit = |name: &str| units.iter().find(|(known, _)| known == name).map_or_else(Unit::one, |(_, unit)| unit.clone());
-    let texts: Result<Vec<(&str, String)>, Problem> = found
+    let files: Result<Vec<(&str, Vec<u8>)>, Problem> = found
         .seen
         .sections
         .iter()
         .zip(records)
-        .map(|(observed, signals)| Ok((observed.section.name(), record_text(signals, &unit)?)))
+        .map(|(observed, signals)| Ok((observed.section.name(), record_file(format, signals, &unit)?)))
         .collect();
-    write_campaign(outputs, campaign, texts?.into_iter(), made)
+    write_campaign(outputs, campaign, (format, files?.into_iter()), made)
 }
 
 #[cfg(test)]

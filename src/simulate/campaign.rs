@@ -2,8 +2,8 @@
 
 use super::section::Section;
 use crate::data::campaign::ReadFile;
-use crate::data::record::{Record, Wanted};
-use crate::data::write::{OutColumn, record_csv};
+use crate::data::record::{Format, Record, Wanted};
+use crate::data::write::{OutColumn, record};
 use crate::data::{Campaign, RecordKind};
 use crate::effects::{Channel, Signals};
 use crate::problem::Problem;
@@ -82,12 +82,12 @@ pub fn in_units(signals: &mut Signals, units: &Units, to: &dyn Fn(&str) -> Optio
     Ok(())
 }
 
-/// A record as text: time from 0 and distance, or the time alone if it is the axis; forces in kN to 0.01, accelerations in m/s^2 to
+/// A record as a file: time from 0 and distance, or the time alone if it is the axis; forces in kN to 0.01, accelerations in m/s^2 to
 /// 0.0001, all other channels to six decimals.
 ///
 /// # Errors
 /// A value is not finite, which is a fault of the simulator; detected before any file is written.
-pub fn record_text(signals: &Signals, units: &dyn Fn(&str) -> Unit) -> Result<String, Problem> {
+pub fn record_file(format: Format, signals: &Signals, units: &dyn Fn(&str) -> Unit) -> Result<Vec<u8>, Problem> {
     let time: Vec<f64> = (0..signals.axis.len()).map(|n| n as f64 / signals.rate).collect();
     let (seconds, metres) = (Unit::parse("s").unwrap_or_else(|_| Unit::one()), Unit::parse("m").unwrap_or_else(|_| Unit::one()));
     let units: Vec<Unit> = signals.channels.iter().map(|channel| units(&channel.name)).collect();
@@ -112,5 +112,5 @@ pub fn record_text(signals: &Signals, units: &dyn Fn(&str) -> Unit) -> Result<St
         };
         columns.push(OutColumn { name: &channel.name, unit, values, decimals });
     }
-    record_csv(&columns)
+    record(format, &columns)
 }

@@ -13,7 +13,7 @@ mod write;
 
 pub use add::{Plan, Simulated, check_confined, incremented, simulate};
 pub use builtin::{Builtin, model_parameters, number_of, single};
-pub use campaign::{Units, in_units, read_signals, record_text, recorded};
+pub use campaign::{Units, in_units, read_signals, record_file, recorded};
 pub use compare::{Deviation, baseline_warning, deviations};
 pub use external::{Cache, External, Program, read_program};
 pub use origin::{Made, effects_of_origin};

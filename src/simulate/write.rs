@@ -2,6 +2,7 @@
 
 use super::origin::Made;
 use crate::data::origin::{ORIGIN_FILE, ORIGIN_KEY};
+use crate::data::record::Format;
 use crate::data::write::{Entry, Outputs, campaign_yaml};
 use crate::data::{Campaign, RecordKind};
 use crate::problem::Problem;
@@ -16,11 +17,11 @@ const OWN: [&str; 4] = ["name", "simulation", "simulation_ran_on", ORIGIN_KEY];
 pub fn write_campaign(
     outputs: &mut Outputs,
     campaign: &Campaign,
-    records: impl Iterator<Item = (impl AsRef<str>, String)>,
+    (format, records): (Format, impl Iterator<Item = (impl AsRef<str>, Vec<u8>)>),
     made: Option<&Made<'_>>,
 ) -> Result<(), Problem> {
-    for (name, text) in records {
-        outputs.add(&format!("simulation/{}.csv", name.as_ref()), text.as_bytes())?;
+    for (name, bytes) in records {
+        outputs.add(&format!("simulation/{}.{}", name.as_ref(), format.ending()), &bytes)?;
     }
     let copied = campaign.other_files(RecordKind::Simulation)?;
     let mut name = campaign.name.clone();

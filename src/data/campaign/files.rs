@@ -38,6 +38,20 @@ impl Campaign {
         Inputs { folder: self.folder.real().to_path_buf(), folders: folders.collect(), files: files.map(|place| real(&place)).collect() }
     }
 
+    /// Every file that the campaign is read from but its records, with its path inside.
+    ///
+    /// # Errors
+    /// A name leads outside.
+    pub fn plain_files(&self) -> Result<Vec<String>, Problem> {
+        let mut inside: Vec<String> = self.files.iter().map(|file| file.path.clone()).collect();
+        for place in self.vehicle_files()? {
+            if !inside.contains(&place.inside) {
+                inside.push(place.inside);
+            }
+        }
+        Ok(inside)
+    }
+
     /// Every file that the campaign names but its `campaign.yaml` and the records of one kind, with its path inside and its bytes:
     /// what a copy of the campaign needs.
     ///

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use super::columnar::{FileColumn, Values, parquet};
+use crate::data::record::Format;
 use crate::problem::Problem;
 use crate::units::Unit;
 use crate::yaml::{Node, Value};
@@ -35,6 +37,30 @@ pub fn record_csv(columns: &[OutColumn<'_>]) -> Result<String, Problem> {
         text.push('\n');
     }
     Ok(text)
+}
+
+/// A record in a format. Both formats hold the same numbers, with the decimals of the columns.
+///
+/// # Errors
+/// As [`record_csv`], and `write-failed`.
+pub fn record(format: Format, columns: &[OutColumn<'_>]) -> Result<Vec<u8>, Problem> {
+    let text = record_csv(columns)?;
+    match format {
+        Format::Csv => Ok(text.into_bytes()),
+        Format::Parquet => {
+            let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
+            for line in text.lines().skip(1) {
+                let numbers = line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN));
+                values.iter_mut().zip(numbers).for_each(|(values, number)| values.push(number));
+            }
+            let file = |(column, values): (&OutColumn<'_>, Vec<f64>)| FileColumn {
+                heading: format!("{} [{}]", column.name, column.unit),
+                values: Values::Numbers(values),
+                decimals: Some(column.decimals),
+            };
+            parquet(columns.iter().zip(values).map(file).collect())
+        }
+    }
 }
 
 fn header<'a>(columns: impl Iterator<Item = (&'a str, &'a Unit)>) -> String {

@@ -1,0 +1,77 @@
+//! `convert-records`: a copy of a campaign with its records in another format.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::output::{Console, Exit};
+use super::places::{CAMPAIGN, check_folder};
+use crate::data::Campaign;
+use crate::data::conversion::convert;
+use crate::data::record::Format;
+use crate::data::write::Outputs;
+use crate::disk::SetKind;
+use crate::problem::Problems;
+
+/// Format of records.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Records {
+    /// Text with commas.
+    #[default]
+    Csv,
+    /// Columns, compressed.
+    Parquet,
+}
+
+impl From<Records> for Format {
+    fn from(records: Records) -> Self {
+        match records {
+            Records::Csv => Self::Csv,
+            Records::Parquet => Self::Parquet,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub struct ConvertRecords {
+    /// Folder of the campaign.
+    campaign: PathBuf,
+    /// Format of the new records.
+    #[arg(long, value_enum)]
+    to: Records,
+    /// Folder of the copy; created if missing.
+    #[arg(long, short)]
+    out: PathBuf,
+}
+
+impl ConvertRecords {
+    pub fn run(self, console: &Console) -> Exit {
+        let mut problems = Problems::default();
+        let campaign = Campaign::open(&self.campaign, &mut problems);
+        if let Some(campaign) = &campaign
+            && let Err(problem) = check_folder(&self.out, CAMPAIGN, campaign)
+        {
+            problems.push(problem);
+        }
+        console.problems(&problems);
+        let Some(campaign) = campaign.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let mut outputs = Outputs::of(SetKind::Campaign, &self.out);
+        let done = match convert(&campaign, self.to.into(), &mut outputs) {
+            Ok(done) => done,
+            Err(found) => {
+                let failed = found.iter().any(|problem| problem.code == "write-failed");
+                console.problems(&Problems(found));
+                return if failed { Exit::Unfinished } else { Exit::Wrong };
+            }
+        };
+        match console.commit(Ok(outputs)) {
+            Ok(()) => {
+                let counted = |count: usize, what: &str| if count == 0 { String::new() } else { format!(", {count} {what}") };
+                let others = counted(done.copied, "copied") + &counted(done.missing, "missing");
+                console.say(&format!("written: {} records converted{others}, to {}", done.converted, self.out.display()));
+                Exit::Done
+            }
+            Err(exit) => exit,
+        }
+    }
+}
