@@ -85,6 +85,7 @@ pub fn certify<'a>(
         verdicts: outcome.verdicts,
         quantities: outcome.quantities,
         sections: outcome.sections,
+        found: Vec::new(),
         zones: outcome.zones,
         domain: outcome.domain,
         application: outcome.application,

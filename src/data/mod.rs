@@ -8,6 +8,7 @@
 //! | `identification` | identification of the report |
 //! | `members` | the folders of records, one or several of a kind |
 //! | `record` | one sampled record; optimised for speed |
+//! | `blocks` | a long record, block by block |
 //! | `table` | a small table such as `sections.csv` |
 //! | `crate::yaml` | YAML with places of all values |
 //! | `origin` | origin of the records of a campaign written by a program |
@@ -16,6 +17,7 @@
 //! | `fingerprint` | hash of a present file of a campaign |
 //! | `write` | output files |
 
+pub mod blocks;
 pub mod campaign;
 mod campaigns;
 mod cells;

@@ -22,6 +22,9 @@ pub fn results(found: &Certification) -> String {
     }
     root.insert("quantities".into(), quantities(&found.quantities));
     root.insert("sections".into(), Value::Array(found.sections.iter().map(|section| zone_as_number(json!(section))).collect()));
+    if !found.found.is_empty() {
+        root.insert("found_sections".into(), json!(found.found));
+    }
     root.insert("zones".into(), zones(&found.zones));
     root.insert("domain".into(), json!(found.domain));
     if !found.application.is_empty() {

@@ -9,6 +9,7 @@ mod domain;
 mod estimates;
 mod extrapolation;
 mod facts;
+pub mod find;
 mod groups;
 mod judge;
 mod limits;

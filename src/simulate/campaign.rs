@@ -26,7 +26,7 @@ pub fn recorded(campaign: &Campaign, kind: RecordKind, section: &Section) -> Res
     let headings = crate::data::record::read_headings(&place.path, &place.inside)?;
     let wanted: Vec<Wanted> =
         headings.iter().map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true }).collect();
-    let (record, file) = campaign.read(kind.into(), &section.cell, &wanted)?;
+    let (record, file) = campaign.read(kind.into(), &section.cell, &wanted, None)?;
     let (signals, units) = signals(&record)?;
     Ok((signals, units, file))
 }
