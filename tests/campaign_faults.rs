@@ -66,7 +66,7 @@ fn one_faulty_section_is_not_used() {
         (
             "missing file",
             |campaign| fs::remove_file(campaign.join(M)).expect("removed"),
-            "there is no file `measurement/S01.csv` (sections.csv, row 2)",
+            "there is no file `measurement/S01.csv` or `S01.parquet` (sections.csv, row 2)",
         ),
         (
             "missing channel",
@@ -179,7 +179,7 @@ fn one_faulty_section_is_not_used() {
                 fs::remove_file(campaign.join(M)).expect("removed");
                 fs::create_dir(campaign.join(M)).expect("made");
             },
-            "there is no file `measurement/S01.csv` (sections.csv, row 2)",
+            "there is no file `measurement/S01.csv` or `S01.parquet` (sections.csv, row 2)",
         ),
         (
             "section outside the record",

@@ -150,20 +150,27 @@ pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<H
             Heading { name: name.to_string(), unit, span }
         })
         .collect();
-    let mut sorted: Vec<&Heading> = headings.iter().filter(|heading| !heading.name.is_empty()).collect();
-    sorted.sort_by(|a, b| (&a.name, a.span.start).cmp(&(&b.name, b.span.start)));
-    let before = problems.len();
-    let twice = sorted.windows(2).any(|pair| pair[0].name == pair[1].name);
-    if let Some(problem) = unit_in_cell(&headings).filter(|_| twice) {
+    let twice = duplicates(&headings);
+    if let Some(problem) = unit_in_cell(&headings).filter(|_| !twice.is_empty()) {
         problems.push(problem);
         return None;
     }
-    problems.extend(sorted.windows(2).filter(|pair| pair[0].name == pair[1].name).map(|pair| {
+    let good = twice.is_empty();
+    problems.extend(twice);
+    good.then_some(headings)
+}
+
+/// A problem for each column with the name of another one.
+pub(super) fn duplicates(headings: &[Heading]) -> Vec<Problem> {
+    let mut sorted: Vec<&Heading> = headings.iter().filter(|heading| !heading.name.is_empty()).collect();
+    sorted.sort_by(|a, b| (&a.name, a.span.start).cmp(&(&b.name, b.span.start)));
+    let twice = sorted.windows(2).filter(|pair| pair[0].name == pair[1].name);
+    let told = |pair: &[&Heading]| {
         Problem::error("duplicate-column", format!("two columns are called `{}`", pair[1].name))
             .at(&pair[1].span)
             .also(&pair[0].span, "the first of them")
-    }));
-    (problems.len() == before).then_some(headings)
+    };
+    twice.map(told).collect()
 }
 
 /// `Y_1R,kN,Q_1R,kN`: a cell that is a unit and nothing else, behind a name that has none.

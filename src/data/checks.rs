@@ -77,7 +77,10 @@ fn not_increasing(code: &'static str, record: &Record, column: &Column, row: usi
     let [from, to] = [row, row + 1].map(|row| number(column, column.values[row]));
     let does = if from == to { format!("stays at {from}") } else { format!("goes back from {from} to {to}") };
     placed(
-        Problem::error(code, format!("`{}` {does} at row {} of `{}`; it must increase", column.name, row + 3, record.shown)),
+        Problem::error(
+            code,
+            format!("`{}` {does} at row {} of `{}`; it must increase", column.name, record.row_shown(row + 1), record.shown),
+        ),
         record,
         row + 1,
         column,
@@ -113,8 +116,8 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
             "`{}` has a gap of {} between rows {} and {} of `{}`, {:.0} sampling steps",
             clock.name,
             number(clock, steps[*row]),
-            row + 2,
-            row + 3,
+            record.row_shown(*row),
+            record.row_shown(row + 1),
             record.shown,
             steps[*row] / usual
         );
@@ -135,7 +138,7 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
             "the step of `{}` is {} at row {} of `{}`, {} on average",
             clock.name,
             number(clock, steps[row]),
-            row + 3,
+            record.row_shown(row + 1),
             record.shown,
             number(clock, mean)
         );

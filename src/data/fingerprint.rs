@@ -1,18 +1,12 @@
 //! Hashes of the present files of a campaign, for comparison with a report.
 
-use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use sha2::{Digest, Sha256};
-
 use super::folder::Folder;
-use super::hash::hexadecimal;
+use super::hash::Hasher;
 use crate::disk::{self, Kind};
 use crate::problem::Problem;
 use crate::source::Source;
-
-/// Block size for reading; it does not change the result.
-const BLOCK: usize = 1 << 16;
 
 /// SHA-256 and size of a file named by its path inside a campaign; `None` if there is no such file.
 ///
@@ -28,17 +22,7 @@ pub fn fingerprint(campaign: &Path, inside: &str) -> Result<Option<(String, u64)
         Err(error) => return Err(unreadable(&error)),
     }
     let mut file = disk::open(&place.path).map_err(|error| unreadable(&error))?;
-    let (mut hash, mut bytes, mut block) = (Sha256::new(), 0_u64, vec![0_u8; BLOCK]);
-    loop {
-        match file.read(&mut block) {
-            Ok(0) => break,
-            Ok(count) => {
-                hash.update(&block[..count]);
-                bytes += count as u64;
-            }
-            Err(error) if error.kind() == ErrorKind::Interrupted => {}
-            Err(error) => return Err(unreadable(&error)),
-        }
-    }
-    Ok(Some((hexadecimal(&hash.finalize()), bytes)))
+    let mut hash = Hasher::default();
+    let bytes = hash.add_all(&mut file).map_err(|error| unreadable(&error))?;
+    Ok(Some((hash.finish(), bytes)))
 }

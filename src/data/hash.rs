@@ -1,6 +1,45 @@
 //! Hashes of files.
 
+use std::io::{self, ErrorKind, Read};
+
 use sha2::{Digest, Sha256};
+
+/// Bytes read at a time; it does not change the result.
+const BLOCK: usize = 1 << 16;
+
+/// SHA-256 of bytes that come in parts.
+#[derive(Clone, Debug, Default)]
+pub struct Hasher(Sha256);
+
+impl Hasher {
+    pub fn add(&mut self, bytes: &[u8]) {
+        self.0.update(bytes);
+    }
+
+    /// Adds all that is read; returns the number of bytes.
+    ///
+    /// # Errors
+    /// Of reading.
+    pub fn add_all(&mut self, file: &mut impl Read) -> io::Result<u64> {
+        let (mut bytes, mut block) = (0, vec![0_u8; BLOCK]);
+        loop {
+            match file.read(&mut block) {
+                Ok(0) => return Ok(bytes),
+                Ok(count) => {
+                    self.add(&block[..count]);
+                    bytes += count as u64;
+                }
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// In lower-case hexadecimal digits.
+    pub fn finish(self) -> String {
+        hexadecimal(&self.0.finalize())
+    }
+}
 
 /// SHA-256 in lower-case hexadecimal digits.
 pub fn sha256(bytes: &[u8]) -> String {

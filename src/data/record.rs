@@ -3,11 +3,15 @@
 //! Records are almost all of the data of a campaign. A row is therefore parsed in one pass over its bytes (`rows`); only an irregular row
 //! is parsed again cell by cell to determine the fault (`fault`).
 
+mod columnar;
 mod fault;
 mod header_fault;
 mod marks;
 mod number;
 mod rows;
+mod runs;
+
+pub use runs::{Block, Run, read_stretch, stream};
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -54,11 +58,44 @@ pub struct Record {
     pub channels: Vec<String>,
     /// Number of samples.
     pub rows: usize,
+    /// Number of samples of the file before these: 0 but for a [stretch](read_stretch).
+    pub first_row: usize,
     /// SHA-256 of the file.
     pub sha256: String,
     /// Size of the file.
     pub bytes: usize,
+    format: Format,
     path: PathBuf,
+}
+
+/// Format of a record, which is told by the ending of its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    Csv,
+    Parquet,
+}
+
+impl Format {
+    pub const ALL: [Self; 2] = [Self::Csv, Self::Parquet];
+
+    /// Of a file; every other ending is read as CSV.
+    pub fn of(path: &Path) -> Self {
+        let parquet = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(Self::Parquet.ending()));
+        if parquet { Self::Parquet } else { Self::Csv }
+    }
+
+    /// Without the point.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Parquet => "parquet",
+        }
+    }
+
+    /// The name of a record without its ending.
+    pub fn stem(name: &str) -> Option<&str> {
+        Self::ALL.into_iter().find_map(|format| name.strip_suffix(format.ending())?.strip_suffix('.'))
+    }
 }
 
 /// A channel: one finite value per sample.
@@ -83,8 +120,21 @@ impl Record {
         &self.path
     }
 
+    /// The number of sample `row` (from 0) in messages: the line of a text, whose header is line 1; the row of a Parquet file, from 1.
+    pub fn row_shown(&self, row: usize) -> usize {
+        let before = match self.format {
+            Format::Csv => 2,
+            Format::Parquet => 1,
+        };
+        self.first_row + row + before
+    }
+
     /// The place in the file of sample `row` (from 0), or of its cell in a column. The file is read again.
     pub fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
+        let row = self.first_row + row;
+        if self.format == Format::Parquet {
+            return columnar::place(&self.path, &self.shown, row, column);
+        }
         let mut bytes = Vec::new();
         read_large(&self.path, &self.shown, &mut bytes).ok()?;
         let text = decode(&bytes, &self.shown).ok()?;
@@ -105,7 +155,12 @@ impl Record {
 /// `file-too-large`, `encoding`, `no-rows`. Of its header: `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`,
 /// `unknown-channel`, `unit-missing`, `unknown-unit`, `unit-mismatch`, `units-in-row`, `units-in-cell`. Of a row: `header-repeated`, `ragged-row`, `truncated-row`, `blank-line`,
 /// `stray-quote`, `not-a-number`, `not-finite`, `decimal-comma`.
+///
+/// Of a Parquet file: `format-mislabelled`, `format-not-read` (compression, encryption), `file-damaged`, `unit-conflict`.
 pub fn read_record(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
+    if Format::of(path) == Format::Parquet {
+        return columnar::read(path, shown, wanted);
+    }
     let mut buffer = BUFFER.take();
     let record = read_into(&mut buffer, path, shown, wanted);
     if buffer.capacity() <= KEPT {
@@ -124,6 +179,10 @@ thread_local! {
 
 fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
     read_large(path, shown, bytes).map_err(|problem| vec![problem])?;
+    if bytes.starts_with(columnar::MAGIC) && bytes.ends_with(columnar::MAGIC) {
+        let problem = Problem::error("format-mislabelled", format!("`{shown}` is a Parquet file"));
+        return Err(vec![problem.help("its name must end in `.parquet`")]);
+    }
     let text = decode(bytes, shown).map_err(|problem| vec![problem])?;
     let (headings, body) = header(text, shown)?;
     let found = find_columns(&headings, wanted, shown);
@@ -131,10 +190,20 @@ fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -
         Some(problem) => vec![problem],
         None => problems,
     })?;
-    let read = rows::read(text, body, headings.len(), &mut columns, shown);
+    let read = rows::read(text, body, headings.len(), &mut columns, rows::Part { shown, before: 0 });
     let rows = read.map_err(|problems| header_fault::repeated(text, body, shown).map_or(problems, |problem| vec![problem]))?;
     let channels = headings.into_iter().map(|heading| heading.name).collect();
-    Ok(Record { shown: shown.to_string(), columns, channels, rows, sha256: sha256(bytes), bytes: bytes.len(), path: path.to_path_buf() })
+    Ok(Record {
+        shown: shown.to_string(),
+        columns,
+        channels,
+        rows,
+        first_row: 0,
+        sha256: sha256(bytes),
+        bytes: bytes.len(),
+        format: Format::Csv,
+        path: path.to_path_buf(),
+    })
 }
 
 /// The headings of a record.
@@ -142,6 +211,9 @@ fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -
 /// # Errors
 /// As [`read_record`], of the file and its header.
 pub fn read_headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
+    if Format::of(path) == Format::Parquet {
+        return columnar::headings(path, shown);
+    }
     let bytes = read_line(path, shown).map_err(|problem| vec![problem])?;
     let text = decode(&bytes, shown).map_err(|problem| vec![problem])?;
     header(text, shown).map(|(headings, _)| headings)

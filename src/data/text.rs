@@ -58,13 +58,32 @@ pub(super) fn read_large(path: &Path, shown: &str, buffer: &mut Vec<u8>) -> Resu
     read_bounded(path, shown, LARGEST_RECORD, Some(LONGEST_LINE), buffer)
 }
 
+/// Reads all bytes of a record that is not a text.
+pub(super) fn read_plain(path: &Path, shown: &str, buffer: &mut Vec<u8>) -> Result<(), Problem> {
+    read_whole(path, shown, LARGEST_RECORD, None, buffer)
+}
+
+/// The size of a record of any length that is not a text.
+pub(super) fn plain_size(path: &Path, shown: &str) -> Result<u64, Problem> {
+    size(path, shown, u64::MAX)
+}
+
+/// Opens a text of any length.
+pub(super) fn open_text(path: &Path, shown: &str) -> Result<BufReader<disk::Reader>, Problem> {
+    if let Some(problem) = other_format(path, shown) {
+        return Err(problem);
+    }
+    size(path, shown, u64::MAX)?;
+    Ok(BufReader::new(disk::open(path).map_err(|error| unreadable(shown, &error))?))
+}
+
 /// Reads all bytes of any file of a campaign.
 ///
 /// # Errors
 /// As [`read_text`], but for `encoding`; a file may be empty.
 pub fn read_any(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::new();
-    match read_bounded(path, shown, LARGEST_RECORD, None, &mut bytes) {
+    match read_whole(path, shown, LARGEST_RECORD, None, &mut bytes) {
         Err(problem) if problem.code != "file-empty" => Err(problem),
         _ => Ok(bytes),
     }
@@ -81,11 +100,16 @@ pub(super) fn long_line(start: &[u8], line: usize, shown: &str) -> Problem {
 
 /// The first line of a record file.
 pub(super) fn read_line(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
-    let unreadable = |error: std::io::Error| unreadable(shown, &error);
     size(path, shown, LARGEST_RECORD)?;
+    let file = disk::open(path).map_err(|error| unreadable(shown, &error))?;
+    read_line_of(&mut BufReader::new(file), shown)
+}
+
+/// The first line of an open record file.
+pub(super) fn read_line_of(file: &mut impl BufRead, shown: &str) -> Result<Vec<u8>, Problem> {
     let mut line = Vec::new();
-    let file = disk::open(path).map_err(unreadable)?.take(LONGEST_LINE as u64 + 1);
-    BufReader::new(file).read_until(b'\n', &mut line).map_err(unreadable)?;
+    let read = file.take(LONGEST_LINE as u64 + 1).read_until(b'\n', &mut line);
+    read.map_err(|error| unreadable(shown, &error))?;
     if line.len() > LONGEST_LINE {
         return Err(long_line(&line, 1, shown));
     }
@@ -95,7 +119,7 @@ pub(super) fn read_line(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
 /// Words of every message about a file or folder that exists but cannot be read.
 pub const UNREADABLE: &str = "cannot be read:";
 
-fn unreadable(shown: &str, why: &dyn std::fmt::Display) -> Problem {
+pub(super) fn unreadable(shown: &str, why: &dyn std::fmt::Display) -> Problem {
     Problem::error("file-unreadable", format!("`{shown}` {UNREADABLE} {why}"))
 }
 
@@ -121,11 +145,16 @@ pub fn read_bytes(path: &Path, shown: &str, limit: u64, buffer: &mut Vec<u8>) ->
     read_bounded(path, shown, limit, None, buffer)
 }
 
-/// With a maximum line length, reading stops at a longer line.
+/// Refuses a file of another format by its name.
 fn read_bounded(path: &Path, shown: &str, limit: u64, longest: Option<usize>, buffer: &mut Vec<u8>) -> Result<(), Problem> {
-    if let Some(problem) = other_format(path, shown) {
-        return Err(problem);
+    match other_format(path, shown) {
+        Some(problem) => Err(problem),
+        None => read_whole(path, shown, limit, longest, buffer),
     }
+}
+
+/// With a maximum line length, reading stops at a longer line.
+fn read_whole(path: &Path, shown: &str, limit: u64, longest: Option<usize>, buffer: &mut Vec<u8>) -> Result<(), Problem> {
     let unreadable = |error: std::io::Error| unreadable(shown, &error);
     let size = size(path, shown, limit)?;
     buffer.clear();
@@ -183,7 +212,7 @@ pub(super) fn other_format(path: &Path, shown: &str) -> Option<Problem> {
     let ending = path.extension()?.to_str()?.to_lowercase();
     let (_, what) = OTHER_FORMATS.iter().find(|(known, _)| *known == ending)?;
     Some(
-        Problem::error("format-not-read", format!("`{shown}` is {what}; records and tables are read as CSV"))
+        Problem::error("format-not-read", format!("`{shown}` is {what}; tables are read as CSV, records as CSV or Parquet"))
             .help("export it as CSV in UTF-8: one header line `name [unit]`, commas between columns, points in numbers"),
     )
 }
@@ -197,8 +226,14 @@ fn empty(shown: &str) -> Problem {
 /// # Errors
 /// `encoding`: the name of the encoding if it can be detected, else the first byte that is not UTF-8, with its row.
 pub fn decode<'a>(bytes: &'a [u8], shown: &str) -> Result<&'a str, Problem> {
+    decode_from(bytes, shown, 1)
+}
+
+/// The same of a part of a file that begins with a line.
+pub(super) fn decode_from<'a>(bytes: &'a [u8], shown: &str, first_line: usize) -> Result<&'a str, Problem> {
     const HELP: &str = "save the file as UTF-8";
     let wide = match bytes {
+        _ if first_line > 1 => None,
         // Longer marks first: a UTF-32 mark begins like one of UTF-16.
         [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => Some("UTF-32"),
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Some("UTF-16"),
@@ -209,11 +244,15 @@ pub fn decode<'a>(bytes: &'a [u8], shown: &str) -> Result<&'a str, Problem> {
     if let Some(encoding) = wide {
         return Err(Problem::error("encoding", format!("`{shown}` is {encoding} text, not UTF-8")).help(HELP));
     }
-    std::str::from_utf8(bytes).map(|text| text.strip_prefix('\u{feff}').unwrap_or(text)).map_err(|error| {
+    let without_mark = |text: &'a str| if first_line > 1 { text } else { text.strip_prefix('\u{feff}').unwrap_or(text) };
+    std::str::from_utf8(bytes).map(without_mark).map_err(|error| {
         let at = error.valid_up_to();
         let byte = bytes.get(at).copied().unwrap_or(0);
-        let says = format!("byte {} of `{shown}`, hexadecimal {byte:02x}, is not UTF-8", at + 1);
-        let problem = Problem::error("encoding", says).at(&line_of_bytes(bytes, at, shown));
+        let says = match first_line {
+            1 => format!("byte {} of `{shown}`, hexadecimal {byte:02x}, is not UTF-8", at + 1),
+            _ => format!("a byte of `{shown}`, hexadecimal {byte:02x}, is not UTF-8"),
+        };
+        let problem = Problem::error("encoding", says).at(&line_of_bytes(bytes, at, shown, first_line));
         match latin(byte) {
             Some(letter) => problem.label(format!("`{letter}` if the file is Windows-1252")).help(HELP),
             None => problem.help(HELP),
@@ -228,13 +267,13 @@ fn latin(byte: u8) -> Option<char> {
 }
 
 /// The line around an invalid byte, with replacement characters.
-fn line_of_bytes(bytes: &[u8], at: usize, shown: &str) -> Span {
+fn line_of_bytes(bytes: &[u8], at: usize, shown: &str, first_line: usize) -> Span {
     let start = memchr::memrchr(b'\n', &bytes[..at]).map_or(0, |before| before + 1);
     let end = memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |after| at + after);
     let before = String::from_utf8_lossy(&bytes[start..at]).into_owned();
     let after = String::from_utf8_lossy(&bytes[at..end]);
     let place = before.len()..before.len() + after.chars().next().map_or(0, char::len_utf8);
-    let line = 1 + memchr::memchr_iter(b'\n', &bytes[..start]).count();
+    let line = first_line + memchr::memchr_iter(b'\n', &bytes[..start]).count();
     Source::excerpt(shown, before + after.trim_end_matches('\r'), line).span(place)
 }
 

@@ -1,7 +1,9 @@
 //! Output files, written completely or not at all.
 
+mod columnar;
 mod format;
 
+pub use columnar::{DECIMALS_KEY, FileColumn, Values, parquet};
 pub use format::{Entry, OutColumn, campaign_yaml, record_csv, table_csv, yaml_text};
 
 use std::io;

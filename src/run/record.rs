@@ -182,6 +182,7 @@ pub fn opened(work: &Work<'_>, unit: &Unit, which: WhichRecord, record: Record, 
     let of = RecordOf { kind: which.kind.key().into(), section: unit.name.clone(), name };
     let path = qualified(unit.campaign_name.as_deref(), &read.path);
     let file = FileHash { path, sha256: read.sha256, bytes: read.bytes, record: Some(of) };
+    let first_row = record.row_shown(0);
     let columns: Vec<_> = record.columns.into_iter().map(|column| (column.name, Arc::new(column.values))).collect();
     let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));
     let along_axis = values(&axis.column).unwrap_or_default();
@@ -191,8 +192,7 @@ pub fn opened(work: &Work<'_>, unit: &Unit, which: WhichRecord, record: Record, 
         axis: along_axis,
         time: time.and_then(|time| values(&time.column)),
         rate: if in_time { Rate::PerTime(checked.sampling_rate) } else { Rate::PerLength(checked.sampling_rate) },
-        // The header is row 1.
-        first_row: Some(2),
+        first_row: Some(first_row),
     });
     let margins = in_time.then_some((checked.before, checked.after));
     Ok(Opened { columns: Arc::new(columns), along, extent, file, margins, memo: None })

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::{Campaign, Part, ReadFile};
 use crate::data::folder::{Place, check_file_name};
 use crate::data::members::{self, RecordFolder, WhichRecord};
-use crate::data::record::{Record, Wanted, read_record, read_stretch};
+use crate::data::record::{Format, Record, Wanted, read_record, read_stretch};
 use crate::data::table::Cell;
 use crate::data::text::other_format;
 use crate::disk;
@@ -45,7 +45,7 @@ impl Campaign {
         let entries = disk::names(&place.path).map_err(|error| no_folder(&error, &place.shown).at(span))?;
         let mut names: Vec<String> = entries
             .iter()
-            .filter_map(|name| Some(name.to_str()?.strip_suffix(".csv")?.to_string()))
+            .filter_map(|name| Some(Format::stem(name.to_str()?)?.to_string()))
             .filter(|name| !name.starts_with('.'))
             .collect();
         if names.is_empty() {
@@ -53,9 +53,11 @@ impl Campaign {
             if let Some(problem) = others.iter().find_map(|name| other_format(Path::new(name), &format!("{}/{name}", place.inside))) {
                 return Err(problem.at(span));
             }
-            return Err(Problem::error("no-records", format!("there is no CSV file in `{}`", place.shown)).at(span));
+            return Err(Problem::error("no-records", format!("there is no CSV or Parquet file in `{}`", place.shown)).at(span));
         }
         names.sort();
+        // Both formats of a section are told when it is read.
+        names.dedup();
         Ok(names.into_iter().map(|name| Spanned::new(name, span.clone())).collect())
     }
 
@@ -128,19 +130,30 @@ impl Campaign {
     /// Where a record of a section is, which must exist.
     ///
     /// # Errors
-    /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in that folder).
+    /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in that folder), `two-formats`.
     pub fn place_of(&self, which: WhichRecord, section: &Cell) -> Result<Place, Problem> {
         check_file_name(&section.value, &section.span)?;
         if let Some(run) = self.run_of(section) {
             return self.run_place(run, which.kind);
         }
         let (folder, span) = self.record_folder(which)?;
-        let place = self.folder.place(&format!("{}/{}.csv", folder.inside, section.value), &section.span)?;
-        let unreadable = |error| Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.inside)).at(&section.span);
-        if disk::is_file(&place.path).map_err(unreadable)? {
-            return Ok(place);
-        }
-        if !disk::is_folder(&folder.path).map_err(unreadable)? {
+        let unreadable =
+            |inside: &str, error| Problem::error("file-unreadable", format!("`{inside}` cannot be read: {error}")).at(&section.span);
+        let [csv, parquet] = Format::ALL.map(|format| {
+            let place = self.folder.place(&format!("{}/{}.{}", folder.inside, section.value, format.ending()), &section.span)?;
+            let there = disk::is_file(&place.path).map_err(|error| unreadable(&place.inside, error))?;
+            Ok((place, there))
+        });
+        let place = match (csv?, parquet?) {
+            ((place, true), (_, false)) | ((_, false), (place, true)) => return Ok(place),
+            ((place, false), (_, false)) => place,
+            ((csv, true), (parquet, true)) => {
+                let says = format!("`{}` and `{}` are both the record of section {}", csv.inside, parquet.inside, section.value);
+                let problem = Problem::error("two-formats", says).at(&section.span);
+                return Err(problem.help("remove one of them, or move it to another folder"));
+            }
+        };
+        if !disk::is_folder(&folder.path).map_err(|error| unreadable(&folder.inside, error))? {
             return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside)).at(span));
         }
         let others = self.found(which)?.strangers.get_or_init(|| self.strangers(&folder.path));
@@ -151,22 +164,33 @@ impl Campaign {
         if let Some(problem) = others.iter().find_map(in_other_format) {
             return Err(problem.at(&section.span));
         }
-        let problem = Problem::error("file-missing", format!("there is no file `{}`", place.inside)).at(&section.span);
+        let problem = Problem::error(
+            "file-missing",
+            format!("there is no file `{}` or `{}.{}`", place.inside, section.value, Format::Parquet.ending()),
+        )
+        .at(&section.span);
         if others.len().saturating_mul(self.names.len()) > MOST_COMPARISONS {
             return Err(problem);
         }
-        Err(problem.suggest(&format!("{}.csv", section.value), others.iter().map(String::as_str)))
+        let near = |format: Format| {
+            let name = format!("{}.{}", section.value, format.ending());
+            crate::problem::nearest(&name, others.iter().map(String::as_str)).map(str::to_string)
+        };
+        match Format::ALL.into_iter().find_map(near) {
+            Some(near) => Err(problem.help(format!("did you mean `{near}`?"))),
+            None => Err(problem),
+        }
     }
 
     /// Files of a folder but the records of sections: the record of another section is not what was meant.
     fn strangers(&self, folder: &Path) -> Vec<String> {
         let sections: HashSet<&str> = self.names.iter().map(|name| name.value.as_str()).collect();
         let names = disk::names(folder).unwrap_or_default().into_iter().filter_map(|name| name.into_string().ok());
-        names.filter(|name| !name.strip_suffix(".csv").is_some_and(|name| sections.contains(name))).collect()
+        names.filter(|name| !Format::stem(name).is_some_and(|name| sections.contains(name))).collect()
     }
 
-    /// Reads the wanted columns of a section's record; of a section that is cut from a run, only this part of it. Its faults go into results, which must be the same wherever the campaign lies:
-    /// they name the record by its path inside the campaign.
+    /// Reads the wanted columns of a section's record; of a section that is cut from a run, only this part of it. Its faults go into
+    /// results, which must be the same wherever the campaign lies: they name the record by its path inside the campaign.
     ///
     /// # Errors
     /// As [`Campaign::place_of`] and [`read_record`].

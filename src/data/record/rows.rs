@@ -8,8 +8,18 @@ use crate::problem::Problem;
 /// Shortest cell in bytes, which bounds the number of rows reserved.
 const SHORTEST_CELL: usize = 2;
 
+/// Which part of a file a text is.
+#[derive(Clone, Copy)]
+pub(super) struct Part<'a> {
+    /// Name of the file.
+    pub shown: &'a str,
+    /// Number of rows before it.
+    pub before: usize,
+}
+
 /// Fills the columns from the text below the header, which begins at `start`; returns the number of rows.
-pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column], shown: &str) -> Result<usize, Vec<Problem>> {
+pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column], part: Part<'_>) -> Result<usize, Vec<Problem>> {
+    let Part { shown, before } = part;
     let bytes = text.as_bytes();
     let expected = expected_rows(&bytes[start..], width);
     let sink = |column: &Column| Sink {
@@ -48,10 +58,11 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
                 break;
             }
             if end - at > LONGEST_LINE {
-                faults.push(|| long_line(&bytes[at..end], rows + 2, shown));
+                faults.push(|| long_line(&bytes[at..end], before + rows + 2, shown));
                 break 'file;
             }
-            let line = fault::Line { text: text[at..end].trim_end_matches('\r'), number: rows + 2, last: end == bytes.len(), shown };
+            let line =
+                fault::Line { text: text[at..end].trim_end_matches('\r'), number: before + rows + 2, last: end == bytes.len(), shown };
             // A faulty row is counted, so that later rows have the right numbers.
             fault::slow_row(&line, width, &mut sinks, &mut faults);
             rows += 1;
@@ -60,9 +71,9 @@ pub(super) fn read(text: &str, start: usize, width: usize, columns: &mut [Column
         }
     }
     if faults.is_empty() && rows > 0 {
-        fault::cut_number(&text[start..end_of_rows], text.len() > end_of_rows, rows + 1, shown, &mut faults);
+        fault::cut_number(&text[start..end_of_rows], text.len() > end_of_rows, before + rows + 1, shown, &mut faults);
     }
-    if rows == 0 {
+    if before + rows == 0 {
         faults.push(|| Problem::error("no-rows", format!("`{shown}` has a header and no samples")));
     }
     for (column, sink) in columns.into_iter().zip(sinks) {

@@ -1,0 +1,230 @@
+//! The numbers of a row group, batch by batch.
+
+use std::ops::Range;
+
+use arrow_array::cast::AsArray;
+use arrow_array::types::{
+    ArrowPrimitiveType, Float16Type, Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, UInt8Type, UInt16Type,
+    UInt32Type, UInt64Type,
+};
+use arrow_array::{Array, RecordBatch};
+use arrow_schema::DataType;
+use parquet::DecodeResult;
+use parquet::arrow::ProjectionMask;
+use parquet::arrow::arrow_reader::RowSelection;
+use parquet::arrow::push_decoder::{ParquetPushDecoderBuilder, PushBuffers};
+use parquet::basic::Type;
+
+use super::open::{Opened, damaged, guarded};
+use super::{Column, guard, value_at};
+use crate::data::faults::Faults;
+use crate::data::text::LARGEST_RECORD;
+use crate::problem::Problem;
+
+/// Rows decoded at a time: the numbers of twenty channels take 1 MB, which stays in the second-level cache.
+const BATCH: usize = 1 << 13;
+
+/// Called after each batch with the columns and the row of the file with which the batch begins; it may empty the columns.
+pub(super) type Each<'e> = &'e mut dyn FnMut(&mut [Column], usize);
+
+impl Opened<'_> {
+    /// Appends the numbers of a group to the columns, in SI units.
+    pub(super) fn group(&mut self, group: usize, columns: &mut [Column], faults: &mut Faults<'_>, each: Each<'_>) -> Result<(), Problem> {
+        let rows = self.rows_of(group);
+        self.rows_in(group, rows, columns, faults, each)
+    }
+
+    /// The same for some rows of the group, by their numbers in the file.
+    pub(super) fn rows_in(
+        &mut self,
+        group: usize,
+        rows: Range<usize>,
+        columns: &mut [Column],
+        faults: &mut Faults<'_>,
+        each: Each<'_>,
+    ) -> Result<(), Problem> {
+        if rows.is_empty() || columns.is_empty() {
+            return Ok(());
+        }
+        let chunks = self.chunks(group, columns)?;
+        let mut next = rows.start;
+        let mut fault = |row: usize, column: &Column, value: Option<f64>| faults.push(|| self.wrong(group, row, column, value));
+        let decoded = self.decode(group, &rows, &chunks, columns, &mut |batch, columns, order| {
+            for (array, at) in batch.columns().iter().zip(order) {
+                append(array.as_ref(), &mut columns[*at], next, &mut fault)?;
+            }
+            each(columns, next);
+            next += batch.num_rows();
+            Ok(())
+        });
+        let why = match decoded {
+            Ok(()) if next == rows.end => return Ok(()),
+            Ok(()) => format!("{} rows where {} are declared", next - rows.start, rows.len()),
+            Err(why) => why,
+        };
+        Err(self.where_damaged(group, &rows, &chunks, columns, &why))
+    }
+
+    /// Ranges and bytes of the wanted columns of a group, with checked sizes.
+    fn chunks(&mut self, group: usize, columns: &[Column]) -> Result<Vec<(Range<u64>, Vec<u8>)>, Problem> {
+        let shown = self.shown;
+        let mut chunks = Vec::new();
+        let mut memory = 0_u64;
+        for column in columns {
+            let place = || format!("row group {}, column `{}`", group + 1, column.name);
+            let Some(leaf) = self.leaf(column.position) else { return Err(damaged(shown, &format!("{}: no values", place()))) };
+            let chunk = self.metadata.metadata().row_group(group).column(leaf);
+            let start = chunk.dictionary_page_offset().unwrap_or(chunk.data_page_offset());
+            let bounds = u64::try_from(start).ok().zip(u64::try_from(chunk.compressed_size()).ok());
+            let range = bounds.and_then(|(start, length)| Some(start..start.checked_add(length)?));
+            let range = range.filter(|range| range.end <= self.store.size());
+            let range = range.ok_or_else(|| damaged(shown, &format!("{}: its values lie outside the file", place())))?;
+            let width = match chunk.column_type() {
+                Type::DOUBLE | Type::INT64 => 8,
+                Type::FLOAT | Type::INT32 => 4,
+                _ => 2,
+            };
+            let values = u64::try_from(chunk.num_values()).unwrap_or(0);
+            memory += range.end - range.start;
+            within(memory, shown)?;
+            let bytes = self.store.read(range.clone(), shown)?;
+            let pages = guard::pages(&bytes, values, width).map_err(|why| damaged(shown, &format!("{}: {why}", place())))?;
+            memory += pages.memory;
+            within(memory, shown)?;
+            chunks.push((range, bytes));
+        }
+        Ok(chunks)
+    }
+
+    fn decode(
+        &self,
+        group: usize,
+        rows: &Range<usize>,
+        chunks: &[(Range<u64>, Vec<u8>)],
+        columns: &mut [Column],
+        take: &mut dyn FnMut(&RecordBatch, &mut [Column], &[usize]) -> Result<(), String>,
+    ) -> Result<(), String> {
+        // A batch has the columns in the order of the file.
+        let mut order: Vec<usize> = (0..columns.len()).collect();
+        order.sort_by_key(|at| columns[*at].position);
+        let leaves = columns.iter().filter_map(|column| self.leaf(column.position));
+        let mask = ProjectionMask::leaves(self.metadata.parquet_schema(), leaves);
+        let all = self.rows_of(group);
+        let part = rows.start - all.start..rows.end - all.start;
+        guarded(|| {
+            let said = |error: parquet::errors::ParquetError| error.to_string();
+            let mut buffers = PushBuffers::default();
+            for (range, bytes) in chunks {
+                buffers.push_range(range.clone(), bytes.clone().into());
+            }
+            let mut builder = ParquetPushDecoderBuilder::new_with_metadata(self.metadata.clone())
+                .with_row_groups(vec![group])
+                .with_projection(mask)
+                .with_batch_size(BATCH)
+                .with_buffers(buffers);
+            if *rows != all {
+                builder = builder.with_row_selection(RowSelection::from_consecutive_ranges([part].into_iter(), all.len()));
+            }
+            let mut decoder = builder.build().map_err(said)?;
+            loop {
+                match decoder.try_decode().map_err(said)? {
+                    DecodeResult::Data(batch) => take(&batch, columns, &order)?,
+                    DecodeResult::Finished => return Ok(()),
+                    DecodeResult::NeedsData(_) => return Err("its values lie outside the column".into()),
+                }
+            }
+        })
+    }
+
+    /// Which column is damaged: each is decoded alone.
+    fn where_damaged(&self, group: usize, rows: &Range<usize>, chunks: &[(Range<u64>, Vec<u8>)], columns: &[Column], why: &str) -> Problem {
+        for (column, chunk) in columns.iter().zip(chunks) {
+            let mut found = 0;
+            let mut one = [Column { values: Vec::new(), ..column.clone() }];
+            let alone = self.decode(group, rows, std::slice::from_ref(chunk), &mut one, &mut |batch, _, _| {
+                found += batch.num_rows();
+                Ok(())
+            });
+            let why = match alone {
+                Ok(()) if found == rows.len() => continue,
+                Ok(()) => format!("{found} values where {} are declared", rows.len()),
+                Err(why) => why,
+            };
+            let row = rows.start + found;
+            let problem = damaged(self.shown, &format!("row group {}, column `{}`: {why}", group + 1, column.name));
+            return problem.at(&value_at(self.shown, &self.headings()[column.position], row, "?"));
+        }
+        damaged(self.shown, &format!("row group {}: {why}", group + 1))
+    }
+
+    /// A value that is missing or not finite.
+    fn wrong(&self, group: usize, row: usize, column: &Column, value: Option<f64>) -> Problem {
+        let heading = &self.headings()[column.position];
+        let (code, says, text) = match value {
+            None => ("not-a-number", "the value is missing (null); expected a number".to_string(), "null".to_string()),
+            Some(value) => ("not-finite", format!("`{value}` is not a finite number"), value.to_string()),
+        };
+        Problem::error(code, format!("`{}`: {says}", column.name)).at(&value_at(self.shown, heading, row, &text)).label(format!(
+            "row {}, in row group {}",
+            row + 1,
+            group + 1
+        ))
+    }
+}
+
+fn within(memory: u64, shown: &str) -> Result<(), Problem> {
+    if memory <= LARGEST_RECORD {
+        return Ok(());
+    }
+    let says = format!("a row group of `{shown}` needs more than {} MB for the wanted columns", LARGEST_RECORD >> 20);
+    Err(Problem::error("file-too-large", says).help("write it with smaller row groups, of 10 000 to 100 000 rows"))
+}
+
+type Fault<'f> = &'f mut dyn FnMut(usize, &Column, Option<f64>);
+
+/// Appends the numbers of an array; `first` is the row of its first one.
+fn append(array: &dyn Array, column: &mut Column, first: usize, fault: Fault<'_>) -> Result<(), String> {
+    macro_rules! numbers {
+        ($kind:ty, $convert:expr) => {
+            extend::<$kind>(array, column, first, fault, $convert)
+        };
+    }
+    match array.data_type() {
+        DataType::Float64 => numbers!(Float64Type, |value| value),
+        DataType::Float32 => numbers!(Float32Type, f64::from),
+        DataType::Float16 => numbers!(Float16Type, f64::from),
+        DataType::Int8 => numbers!(Int8Type, f64::from),
+        DataType::Int16 => numbers!(Int16Type, f64::from),
+        DataType::Int32 => numbers!(Int32Type, f64::from),
+        DataType::UInt8 => numbers!(UInt8Type, f64::from),
+        DataType::UInt16 => numbers!(UInt16Type, f64::from),
+        DataType::UInt32 => numbers!(UInt32Type, f64::from),
+        // Integers from 2^53 are rounded to the nearest double, as the same digits in a text are.
+        DataType::Int64 => numbers!(Int64Type, |value| value as f64),
+        DataType::UInt64 => numbers!(UInt64Type, |value| value as f64),
+        other => Err(format!("the column `{}` holds {other} instead of numbers", column.name)),
+    }
+}
+
+fn extend<T: ArrowPrimitiveType>(
+    array: &dyn Array,
+    column: &mut Column,
+    first: usize,
+    fault: Fault<'_>,
+    convert: impl Fn(T::Native) -> f64,
+) -> Result<(), String> {
+    let array = array.as_primitive_opt::<T>().ok_or("an array of another type than its schema says")?;
+    let factor = column.unit.factor;
+    let from = column.values.len();
+    column.values.extend(array.values().iter().map(|value| convert(*value) * factor));
+    let good = array.null_count() == 0 && column.values[from..].iter().all(|value| value.is_finite());
+    if !good {
+        for row in 0..array.len() {
+            let value = (!array.is_null(row)).then(|| convert(array.value(row)));
+            if value.is_none_or(|value| !(value * factor).is_finite()) {
+                fault(first + row, column, value);
+            }
+        }
+    }
+    Ok(())
+}

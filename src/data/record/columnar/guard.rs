@@ -1,0 +1,217 @@
+//! Sizes that a Parquet file declares, checked before the decoder sees them.
+//!
+//! The decoder reserves memory for as many elements, values and bytes as a footer or a page header declares. A declared size of terabytes
+//! would end the process, which no handler can prevent. Footers and page headers are therefore walked first. They are structures of the
+//! Thrift compact protocol: each declared length is compared with the bytes that follow, and sizes of pages with the limits below.
+
+/// Maximum nesting of a footer. A schema is a list, not a tree; the deepest part of a footer is the statistics of a column, level 6.
+const DEEPEST: usize = 16;
+/// Maximum number of elements of all lists of a footer: 1000 channels in 250 row groups, with about four list elements each. The decoder
+/// takes up to 1 kB for an element.
+const MOST_ELEMENTS: usize = 1 << 20;
+/// Maximum size of a page in bytes after decompression: eight million numbers. Writers make pages of 1 MB.
+pub(super) const LARGEST_PAGE: u64 = 64 << 20;
+
+const STOP: u8 = 0;
+const DICTIONARY_PAGE: i64 = 2;
+
+/// Walks the bytes of a structure.
+struct Walk<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    elements: usize,
+    /// Numbers of the fields, as the ids of the fields that lead to them.
+    path: Vec<i64>,
+    fields: Vec<(Vec<i64>, i64)>,
+    /// Fields deeper than this are not kept.
+    kept: usize,
+}
+
+type Checked<T> = Result<T, String>;
+
+impl<'a> Walk<'a> {
+    fn new(bytes: &'a [u8], kept: usize) -> Self {
+        Self { bytes, at: 0, elements: 0, path: Vec::new(), fields: Vec::new(), kept }
+    }
+
+    fn byte(&mut self) -> Checked<u8> {
+        let byte = self.bytes.get(self.at).copied().ok_or("it ends inside a structure")?;
+        self.at += 1;
+        Ok(byte)
+    }
+
+    fn variable(&mut self) -> Checked<u64> {
+        let mut number = 0_u64;
+        for shift in (0..64).step_by(7) {
+            let byte = self.byte()?;
+            number |= u64::from(byte & 0x7f) << shift;
+            if byte & 0x80 == 0 {
+                return Ok(number);
+            }
+        }
+        Err("a number has more than 64 bits".into())
+    }
+
+    #[expect(clippy::cast_possible_wrap, reason = "the zigzag form of a signed number")]
+    fn signed(&mut self) -> Checked<i64> {
+        let number = self.variable()?;
+        Ok((number >> 1) as i64 ^ -((number & 1) as i64))
+    }
+
+    fn skip(&mut self, count: u64) -> Checked<()> {
+        let left = (self.bytes.len() - self.at) as u64;
+        if count > left {
+            return Err(format!("it declares {count} bytes where {left} follow"));
+        }
+        self.at += usize::try_from(count).map_err(|_| "a length is too large")?;
+        Ok(())
+    }
+
+    fn structure(&mut self) -> Checked<()> {
+        if self.path.len() > DEEPEST {
+            return Err(format!("its structures are nested more than {DEEPEST} deep"));
+        }
+        let mut id = 0_i64;
+        loop {
+            let head = self.byte()?;
+            if head == STOP {
+                return Ok(());
+            }
+            id = match head >> 4 {
+                0 => self.signed()?,
+                step => id.saturating_add(i64::from(step)),
+            };
+            self.path.push(id);
+            self.value(head & 15, true)?;
+            self.path.pop();
+        }
+    }
+
+    /// In a structure, a truth value is in its type; in a list it has a byte.
+    fn value(&mut self, kind: u8, field: bool) -> Checked<()> {
+        match kind {
+            1 | 2 if field => Ok(()),
+            1..=3 => self.skip(1),
+            4..=6 => {
+                let number = self.signed()?;
+                if self.path.len() <= self.kept {
+                    self.fields.push((self.path.clone(), number));
+                }
+                Ok(())
+            }
+            7 => self.skip(8),
+            8 => {
+                let length = self.variable()?;
+                self.skip(length)
+            }
+            9 | 10 => self.list(),
+            12 => self.structure(),
+            _ => Err(format!("a field has the unknown type {kind}")),
+        }
+    }
+
+    fn list(&mut self) -> Checked<()> {
+        let head = self.byte()?;
+        let count = if head >> 4 == 15 { self.variable()? } else { u64::from(head >> 4) };
+        // An element has one byte at least.
+        let left = (self.bytes.len() - self.at) as u64;
+        if count > left {
+            return Err(format!("it declares {count} elements where {left} bytes follow"));
+        }
+        self.elements += usize::try_from(count).map_err(|_| "a list is too long")?;
+        if self.elements > MOST_ELEMENTS {
+            return Err(format!("its lists have more than {MOST_ELEMENTS} elements"));
+        }
+        self.path.push(0);
+        if self.path.len() > DEEPEST {
+            return Err(format!("its structures are nested more than {DEEPEST} deep"));
+        }
+        for _ in 0..count {
+            self.value(head & 15, false)?;
+        }
+        self.path.pop();
+        Ok(())
+    }
+
+    fn field(&self, path: &[i64]) -> Option<i64> {
+        self.fields.iter().find(|(at, _)| at == path).map(|(_, number)| *number)
+    }
+}
+
+/// Checks the lengths in a footer.
+pub(super) fn footer(bytes: &[u8]) -> Checked<()> {
+    Walk::new(bytes, 0).structure()
+}
+
+/// What is declared of the pages of a column chunk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pages {
+    /// Bytes of the largest page and of the dictionary, which are in memory at the same time.
+    pub memory: u64,
+}
+
+/// Checks the headers of the pages of a column chunk, which has `values` numbers of `width` bytes.
+pub(super) fn pages(chunk: &[u8], values: u64, width: u64) -> Checked<Pages> {
+    let (mut largest, mut dictionary, mut at) = (0, 0, 0);
+    while at < chunk.len() {
+        let mut walk = Walk::new(&chunk[at..], 2);
+        walk.structure().map_err(|why| format!("the header of a page: {why}"))?;
+        let size = |field: i64| {
+            let size = walk.field(&[field]).and_then(|size| u64::try_from(size).ok());
+            size.ok_or("the header of a page lacks a size")
+        };
+        let (inflated, stored) = (size(2)?, size(3)?);
+        if inflated > LARGEST_PAGE {
+            return Err(format!("a page of {} MB, where {} MB are the maximum", inflated >> 20, LARGEST_PAGE >> 20));
+        }
+        // Fields 5, 7 and 8 are the headers of data pages, dictionary pages and data pages of version 2.
+        let counts = [5, 7, 8].into_iter().filter_map(|kind| walk.field(&[kind, 1]));
+        let count = counts.map(|count| u64::try_from(count).unwrap_or(u64::MAX)).max().unwrap_or(0);
+        if walk.field(&[1]) == Some(DICTIONARY_PAGE) {
+            if count.saturating_mul(width) > inflated {
+                return Err(format!("a dictionary of {count} values in {inflated} bytes"));
+            }
+            dictionary = inflated;
+        } else {
+            if count > values {
+                return Err(format!("a page of {count} values, where the column has {values}"));
+            }
+            largest = inflated.max(largest);
+        }
+        at += walk.at;
+        let left = (chunk.len() - at) as u64;
+        if stored > left {
+            return Err(format!("a page of {stored} bytes, where {left} follow"));
+        }
+        at += usize::try_from(stored).map_err(|_| "a page is too large")?;
+    }
+    Ok(Pages { memory: largest + dictionary })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn declared_lengths_are_compared_with_the_bytes() {
+        assert_eq!(footer(&[0x15, 2, 0]), Ok(()));
+        // Field 4, a list of 2^30 structures.
+        assert!(footer(&[0x49, 0xfc, 0x80, 0x80, 0x80, 0x80, 0x04, 0]).is_err_and(|why| why.contains("1073741824 elements")));
+        // Field 1, a text of 2^40 bytes.
+        assert!(footer(&[0x18, 0x80, 0x80, 0x80, 0x80, 0x80, 0x20, 0]).is_err_and(|why| why.contains("1099511627776 bytes")));
+        assert!(footer(&[0x1c; 1000]).is_err_and(|why| why.contains("nested")));
+        assert!(footer(&[0x19, 0x19, 0x19, 0x19].repeat(9)).is_err());
+        assert!(footer(&[0x15]).is_err());
+        assert!(footer(&[0x15, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff]).is_err());
+    }
+
+    #[test]
+    fn a_page_that_inflates_to_gigabytes_is_refused() {
+        // Fields 1 to 3: a data page (0) of 2^30 bytes, stored in 4; field 5.1: 10 values.
+        let page = |inflated: &[u8], count: u8| [&[0x15, 0, 0x15][..], inflated, &[0x15, 8, 0x2c, 0x15, 2 * count, 0, 0], &[0; 4]].concat();
+        assert_eq!(pages(&page(&[80], 10), 10, 8), Ok(Pages { memory: 40 }));
+        assert!(pages(&page(&[0x80, 0x80, 0x80, 0x80, 0x08], 10), 10, 8).is_err_and(|why| why.contains("1024 MB")));
+        assert!(pages(&page(&[80], 11), 10, 8).is_err_and(|why| why.contains("11 values")));
+        assert!(pages(&page(&[80], 10)[..14], 10, 8).is_err_and(|why| why.contains("4 bytes")));
+    }
+}

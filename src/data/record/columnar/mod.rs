@@ -1,0 +1,108 @@
+//! Records as Parquet files: only the wanted columns are read, row group by row group.
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod` | record, headings, place of a sample |
+//! | `open` | the file, its footer and its columns |
+//! | `groups` | the numbers of a row group |
+//! | `runs` | long records: block by block, or a stretch of them |
+//! | `guard` | declared sizes, checked before the decoder reserves memory for them |
+
+mod groups;
+mod guard;
+mod open;
+mod runs;
+
+use std::path::Path;
+
+use open::{Opened, Store};
+pub(super) use runs::{stream, stretch};
+
+use super::{Column, Format, Record, Wanted, find_columns};
+use crate::data::cells::Heading;
+use crate::data::faults::Faults;
+use crate::data::hash::sha256;
+use crate::data::text::{LARGEST_RECORD, read_plain};
+use crate::problem::Problem;
+use crate::source::{Source, Span};
+
+/// First and last bytes of each Parquet file.
+pub(super) const MAGIC: &[u8; 4] = b"PAR1";
+
+/// Reads the wanted columns of a record.
+pub(super) fn read(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
+    let one = |problem: Problem| vec![problem];
+    let mut bytes = Vec::new();
+    read_plain(path, shown, &mut bytes).map_err(one)?;
+    let (hash, size) = (sha256(&bytes), bytes.len());
+    let mut opened = Opened::open(Store::Memory(bytes), shown).map_err(one)?;
+    let mut columns = opened.find(wanted)?;
+    let rows = opened.rows();
+    if rows == 0 {
+        return Err(vec![no_rows(shown)]);
+    }
+    if (rows as u64).saturating_mul(8 * columns.len() as u64) > LARGEST_RECORD {
+        let says =
+            format!("`{shown}` has {rows} samples of {} channels; the maximum is {} MB of numbers", columns.len(), LARGEST_RECORD >> 20);
+        return Err(vec![Problem::error("file-too-large", says).help("split it, or leave out samples that are not needed")]);
+    }
+    for column in &mut columns {
+        column.values.reserve_exact(rows);
+    }
+    let mut faults = Faults::new(shown);
+    for group in 0..opened.groups() {
+        opened.group(group, &mut columns, &mut faults, &mut |_, _| {}).map_err(one)?;
+    }
+    faults.finish(())?;
+    Ok(Record {
+        shown: shown.to_string(),
+        columns,
+        channels: opened.headings().iter().map(|heading| heading.name.clone()).collect(),
+        rows,
+        first_row: 0,
+        sha256: hash,
+        bytes: size,
+        format: Format::Parquet,
+        path: path.to_path_buf(),
+    })
+}
+
+fn no_rows(shown: &str) -> Problem {
+    Problem::error("no-rows", format!("`{shown}` has columns and no samples"))
+}
+
+/// The headings of a record.
+pub(super) fn headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
+    let opened = open_file(path, shown)?;
+    Ok(opened.headings().to_vec())
+}
+
+fn open_file<'a>(path: &Path, shown: &'a str) -> Result<Opened<'a>, Vec<Problem>> {
+    Store::disk(path, shown).and_then(|store| Opened::open(store, shown)).map_err(|problem| vec![problem])
+}
+
+/// The place of a sample, from 0, or of its value in a column.
+pub(super) fn place(path: &Path, shown: &str, row: usize, column: Option<&Column>) -> Option<Span> {
+    let Some(column) = column else {
+        return Some(Source::excerpt(shown, format!("row {}", row + 1), row + 1).whole());
+    };
+    let mut opened = open_file(path, shown).ok()?;
+    let (group, first) = opened.group_of(row)?;
+    let mut one = [Column { values: Vec::new(), ..column.clone() }];
+    let mut faults = Faults::new(shown);
+    opened.group(group, &mut one, &mut faults, &mut |_, _| {}).ok()?;
+    let value = column.unit.from_si(*one[0].values.get(row - first)?);
+    Some(value_at(shown, &opened.headings()[column.position], row, &value.to_string()))
+}
+
+/// A Parquet file has no text: the place shows `name [unit] = value`, in the line with the number of the row, from 1.
+fn value_at(shown: &str, heading: &Heading, row: usize, value: &str) -> Span {
+    let name = format!("{} = ", heading.span.text());
+    let from = name.len();
+    let text = name + value;
+    let end = text.len();
+    Source::excerpt(shown, text, row + 1).span(from..end)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,97 @@
+//! Long records: one block after the other, or a stretch of them.
+
+use std::ops::Range;
+use std::path::Path;
+
+use parquet::file::statistics::Statistics;
+
+use super::open::{Opened, Store};
+use super::{Column, no_rows};
+use crate::data::faults::Faults;
+use crate::data::hash::Hasher;
+use crate::data::record::runs::{Block, Run, Stretch, axis_of};
+use crate::data::record::{Record, Wanted};
+use crate::data::text::unreadable;
+use crate::disk;
+use crate::problem::Problem;
+
+/// Calls `each` with the wanted columns, batch by batch in the order of the file.
+pub(crate) fn stream(path: &Path, shown: &str, wanted: &[Wanted], each: &mut dyn FnMut(&Block<'_>)) -> Result<Run, Vec<Problem>> {
+    let (mut opened, sha256) = open(path, shown)?;
+    let mut columns = opened.find(wanted)?;
+    if opened.rows() == 0 {
+        return Err(vec![no_rows(shown)]);
+    }
+    let mut faults = Faults::new(shown);
+    for group in 0..opened.groups() {
+        let done = opened.group(group, &mut columns, &mut faults, &mut |columns, first_row| {
+            each(&Block { first_row, rows: columns.first().map_or(0, |column| column.values.len()), columns });
+            columns.iter_mut().for_each(|column| column.values.clear());
+        });
+        done.map_err(|problem| vec![problem])?;
+        if !faults.is_empty() {
+            return Err(faults.into_vec());
+        }
+    }
+    let channels = opened.headings().iter().map(|heading| heading.name.clone()).collect();
+    Ok(Run { channels, rows: opened.rows(), columns, sha256, bytes: opened.store.size() })
+}
+
+/// The rows whose axis lies in a range. Row groups whose statistics exclude the range are not decoded.
+pub(crate) fn stretch(path: &Path, shown: &str, wanted: &[Wanted], axis: &str, range: &Range<f64>) -> Result<Record, Vec<Problem>> {
+    let (mut opened, sha256) = open(path, shown)?;
+    let mut columns = opened.find(wanted)?;
+    let at = axis_of(&columns, axis, shown)?;
+    let mut faults = Faults::new(shown);
+    let mut stretch = Stretch::new(range.clone(), at, &columns);
+    for group in 0..opened.groups() {
+        if opened.without(group, &columns[at], range) {
+            continue;
+        }
+        // The axis first: of the other columns, only the rows inside are decoded.
+        let mut alone = [Column { values: Vec::new(), ..columns[at].clone() }];
+        opened.group(group, &mut alone, &mut faults, &mut |_, _| {}).map_err(|problem| vec![problem])?;
+        if !faults.is_empty() {
+            return Err(faults.into_vec());
+        }
+        let inside = |value: &f64| *value >= range.start && *value <= range.end;
+        let values = &alone[0].values;
+        let (Some(first), Some(last)) = (values.iter().position(inside), values.iter().rposition(inside)) else { continue };
+        let start = opened.rows_of(group).start;
+        let done = opened.rows_in(group, start + first..start + last + 1, &mut columns, &mut faults, &mut |columns, first_row| {
+            stretch.add(columns, first_row);
+            columns.iter_mut().for_each(|column| column.values.clear());
+        });
+        done.map_err(|problem| vec![problem])?;
+        if !faults.is_empty() {
+            return Err(faults.into_vec());
+        }
+    }
+    let channels = opened.headings().iter().map(|heading| heading.name.clone()).collect();
+    let run = Run { channels, rows: opened.rows(), columns, sha256, bytes: opened.store.size() };
+    stretch.record(run, path, shown)
+}
+
+impl Opened<'_> {
+    /// Whether the statistics of a group say that no value of a column lies in a range of SI units. They are trusted.
+    fn without(&self, group: usize, column: &Column, range: &Range<f64>) -> bool {
+        let statistics = self.leaf(column.position).and_then(|leaf| self.metadata.metadata().row_group(group).column(leaf).statistics());
+        let ends = match statistics {
+            Some(Statistics::Double(of)) => of.min_opt().copied().zip(of.max_opt().copied()),
+            Some(Statistics::Float(of)) => of.min_opt().copied().zip(of.max_opt().copied()).map(|(min, max)| (min.into(), max.into())),
+            _ => None,
+        };
+        let factor = column.unit.factor;
+        ends.is_some_and(|(min, max)| max * factor < range.start || min * factor > range.end)
+    }
+}
+
+/// The file and its hash. It is read twice, since it need not fit into memory.
+fn open<'a>(path: &Path, shown: &'a str) -> Result<(Opened<'a>, String), Vec<Problem>> {
+    let one = |problem: Problem| vec![problem];
+    let opened = Opened::open(Store::disk(path, shown).map_err(one)?, shown).map_err(one)?;
+    let mut hash = Hasher::default();
+    let mut file = disk::open(path).map_err(|error| one(unreadable(shown, &error)))?;
+    hash.add_all(&mut file).map_err(|error| one(unreadable(shown, &error)))?;
+    Ok((opened, hash.finish()))
+}
