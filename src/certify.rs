@@ -86,6 +86,7 @@ pub fn certify<'a>(
         quantities: outcome.quantities,
         sections: outcome.sections,
         found: Vec::new(),
+        reduction: outcome.reduction,
         zones: outcome.zones,
         domain: outcome.domain,
         application: outcome.application,

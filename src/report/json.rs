@@ -25,6 +25,9 @@ pub fn results(found: &Certification) -> String {
     if !found.found.is_empty() {
         root.insert("found_sections".into(), json!(found.found));
     }
+    if let Some(reduction) = &found.reduction {
+        root.insert("reduction".into(), json!(reduction));
+    }
     root.insert("zones".into(), zones(&found.zones));
     root.insert("domain".into(), json!(found.domain));
     if !found.application.is_empty() {

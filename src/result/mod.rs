@@ -48,6 +48,8 @@ pub struct Certification {
     pub sections: Vec<SectionResult>,
     /// How sections were found in runs; empty if a table of sections states them.
     pub found: Vec<found::FoundSections>,
+    /// The sections that were kept, where the protocol reduces them.
+    pub reduction: Option<study::Reduction>,
     /// Empty if the protocol has no zones.
     pub zones: Vec<ZoneResult>,
     /// Range of each numeric section column over the used sections: the validity domain.

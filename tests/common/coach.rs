@@ -69,6 +69,7 @@ pub fn certification() -> Certification {
             "z̈*_max: not assessable, channel `az_I` is missing in 33 records".into(),
         ],
         found: Vec::new(),
+        reduction: None,
         zones: zones(&sections),
         domain: domain(&sections),
         application: Vec::new(),

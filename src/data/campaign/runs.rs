@@ -191,6 +191,16 @@ impl Campaign {
         Self { sections: Some(table), names, ..self.clone() }
     }
 
+    /// # Errors
+    /// `section-in-run`: who asks needs a file for each section, and the sections are parts of runs.
+    pub fn file_for_each_section(&self) -> Result<(), Problem> {
+        if self.runs.is_empty() {
+            return Ok(());
+        }
+        let says = "the sections of this campaign are parts of runs, and a file for each section is needed here";
+        Err(Problem::error("section-in-run", says).at(&self.runs_span()).help("`certify`, `study` and `compare` work on parts of runs"))
+    }
+
     /// The place of the runs in `campaign.yaml`.
     pub fn runs_span(&self) -> Span {
         self.tree.entry(RUNS).map_or_else(|| self.tree.span.part(0..0), |(key, _)| key.span.clone())

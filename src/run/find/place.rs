@@ -1,12 +1,12 @@
 //! One place of a run: the length of a section there, its data, its zone, and the conditions.
 
 use super::signals::Signals;
-use crate::check::evaluate::{Values, flag, number};
-use crate::check::plan::{DatumKind, Expr, Find, Plan, Scalar, Zone};
+use crate::check::evaluate::{Values, evaluate, flag, number};
+use crate::check::plan::{Datum, DatumKind, Expr, Find, FindCondition, Plan, Scalar, Zone};
 use crate::check::possible::{Possible, possible};
 use crate::data::Campaign;
 use crate::data::campaign::Run;
-use crate::graph::Graph;
+use crate::graph::{Graph, InputNode};
 use crate::run::facts::{Facts, Known, Vehicle};
 use crate::run::sections::of_run;
 use crate::run::signal::Extent;
@@ -17,6 +17,9 @@ const MOST_LENGTHS: usize = 8;
 /// Share of a bound by which a value may miss it: that of 2 km/h by a range of speeds recorded with two decimals, which is subtracted in
 /// m/s, is 1e-14.
 const ROUNDING: f64 = 1e-12;
+
+/// Significant digits of found section data in their unit: a radius of 10 km to the tenth of a millimetre.
+const DIGITS: usize = 8;
 
 /// Values of a place, with bounds met up to rounding.
 struct Rounded<'a>(Known<'a>);
@@ -211,8 +214,8 @@ impl<'a> Rules<'a> {
         let mut columns = self.stated.clone();
         for (datum, nodes) in self.find.data.iter().zip(&self.graph.find.data) {
             let inputs = signals.values(nodes, extent);
-            let value = crate::check::evaluate::evaluate(&datum.of.expr, &self.known(&columns, extent, &inputs));
-            columns[datum.column] = value;
+            let value = evaluate(&datum.of.expr, &self.known(&columns, extent, &inputs));
+            columns[datum.column] = value.map(|value| written(&self.plan.columns[datum.column], value));
         }
         seen.push((extent.1, columns.clone()));
         columns
@@ -220,7 +223,7 @@ impl<'a> Rules<'a> {
 
     /// The first condition that the section does not satisfy.
     fn failing(&self, signals: &Signals<'_>, columns: &Columns, (start, end): Extent) -> Option<usize> {
-        let fails = |(condition, nodes): (&crate::check::plan::FindCondition, &Vec<crate::graph::InputNode>)| {
+        let fails = |(condition, nodes): (&FindCondition, &Vec<InputNode>)| {
             let around = (start - condition.lead, end + condition.tail);
             if !signals.cover(nodes, around) {
                 return true;
@@ -236,6 +239,17 @@ impl<'a> Rules<'a> {
         let Some(prefer) = &self.find.prefer else { return 0.0 };
         let inputs = signals.values(&self.graph.find.prefer, extent);
         number(&prefer.expr, &self.known(columns, extent, &inputs)).unwrap_or(f64::NEG_INFINITY)
+    }
+}
+
+/// A value as the table of sections states it, so that a zone follows from the table as it does from the run.
+fn written(datum: &Datum, value: Scalar) -> Scalar {
+    match (value, &datum.kind) {
+        (Scalar::Number(value), DatumKind::Number(unit)) => {
+            let rounded = format!("{:.*e}", DIGITS - 1, unit.from_si(value)).parse();
+            Scalar::Number(rounded.map_or(value, |number: f64| unit.to_si(number)))
+        }
+        (value, _) => value,
     }
 }
 
