@@ -85,6 +85,8 @@ pub fn certify<'a>(
         verdicts: outcome.verdicts,
         quantities: outcome.quantities,
         sections: outcome.sections,
+        found: Vec::new(),
+        reduction: outcome.reduction,
         zones: outcome.zones,
         domain: outcome.domain,
         application: outcome.application,

@@ -41,6 +41,7 @@ pub const SHIPPED: &[Shipped] = shipped![
     "en14067-6-wheel-unloading",
     "en14067-6-flexibility",
     "en14363-2016-annex-t-application",
+    "en14363-2016-annex-t-found-sections",
     "sprague-geers",
     "bogojevic-lucanin",
     "kraft",

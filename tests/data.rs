@@ -220,7 +220,7 @@ fn a_good_campaign() {
         );
         let parameters: Vec<_> = campaign.parameters.iter().map(|set| (set.name.text.as_str(), set.value.raw.as_str())).collect();
         assert_eq!(parameters, [("window", "2 m"), ("percentile", "99.85")]);
-        let (record, file) = campaign.read(RecordKind::Measurement.into(), &campaign.names[0], &wanted()).expect("a record");
+        let (record, file) = campaign.read(RecordKind::Measurement.into(), &campaign.names[0], &wanted(), None).expect("a record");
         assert_eq!((file.path.as_str(), record.rows), ("measurement/S01.csv", 4));
         assert_eq!(record.columns[2].values, [1500.0, -2250.0, 3000.0, 3500.0]);
         let table = campaign.sections.as_ref().expect("a table");
@@ -240,7 +240,7 @@ fn what_is_written_is_read_back() {
     let folder = temp.path().join("made");
     let mut problems = Problems::default();
     let old = Campaign::open(&cases("good/small"), &mut problems).expect("opens");
-    let (record, _) = old.read(RecordKind::Simulation.into(), &old.names[0], &wanted()).expect("a record");
+    let (record, _) = old.read(RecordKind::Simulation.into(), &old.names[0], &wanted(), None).expect("a record");
     let columns: Vec<OutColumn<'_>> = record
         .columns
         .iter()
@@ -270,7 +270,7 @@ fn what_is_written_is_read_back() {
     assert_eq!(new.parameters.len(), 2);
     assert_eq!(new.facts[0].text, "200");
     assert_eq!(new.sections.as_ref().map(|table| table.rows.len()), Some(2));
-    let (again, _) = new.read(RecordKind::Measurement.into(), &new.names[0], &wanted()).expect("a record");
+    let (again, _) = new.read(RecordKind::Measurement.into(), &new.names[0], &wanted(), None).expect("a record");
     assert_eq!(again.columns, record.columns);
 }
 
@@ -303,7 +303,7 @@ fn a_record_that_links_out_of_the_folder_is_not_read() {
     std::os::unix::fs::symlink(&secret, temp.path().join("campaign/m/S01.csv")).expect("linked");
     let mut problems = Problems::default();
     let campaign = Campaign::open(&temp.path().join("campaign"), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
-    let refused = campaign.read(RecordKind::Measurement.into(), &campaign.names[0], &[]).expect_err("outside");
+    let refused = campaign.read(RecordKind::Measurement.into(), &campaign.names[0], &[], None).expect_err("outside");
     assert_eq!(refused[0].code, "path-outside");
 }
 

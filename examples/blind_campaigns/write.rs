@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use fishplate::data::record::Format;
 use fishplate::data::table::Cell;
 use fishplate::data::write::Outputs;
 use fishplate::disk::SetKind;
 use fishplate::effects::{Applied, Catalogue, Channel, Gauss, Signals};
 use fishplate::model::{CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window, simulate};
-use fishplate::simulate::{Fact, Plan, Section, record_text};
+use fishplate::simulate::{Fact, Plan, Section, record_file};
 use fishplate::source::Source;
 use fishplate::units::Unit;
 
@@ -40,7 +41,7 @@ fn make(out: &Path, set: &Set, case: &Case, draw: u64) -> Result<(), String> {
     let world = World::draw(&mut random);
     let name = format!("{}-{:02}", set.name, case.number);
     let mut outputs = Outputs::of(SetKind::Campaign, out.join(&name));
-    let mut add = |inside: &str, text: &str| outputs.add(inside, text.as_bytes()).map_err(|problem| problem.says);
+    let mut add = |inside: &str, bytes: &[u8]| outputs.add(inside, bytes).map_err(|problem| problem.says);
     let mut table = String::from("section,zone [-],start [m],end [m],radius [m],direction,cant [mm],cant deficiency [mm],speed [km/h]\n");
     for (at, stretch) in stretches(case.design, &mut random).iter().enumerate() {
         let irregularities = Irregularities::draw(&mut random);
@@ -69,18 +70,18 @@ fn make(out: &Path, set: &Set, case: &Case, draw: u64) -> Result<(), String> {
         let unit = |name: &str| {
             Unit::parse(CHANNELS.iter().find(|(known, _)| *known == name).map_or("-", |(_, unit)| unit)).unwrap_or_else(|_| Unit::one())
         };
-        let text = |signals: &Signals| record_text(signals, &unit).map_err(|problem| problem.says);
-        add(&format!("measurement/{}.csv", stretch.name), &text(&signals)?)?;
-        add(&format!("simulation/{}.csv", stretch.name), &text(&simulated(&nominal, &new, &track, stretch)?)?)?;
-        add(&format!("track/{}.csv", stretch.name), &track_text(&track))?;
+        let bytes = |signals: &Signals| record_file(Format::Csv, signals, &unit).map_err(|problem| problem.says);
+        add(&format!("measurement/{}.csv", stretch.name), &bytes(&signals)?)?;
+        add(&format!("simulation/{}.csv", stretch.name), &bytes(&simulated(&nominal, &new, &track, stretch)?)?)?;
+        add(&format!("track/{}.csv", stretch.name), track_text(&track).as_bytes())?;
         table += &row(stretch);
     }
-    add("sections.csv", &table)?;
-    add("profile.csv", &copied("profile.csv")?)?;
-    add("profile_worn.csv", &copied("profile_worn.csv")?)?;
-    add("vehicle.yaml", &vehicle_text(case, &nominal))?;
-    add("campaign.yaml", &campaign_text(&name, &nominal))?;
-    add("truth.json", &truth_text(case, &effects))?;
+    add("sections.csv", table.as_bytes())?;
+    add("profile.csv", copied("profile.csv")?.as_bytes())?;
+    add("profile_worn.csv", copied("profile_worn.csv")?.as_bytes())?;
+    add("vehicle.yaml", vehicle_text(case, &nominal).as_bytes())?;
+    add("campaign.yaml", campaign_text(&name, &nominal).as_bytes())?;
+    add("truth.json", truth_text(case, &effects).as_bytes())?;
     outputs.commit().map_err(|problem| problem.says)
 }
 

@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use fishplate::data::RecordKind;
+use fishplate::data::record::Format;
 use fishplate::data::write::Outputs;
 use fishplate::disk::SetKind;
 use fishplate::effects::{Applied, Catalogue, Signals};
 use fishplate::problem::Problems;
-use fishplate::simulate::{Builtin, Plan, Section, Simulator, incremented, record_text};
+use fishplate::simulate::{Builtin, Plan, Section, Simulator, incremented, record_file};
 use fishplate::units::Unit;
 use serde_json::{Value, json};
 
@@ -51,10 +52,10 @@ pub fn campaign(out: &Path, base: &Base, case: &Case, catalogue: &Catalogue) -> 
             (fault.does)(&mut signals, section, at);
         }
         let unit = |channel: &str| simulator.unit(channel).unwrap_or_else(Unit::one);
-        let text = |signals: &Signals| record_text(signals, &unit).map_err(|problem| problem.says);
-        add(&format!("{measurement}/{}.csv", section.name()), text(&signals)?.as_bytes())?;
+        let bytes = |signals: &Signals| record_file(Format::Csv, signals, &unit).map_err(|problem| problem.says);
+        add(&format!("{measurement}/{}.csv", section.name()), &bytes(&signals)?)?;
         let simulated = base.simulated(&simulator, section, &moved)?;
-        add(&format!("{simulation}/{}.csv", section.name()), text(&simulated)?.as_bytes())?;
+        add(&format!("{simulation}/{}.csv", section.name()), &bytes(&simulated)?)?;
     }
     add("truth.json", truth(base, case, &effects).as_bytes())?;
     outputs.commit().map_err(|problem| problem.says)

@@ -28,6 +28,10 @@ pub trait Values {
     fn limit_of(&self, statistic: &str) -> Result<f64, String> {
         Err(format!("the limit of {statistic} is not known here"))
     }
+    /// By what share of the right side `<=` and `>=` may be missed: the rounding of numbers that were converted to SI and subtracted.
+    fn rounding(&self) -> f64 {
+        0.0
+    }
 }
 
 /// No name has a value: only constants can be evaluated.
@@ -76,6 +80,9 @@ impl<V: Values> Values for Watched<'_, V> {
     }
     fn limit_of(&self, statistic: &str) -> Result<f64, String> {
         self.values.limit_of(statistic)
+    }
+    fn rounding(&self) -> f64 {
+        self.values.rounding()
     }
 }
 
@@ -155,9 +162,15 @@ fn binary(operator: Operator, left: &Expr, right: &Expr, values: &dyn Values) ->
         Operator::Multiply => Scalar::Number(number(left, values)? * number(right, values)?),
         Operator::Divide => Scalar::Number(number(left, values)? / number(right, values)?),
         Operator::Less => Scalar::Flag(number(left, values)? < number(right, values)?),
-        Operator::LessEqual => Scalar::Flag(number(left, values)? <= number(right, values)?),
+        Operator::LessEqual => {
+            let (left, right) = (number(left, values)?, number(right, values)?);
+            Scalar::Flag(left <= right + values.rounding() * right.abs())
+        }
         Operator::Greater => Scalar::Flag(number(left, values)? > number(right, values)?),
-        Operator::GreaterEqual => Scalar::Flag(number(left, values)? >= number(right, values)?),
+        Operator::GreaterEqual => {
+            let (left, right) = (number(left, values)?, number(right, values)?);
+            Scalar::Flag(left >= right - values.rounding() * right.abs())
+        }
     })
 }
 

@@ -11,6 +11,7 @@ mod domains;
 mod estimates;
 pub mod evaluate;
 pub mod family;
+mod find;
 mod idle;
 mod like;
 mod limits;
@@ -304,7 +305,7 @@ impl Checker<'_> {
         self.has_time = time.is_some();
         self.gather_names();
         self.unknown_overrides(head);
-        let sections = self.section_rules(of("sections").next());
+        let mut sections = self.section_rules(of("sections").next());
         self.zones_match(&sections);
         let verdict_block = of("verdict").find(|block| block.name.is_none());
         self.ddof = self.divisor(verdict_block);
@@ -314,7 +315,8 @@ impl Checker<'_> {
             self.minimum_pairs = minima.all.flatten().unwrap_or(1);
             self.minimum_of_groups = minima.of_groups;
         }
-        let zones = of("zone").filter_map(|block| self.zone(block)).collect();
+        let zones: Vec<plan::Zone> = of("zone").filter_map(|block| self.zone(block)).collect();
+        sections.find = self.find(of("sections").next(), &sections, zones.len());
         let checks = of("check").filter_map(|block| self.section_check(block)).collect();
         let plausibility = of("plausibility").filter_map(|block| self.plausibility(block)).flatten().collect();
         let filters = of("filter").filter_map(|block| self.named_filter(block)).collect();

@@ -1,6 +1,7 @@
 //! Checks the rules that belong to no quantity: axis, zones, section checks, treatment of sections, independent units.
 
 use super::Checker;
+use super::find::FOUND_SECTIONS;
 use super::limits::TO_BE_CONFIRMED;
 use super::names::normalised;
 use super::plan::{Axis, Check, DatumKind, Expr, Independent, Input, Kind, OnFault, Origin, SectionRules, Type, Zone};
@@ -131,6 +132,9 @@ impl Checker<'_> {
     pub(super) fn section_rules(&mut self, block: Option<&Block>) -> SectionRules {
         let mut rules = SectionRules {
             whole_records: false,
+            find: None,
+            margin: None,
+            keep: None,
             zone: None,
             only: None,
             only_words: String::new(),
@@ -141,11 +145,12 @@ impl Checker<'_> {
         let Some(block) = block else { return rules };
         if let Some(field) = block.field("use") {
             match self.choice_field(field).as_deref().unwrap_or("sections") {
-                "sections" => {}
+                // How they are found is looked at when all names are known.
+                "sections" | FOUND_SECTIONS => {}
                 "whole records" => rules.whole_records = true,
                 other => {
                     let problem = Problem::error("unknown-choice", format!("`use` cannot be `{other}`")).at(&field.value.span);
-                    self.problems.push(problem.suggest(other, ["sections", "whole records"]));
+                    self.problems.push(problem.suggest(other, ["sections", FOUND_SECTIONS, "whole records"]));
                 }
             }
         }
@@ -168,6 +173,8 @@ impl Checker<'_> {
         if let Some(minimum) = self.count(block, "minimum", 1) {
             rules.minimum = minimum;
         }
+        rules.margin = block.field("margin").and_then(|field| self.along_axis(field, false));
+        rules.keep = block.field("keep").and_then(|field| self.keep(field));
         if let Some(field) = block.field("percentiles") {
             let word = self.choice_field(field).unwrap_or_else(|| Method::Linear.name().to_string());
             match Method::from_name(&word) {

@@ -146,6 +146,9 @@ impl Checker<'_> {
 
     pub(super) fn path(&mut self, path: &str, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let expr = |kind, ty| Some(Expr { kind, ty, span: span.clone() });
+        if scope.words.iter().any(|word| word == path) {
+            return expr(Kind::Constant(Scalar::Word(path.to_string())), Type::Word(scope.words.clone()));
+        }
         if let Some(pair) = scope.pair {
             match path {
                 "simulated" => return expr(Kind::Simulated, Type::Number(pair)),

@@ -38,6 +38,8 @@ pub(super) struct Scope {
     /// Dimension of the own signal after its filter divided by that before.
     pub factor: Dimension,
     pub inputs: Vec<Input>,
+    /// Words that stand for themselves, where the value is one of them.
+    pub words: Vec<String>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +67,7 @@ impl Scope {
             at: Assignment::new(),
             factor: Dimension::ONE,
             inputs: Vec::new(),
+            words: Vec::new(),
         }
     }
 

@@ -76,7 +76,9 @@ impl Certify {
             }
         }
         console.problems(&problems);
-        let Some(Pool { compiled, campaigns, .. }) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let Some(Pool { compiled, campaigns, found: searched, .. }) = prepared.filter(|_| !problems.any_error()) else {
+            return Exit::Wrong;
+        };
         // The password is read before the computation, so that a wrong one is reported at once.
         let key = match self.sign.as_deref().map(|path| secret_key(path, sign::password())).transpose() {
             Ok(key) => key,
@@ -90,7 +92,7 @@ impl Certify {
         });
         bar.finish_and_clear();
         let found = match found {
-            Ok(found) => found,
+            Ok(found) => Certification { found: searched, ..found },
             Err(problems) => {
                 console.problems(&problems);
                 return Exit::Wrong;

@@ -174,6 +174,7 @@ pub fn diagnosed(
     problems: &mut Problems,
 ) -> Option<(Campaign, Outcome)> {
     let Prepared { compiled, campaign } = prepare(asked.folder, asked.protocol, &[], problems)?;
+    campaign.file_for_each_section().map_err(|problem| problems.push(problem)).ok()?;
     places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
     let catalogue = load_catalogue(asked.catalogue, problems)?;
     let settings = Settings::read(&catalogue, problems)?;

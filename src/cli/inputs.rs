@@ -15,6 +15,8 @@ use crate::data::text::read_text;
 use crate::data::{Campaign, Campaigns};
 use crate::library;
 use crate::problem::{Problem, Problems};
+use crate::result::found::FoundSections;
+use crate::run::find;
 use crate::source::{Source, Spanned};
 use crate::syntax::document::Text;
 
@@ -50,6 +52,8 @@ pub struct Pool {
     pub compiled: Compiled,
     pub campaigns: Vec<Campaign>,
     pub overrides: Overrides,
+    /// How the sections of campaigns with runs were found.
+    pub found: Vec<FoundSections>,
 }
 
 /// Opens a campaign and compiles the protocol named on the command line, else the campaign's, else the first shipped one.
@@ -58,8 +62,21 @@ pub fn prepare(folder: &Path, protocol: Option<&str>, set: &[String], problems: 
     Some(Prepared { compiled, campaign: campaigns.pop()? })
 }
 
-/// As [`prepare`], of several campaigns.
+/// As [`prepare`], of several campaigns. Sections that the protocol looks for in runs are found.
 pub fn prepare_all(folders: &[PathBuf], protocol: Option<&str>, set: &[String], problems: &mut Problems) -> Option<Pool> {
+    let mut pool = compiled_for(folders, protocol, set, problems)?;
+    if problems.any_error() {
+        return Some(pool);
+    }
+    match find::in_all(&pool.compiled.plan, &pool.compiled.graph, &mut pool.campaigns) {
+        Ok(found) => pool.found = found,
+        Err(told) => told.0.into_iter().for_each(|problem| problems.push(problem)),
+    }
+    Some(pool)
+}
+
+/// As [`prepare_all`], before sections are looked for.
+pub fn compiled_for(folders: &[PathBuf], protocol: Option<&str>, set: &[String], problems: &mut Problems) -> Option<Pool> {
     let opened: Vec<Option<Campaign>> = folders.iter().map(|folder| Campaign::open(folder, problems)).collect();
     let campaigns: Vec<Campaign> = opened.into_iter().collect::<Option<_>>()?;
     Campaigns::from(&campaigns).check(problems);
@@ -70,7 +87,7 @@ pub fn prepare_all(folders: &[PathBuf], protocol: Option<&str>, set: &[String], 
     let overrides = overrides(set, &campaigns, problems)?;
     let compiled = compile(family, &overrides, problems)?;
     campaigns.iter().for_each(|campaign| facts_like_parameters(&compiled, campaign, problems));
-    Some(Pool { compiled, campaigns, overrides })
+    Some(Pool { compiled, campaigns, overrides, found: Vec::new() })
 }
 
 /// The protocol that the campaigns name: all the same one.

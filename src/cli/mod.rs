@@ -13,6 +13,7 @@ mod needs;
 mod output;
 mod places;
 mod protocols;
+mod sections;
 mod sign;
 mod simulate;
 mod simulator;
@@ -71,6 +72,9 @@ enum Command {
     /// Sign files; each signature is a separate file in the format of minisign.
     #[command(after_help = "Example:\n  fishplate sign target/coach-report/report.pdf --key laboratory.key")]
     Sign(sign::Sign),
+    /// Find sections in the runs of a campaign, as a protocol says, and write them as a table of sections.
+    #[command(after_help = "Example:\n  fishplate sections examples/run --out target/found-sections.csv")]
+    Sections(sections::Sections),
     /// Study how the verdict depends on the sections, the synchronisation and the parameters of the protocol.
     #[command(after_help = "Example:\n  fishplate study sections examples/coach --out target/coach-sections")]
     Study {
@@ -201,6 +205,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Trace(trace) => trace.run(&console),
         Command::Keygen(keygen) => keygen.run(&console),
         Command::Sign(sign) => sign.run(&console),
+        Command::Sections(sections) => sections.run(&console),
         Command::Study { study } => study.run(&console),
         Command::Compare(compare) => compare.run(&console),
         Command::Simulate(simulate) => simulate.run(&console),

@@ -132,7 +132,7 @@ impl Simulate {
             if self.increment || self.baseline {
                 campaign.only_one(RecordKind::Simulation).map_err(|problem| problems.push(problem)).ok()?;
             }
-            campaign.one_vehicle().map_err(|problem| problems.push(problem)).ok()?;
+            campaign.file_for_each_section().and_then(|()| campaign.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
             let sections = sections(campaign, &mut problems)?;
             let chosen = self.simulator.open(campaign, &mut problems)?.integrated(steps);
             for problem in unusable(catalogue, effects, &sections, &chosen) {

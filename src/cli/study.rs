@@ -159,7 +159,7 @@ enum Asked {
 
 impl Asked {
     fn found(self, common: &Common, prepared: &Pool, console: &Console) -> Result<found::Study, Problems> {
-        let Pool { compiled, campaigns, overrides } = prepared;
+        let Pool { compiled, campaigns, overrides, .. } = prepared;
         let campaigns = Campaigns::from(campaigns);
         robustness::countable(compiled)?;
         // A selection takes one value of each section and signal.

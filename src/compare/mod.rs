@@ -51,6 +51,7 @@ use crate::check::family::Family;
 use crate::data::Campaign;
 use crate::problem::Problems;
 use crate::result::comparison::{Compared, Comparison, OnCampaign, Work};
+use crate::run::find;
 use crate::run::trial::{Disturbance, Kind, Trial};
 use crate::run::{Counts, Progress};
 use subject::{CompiledAll, Subject};
@@ -78,6 +79,25 @@ fn trials(sizes: &[f64]) -> Vec<Trial> {
     disturbed.chain([Trial::Doubled, Trial::Exchanged]).collect()
 }
 
+/// The campaigns with the sections that the first protocol which looks for sections finds in their runs: all are compared on the same.
+fn with_found_sections(
+    campaigns: Vec<(String, Campaign)>,
+    compiled: &[Arc<CompiledAll>],
+    problems: &mut Problems,
+) -> Option<Vec<(String, Campaign)>> {
+    let found = campaigns.into_iter().zip(compiled).map(|((name, campaign), compiled)| {
+        let Some(first) = compiled.protocols.iter().find(|one| find::applies(&one.plan, &campaign)) else { return Some((name, campaign)) };
+        match find::find(&first.plan, &first.graph, &campaign, &|_| {}) {
+            Ok(found) => Some((name, found.campaign)),
+            Err(told) => {
+                told.0.into_iter().for_each(|problem| problems.push(problem));
+                None
+            }
+        }
+    });
+    found.collect::<Vec<_>>().into_iter().collect()
+}
+
 /// A comparison, checked and compiled.
 #[derive(Debug)]
 pub struct Prepared {
@@ -103,6 +123,7 @@ impl Prepared {
             _ => Vec::new(),
         };
         let compiled = subject::compiled(&protocols, &campaigns, &changes, &settings, problems)?;
+        let campaigns = with_found_sections(campaigns, &compiled, problems)?;
         Some(Self { protocols, campaigns, changes, compiled, settings })
     }
 

@@ -6,6 +6,7 @@ mod facts;
 mod files;
 mod opening;
 mod records;
+mod runs;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,6 +15,7 @@ pub use facts::Fact;
 pub use files::{Inputs, ReadFile};
 pub use opening::POINT_KEY;
 pub use records::RecordKind;
+pub use runs::{Part, RUN_COLUMN, Run, RunFact};
 
 use super::folder::{Folder, Place, check_file_name};
 use super::identification::{self, Stated};
@@ -75,6 +77,7 @@ pub struct Campaign {
     pub files: Vec<ReadFile>,
     folder: Folder,
     record_folders: Vec<RecordFolder>,
+    runs: Vec<Run>,
 }
 
 impl Campaign {
@@ -119,6 +122,10 @@ impl Campaign {
         let application = opening.application(&tree);
         let record_folders =
             RecordKind::ALL.into_iter().flat_map(|kind| members::read(&tree, kind, &opening.folder, opening.problems)).collect();
+        let runs = runs::read(&tree, &opening.folder, opening.problems);
+        if let Some(table) = &sections {
+            runs::check_column(table, &runs, opening.problems);
+        }
         let protocol = opening.text(&tree, "protocol");
         let parameters = opening.parameters(&tree);
         let origin = opening.origin(&tree);
@@ -149,6 +156,7 @@ impl Campaign {
             files,
             folder,
             record_folders,
+            runs,
         };
         if problems.errors() == before {
             campaign.find_names(problems);
@@ -159,6 +167,7 @@ impl Campaign {
     fn find_names(&mut self, problems: &mut Problems) {
         self.names = match &self.sections {
             Some(table) => table.names().cloned().collect(),
+            None if !self.runs.is_empty() => self.run_names(),
             None => match self.measured() {
                 Ok(names) => names,
                 Err(problem) => return problems.push(problem),

@@ -146,7 +146,12 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
             .push(placed(Problem::error("uneven-step", says), record, row + 1, clock).help("records must have a constant sampling rate"));
         return None;
     }
-    Some(if (rate - rate.round()).abs() < WHOLE * rate { rate.round() } else { rate })
+    Some(whole(rate))
+}
+
+/// A sampling rate, as a whole number if it is close to one: time stamps are often rounded.
+pub fn whole(rate: f64) -> f64 {
+    if (rate - rate.round()).abs() < WHOLE * rate { rate.round() } else { rate }
 }
 
 /// The power of ten of which all time stamps of the file are multiples, in SI units: the resolution of their rounding.

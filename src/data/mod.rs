@@ -9,6 +9,7 @@
 //! | `members` | the folders of records, one or several of a kind |
 //! | `record` | one sampled record, as text or as Parquet; optimised for speed |
 //! | `conversion` | a copy of a campaign with its records in another format |
+//! | `blocks` | a long record, block by block |
 //! | `table` | a small table such as `sections.csv` |
 //! | `crate::yaml` | YAML with places of all values |
 //! | `origin` | origin of the records of a campaign written by a program |
@@ -17,6 +18,7 @@
 //! | `fingerprint` | hash of a present file of a campaign |
 //! | `write` | output files |
 
+pub mod blocks;
 pub mod campaign;
 mod campaigns;
 mod cells;

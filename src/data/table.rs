@@ -42,6 +42,19 @@ impl Table {
         }
     }
 
+    /// A table that is not in a file, with the names of its rows in the first column.
+    ///
+    /// # Errors
+    /// The first of the problems of a table that is read.
+    pub fn of_text(name: &str, text: &str) -> Result<Self, Problem> {
+        let mut problems = Problems::default();
+        let table = Self::parse(Source::new(name, text), super::hash::sha256(text.as_bytes()), Some(""), &mut problems);
+        table.ok_or_else(|| {
+            let says = format!("the table `{name}` cannot be made");
+            problems.0.into_iter().next().unwrap_or_else(|| Problem::error("internal", says))
+        })
+    }
+
     pub(super) fn parse(source: Arc<Source>, sha256: String, key: Option<&str>, problems: &mut Problems) -> Option<Self> {
         let name = source.name.clone();
         let mut faults = Faults::new(&name);

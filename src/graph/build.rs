@@ -5,12 +5,13 @@ use indexmap::IndexMap;
 use std::sync::Arc;
 
 use super::{
-    Graph, InputNode, Joint, LimitNodes, Node, NodeId, Operation, PlausibilityNodes, PositionNodes, QuantityNodes, SignalNodes, ValueNodes,
+    FindNodes, Graph, InputNode, Joint, LimitNodes, Node, NodeId, Operation, PlausibilityNodes, PositionNodes, QuantityNodes, SignalNodes,
+    ValueNodes,
 };
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
-    AxisOperation, Decision, Evaluation, Expr, Input, Key, Kind, Limit, Operator, Plan, Plausibility, Position, Quantity, Scope, Signal,
-    SignalKind, Step, StepSpec, Taken, Test, Valued,
+    AxisOperation, Decision, Evaluation, Expr, Input, Key, Kind, Limit, OfSignals, Operator, Plan, Plausibility, Position, Quantity, Scope,
+    Signal, SignalKind, Step, StepSpec, Taken, Test, Valued,
 };
 use crate::source::Span;
 use crate::units::Dimension;
@@ -18,12 +19,13 @@ use crate::units::Dimension;
 pub fn from_plan(plan: &Plan) -> Graph {
     let mut builder = Builder { axis: plan.axis.unit.dimension, ..Builder::default() };
     let checks = plan.checks.iter().map(|check| check.inputs.iter().map(|input| builder.input(input, None)).collect()).collect();
+    let find = builder.find(plan);
     let plausibility = plan.plausibility.iter().map(|rule| builder.plausibility(rule)).collect();
     let quantities: Vec<QuantityNodes> =
         plan.quantities.iter().enumerate().map(|(index, quantity)| builder.quantity(plan, index, quantity)).collect();
     let mut verdicts = vec![None; plan.verdicts.len()];
     (0..plan.verdicts.len()).for_each(|at| builder.verdict(plan, &quantities, at, &mut verdicts));
-    Graph { nodes: builder.nodes, quantities, checks, plausibility, verdicts: verdicts.into_iter().flatten().collect() }
+    Graph { nodes: builder.nodes, quantities, checks, find, plausibility, verdicts: verdicts.into_iter().flatten().collect() }
 }
 
 struct Builder {
@@ -248,6 +250,16 @@ impl Builder {
             }
         };
         InputNode { node, side: input.side, joint }
+    }
+
+    fn find(&mut self, plan: &Plan) -> FindNodes {
+        let Some(find) = &plan.sections.find else { return FindNodes::default() };
+        let mut inputs = |of: &OfSignals| of.inputs.iter().map(|input| self.input(input, None)).collect::<Vec<InputNode>>();
+        FindNodes {
+            data: find.data.iter().map(|datum| inputs(&datum.of)).collect(),
+            conditions: find.conditions.iter().map(|condition| inputs(&condition.require)).collect(),
+            prefer: find.prefer.iter().flat_map(&mut inputs).collect(),
+        }
     }
 
     /// The label of the signal that a processed signal was made from.

@@ -28,10 +28,21 @@ pub struct Graph {
     pub quantities: Vec<QuantityNodes>,
     /// One for each section check of the plan.
     pub checks: Vec<Vec<InputNode>>,
+    pub find: FindNodes,
     /// One for each plausibility rule of the plan.
     pub plausibility: Vec<PlausibilityNodes>,
     /// One for each verdict of the plan, the overall verdict first.
     pub verdicts: Vec<NodeId>,
+}
+
+/// Values of signals by which sections are found; empty where they are not.
+#[derive(Clone, Debug, Default)]
+pub struct FindNodes {
+    /// One for each section datum that is found, in the order of the plan.
+    pub data: Vec<Vec<InputNode>>,
+    /// One for each condition.
+    pub conditions: Vec<Vec<InputNode>>,
+    pub prefer: Vec<InputNode>,
 }
 
 #[derive(Clone, Debug)]

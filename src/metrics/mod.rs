@@ -12,6 +12,7 @@
 //! | [`statistics`], [`interval`] | values | mean, scatter, extremes, regression; confidence intervals |
 //! | [`weighted`] | values and weights | mean, scatter, order statistics |
 //! | [`cluster`] | values by site | bounds of any statistic: bootstrap and jackknife over sites, closed forms |
+//! | [`reduction`] | groups of members and their scatter | fewer members with nearly the same scatter |
 //! | [`regression`] | values and regressors | least squares, bounds at a point |
 //! | [`student`] | probability | quantiles of Student's t |
 //! | [`sampling`] | values | signs of recording faults: held, saturated, quantised |
@@ -38,6 +39,7 @@ pub mod pair;
 pub mod percentile;
 pub mod random_effects;
 pub mod rank;
+pub mod reduction;
 pub mod regression;
 pub mod resample;
 pub mod sampling;

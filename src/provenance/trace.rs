@@ -11,6 +11,7 @@ use crate::graph::{Node, Operation};
 use crate::problem::{Problem, Problems};
 use crate::report::number::significant;
 use crate::result::took_part;
+use crate::run::find;
 use crate::run::single::{Side, single};
 use crate::source::Span;
 use crate::units::Unit;
@@ -47,8 +48,9 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
     });
     let again = match (compiled, index) {
         (Some(compiled), Some(index)) if !campaigns.is_empty() => {
-            let opened = super::verify::open(carried, campaigns)?;
+            let mut opened = super::verify::open(carried, campaigns)?;
             let (plan, graph) = (&compiled.plan, &compiled.graph);
+            find::in_all(plan, graph, &mut opened)?;
             Some(single(plan, graph, Campaigns::from(&opened), index, (asked.section, pair.record.as_deref()))?)
         }
         _ => None,

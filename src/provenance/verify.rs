@@ -15,6 +15,7 @@ use crate::problem::{Problem, Problems};
 use crate::report::{attached, figure, json, typst, view};
 use crate::result::Certification;
 use crate::result::Kind;
+use crate::run::find;
 use crate::run::replay::replay;
 use crate::run::{Progress, Settings};
 
@@ -235,9 +236,11 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
             Err(problem) => lost.push(format!("not readable: {}: {}", file.path, problem.says)),
         }
     }
-    let certified = compiled.map(|compiled| {
-        let campaigns = opened.as_ref().map_err(Clone::clone)?;
-        certify(compiled, Campaigns::from(campaigns), Settings { traces: again.plots }, again.progress)
+    let certified = compiled.map(|compiled| -> Result<Certification, Problems> {
+        let mut campaigns = opened.as_ref().map_err(Clone::clone)?.clone();
+        let found = find::in_all(&compiled.plan, &compiled.graph, &mut campaigns)?;
+        let certified = certify(compiled, Campaigns::from(&campaigns), Settings { traces: again.plots }, again.progress)?;
+        Ok(Certification { found, ..certified })
     });
     if let Some(Ok(found)) = &certified {
         let known = |path: &str| carried.results.campaign.files.iter().any(|file| file.path == path);

@@ -22,6 +22,12 @@ pub fn results(found: &Certification) -> String {
     }
     root.insert("quantities".into(), quantities(&found.quantities));
     root.insert("sections".into(), Value::Array(found.sections.iter().map(|section| zone_as_number(json!(section))).collect()));
+    if !found.found.is_empty() {
+        root.insert("found_sections".into(), json!(found.found));
+    }
+    if let Some(reduction) = &found.reduction {
+        root.insert("reduction".into(), json!(reduction));
+    }
     root.insert("zones".into(), zones(&found.zones));
     root.insert("domain".into(), json!(found.domain));
     if !found.application.is_empty() {

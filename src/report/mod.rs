@@ -9,6 +9,7 @@ pub mod diagnosis;
 pub mod estimates;
 pub mod figure;
 pub mod findings;
+pub mod found;
 pub mod html;
 pub mod json;
 pub mod number;

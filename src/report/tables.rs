@@ -137,6 +137,23 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
         ]
     });
     add("zones", &["zone", "title", "condition", "given", "used", "minimum", "holds"], zones.collect())?;
+    if !found.found.is_empty() {
+        let rows = found.found.iter().flat_map(|found| found.runs.iter().map(move |run| (found, run))).flat_map(|(found, run)| {
+            run.stretches.iter().map(move |stretch| {
+                let of = found.campaign.clone().unwrap_or_default();
+                let ends = [stretch.from, stretch.to].map(|x| number(Some(x)));
+                let [from, to] = ends;
+                vec![of, run.run.clone(), from, to, found.axis_unit.clone(), stretch.places.to_string(), stretch.reason.clone()]
+            })
+        });
+        add("rejected", &["campaign", "run", "from", "to", "unit", "places", "reason"], rows.collect())?;
+    }
+    if let Some(reduction) = &found.reduction {
+        let kept =
+            reduction.kept.iter().flat_map(|(group, kept)| kept.iter().map(move |one| vec![group.clone(), one.clone(), "true".into()]));
+        let left = reduction.left_out.iter().map(|one| vec![String::new(), one.clone(), "false".into()]);
+        add("reduction", &["group", "section", "kept"], kept.chain(left).collect())?;
+    }
     let domain = found
         .domain
         .iter()

@@ -7,6 +7,7 @@ pub mod comparison;
 pub mod diagnosis;
 pub mod domain;
 pub mod finding;
+pub mod found;
 mod kind;
 pub mod origin;
 mod quantity;
@@ -45,6 +46,10 @@ pub struct Certification {
     pub verdicts: Vec<VerdictResult>,
     pub quantities: Vec<QuantityResult>,
     pub sections: Vec<SectionResult>,
+    /// How sections were found in runs; empty if a table of sections states them.
+    pub found: Vec<found::FoundSections>,
+    /// The sections that were kept, where the protocol reduces them.
+    pub reduction: Option<study::Reduction>,
     /// Empty if the protocol has no zones.
     pub zones: Vec<ZoneResult>,
     /// Range of each numeric section column over the used sections: the validity domain.

@@ -9,8 +9,10 @@ mod domain;
 mod estimates;
 mod extrapolation;
 mod facts;
+pub mod find;
 mod groups;
 mod judge;
+mod keep;
 mod limits;
 mod margins;
 mod minima;
@@ -45,6 +47,7 @@ use crate::check::plan::{OnFault, Plan};
 use crate::data::Campaigns;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
+use crate::result::study::Reduction;
 use crate::result::{
     Consequence, DataItem, DomainRange, DomainResult, FileHash, Finding, QuantityResult, SectionResult, Trace, Verdict, VerdictResult,
     ZoneResult,
@@ -78,6 +81,8 @@ pub struct Outcome {
     pub vehicle: Vec<DataItem>,
     pub findings: Vec<Finding>,
     pub notes: Vec<String>,
+    /// The sections that are kept, where the protocol reduces them.
+    pub reduction: Option<Reduction>,
     /// Records in the order of the sections.
     pub files: Vec<FileHash>,
 }
@@ -102,6 +107,7 @@ pub struct Evaluated {
     /// Wanted operation against what the sections used cover.
     application: Vec<DomainResult>,
     notes: Vec<String>,
+    reduction: Option<Reduction>,
     /// Records in the order of the sections.
     pub files: Vec<FileHash>,
 }
@@ -149,6 +155,7 @@ pub fn run<'a>(
         findings,
         notes,
         files: files.clone(),
+        reduction: evaluated.reduction.clone(),
         sections: sections::results(plan, &evaluated.facts, evaluated.units),
     })
 }
@@ -282,11 +289,19 @@ impl<'a> Prepared<'a> {
                 values
             })
             .collect();
-        let of_shift = |(at, offset): (usize, &f64)| {
+        let mut at = |at: usize, reduction: Option<&Reduction>| {
             let values = values.iter_mut().map(|all| std::mem::take(&mut all[at])).collect();
-            self.at(values, *offset == 0.0)
+            self.at(values, shifts.offsets[at] == 0.0, reduction)
         };
-        shifts.offsets.iter().enumerate().map(of_shift).collect()
+        // The same sections at every shift: a reduction looks at the records as they are.
+        let unmoved = shifts.offsets.iter().position(|offset| *offset == 0.0).unwrap_or(0);
+        let first = at(unmoved, None)?;
+        let mut all: Vec<Evaluated> = Vec::new();
+        for shift in (0..shifts.offsets.len()).filter(|shift| *shift != unmoved) {
+            all.push(at(shift, first.reduction.as_ref())?);
+        }
+        all.insert(unmoved, first);
+        Ok(all)
     }
 
     /// A repeat whose original is not used cannot be compared: quantities of repeats have no rows in it.
@@ -299,12 +314,13 @@ impl<'a> Prepared<'a> {
         values
     }
 
-    /// All sections at one shift. If `needed`, at least one section must be usable.
-    fn at(&self, values: Vec<SectionValues>, needed: bool) -> Result<Evaluated, Problems> {
+    /// All sections at one shift. If `needed`, at least one section must be usable. `reduction`: that of the records as they are.
+    fn at(&self, values: Vec<SectionValues>, needed: bool, reduction: Option<&Reduction>) -> Result<Evaluated, Problems> {
         let (mut units, mut notes) = (self.units.clone(), self.notes.clone());
         let copies = copies::find(self.plan, self.campaigns, &units, &values);
         requirements::take_over(self.plan, &self.facts, &mut units, &values, &copies, &mut notes)?;
         stop_on_fault(self.plan, &units, &values)?;
+        let reduction = keep::keep(self.plan, &self.facts, &mut units, &values, reduction);
         let values = self.without_unused_originals(&units, values);
         let findings: Vec<Finding> = values.iter().flat_map(|values| values.findings.iter().cloned()).chain(copies).collect();
         // Sections excluded by a plausibility rule state the reason in the findings of a report.
@@ -315,7 +331,7 @@ impl<'a> Prepared<'a> {
         let application = domain::compared(self.plan, &self.facts, &units, &self.wanted);
         let findings = findings.into_iter().chain(domain::findings(&application)).collect();
         let files = values.iter().flat_map(|values| values.files.iter().cloned()).collect();
-        Ok(Evaluated { facts: self.facts.clone(), units, values, findings, application, notes, files })
+        Ok(Evaluated { facts: self.facts.clone(), units, values, findings, application, notes, reduction, files })
     }
 }
 

@@ -15,8 +15,8 @@ use super::shared::{Keys, Memo, Sharing};
 use super::signal::{Along, Extent, Rate, Samples};
 use crate::check::evaluate::flag;
 use crate::check::plan::{Plan, Side};
-use crate::data::campaign::ReadFile;
-use crate::data::checks::{Section, check_axis};
+use crate::data::campaign::{Part, ReadFile};
+use crate::data::checks::{Section, check_axis, whole};
 use crate::data::record::Wanted;
 use crate::data::{Campaign, Campaigns, Record, RecordKind, WhichRecord, qualified};
 use crate::graph::{Graph, NodeId, Operation};
@@ -157,10 +157,17 @@ pub fn open(work: &Work<'_>, unit: &Unit, which: WhichRecord, needed: &BTreeSet<
     }
     let read = match sharing {
         Some(sharing) => sharing.store.read(which, &wanted),
-        None => work.campaign(unit).read(which, &unit.cell, &wanted),
+        None => work.campaign(unit).read(which, &unit.cell, &wanted, part(work.plan, unit).as_ref()),
     };
     let (record, read) = read.map_err(|problems| Fault { says: said(work.campaign(unit), &problems), problems })?;
     opened(work, unit, which, record, read)
+}
+
+/// The part of a run that is read for a section: with a margin on both sides, for filters and for shifts.
+fn part(plan: &Plan, unit: &Unit) -> Option<Part> {
+    let (start, end) = unit.extent?;
+    let margin = plan.sections.margin.unwrap_or(end - start);
+    Some(Part { axis: plan.axis.column.clone(), from: start - margin, to: end + margin })
 }
 
 /// A record that was read, checked for the section.
@@ -175,6 +182,7 @@ pub fn opened(work: &Work<'_>, unit: &Unit, which: WhichRecord, record: Record, 
     let of = RecordOf { kind: which.kind.key().into(), section: unit.name.clone(), name };
     let path = qualified(unit.campaign_name.as_deref(), &read.path);
     let file = FileHash { path, sha256: read.sha256, bytes: read.bytes, record: Some(of) };
+    let first_row = record.row_shown(0);
     let columns: Vec<_> = record.columns.into_iter().map(|column| (column.name, Arc::new(column.values))).collect();
     let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));
     let along_axis = values(&axis.column).unwrap_or_default();
@@ -184,8 +192,7 @@ pub fn opened(work: &Work<'_>, unit: &Unit, which: WhichRecord, record: Record, 
         axis: along_axis,
         time: time.and_then(|time| values(&time.column)),
         rate: if in_time { Rate::PerTime(checked.sampling_rate) } else { Rate::PerLength(checked.sampling_rate) },
-        // The header is row 1.
-        first_row: Some(2),
+        first_row: Some(first_row),
     });
     let margins = in_time.then_some((checked.before, checked.after));
     Ok(Opened { columns: Arc::new(columns), along, extent, file, margins, memo: None })
@@ -223,6 +230,27 @@ fn placed(says: &str, file: &str, row: usize, more: usize) -> String {
 }
 
 impl Opened {
+    /// A piece of a run, in which sections are looked for.
+    pub fn piece(plan: &Plan, track: bool, columns: Vec<(String, Vec<f64>)>, first_row: usize) -> Self {
+        let columns: Vec<_> = columns.into_iter().map(|(name, values)| (name, Arc::new(values))).collect();
+        let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));
+        let axis = values(&plan.axis.column).unwrap_or_default();
+        let time = plan.time.as_ref().filter(|_| !track).and_then(|time| values(&time.column));
+        let rate = |clock: &[f64]| match clock {
+            [first, .., last] => whole((clock.len() - 1) as f64 / (last - first)),
+            _ => 1.0,
+        };
+        let rate = match &time {
+            Some(time) => Rate::PerTime(rate(time)),
+            None if plan.axis.unit.dimension == Dimension::TIME => Rate::PerTime(rate(&axis)),
+            None => Rate::PerLength(rate(&axis)),
+        };
+        let extent = (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
+        let file = FileHash { path: String::new(), sha256: String::new(), bytes: 0, record: None };
+        let along = Arc::new(Along { axis, time, rate, first_row: Some(first_row) });
+        Self { columns: Arc::new(columns), along, extent, file, margins: None, memo: None }
+    }
+
     /// First and last row of the file inside the section, and the last row of the file; the header is row 1.
     pub fn rows(&self) -> ((usize, usize), usize) {
         let first = self.along.first_row.unwrap_or(1);

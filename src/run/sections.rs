@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use super::facts::{Facts, Known, item, scalar};
 use super::signal::Extent;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
+use crate::data::campaign::Run;
 use crate::data::sites::{originals, site_text, sites};
 use crate::data::table::{Cell, Table};
 use crate::data::{Campaign, Campaigns, qualified};
@@ -145,7 +146,10 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
         problems.push(
             Problem::error("no-sections", "the campaign has no table of sections, and the protocol evaluates sections")
                 .at(&campaign.tree.span.part(0..0))
-                .help("name it in campaign.yaml: `sections: sections.csv`; or use a protocol with `use whole records`"),
+                .help(match campaign.runs().is_empty() {
+                    true => "name it in campaign.yaml: `sections: sections.csv`; or use a protocol with `use whole records`",
+                    false => "it has runs: use a protocol with `use found sections`, or write a table with a column `run`",
+                }),
         );
         return Vec::new();
     };
@@ -162,7 +166,12 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
     };
     let (start, end) = (extent_datum("start"), extent_datum("end"));
     let mut missing = false;
-    for datum in plan.columns.iter().chain([&start, &end]) {
+    // What is stated of every run needs no column.
+    let of_runs = |datum: &&Datum| {
+        table.column(&datum.key).is_some()
+            || !table.names().all(|name| campaign.run_of(name).is_some_and(|run| run.fact(&datum.key).is_some()))
+    };
+    for datum in plan.columns.iter().filter(of_runs).chain([&start, &end]) {
         missing |= column_missing(datum, (table, "table of sections"), problems);
     }
     if missing {
@@ -171,7 +180,8 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
     let (sites, originals) = (sites(table, problems), originals(table));
     let mut units = Vec::new();
     for row in 0..table.rows.len() {
-        let row = Row { table, row, campaign: &campaign.short_name.value, file: campaign.inside(&table.columns[0].span.source.name) };
+        let file = campaign.inside(&table.columns[0].span.source.name);
+        let row = Row { table, row, campaign: &campaign.short_name.value, file, run: campaign.run_of(&campaign.names[row]) };
         let columns: Vec<Result<Scalar, CellFault>> = plan.columns.iter().map(|datum| row.cell(datum)).collect();
         let ill_formed =
             columns.iter().find_map(|cell| cell.as_ref().err().filter(|fault| fault.ill_formed).map(|fault| fault.says.clone()));
@@ -240,6 +250,27 @@ fn whole_record(plan: &Plan, campaign: &Campaign, name: &Cell, site: usize) -> U
     }
 }
 
+/// What the campaign says of a run, as a datum of every section in it.
+///
+/// # Errors
+/// It says nothing, or something that is no such datum.
+pub fn of_run(datum: &Datum, run: &Run, campaign: &str) -> Result<Scalar, String> {
+    if datum.kind == DatumKind::Campaign {
+        return Ok(Scalar::Word(campaign.to_string()));
+    }
+    let Some(fact) = run.fact(&datum.key) else {
+        return datum.default.clone().ok_or_else(|| format!("`{}` is not stated of run `{}`", datum.key, run.name.value));
+    };
+    let kind = match (&datum.kind, &fact.unit) {
+        (DatumKind::Number(expected), Some(unit)) => match OfMeasure::parse(unit) {
+            Ok(unit) if unit.dimension == expected.dimension => DatumKind::Number(unit),
+            _ => return Err(format!("`{}` of run `{}` cannot be in {unit}", datum.key, run.name.value)),
+        },
+        (kind, _) => kind.clone(),
+    };
+    scalar(&kind, &fact.value.value).map_err(|says| format!("`{}` of run `{}`: {says}", datum.key, run.name.value))
+}
+
 /// Reports a declared column that is missing or has a unit of another dimension.
 pub fn column_missing(datum: &Datum, (table, called): (&Table, &str), problems: &mut Problems) -> bool {
     if datum.kind == DatumKind::Campaign {
@@ -277,6 +308,8 @@ pub struct Row<'a> {
     pub campaign: &'a str,
     /// Path of the table inside the campaign.
     pub file: &'a str,
+    /// The run that the section is cut from.
+    pub run: Option<&'a Run>,
 }
 
 /// Why a cell has no value. An empty cell is a fault only if a rule needs it; a cell that cannot be read is always a fault.
@@ -292,6 +325,9 @@ impl Row<'_> {
         }
         let nothing = |says: String| datum.default.clone().ok_or(CellFault { says, ill_formed: false });
         let Some(index) = self.table.column(&datum.key) else {
+            if let Some(run) = self.run.filter(|run| run.fact(&datum.key).is_some()) {
+                return of_run(datum, run, self.campaign).map_err(|says| CellFault { says, ill_formed: true });
+            }
             return nothing(format!("there is no column `{}`", datum.key));
         };
         let text = self.table.cell(self.row, index).map_or("", |cell| cell.value.trim());

@@ -146,7 +146,7 @@ fn collected(
         counts.push(count);
     }
     let as_recorded: Vec<Result<Evaluated, Problems>> =
-        prepared.into_iter().zip(by_protocol).map(|(prepared, values)| prepared?.at(values, true)).collect();
+        prepared.into_iter().zip(by_protocol).map(|(prepared, values)| prepared?.at(values, true, None)).collect();
     let in_trial = |(at, values): (usize, Vec<SectionValues>)| {
         let (prepared, base) = (tried[at].as_ref()?, as_recorded[at].as_ref().ok()?);
         // The sections that are used are those of the records as they are, as far as the trial gives values.
@@ -159,7 +159,8 @@ fn collected(
         let values = prepared.without_unused_originals(&units, values);
         let (findings, notes, files) = (Vec::new(), Vec::new(), Vec::new());
         let application = Vec::new();
-        Some(Evaluated { facts: base.facts.clone(), units, values, findings, application, notes, files })
+        let reduction = base.reduction.clone();
+        Some(Evaluated { facts: base.facts.clone(), units, values, findings, application, notes, reduction, files })
     };
     let trials = by_trial.into_iter().map(|values| values.into_iter().enumerate().map(in_trial).collect()).collect();
     Several { as_recorded, trials, counts: counts.into_iter().sum() }
@@ -204,7 +205,8 @@ impl Evaluated {
     fn with(&self, units: Vec<Unit>, values: Vec<SectionValues>) -> Self {
         let (findings, notes, files) = (self.findings.clone(), Vec::new(), Vec::new());
         let application = self.application.clone();
-        Self { facts: self.facts.clone(), units, values, findings, application, notes, files }
+        let reduction = self.reduction.clone();
+        Self { facts: self.facts.clone(), units, values, findings, application, notes, reduction, files }
     }
 
     /// Each limit's ratios of single sections: what is pooled is taken against the limit of the pool.

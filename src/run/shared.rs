@@ -16,7 +16,7 @@ use super::signal::{Extent, Signal};
 use super::trial::Trial;
 use crate::check::evaluate::number;
 use crate::check::plan::AxisOperation;
-use crate::data::campaign::ReadFile;
+use crate::data::campaign::{Part, ReadFile};
 use crate::data::record::Wanted;
 use crate::data::table::Cell;
 use crate::data::{Campaign, Record, RecordKind, WhichRecord};
@@ -235,6 +235,12 @@ impl<'a> Store<'a> {
         unit.cell.value == self.cell.value
     }
 
+    /// The part of a run that is read: the section with its own length on both sides, since protocols ask for different margins.
+    fn part(&self) -> Option<Part> {
+        let (axis, (start, end)) = self.place.as_ref()?;
+        Some(Part { axis: axis.clone(), from: start - (end - start), to: end + (end - start) })
+    }
+
     fn rows(&self, record: &Record) -> std::ops::Range<usize> {
         let inside = self.place.as_ref().and_then(|(axis, (start, end))| {
             let axis = &record.column(axis)?.values;
@@ -258,7 +264,7 @@ impl<'a> Store<'a> {
         let mut records = locked(&self.records);
         let shared = records.entry(which).or_insert_with(|| {
             let record = match self.base {
-                None => Ok(self.campaign.read(which, self.cell, &self.columns.of(which.kind)).ok()),
+                None => Ok(self.campaign.read(which, self.cell, &self.columns.of(which.kind), self.part().as_ref()).ok()),
                 Some(base) => match &base.shared(which).record {
                     Ok(Some((record, file))) => self.changed(record.clone()).map(|record| Some((record, file.clone()))),
                     other => other.clone(),
@@ -299,7 +305,7 @@ impl<'a> Store<'a> {
     /// A record read by one protocol alone, in this trial.
     pub fn read(&self, which: WhichRecord, wanted: &[Wanted]) -> Result<(Record, ReadFile), Vec<Problem>> {
         let kind = self.trial.kind(which.kind);
-        let (record, file) = self.campaign.read(WhichRecord { kind, ..which }, self.cell, wanted)?;
+        let (record, file) = self.campaign.read(WhichRecord { kind, ..which }, self.cell, wanted, self.part().as_ref())?;
         let record = if self.trial.changes(which.kind) {
             self.changed(record).map_err(|says| vec![Problem::error("not-disturbed", says)])?
         } else {

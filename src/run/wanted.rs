@@ -60,7 +60,7 @@ fn of_domain(plan: &Plan, domain: &Domain, (campaign, table): (&Campaign, &Table
     let needed = columns(domain);
     let mut found = Vec::new();
     for (row, name) in table.names().enumerate() {
-        let cells = Row { table, row, campaign: &campaign.short_name.value, file: campaign.inside(&table.source.name) };
+        let cells = Row { table, row, campaign: &campaign.short_name.value, file: campaign.inside(&table.source.name), run: None };
         let mut refused = None;
         let mut value = |index: usize| {
             if !needed.contains(&index) {

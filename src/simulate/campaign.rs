@@ -22,11 +22,12 @@ const AXIS: &str = "distance";
 /// # Errors
 /// As [`Campaign::read`]; the record has no `time`.
 pub fn recorded(campaign: &Campaign, kind: RecordKind, section: &Section) -> Result<(Signals, Units, ReadFile), Vec<Problem>> {
+    campaign.file_for_each_section().map_err(|problem| vec![problem])?;
     let place = campaign.record_place(kind, &section.cell).map_err(|problem| vec![problem])?;
     let headings = crate::data::record::read_headings(&place.path, &place.inside)?;
     let wanted: Vec<Wanted> =
         headings.iter().map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true }).collect();
-    let (record, file) = campaign.read(kind.into(), &section.cell, &wanted)?;
+    let (record, file) = campaign.read(kind.into(), &section.cell, &wanted, None)?;
     let (signals, units) = signals(&record)?;
     Ok((signals, units, file))
 }

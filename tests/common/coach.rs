@@ -68,6 +68,8 @@ pub fn certification() -> Certification {
             "ÿ*_max: standard deviation above its limit".into(),
             "z̈*_max: not assessable, channel `az_I` is missing in 33 records".into(),
         ],
+        found: Vec::new(),
+        reduction: None,
         zones: zones(&sections),
         domain: domain(&sections),
         application: Vec::new(),

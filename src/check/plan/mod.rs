@@ -3,6 +3,7 @@
 mod estimate;
 mod expression;
 mod filter;
+mod find;
 mod quantity;
 mod section;
 mod signal;
@@ -15,6 +16,7 @@ use crate::units::Unit;
 pub use estimate::*;
 pub use expression::*;
 pub use filter::*;
+pub use find::*;
 pub use quantity::*;
 pub use section::*;
 pub use signal::*;

@@ -1,6 +1,6 @@
 //! Zones, checks, plausibility rules, the rules of sections, domains.
 
-use super::{Expr, Input, Signal, Step};
+use super::{Expr, Find, Input, Keep, Signal, Step};
 use crate::metrics::percentile::Method;
 use crate::source::Span;
 use crate::units::Unit;
@@ -97,6 +97,11 @@ pub struct Distinct {
 #[derive(Clone, Debug)]
 pub struct SectionRules {
     pub whole_records: bool,
+    /// How sections are found in the runs of a campaign that has no table of sections.
+    pub find: Option<Find>,
+    /// Record needed on each side of a section that is cut from a run, SI of the axis; without it, the length of the section.
+    pub margin: Option<f64>,
+    pub keep: Option<Keep>,
     /// Index of the column of the zone.
     pub zone: Option<usize>,
     pub only: Option<Expr>,

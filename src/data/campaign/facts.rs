@@ -2,6 +2,7 @@
 
 use super::RecordKind;
 use super::opening::APPLICATION;
+use super::runs::RUNS;
 use crate::data::cells::name_and_unit;
 use crate::data::identification::REPORT_KEY;
 use crate::data::origin::ORIGIN_KEY;
@@ -23,8 +24,8 @@ pub struct Fact {
 }
 
 /// Keys of `campaign.yaml` beside those of the records.
-pub(super) const LAYOUT: [&str; 9] =
-    ["name", SHORT_NAME, "vehicle", "sections", APPLICATION, "parameters", "protocol", ORIGIN_KEY, REPORT_KEY];
+pub(super) const LAYOUT: [&str; 10] =
+    ["name", SHORT_NAME, "vehicle", "sections", APPLICATION, "parameters", "protocol", ORIGIN_KEY, REPORT_KEY, RUNS];
 /// What the campaign is called where it stands beside others.
 pub(super) const SHORT_NAME: &str = "short name";
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{CAMPAIGN_FILE, Campaign, RecordKind};
+use super::{CAMPAIGN_FILE, Campaign, RecordKind, Run};
 use crate::data::folder::Place;
 use crate::data::text::read_any;
 use crate::disk;
@@ -34,7 +34,8 @@ impl Campaign {
         let all = RecordKind::ALL.into_iter().flat_map(|kind| self.records(kind));
         let folders = all.filter_map(|which| Some(real(&self.record_folder(which).ok()?.0)));
         let named = self.files.iter().filter_map(|file| self.folder.place(&file.path, &self.tree.span.part(0..0)).ok());
-        let files = named.chain(self.vehicle_files().unwrap_or_default());
+        let of_run = |run: &Run| RecordKind::ALL.map(|kind| self.run_place(run, kind).ok()).into_iter().flatten().collect::<Vec<_>>();
+        let files = named.chain(self.vehicle_files().unwrap_or_default()).chain(self.runs.iter().flat_map(of_run));
         Inputs { folder: self.folder.real().to_path_buf(), folders: folders.collect(), files: files.map(|place| real(&place)).collect() }
     }
 
@@ -62,7 +63,11 @@ impl Campaign {
         let others = RecordKind::ALL.into_iter().filter(|kind| *kind != but && self.has(*kind));
         for which in others.flat_map(|kind| self.records(kind)) {
             for name in &self.names {
-                inside.push(self.place_of(which, name)?.inside);
+                let place = self.place_of(which, name)?;
+                // Sections of one run have one file.
+                if !inside.contains(&place.inside) {
+                    inside.push(place.inside);
+                }
             }
         }
         for place in self.vehicle_files()? {

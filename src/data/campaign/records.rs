@@ -4,10 +4,10 @@ use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Campaign, ReadFile};
+use super::{Campaign, Part, ReadFile};
 use crate::data::folder::{Place, check_file_name};
 use crate::data::members::{self, RecordFolder, WhichRecord};
-use crate::data::record::{Format, Record, Wanted, read_record};
+use crate::data::record::{Format, Record, Wanted, read_record, read_stretch};
 use crate::data::table::Cell;
 use crate::data::text::other_format;
 use crate::disk;
@@ -115,7 +115,7 @@ impl Campaign {
 
     /// Whether the campaign names a folder for records of a kind.
     pub fn has(&self, kind: RecordKind) -> bool {
-        self.folders_of(kind).next().is_some()
+        self.folders_of(kind).next().is_some() || self.runs.iter().any(|run| run.has(kind))
     }
 
     /// Where the record of a section is, the only one of its kind, which must exist.
@@ -133,6 +133,9 @@ impl Campaign {
     /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in that folder), `two-formats`.
     pub fn place_of(&self, which: WhichRecord, section: &Cell) -> Result<Place, Problem> {
         check_file_name(&section.value, &section.span)?;
+        if let Some(run) = self.run_of(section) {
+            return self.run_place(run, which.kind);
+        }
         let (folder, span) = self.record_folder(which)?;
         let unreadable =
             |inside: &str, error| Problem::error("file-unreadable", format!("`{inside}` cannot be read: {error}")).at(&section.span);
@@ -186,14 +189,23 @@ impl Campaign {
         names.filter(|name| !Format::stem(name).is_some_and(|name| sections.contains(name))).collect()
     }
 
-    /// Reads the wanted columns of a section's record. Its faults go into results, which must be the same wherever the campaign lies:
-    /// they name the record by its path inside the campaign.
+    /// Reads the wanted columns of a section's record; of a section that is cut from a run, only this part of it. Its faults go into
+    /// results, which must be the same wherever the campaign lies: they name the record by its path inside the campaign.
     ///
     /// # Errors
     /// As [`Campaign::place_of`] and [`read_record`].
-    pub fn read(&self, which: WhichRecord, section: &Cell, wanted: &[Wanted]) -> Result<(Record, ReadFile), Vec<Problem>> {
+    pub fn read(
+        &self,
+        which: WhichRecord,
+        section: &Cell,
+        wanted: &[Wanted],
+        part: Option<&Part>,
+    ) -> Result<(Record, ReadFile), Vec<Problem>> {
         let place = self.place_of(which, section).map_err(|problem| vec![problem])?;
-        let record = read_record(&place.path, &place.inside, wanted)?;
+        let record = match part.filter(|_| self.run_of(section).is_some()) {
+            Some(part) => read_stretch(&place.path, &place.inside, wanted, &part.axis, part.from..part.to)?,
+            None => read_record(&place.path, &place.inside, wanted)?,
+        };
         let file = ReadFile { path: place.inside, sha256: record.sha256.clone(), bytes: record.bytes as u64 };
         Ok((record, file))
     }

@@ -9,6 +9,7 @@ mod identity;
 mod notation;
 mod protocol;
 mod quantity;
+mod search;
 mod section;
 mod spread;
 mod summary;
@@ -27,6 +28,7 @@ pub use identity::{IdentityRow, ReportHead};
 pub use notation::{ChannelRow, NotationView, SymbolRow, Term};
 pub use protocol::{ProtocolView, SourceFile, view as protocol_view};
 pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair};
+pub use search::{ReductionView, SearchView};
 pub use section::{CheckTable, ColumnHead, DomainView, SectionRow, SectionTable, ZoneView};
 pub use spread::{SpreadClass, SpreadRow, SpreadTable};
 pub use summary::{FurtherRow, Limited, SummaryRow};
@@ -81,6 +83,9 @@ pub struct ReportData {
     /// Figure of the normalised statistics of all quantities; `None` if there are none.
     pub overview: Option<FigureView>,
     pub quantities: Vec<QuantityView>,
+    /// How sections were found in runs.
+    pub searches: Vec<SearchView>,
+    pub reduction: Option<ReductionView>,
     pub zones: Vec<ZoneView>,
     /// Sections by zone, in the order of the zones; sections without a zone last.
     pub section_tables: Vec<SectionTable>,
@@ -233,6 +238,8 @@ pub fn view(found: &Certification) -> ReportData {
         estimates: found.quantities.iter().flat_map(groups::rows).collect(),
         overview: overview(found),
         quantities,
+        searches: search::searches(found),
+        reduction: search::reduction(found),
         zones: section::zones(found),
         section_tables: section::tables(found),
         traces: traces(found),

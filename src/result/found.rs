@@ -1,0 +1,70 @@
+//! Sections that were found in runs, and what was rejected.
+
+use serde::Serialize;
+
+/// What the search for sections gave.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FoundSections {
+    /// Which of several campaigns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub campaign: Option<String>,
+    /// Distance between two places that were tried, in `axis_unit`.
+    pub step: f64,
+    pub axis_unit: String,
+    /// Which of several places that would overlap is taken, in words.
+    pub prefer: String,
+    pub runs: Vec<FoundInRun>,
+}
+
+/// The search in one run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FoundInRun {
+    pub run: String,
+    /// The part of the run that all its records cover.
+    pub start: f64,
+    pub end: f64,
+    pub found: usize,
+    /// Places that were tried; those inside a found section were not.
+    pub tried: usize,
+    /// For each reason, how many places it rejected first.
+    pub rejected: Vec<Rejected>,
+    /// Stretches of places next to each other that were rejected for the same reason.
+    pub stretches: Vec<Stretch>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Rejected {
+    pub reason: String,
+    pub places: usize,
+}
+
+/// Places next to each other where no section begins, for the same reason.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Stretch {
+    pub from: f64,
+    pub to: f64,
+    pub reason: String,
+    pub places: usize,
+}
+
+impl FoundSections {
+    pub fn found(&self) -> usize {
+        self.runs.iter().map(|run| run.found).sum()
+    }
+
+    pub fn tried(&self) -> usize {
+        self.runs.iter().map(|run| run.tried).sum()
+    }
+
+    /// Of all runs: each reason, with the number of places that it rejected first.
+    pub fn rejected(&self) -> Vec<Rejected> {
+        let mut all: Vec<Rejected> = Vec::new();
+        for one in self.runs.iter().flat_map(|run| &run.rejected) {
+            match all.iter_mut().find(|known| known.reason == one.reason) {
+                Some(known) => known.places += one.places,
+                None => all.push(one.clone()),
+            }
+        }
+        all
+    }
+}

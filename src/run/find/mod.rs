@@ -1,0 +1,268 @@
+//! Looks for sections in the runs of a campaign, as the protocol says: place by place along each run, in a window that moves with the
+//! search. What is in memory does not grow with the length of a run.
+
+mod chosen;
+mod place;
+mod signals;
+mod table;
+mod window;
+
+use super::Progress;
+use super::facts::Facts;
+use crate::check::plan::{Plan, Side};
+use crate::data::campaign::Run;
+use crate::data::record::Wanted;
+use crate::data::{Campaign, Campaigns, RecordKind};
+use crate::graph::{Graph, Operation};
+use crate::problem::{Problem, Problems};
+use crate::result::found::{FoundInRun, FoundSections, Rejected, Stretch};
+use chosen::Chosen;
+use place::{Rules, Tried};
+use signals::{Signals, Source};
+use window::Window;
+
+pub use place::Place;
+
+/// How much of a run is looked at in one piece, in lengths of the longest section with all it needs on both sides: its filters run once
+/// for all places of the piece. Longer pieces take more memory, shorter ones filter their margins more often.
+const PIECE: f64 = 16.0;
+
+/// A campaign with the sections that were found in its runs.
+#[derive(Debug)]
+pub struct Found {
+    pub campaign: Campaign,
+    pub told: FoundSections,
+}
+
+/// Whether the sections of a campaign are those that are found: the protocol looks for sections, and the campaign has runs and no table.
+pub fn applies(plan: &Plan, campaign: &Campaign) -> bool {
+    plan.sections.find.is_some() && campaign.sections.is_none() && !campaign.runs().is_empty()
+}
+
+/// Finds the sections of a campaign.
+///
+/// # Errors
+/// `no-search`: the protocol does not look for sections; `no-runs`; `nothing-found`; a record of a run cannot be read, or lacks a channel;
+/// vehicle data are missing.
+pub fn find(plan: &Plan, graph: &Graph, campaign: &Campaign, progress: Progress<'_>) -> Result<Found, Problems> {
+    let one = |problem: Problem| Problems(vec![problem]);
+    let Some(rules) = &plan.sections.find else {
+        let problem = Problem::error("no-search", format!("the protocol `{}` does not look for sections", plan.name));
+        return Err(one(problem.help("in its block `sections`, write `use found sections`, and what is looked for in blocks `find`")));
+    };
+    if campaign.runs().is_empty() {
+        let says = "the campaign has no runs to look for sections in";
+        let problem = Problem::error("no-runs", says).at(&campaign.tree.span.part(0..0));
+        return Err(one(problem.help("name them in campaign.yaml: `runs: {R1: {measurement: ..., simulation: ..., track: ...}}`")));
+    }
+    let mut problems = Problems::default();
+    let facts = Facts::read(plan, Campaigns::from(campaign), &mut problems);
+    table::check_facts(plan, rules, campaign, &mut problems);
+    if problems.any_error() {
+        return Err(problems);
+    }
+    let mut told = FoundSections {
+        campaign: None,
+        step: plan.axis.unit.from_si(rules.step),
+        axis_unit: plan.axis.unit.text.clone(),
+        prefer: rules.prefer.as_ref().map_or_else(|| "first".to_string(), |prefer| format!("highest {}", prefer.words)),
+        runs: Vec::new(),
+    };
+    let mut places = Vec::new();
+    for run in campaign.runs() {
+        let rules = Rules::new(plan, graph, rules, &facts, campaign, run);
+        let (found, in_run) = in_run(plan, graph, campaign, run, &rules)?;
+        progress(&run.name.value);
+        places.extend(found.into_iter().map(|place| (run, place)));
+        told.runs.push(in_run);
+    }
+    if places.is_empty() {
+        let rejected = told.rejected();
+        let most = rejected.iter().max_by_key(|rejected| rejected.places);
+        let why = most.map_or_else(String::new, |most| {
+            format!("; of {} places, {} were rejected first by: {}", told.tried(), most.places, most.reason)
+        });
+        let says = format!("no section was found in the runs of the campaign{why}");
+        return Err(one(Problem::error("nothing-found", says).at(&campaign.runs_span())));
+    }
+    let table = table::table(plan, &places).map_err(one)?;
+    Ok(Found { campaign: campaign.with_sections(table), told })
+}
+
+/// Replaces each campaign whose sections are found by one that has them.
+///
+/// # Errors
+/// As [`find`].
+pub fn in_all(plan: &Plan, graph: &Graph, campaigns: &mut [Campaign]) -> Result<Vec<FoundSections>, Problems> {
+    let mut told = Vec::new();
+    let several = campaigns.len() > 1;
+    for campaign in campaigns.iter_mut().filter(|campaign| applies(plan, campaign)) {
+        let found = find(plan, graph, campaign, &|_| {})?;
+        told.push(FoundSections { campaign: several.then(|| campaign.short_name.value.clone()), ..found.told });
+        *campaign = found.campaign;
+    }
+    Ok(told)
+}
+
+/// The records of a run that are looked at, each in a window.
+struct Windows {
+    all: Vec<(Source, Window)>,
+}
+
+impl Windows {
+    fn open(plan: &Plan, graph: &Graph, campaign: &Campaign, run: &Run) -> Result<Self, Problems> {
+        let mut all = Vec::new();
+        let columns = |source: Source| signals::columns(graph, source, own_side(plan));
+        for source in [Source::Side(Side::Measured), Source::Side(Side::Simulated), Source::Track] {
+            let columns = columns(source);
+            let (kind, needed) = match source {
+                // Every side that the protocol evaluates must cover a section.
+                Source::Side(side) => (side.kind(), plan.reads(side) || !columns.is_empty()),
+                Source::Track => (RecordKind::Track, !columns.is_empty()),
+            };
+            if !needed {
+                continue;
+            }
+            let mut wanted = vec![Wanted::new(plan.axis.column.as_str(), plan.axis.unit.dimension)];
+            let time = plan.time.as_ref().filter(|time| source != Source::Track && !columns.is_empty() && time.column != plan.axis.column);
+            wanted.extend(time.map(|time| Wanted::new(time.column.as_str(), time.unit.dimension)));
+            for id in columns {
+                let node = &graph.nodes[id];
+                if let Operation::Read { column } = &node.operation
+                    && !wanted.iter().any(|known| known.name == *column)
+                {
+                    wanted.push(Wanted::new(column.as_str(), node.dimension));
+                }
+            }
+            let place = campaign.run_place(run, kind).map_err(|problem| Problems(vec![problem]))?;
+            all.push((source, Window::open(&place, wanted)));
+        }
+        Ok(Self { all })
+    }
+
+    fn fill(&mut self, to: f64) -> Result<(), Problems> {
+        self.all.iter_mut().try_for_each(|(_, window)| window.fill(to)).map_err(Problems)
+    }
+
+    fn forget(&mut self, before: f64) {
+        self.all.iter_mut().for_each(|(_, window)| window.forget(before));
+    }
+
+    /// Where all records have begun.
+    fn start(&self) -> f64 {
+        self.all.iter().filter_map(|(_, window)| window.first()).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Where the first of them ends; not known as long as all go on.
+    fn end(&self) -> f64 {
+        self.all.iter().filter_map(|(_, window)| window.end()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Up to where all of them are read.
+    fn read_to(&self) -> f64 {
+        self.all.iter().map(|(_, window)| window.end().map_or_else(|| window.last(), |_| f64::INFINITY)).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The side that values are taken from: the measurement, where the protocol evaluates it.
+fn own_side(plan: &Plan) -> Side {
+    if plan.reads(Side::Measured) { Side::Measured } else { Side::Simulated }
+}
+
+fn in_run(plan: &Plan, graph: &Graph, campaign: &Campaign, run: &Run, rules: &Rules<'_>) -> Result<(Vec<Place>, FoundInRun), Problems> {
+    let mut windows = Windows::open(plan, graph, campaign, run)?;
+    let reach = rules.reach().map_err(|says| Problems(vec![Problem::error("find-length", says).at(&run.name.span)]))?;
+    let piece = PIECE * (reach.before + reach.after);
+    windows.fill(f64::NEG_INFINITY)?;
+    let start = windows.start();
+    let step = rules.find.step;
+    // Counted in steps from zero, so that rounding does not add up along a run.
+    let mut at = (start / step).ceil();
+    let mut rejections = Rejections::new(rules.reasons(), step);
+    let mut chosen = Chosen::new(rules.find.prefer.is_some());
+    'run: loop {
+        let from = at * step;
+        windows.fill(from + piece + reach.after)?;
+        windows.forget(from - reach.before);
+        let signals = Signals::of(plan, graph, &windows, own_side(plan), rules.vehicle)?;
+        let (last, read_to) = (windows.end(), windows.read_to());
+        loop {
+            let place = at * step;
+            if place > last {
+                break 'run;
+            }
+            if place + reach.after > read_to {
+                break;
+            }
+            match rules.tried(&signals, place, start, last) {
+                Tried::Fits(place) => {
+                    rejections.fits();
+                    let end = place.end;
+                    chosen.add(place);
+                    // A section that is taken as the first is not looked into again.
+                    at = if chosen.takes_first() { (end / step - WHOLE).ceil().max(at + 1.0) } else { at + 1.0 };
+                }
+                Tried::Rejected(reason) => {
+                    rejections.add(place, reason);
+                    at += 1.0;
+                }
+            }
+        }
+    }
+    let found = chosen.finish();
+    let unit = &plan.axis.unit;
+    let (tried, rejected, stretches) = rejections.told(|x| unit.from_si(x));
+    let told = FoundInRun {
+        run: run.name.value.clone(),
+        start: unit.from_si(start),
+        end: unit.from_si(windows.end()),
+        found: found.len(),
+        tried,
+        rejected,
+        stretches,
+    };
+    Ok((found, told))
+}
+
+/// An end this close to a multiple of the step, in steps, is one: it differs by rounding only.
+const WHOLE: f64 = 1e-9;
+
+/// Which places were rejected, by the first reason.
+struct Rejections {
+    reasons: Vec<String>,
+    step: f64,
+    tried: usize,
+    counts: Vec<usize>,
+    stretches: Vec<(f64, f64, usize, usize)>,
+}
+
+impl Rejections {
+    fn new(reasons: Vec<String>, step: f64) -> Self {
+        Self { counts: vec![0; reasons.len()], reasons, step, tried: 0, stretches: Vec::new() }
+    }
+
+    fn fits(&mut self) {
+        self.tried += 1;
+    }
+
+    fn add(&mut self, place: f64, reason: usize) {
+        self.tried += 1;
+        self.counts[reason] += 1;
+        match self.stretches.last_mut() {
+            Some((_, to, of, places)) if *of == reason && place - *to < 1.5 * self.step => (*to, *places) = (place, *places + 1),
+            _ => self.stretches.push((place, place, reason, 1)),
+        }
+    }
+
+    fn told(self, shown: impl Fn(f64) -> f64) -> (usize, Vec<Rejected>, Vec<Stretch>) {
+        let rejected = self.reasons.iter().zip(&self.counts).filter(|(_, places)| **places > 0);
+        let rejected = rejected.map(|(reason, places)| Rejected { reason: reason.clone(), places: *places }).collect();
+        let of = |(from, to, reason, places): &(f64, f64, usize, usize)| Stretch {
+            from: shown(*from),
+            to: shown(*to),
+            reason: self.reasons[*reason].clone(),
+            places: *places,
+        };
+        (self.tried, rejected, self.stretches.iter().map(of).collect())
+    }
+}
