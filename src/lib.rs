@@ -21,6 +21,7 @@ pub mod data;
 pub mod diagnose;
 pub mod disk;
 pub mod effects;
+pub mod foreign;
 pub mod graph;
 pub mod library;
 pub mod metrics;
