@@ -23,6 +23,7 @@ pub mod disk;
 pub mod effects;
 pub mod foreign;
 pub mod graph;
+pub mod import;
 pub mod library;
 pub mod metrics;
 pub mod model;

@@ -41,6 +41,7 @@ pub mod rank;
 pub mod regression;
 pub mod resample;
 pub mod sampling;
+pub mod sinc;
 pub mod statistics;
 pub mod student;
 mod sum;
