@@ -22,8 +22,7 @@ pub enum Format {
 }
 
 impl Format {
-    pub const ALL: [Self; 8] =
-        [Self::Csv, Self::Ascii, Self::Mdf4, Self::Mat, Self::Xlsx, Self::Parquet, Self::Arrow, Self::Tdms];
+    pub const ALL: [Self; 8] = [Self::Csv, Self::Ascii, Self::Mdf4, Self::Mat, Self::Xlsx, Self::Parquet, Self::Arrow, Self::Tdms];
 
     /// The word in a mapping.
     pub fn word(self) -> &'static str {
@@ -262,6 +261,7 @@ pub(super) fn binary(bytes: &[u8]) -> bool {
 }
 
 /// A format whose reader this program was built without.
+#[cfg(not(feature = "foreign"))]
 pub(super) fn not_built(format: Format, shown: &str) -> Problem {
     Problem::error("format-not-read", format!("`{shown}` is {}; this program was built without its reader", format.title()))
         .help("build it with the feature `foreign`, or export the data as CSV or Parquet")

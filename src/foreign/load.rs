@@ -18,9 +18,8 @@ pub(super) const MOST_CHANNELS: usize = 100_000;
 
 /// All bytes of a plain file.
 pub(super) fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, Vec<Problem>> {
-    let unreadable = |why: &dyn std::fmt::Display| {
-        vec![Problem::error("file-unreadable", format!("`{shown}` {} {why}", crate::data::text::UNREADABLE))]
-    };
+    let unreadable =
+        |why: &dyn std::fmt::Display| vec![Problem::error("file-unreadable", format!("`{shown}` {} {why}", crate::data::text::UNREADABLE))];
     let too_large = |size: u64| {
         let says = format!("`{shown}` has {} MB; the maximum is {} MB", size >> 20, LARGEST >> 20);
         vec![Problem::error("file-too-large", says).help("export it in parts, or leave out channels that are not needed")]
@@ -45,28 +44,64 @@ pub(super) fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, Vec<Problem>> {
     }
 }
 
-/// Counts the values of a file.
-#[derive(Debug, Default)]
-pub(super) struct Budget {
+/// Bytes that any file may hold when it is unpacked, and the multiple of its size that it may hold beyond. Records compress by
+/// less than 20; deflate packs zeros by 1000. A file beyond that is a mistake or an attack, and its memory stays bounded.
+const ALWAYS_UNPACKED: usize = 64 << 20;
+const MOST_EXPANSION: usize = 100;
+
+/// Bytes that a file of this size may hold when it is unpacked.
+pub(super) fn most_unpacked(size: usize) -> usize {
+    size.saturating_mul(MOST_EXPANSION).saturating_add(ALWAYS_UNPACKED).min(8 * MOST_VALUES)
+}
+
+/// A file that unpacks to more than [`most_unpacked`].
+pub(super) fn unpacks_to_more(shown: &str, place: &str, size: usize) -> Problem {
+    let says = format!("{place} of `{shown}` unpacks to more than {} MB, the maximum for a file of its size", most_unpacked(size) >> 20);
+    Problem::error("too-many-values", says).help("export it again with fewer channels, or without compression")
+}
+
+/// Counts the values of a file, which can be many more than its bytes suggest.
+#[derive(Debug)]
+pub(super) struct Budget<'a> {
+    shown: &'a str,
+    most: usize,
     values: usize,
     channels: usize,
 }
 
-impl Budget {
-    /// Adds channels of so many values each.
-    pub fn take(&mut self, channels: usize, rows: usize, shown: &str) -> Result<(), Problem> {
-        let values = channels.checked_mul(rows).and_then(|more| self.values.checked_add(more));
+impl<'a> Budget<'a> {
+    /// For a file of this size in bytes.
+    pub fn new(size: usize, shown: &'a str) -> Self {
+        Self { shown, most: most_unpacked(size) / 8, values: 0, channels: 0 }
+    }
+
+    /// Adds channels of so many values each; the place is for the message.
+    ///
+    /// # Errors
+    /// `too-many-values`.
+    pub fn take(&mut self, channels: usize, rows: usize, place: &str) -> Result<(), Problem> {
         self.channels = self.channels.saturating_add(channels);
-        self.values = values.unwrap_or(usize::MAX);
         if self.channels > MOST_CHANNELS {
-            let says = format!("`{shown}` has more than {MOST_CHANNELS} channels");
-            return Err(Problem::error("too-many-values", says).help("export only the channels that are needed"));
+            return Err(self.exceeded(place, &format!("{MOST_CHANNELS} channels")));
         }
-        if self.values > MOST_VALUES {
-            let says = format!("`{shown}` has more than {} million values", MOST_VALUES >> 20);
-            return Err(Problem::error("too-many-values", says).help("export it in parts, or leave out channels that are not needed"));
+        self.add(channels.saturating_mul(rows), place)
+    }
+
+    /// Adds values of channels that are counted already.
+    ///
+    /// # Errors
+    /// `too-many-values`.
+    pub fn add(&mut self, values: usize, place: &str) -> Result<(), Problem> {
+        self.values = self.values.saturating_add(values);
+        if self.values > self.most {
+            return Err(self.exceeded(place, &format!("{} million values, the maximum for a file of its size", self.most >> 20)));
         }
         Ok(())
+    }
+
+    fn exceeded(&self, place: &str, most: &str) -> Problem {
+        Problem::error("too-many-values", format!("{place} of `{}` declares more than {most}", self.shown))
+            .help("check whether the file is damaged; else export it in parts, with fewer channels")
     }
 }
 
@@ -76,10 +111,12 @@ mod tests {
 
     #[test]
     fn declared_sizes_are_counted_without_overflow() {
-        let mut budget = Budget::default();
-        assert!(budget.take(24, 1794, "f").is_ok());
-        assert_eq!(budget.take(2, usize::MAX, "f").map_err(|problem| problem.code), Err("too-many-values"));
-        assert!(budget.take(1, 1, "f").is_err());
-        assert!(Budget::default().take(MOST_CHANNELS + 1, 0, "f").is_err());
+        let mut budget = Budget::new(1000, "f");
+        assert!(budget.take(24, 1794, "table").is_ok());
+        assert_eq!(budget.take(2, usize::MAX, "table").map_err(|problem| problem.code), Err("too-many-values"));
+        assert!(budget.take(1, 1, "table").is_err());
+        assert!(Budget::new(1000, "f").take(MOST_CHANNELS + 1, 0, "table").is_err());
+        // A text of empty cells: eight bytes of numbers for each byte of the file.
+        assert!(Budget::new(1 << 30, "f").take(1, 1 << 28, "table").is_ok());
     }
 }

@@ -8,11 +8,24 @@
 //! | `mod` | the types, and the choice of the reader |
 //! | `format` | the formats; recognition by content; formats that are not read |
 //! | `load` | the bytes of a file; limits of memory |
+//! | `guard` | calls of readers of other projects |
 //! | `text/` | CSV of any dialect, columns of an ASCII export |
+//! | `mat/` | MATLAB files |
+//! | `mdf4`, `tdms`, `xlsx`, `columnar` | MDF 4, TDMS, Excel, Parquet and Arrow |
 
+mod columnar;
 mod format;
+mod guard;
 mod load;
+#[cfg(feature = "foreign")]
+mod mat;
+#[cfg(feature = "foreign")]
+mod mdf4;
+#[cfg(feature = "foreign")]
+mod tdms;
 mod text;
+#[cfg(feature = "foreign")]
+mod xlsx;
 
 use std::path::Path;
 
@@ -60,7 +73,8 @@ pub struct Channel {
     /// As written in the file.
     pub unit: Option<String>,
     pub comment: Option<String>,
-    /// In the unit of the file; NaN where the cell is empty or the sample is marked invalid. No value is infinite.
+    /// In the unit of the file; NaN where the cell is empty or the sample is marked invalid. A binary file can hold infinite
+    /// values.
     pub values: Vec<f64>,
     pub place: Place,
 }
@@ -126,6 +140,17 @@ fn read_as(path: &Path, shown: &str, options: &Options, want: Want) -> Result<Fi
     let input = Input { bytes: &bytes, shown, options, want };
     let mut read = match format {
         Format::Csv | Format::Ascii => text::read(&input, format)?,
+        Format::Parquet => guard::call(format, shown, || columnar::parquet(&input))?,
+        Format::Arrow => guard::call(format, shown, || columnar::arrow(&input))?,
+        #[cfg(feature = "foreign")]
+        Format::Mat => guard::call(format, shown, || mat::read(&input))?,
+        #[cfg(feature = "foreign")]
+        Format::Mdf4 => guard::call(format, shown, || mdf4::read(&input))?,
+        #[cfg(feature = "foreign")]
+        Format::Tdms => tdms::read(&input)?,
+        #[cfg(feature = "foreign")]
+        Format::Xlsx => guard::call(format, shown, || xlsx::read(&input))?,
+        #[cfg(not(feature = "foreign"))]
         _ => return Err(vec![format::not_built(format, shown)]),
     };
     for table in &mut read.tables {
@@ -173,9 +198,7 @@ mod tests {
 
     #[test]
     fn the_rate_is_that_of_even_times() {
-        let channel = |unit: &str, values: &[f64]| {
-            vec![Channel { unit: Some(unit.into()), values: values.to_vec(), ..Channel::default() }]
-        };
+        let channel = |unit: &str, values: &[f64]| vec![Channel { unit: Some(unit.into()), values: values.to_vec(), ..Channel::default() }];
         let rate = even_rate(&channel("s", &[1.0, 1.005, 1.01, 1.015])).expect("even");
         assert!((rate - 200.0).abs() < 1e-9);
         // Rounded to milliseconds at 400 Hz.

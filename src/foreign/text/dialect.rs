@@ -124,7 +124,8 @@ const SAMPLE_BYTES: usize = 1 << 20;
 
 /// Detects what was not said, from lines in the middle of the file, where there is no header.
 pub(super) fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
-    let from = options.header_lines.map_or_else(|| (lines.len() / 2).min(lines.len().saturating_sub(SAMPLE)), |count| count.min(lines.len()));
+    let from =
+        options.header_lines.map_or_else(|| (lines.len() / 2).min(lines.len().saturating_sub(SAMPLE)), |count| count.min(lines.len()));
     let mut bytes = 0;
     let sample: Vec<&str> = lines[from..]
         .iter()
@@ -219,9 +220,8 @@ mod tests {
 
     #[test]
     fn cells_have_their_places() {
-        let cells = |line: &str, separator| -> Vec<String> {
-            split(line, separator).into_iter().map(|cell| line[cell].to_string()).collect()
-        };
+        let cells =
+            |line: &str, separator| -> Vec<String> { split(line, separator).into_iter().map(|cell| line[cell].to_string()).collect() };
         let semicolon = Separator::Mark(';');
         assert_eq!(cells("a; \"b;c\" ;;d ", semicolon), ["a", "b;c", "", "d"]);
         assert_eq!(cells("\"a", semicolon), ["\"a"]);

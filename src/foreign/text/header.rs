@@ -28,8 +28,7 @@ pub(super) struct Header {
 pub(super) fn read(text: &Text<'_>, before: &[Line<'_>], dialect: Dialect) -> Result<Header, Problem> {
     let mut header = Header::default();
     let options = text.options;
-    let comments: Vec<(Line<'_>, &str)> =
-        before.iter().filter_map(|line| Some((*line, dialect::comment(line.text, options)?))).collect();
+    let comments: Vec<(Line<'_>, &str)> = before.iter().filter_map(|line| Some((*line, dialect::comment(line.text, options)?))).collect();
     header.facts.extend(comments.iter().filter_map(|(_, said)| fact(said)).take(MOST_FACTS));
     let rows: Vec<Line<'_>> = before
         .iter()
@@ -45,7 +44,12 @@ pub(super) fn read(text: &Text<'_>, before: &[Line<'_>], dialect: Dialect) -> Re
     let units = line_of_units(text, &rows, dialect)?;
     let names = match options.names_line {
         Some(number) => Some(said(text, before, number, "names", dialect)?),
-        None => rows.iter().rev().find(|row| units.is_none_or(|units| row.number < units.number)).copied(),
+        None => {
+            let mut above = rows.iter().rev().filter(|row| units.is_none_or(|units| row.number < units.number));
+            // A row of numbers has no names, unless there is no other.
+            let last = above.clone().next();
+            above.find(|row| has_words(row.text, dialect)).or(last).copied()
+        }
     };
     if let Some(names) = names {
         header.columns = headings(text, names, dialect);
@@ -123,14 +127,25 @@ fn line_of_units<'a>(text: &Text<'_>, rows: &[Line<'a>], dialect: Dialect) -> Re
     Ok(rows.iter().skip(1).rev().find(|row| are_units(row.text, dialect)).copied())
 }
 
+fn has_words(line: &str, dialect: Dialect) -> bool {
+    cells(line, dialect).into_iter().any(|cell| line[cell].contains(char::is_alphabetic))
+}
+
 fn are_units(line: &str, dialect: Dialect) -> bool {
-    let filled: Vec<&str> = cells(line, dialect).into_iter().map(|cell| &line[cell]).filter(|cell| !cell.is_empty()).collect();
+    most_are_units(cells(line, dialect).into_iter().map(|cell| &line[cell]))
+}
+
+/// Whether at least half of the cells that are filled are units.
+pub(in crate::foreign) fn most_are_units<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
+    let filled: Vec<&str> = cells.filter(|cell| !cell.trim().is_empty()).collect();
     let known = filled.iter().filter(|cell| unbracketed(cell).is_some_and(|unit| Unit::parse(&unit).is_ok())).count();
-    !filled.is_empty() && 2 * known >= filled.len()
+    // `1` is a unit, but a line of numbers only is a row.
+    let worded = filled.iter().any(|cell| cell.parse::<f64>().is_err());
+    worded && 2 * known >= filled.len()
 }
 
 /// `kN`, `[kN]`, `(kN)`, as the unit inside; none if it is empty.
-fn unbracketed(text: &str) -> Option<String> {
+pub(in crate::foreign) fn unbracketed(text: &str) -> Option<String> {
     let text = text.trim();
     let inside = text.strip_prefix('[').and_then(|text| text.strip_suffix(']'));
     let inside = inside.or_else(|| text.strip_prefix('(').and_then(|text| text.strip_suffix(')'))).unwrap_or(text).trim();

@@ -18,9 +18,14 @@ mod values;
 use std::ops::Range;
 
 pub(in crate::foreign) use decode::wide;
-use dialect::{Dialect, Line};
 pub use dialect::Separator;
+use dialect::{Dialect, Line};
+pub(in crate::foreign) use header::name_and_unit;
+#[cfg(feature = "foreign")]
+pub(in crate::foreign) use header::{most_are_units, unbracketed};
 pub use stamps::DateOrder;
+#[cfg(feature = "foreign")]
+pub(in crate::foreign) use values::stamps_from_first;
 
 use super::load::Budget;
 use super::{Format, Input, Options, Read, Table};
@@ -52,11 +57,12 @@ pub(super) fn read(input: &Input<'_>, format: Format) -> Result<Read, Vec<Proble
         return Err(vec![Problem::error("line-too-long", says).at(&at(shown, *line, 0..0)).help("export one line per sample")]);
     }
     let text = Text { shown, options };
-    let dialect = dialect::detect(&lines, options).ok_or_else(|| vec![no_numbers(&text, &lines)])?;
+    let mut dialect = dialect::detect(&lines, options).ok_or_else(|| vec![no_numbers(&text, &lines)])?;
     let start = first_row(&text, &lines, dialect).ok_or_else(|| vec![no_numbers(&text, &lines)])?;
     let (before, rows) = lines.split_at(start);
+    dialect.columns += usize::from(last_is_empty(&text, before, rows, dialect));
     let header = header::read(&text, before, dialect)?;
-    Budget::default().take(dialect.columns, rows.len(), shown)?;
+    Budget::new(input.bytes.len(), shown).take(dialect.columns, rows.len(), "the table")?;
     let mut table = Table { facts: header.facts, first_row: rows.first().map_or(1, |line| line.number), ..Table::default() };
     values::read(&text, rows, dialect, header.columns, &mut table)?;
     let facts = vec![
@@ -84,6 +90,16 @@ fn first_row(text: &Text<'_>, lines: &[Line<'_>], dialect: Dialect) -> Option<us
             && count.contains(&dialect.columns)
             && dialect::numbers_among(line.text, &cells, dialect.decimal).is_some()
     })
+}
+
+/// Whether the last column has a name and no values: a separator at the end of the rows is then not one too many.
+fn last_is_empty(text: &Text<'_>, before: &[Line<'_>], rows: &[Line<'_>], dialect: Dialect) -> bool {
+    let wider = |line: &Line<'_>| {
+        let cells = dialect::split(line.text, dialect.separator);
+        (cells.len() == dialect.columns + 1).then(|| cells.last().is_some_and(Range::is_empty))
+    };
+    let named = before.iter().filter(|line| is_row(text, **line)).any(|line| wider(line) == Some(false));
+    named && rows.first().and_then(wider) == Some(true)
 }
 
 /// Whether a line can be a row: neither blank nor a comment.

@@ -24,14 +24,14 @@ pub(super) fn read(text: &str, decimal: char) -> Cell {
         return Cell::Other;
     }
     let comma = decimal == ',';
-    if !comma && !text.ends_with(|c: char| c.is_ascii_alphabetic()) {
-        if let Ok(number) = fast_float2::parse::<f64, _>(text) {
-            return finite(number);
+    if text.ends_with(|c: char| c.is_ascii_alphabetic() || c == ')') {
+        match text.to_ascii_lowercase().trim_start_matches(['-', '+']) {
+            "nan" | "nan(ind)" | "1.#ind" | "1.#qnan" | "n/a" | "#n/a" => return Cell::Number(f64::NAN),
+            "inf" | "infinity" | "1.#inf" => return Cell::NotFinite,
+            _ => {}
         }
-    } else if matches!(text.to_ascii_lowercase().trim_start_matches(['-', '+']), "nan" | "nan(ind)" | "n/a" | "#n/a") {
-        return Cell::Number(f64::NAN);
-    } else if matches!(text.to_ascii_lowercase().trim_start_matches(['-', '+']), "inf" | "infinity") {
-        return Cell::NotFinite;
+    } else if !comma && let Ok(number) = fast_float2::parse::<f64, _>(text) {
+        return finite(number);
     }
     let mut plain = [0u8; LONGEST];
     let plain = &mut plain[..text.len()];
@@ -108,7 +108,9 @@ mod tests {
 
     #[test]
     fn what_is_not_a_number() {
-        for (text, decimal) in [("1,5", '.'), ("1.5", ','), ("1,", ','), ("abc", '.'), ("12:30", '.'), ("1 2", '.'), ("0x1F", '.'), ("d", '.')] {
+        for (text, decimal) in
+            [("1,5", '.'), ("1.5", ','), ("1,", ','), ("abc", '.'), ("12:30", '.'), ("1 2", '.'), ("0x1F", '.'), ("d", '.')]
+        {
             assert_eq!(read(text, decimal), Cell::Other, "{text}");
         }
         assert_eq!(read(&"1".repeat(100), '.'), Cell::Other);
@@ -116,7 +118,9 @@ mod tests {
 
     #[test]
     fn thousands_are_not_guessed() {
-        for (text, decimal) in [("1.234,5", ','), ("1,234.5", '.'), ("1 234,56", ','), ("-1'234.5", '.'), ("1.234.567", ','), ("1,234,567", '.')] {
+        for (text, decimal) in
+            [("1.234,5", ','), ("1,234.5", '.'), ("1 234,56", ','), ("-1'234.5", '.'), ("1.234.567", ','), ("1,234,567", '.')]
+        {
             assert_eq!(read(text, decimal), Cell::Thousands, "{text}");
         }
         for (text, decimal) in [("1.23,5", ','), ("12345.6,7", '.')] {

@@ -217,7 +217,8 @@ mod tests {
             ("12:01:02.005", 43_262.005),
             ("1:00", 3600.0),
         ] {
-            assert_eq!(seconds(text), Some(value), "{text}");
+            // Nanoseconds since 1970 have more digits than a double; the reader subtracts before it converts.
+            assert!(seconds(text).is_some_and(|found| (found - value).abs() < 1e-6), "{text}");
         }
         for text in ["1.5", "13.05.24", "2024-02-30", "25:00", "12:60", "12:1:2:3", "a12:00", "1-2", "2024-05-13T", "12:00:00.x"] {
             assert_eq!(seconds(text), None, "{text}");

@@ -224,6 +224,7 @@ fn seconds(text: &Text<'_>, stamps: &[Option<Stamp>]) -> Option<Vec<f64>> {
 }
 
 /// Texts as seconds from the first of them, if all that are filled are time stamps.
+#[cfg(feature = "foreign")]
 pub(in crate::foreign) fn stamps_from_first(cells: &[&str], options: &super::Options, shown: &str) -> Option<Vec<f64>> {
     let read = |cell: &&str| if cell.trim().is_empty() { Some(None) } else { stamps::read(cell.trim()).map(Some) };
     let found: Option<Vec<Option<Stamp>>> = cells.iter().map(read).collect();
