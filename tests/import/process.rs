@@ -213,11 +213,11 @@ fn offsets_of_the_table_are_applied_when_records_are_read() {
 
 #[test]
 fn the_same_files_give_the_same_bytes() {
-    let case = Case::new(&[("t", "s", &|t| t), ("s", "m", &|t| 100.0 + 20.0 * t)], 200.0);
+    let columns: [(&str, &str, &dyn Fn(f64) -> f64); 3] = [("t", "s", &|t| t), ("s", "m", &|t| 100.0 + 20.0 * t), ("a", "kN", &|t| t * t)];
+    let case = Case::new(&columns, 200.0);
     let body = "measurement:\n  files: '{section}.txt'\n  time: t\n  distance: s\n  channels: as named\n";
     case.import(body);
     let read = || ["campaign.yaml", "origin.yaml"].map(|name| fs::read(case.out().join(name)).unwrap_or_default());
-    // Without channels but the axes there is nothing to import; the third column is one.
     let before = read();
     case.import(body);
     assert_eq!(read(), before);

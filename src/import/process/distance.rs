@@ -2,7 +2,7 @@
 
 use super::clock::Clock;
 use super::find::{Found, Of, find};
-use crate::data::record::{Wanted, read_record};
+use crate::data::record::{Column, Wanted, read_record};
 use crate::foreign::Table;
 use crate::import::mapping::{ChannelMap, Distance, Match, Stated};
 use crate::metrics::synchronise::{self, Estimate, Pair, Search};
@@ -160,12 +160,15 @@ pub fn matched(
     columns.extend(wanted.channels.iter().zip(units).map(|(map, unit)| Wanted::new(map.name.value.as_str(), unit.dimension)));
     let track = read_record(&path, &shown, &columns)?;
     let at = &track.columns[0].values;
-    let pairs: Vec<Pair<'_>> = track.columns[1..]
-        .iter()
-        .zip(channels)
-        .enumerate()
-        .map(|(group, (column, channel))| Pair { simulated: (at, &column.values), measured: (distance, channel), group })
-        .collect();
+    let estimate = |channels: &[Vec<f64>], search: &Search| {
+        let both = track.columns[1..].iter().zip(channels).enumerate();
+        let pair = |(group, (column, channel))| {
+            let (column, channel): (&Column, &Vec<f64>) = (column, channel);
+            Pair { simulated: (at, &column.values), measured: (distance, channel), group }
+        };
+        let pairs: Vec<Pair<'_>> = both.map(pair).collect();
+        synchronise::estimate(&pairs, search)
+    };
     let ends = |axis: &[f64]| (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
     let ((track_start, track_end), (start, end)) = (ends(at), ends(distance));
     // The record must cover the range compared at every move.
@@ -177,7 +180,21 @@ pub fn matched(
     };
     let names = wanted.channels.iter().map(|map| map.name.value.as_str()).collect::<Vec<_>>().join(", ");
     let none = |says: String| Err(vec![Problem::error("no-match", format!("section `{}`: {says}", of.section)).at(&wanted.span)]);
-    let Some(Estimate { shift, low, high, correlation }) = synchronise::estimate(&pairs, &search) else {
+    let opposite = |map: &ChannelMap| {
+        let says = format!("section `{}`: `{}` of the record has the sign opposite to the track file", of.section, map.name.value);
+        let (name, term) = (&map.name.value, &map.terms[0].name);
+        vec![Problem::error("no-match", says).at(&term.span).help(format!("reverse it: `{name}: -{}`", term.value))]
+    };
+    let found = estimate(channels, &search);
+    if found.is_none_or(|found| found.correlation < LEAST_CORRELATION) {
+        let reversed: Vec<Vec<f64>> = channels.iter().map(|channel| channel.iter().map(|value| -value).collect()).collect();
+        if let Some(map) = wanted.channels.first()
+            && estimate(&reversed, &search).is_some_and(|found| found.correlation >= LEAST_CORRELATION)
+        {
+            return Err(opposite(map));
+        }
+    }
+    let Some(Estimate { shift, low, high, correlation }) = found else {
         return none(format!(
             "{names} of the record and of `{shown}` do not agree at any move up to {} m, or best at the largest",
             wanted.within
@@ -188,20 +205,14 @@ pub fn matched(
             "the correlation of {names} with `{shown}` is {correlation:.2} at best; at least {LEAST_CORRELATION} is needed"
         ));
     }
-    // The search does not see the sign.
+    // Of several channels, one may be reversed.
     let moved: Vec<f64> = distance.iter().map(|at| at + shift).collect();
     for (map, (column, channel)) in wanted.channels.iter().zip(track.columns[1..].iter().zip(channels)) {
         let inside: Vec<f64> = at.iter().copied().filter(|at| (moved[0]..=moved[moved.len() - 1]).contains(at)).collect();
         let of_track = resample::interpolate(at, &column.values, &inside).unwrap_or_default();
         let of_record = resample::interpolate(&moved, channel, &inside).unwrap_or_default();
         if statistics::correlation(&of_track, &of_record).is_some_and(|correlation| correlation < 0.0) {
-            let problem = Problem::error(
-                "no-match",
-                format!("section `{}`: `{}` of the record has the sign opposite to the track file", of.section, map.name.value),
-            );
-            return Err(vec![
-                problem.at(&map.terms[0].name.span).help(format!("reverse it: `{}: -{}`", map.name.value, map.terms[0].name.value)),
-            ]);
+            return Err(opposite(map));
         }
     }
     let says = format!(
