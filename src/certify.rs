@@ -10,13 +10,13 @@ use crate::check::{self, Overrides, diff, family::Family};
 use crate::data::campaign::Fact;
 use crate::data::hash::{hexadecimal, sha256};
 use crate::data::identification::Stated;
-use crate::data::origin::Origin;
+use crate::data::origin::{ImportedRecord, Origin};
 use crate::data::{Campaign, Campaigns, qualified};
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
 use crate::result::{
-    CampaignInfo, CampaignMember, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, FittedTo, OriginInfo, ParameterInfo,
-    ProtocolFile, ProtocolInfo, ReportItem,
+    CampaignInfo, CampaignMember, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, FittedTo, ImportedOne, ImportedSide,
+    OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, ReportItem,
 };
 use crate::run::{self, Progress, Settings};
 use crate::syntax::document::Block;
@@ -162,13 +162,40 @@ fn origin_info(origin: &Origin, files: &[FileHash]) -> OriginInfo {
         (all, these) if these == all => format!(", fitted to the same {all} measured records"),
         (all, these) => format!(", fitted to {all} measured records, {these} of which are the same"),
     };
+    let imported = imported(origin);
+    let only_imported = !imported.is_empty() && origin.effects.is_empty() && origin.fitted_to.is_empty();
+    let says = if only_imported {
+        let files = origin.sources.len();
+        format!("The records were imported from {files} files of other systems by {}; see How the records were made", origin.program)
+    } else {
+        format!("The simulated records were written by {made_by}, {effects}{fitted} (origin of the campaign)")
+    };
     OriginInfo {
-        says: format!("The simulated records were written by {made_by}, {effects}{fitted} (origin of the campaign)"),
+        says,
+        imported,
         made_by,
         effects: origin.effects.iter().map(|effect| effect.in_words(" = ")).collect(),
         fitted_to: origin.fitted_to.iter().map(|file| FittedTo { path: file.path.clone(), sha256: file.sha256.clone() }).collect(),
         fitted_to_these: these,
     }
+}
+
+/// How imported records were made, by side.
+fn imported(origin: &Origin) -> Vec<ImportedSide> {
+    let Some(imported) = &origin.imported else { return Vec::new() };
+    let record = |record: &ImportedRecord| ImportedOne {
+        section: record.section.clone(),
+        file: record.file.clone(),
+        sha256: origin.sources.iter().find(|source| source.path == record.file).map_or_else(String::new, |source| source.sha256.clone()),
+        read_as: record.read_as.clone(),
+        steps: record.steps.clone(),
+    };
+    let side = |(side, channels): &(String, Vec<String>)| ImportedSide {
+        side: side.clone(),
+        channels: channels.clone(),
+        records: imported.records.iter().filter(|one| one.side == *side).map(record).collect(),
+    };
+    imported.channels.iter().map(side).collect()
 }
 
 /// The protocol as printed in a report.

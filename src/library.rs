@@ -54,6 +54,9 @@ pub const SHIPPED: &[Shipped] = shipped![
 /// The shipped catalogues of effects; the first is the default.
 pub const CATALOGUES: &[Shipped] = &[Shipped { name: "bogie-vehicle", text: include_str!("../effects/bogie-vehicle.yaml") }];
 
+/// The shipped conventions: names of channels, and what is exchanged when a vehicle is turned.
+pub const CONVENTIONS: &[Shipped] = &[Shipped { name: "bogie-vehicle", text: include_str!("../conventions/bogie-vehicle.yaml") }];
+
 /// A catalogue of effects by path or shipped name.
 ///
 /// # Errors

@@ -227,6 +227,13 @@ pub fn acts(c: char) -> bool {
     c.is_control() || matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
+/// A reader that ends at its first problem, in one that collects them.
+impl From<Problem> for Vec<Problem> {
+    fn from(problem: Problem) -> Self {
+        vec![problem]
+    }
+}
+
 /// The problems of one stage or input, in the order found.
 #[derive(Clone, Debug, Default)]
 pub struct Problems(pub Vec<Problem>);

@@ -1,6 +1,6 @@
 //! What the campaigns of a pool have in common, as a report prints it.
 
-use crate::result::{CampaignMember, DataItem, FittedTo, OriginInfo, ReportItem};
+use crate::result::{CampaignMember, DataItem, FittedTo, ImportedSide, OriginInfo, ReportItem};
 
 /// Campaigns that the name of a pool lists before it counts them.
 const NAMED: usize = 4;
@@ -49,6 +49,12 @@ pub(super) fn origin(members: &[CampaignMember]) -> Option<OriginInfo> {
         effects: stated.iter().flat_map(|(of, origin)| origin.effects.iter().map(move |effect| format!("{effect} ({of})"))).collect(),
         fitted_to: stated.iter().flat_map(|(_, origin)| &origin.fitted_to).cloned().collect::<Vec<FittedTo>>(),
         fitted_to_these: stated.iter().map(|(_, origin)| origin.fitted_to_these).sum(),
+        imported: stated
+            .iter()
+            .flat_map(|(of, origin)| {
+                origin.imported.iter().map(move |side| ImportedSide { side: format!("{of}, {}", side.side), ..side.clone() })
+            })
+            .collect(),
     })
 }
 

@@ -7,6 +7,7 @@ mod convert_records;
 mod diagnose;
 mod effects;
 mod explain;
+mod import;
 mod init;
 mod inputs;
 mod needs;
@@ -94,6 +95,11 @@ enum Command {
     /// Locate the differences of simulation and measurement, identify their cause, and compute how far the gap decreases with it.
     #[command(after_help = "Example:\n  fishplate diagnose examples/coach --out target/coach-diagnosis")]
     Diagnose(diagnose::Diagnose),
+    /// Import records of other systems, as a mapping states, to a campaign; or propose a mapping from the files.
+    #[command(
+        after_help = "Example:\n  fishplate import examples/foreign/mapping.yaml --out target/foreign\n  fishplate import --draft examples/foreign/*/* --out target/draft.yaml"
+    )]
+    Import(import::Import),
     /// Diagnose all campaigns in folders, then score the answers against the withheld truths.
     #[command(after_help = "Example:\n  fishplate blind campaigns --out target/blind")]
     Blind(blind::Blinded),
@@ -210,6 +216,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Compare(compare) => compare.run(&console),
         Command::Simulate(simulate) => simulate.run(&console),
         Command::Diagnose(diagnose) => diagnose.run(&console),
+        Command::Import(import) => import.run(&console),
         Command::Blind(blinded) => blinded.run(&console),
         Command::Effects(effects) => effects.run(&console),
         Command::Init(init) => init.run(&console),

@@ -13,6 +13,7 @@
 //! | `table` | a small table such as `sections.csv` |
 //! | `crate::yaml` | YAML with places of all values |
 //! | `origin` | origin of the records of a campaign written by a program |
+//! | `imported` | what an import did |
 //! | `sites` | sections on the same stretch of track |
 //! | `checks` | checks of the samples of a record |
 //! | `fingerprint` | hash of a present file of a campaign |
@@ -29,6 +30,7 @@ pub mod fingerprint;
 mod folder;
 pub mod hash;
 pub mod identification;
+mod imported;
 mod members;
 pub mod origin;
 pub mod record;

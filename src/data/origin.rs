@@ -1,5 +1,7 @@
 //! Origin of the records of a campaign written by a program: `origin.yaml`, named by the key `origin` of `campaign.yaml`.
 
+pub use super::imported::{Imported, ImportedRecord};
+
 use super::write::yaml_text;
 use crate::problem::{Problem, Problems};
 use crate::yaml::{Node, Value};
@@ -14,7 +16,7 @@ pub const ORIGIN_KEY: &str = "origin";
 pub struct Origin {
     /// Program and version.
     pub program: String,
-    /// `simulate` or `diagnose`.
+    /// `simulate`, `diagnose` or `import`.
     pub command: String,
     /// Name of the campaign whose simulation was first changed.
     pub campaign: String,
@@ -25,6 +27,8 @@ pub struct Origin {
     pub fitted_to: Vec<OriginFile>,
     /// Files from which the records were computed.
     pub sources: Vec<OriginFile>,
+    /// What an import did, if records were imported.
+    pub imported: Option<Imported>,
 }
 
 /// An effect with its size.
@@ -96,6 +100,7 @@ impl Origin {
             effects: items(node, "effects", problems).into_iter().filter_map(|node| effect(node, problems)).collect(),
             fitted_to: items(node, "fitted to", problems).into_iter().filter_map(|node| file(node, problems)).collect(),
             sources: items(node, "sources", problems).into_iter().filter_map(|node| file(node, problems)).collect(),
+            imported: Imported::read(node, problems),
         };
         (problems.errors() == before).then_some(origin)
     }
@@ -132,7 +137,7 @@ impl Origin {
                 out += &format!("- path: {}\n  sha256: {}\n", yaml_text(&file.path), yaml_text(&file.sha256));
             }
         }
-        out
+        out + &self.imported.as_ref().map_or(String::new(), Imported::text)
     }
 }
 
@@ -216,6 +221,7 @@ mod tests {
             ],
             fitted_to: vec![file("measurement/S01.csv")],
             sources: vec![file("campaign.yaml"), file("track/S01.csv")],
+            imported: Some(Imported { mapping: "name: x\n".into(), ..Imported::default() }),
         };
         let (found, problems) = read(&origin.text());
         assert_eq!((found.as_ref(), problems.0.len()), (Some(&origin), 0), "{}", problems.render(false));

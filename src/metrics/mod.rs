@@ -43,6 +43,7 @@ pub mod reduction;
 pub mod regression;
 pub mod resample;
 pub mod sampling;
+pub mod sinc;
 pub mod statistics;
 pub mod student;
 mod sum;

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 pub use domain::{CoordinateRange, DomainResult, DomainSection, WantedPoint};
 pub use finding::{Consequence, Finding};
 pub use kind::{Kind, VerdictWords};
-pub use origin::{FittedTo, OriginInfo};
+pub use origin::{FittedTo, ImportedOne, ImportedSide, OriginInfo};
 pub use quantity::{
     LimitFactor, Outside, PairValue, QuantityResult, RegressionAt, RegressionFigure, RegressionPoint, Sample, StatisticResult,
 };

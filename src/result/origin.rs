@@ -15,6 +15,32 @@ pub struct OriginInfo {
     pub fitted_to: Vec<FittedTo>,
     /// Number of these that are measured records of this campaign, byte by byte.
     pub fitted_to_these: usize,
+    /// How imported records were made; empty if none was imported.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub imported: Vec<ImportedSide>,
+}
+
+/// The imported records of one side.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ImportedSide {
+    /// `measurement` or `simulation`; of several campaigns with the campaign.
+    pub side: String,
+    /// What each channel was made of: `Y_1L = -ST1 Y li`.
+    pub channels: Vec<String>,
+    pub records: Vec<ImportedOne>,
+}
+
+/// How one record was made.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ImportedOne {
+    pub section: String,
+    pub file: String,
+    /// SHA-256 of that file.
+    pub sha256: String,
+    /// What was detected in the file.
+    pub read_as: String,
+    /// What was done, in order.
+    pub steps: Vec<String>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -24,6 +50,11 @@ pub struct FittedTo {
 }
 
 impl OriginInfo {
+    /// Whether the records were imported and nothing was changed in them by effects or a fit.
+    pub fn only_imported(&self) -> bool {
+        !self.imported.is_empty() && self.effects.is_empty() && self.fitted_to.is_empty()
+    }
+
     /// Text after the verdict, following a comma.
     pub fn note(&self) -> Option<String> {
         if self.fitted_to_these > 0 {
@@ -48,7 +79,15 @@ mod tests {
         let file = FittedTo { path: "measurement/S01.csv".into(), sha256: String::new() };
         let of = |effects: &[&str], fitted_to: &[FittedTo], fitted_to_these| {
             let effects = effects.iter().map(|effect| (*effect).to_string()).collect();
-            OriginInfo { made_by: String::new(), says: String::new(), effects, fitted_to: fitted_to.to_vec(), fitted_to_these }.note()
+            OriginInfo {
+                made_by: String::new(),
+                says: String::new(),
+                effects,
+                fitted_to: fitted_to.to_vec(),
+                fitted_to_these,
+                imported: Vec::new(),
+            }
+            .note()
         };
         assert_eq!(of(&[], &[], 0), None);
         assert_eq!(of(&["friction = 0.23"], &[], 0).as_deref(), Some("simulation with effect friction = 0.23"));

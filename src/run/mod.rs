@@ -43,7 +43,7 @@ mod wanted;
 use indexmap::IndexMap;
 use rayon::prelude::*;
 
-use crate::check::plan::{OnFault, Plan};
+use crate::check::plan::{OnFault, Plan, Side};
 use crate::data::Campaigns;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
@@ -256,6 +256,9 @@ impl<'a> Prepared<'a> {
             let seen = columns::seen_columns(plan, campaign, &units);
             present.push(columns::present_columns(plan, graph, campaign, &seen, &facts, &units, &mut notes));
             recorded.push(columns::recorded_positions(graph, &seen, &facts, &units));
+            if plan.reads(Side::Measured) {
+                notes.extend(campaign.offsets_in_words());
+            }
         }
         requirements::check_data(plan, &facts, &mut units);
         stop_on_fault(plan, &units, &[])?;

@@ -67,6 +67,7 @@ impl Made<'_> {
             effects,
             fitted_to,
             sources,
+            imported: campaign.origin.as_ref().and_then(|origin| origin.imported.clone()),
         })
     }
 }

@@ -13,6 +13,7 @@ use crate::data::text::other_format;
 use crate::disk;
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
+use crate::units::Dimension;
 
 /// The kinds of records that a campaign has, each in a folder of its own with a file per section.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -202,14 +203,67 @@ impl Campaign {
         part: Option<&Part>,
     ) -> Result<(Record, ReadFile), Vec<Problem>> {
         let place = self.place_of(which, section).map_err(|problem| vec![problem])?;
-        let record = match part.filter(|_| self.run_of(section).is_some()) {
-            Some(part) => read_stretch(&place.path, &place.inside, wanted, &part.axis, part.from..part.to)?,
+        let offset = match which.kind {
+            RecordKind::Measurement => self.offset(section).map_err(|problem| vec![problem])?,
+            RecordKind::Simulation | RecordKind::Track => None,
+        };
+        let moved = offset.as_ref().map_or(0.0, |(_, offset)| *offset);
+        let mut record = match part.filter(|_| self.run_of(section).is_some()) {
+            Some(part) => read_stretch(&place.path, &place.inside, wanted, &part.axis, part.from - moved..part.to - moved)?,
             None => read_record(&place.path, &place.inside, wanted)?,
         };
+        if let Some((axis, offset)) = offset {
+            let along = record.columns.iter_mut().find(|column| column.name == axis);
+            along.into_iter().flat_map(|column| &mut column.values).for_each(|value| *value += offset);
+        }
         let file = ReadFile { path: place.inside, sha256: record.sha256.clone(), bytes: record.bytes as u64 };
         Ok((record, file))
     }
 }
+
+/// Synchronisation of both sides.
+impl Campaign {
+    /// What is added to the axis of a section's measurement: the axis and the offset in SI. `None` where the table has no column
+    /// `offset` or the cell is empty.
+    ///
+    /// # Errors
+    /// Of the column or the cell; an offset that is neither a length nor a time.
+    pub fn offset(&self, section: &Cell) -> Result<Option<(&'static str, f64)>, Problem> {
+        let Some((table, column)) = self.sections.as_ref().and_then(|table| Some((table, table.column(OFFSET)?))) else { return Ok(None) };
+        let heading = &table.columns[column];
+        let unit = heading.unit(None)?;
+        let Some((axis, _)) = AXES.iter().find(|(_, dimension)| *dimension == unit.dimension) else {
+            let says = format!("the offset is in {unit}, which is {}; it is added to a distance or a time", unit.dimension.in_words());
+            return Err(Problem::error("unit-mismatch", says).at(&heading.span));
+        };
+        let Some(cell) = table.row_named(&section.value).and_then(|row| table.cell(row, column)).filter(|cell| !cell.value.is_empty())
+        else {
+            return Ok(None);
+        };
+        match cell.value.parse::<f64>() {
+            Ok(offset) if offset.is_finite() => Ok(Some((axis, unit.to_si(offset)))),
+            _ => Err(Problem::error("not-a-number", format!("`{OFFSET}`: `{}` is not a number", cell.value)).at(&cell.span)),
+        }
+    }
+
+    /// The offsets of all sections as a sentence; `None` if there are none.
+    pub fn offsets_in_words(&self) -> Option<String> {
+        let unit = |axis: &str| if axis == AXES[0].0 { "m" } else { "s" };
+        let one = |name: &Cell| {
+            let (axis, offset) = self.offset(name).ok().flatten().filter(|(_, offset)| *offset != 0.0)?;
+            Some((axis, format!("{} {offset:+} {}", name.value, unit(axis))))
+        };
+        let all: Vec<(&str, String)> = self.names.iter().filter_map(one).collect();
+        let axis = all.first()?.0;
+        let list = all.into_iter().map(|(_, text)| text).collect::<Vec<_>>().join(", ");
+        Some(format!("Added to the {axis} of the measurement (column `{OFFSET}` of the table of sections): {list}."))
+    }
+}
+
+/// The column of the section table with what is added to the axis of the measurement.
+const OFFSET: &str = "offset";
+/// The axes of records with their dimensions.
+const AXES: [(&str, Dimension); 2] = [("distance", Dimension::LENGTH), ("time", Dimension::TIME)];
 
 fn no_folder(error: &std::io::Error, shown: &str) -> Problem {
     match disk::missing(error) {

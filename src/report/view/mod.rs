@@ -6,6 +6,7 @@
 pub mod application;
 mod groups;
 mod identity;
+mod made;
 mod notation;
 mod protocol;
 mod quantity;
@@ -25,6 +26,7 @@ use crate::result::{CampaignInfo, CampaignMember, Certification, DataItem, Kind,
 
 pub use groups::{EstimateRow, GroupRow, GroupTable};
 pub use identity::{IdentityRow, ReportHead};
+pub use made::{MadeRow, MadeView};
 pub use notation::{ChannelRow, NotationView, SymbolRow, Term};
 pub use protocol::{ProtocolView, SourceFile, view as protocol_view};
 pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair};
@@ -168,6 +170,8 @@ pub struct CampaignView {
     pub facts: Vec<DataRow>,
     /// Origin of the simulated records, as a sentence.
     pub origin: Option<String>,
+    /// How imported records were made, by side.
+    pub made: Vec<MadeView>,
     /// Data of the vehicle used by a rule.
     pub vehicle_used: Vec<DataRow>,
     /// Other data of the vehicle.
@@ -368,6 +372,7 @@ pub fn campaign(campaign: &CampaignInfo) -> CampaignView {
         report: identity::head(&campaign.report),
         facts: campaign.members.iter().map(member_row).chain(campaign.facts.iter().map(data_row)).collect(),
         origin: campaign.origin.as_ref().map(|origin| format!("{}.", origin.says)),
+        made: campaign.origin.iter().flat_map(|origin| &origin.imported).map(made::view).collect(),
         vehicle_used: of(true),
         vehicle_other: of(false),
         files: campaign

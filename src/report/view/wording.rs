@@ -95,7 +95,8 @@ pub(super) fn simulation_statement(found: &Certification) -> Option<String> {
         return None;
     }
     let obtained = "The simulation results named in this report were obtained with the model and the settings described";
-    Some(match &found.campaign.origin {
+    let origin = found.campaign.origin.as_ref().filter(|origin| !origin.only_imported());
+    Some(match origin {
         Some(origin) => format!("{obtained}. {}.", origin.says),
         None if measured && found.kind() != Kind::Assessment => {
             format!("{obtained}, and were not changed after the comparison with the measurement.")

@@ -1,0 +1,194 @@
+//! `import`: records of other systems to a campaign, by a mapping; `--draft` proposes one.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::inputs::{progress_bar, start_jobs};
+use super::output::{Console, Exit};
+use super::places::same;
+use super::protocols::load;
+use crate::certify::{Compiled, certify, compile};
+use crate::check::Overrides;
+use crate::check::family::{self, Family};
+use crate::check::plan::Side;
+use crate::data::text::read_text;
+use crate::data::write::Outputs;
+use crate::data::{Campaign, RecordKind};
+use crate::disk::SetKind;
+use crate::import::draft::{With, draft, groups, relative_to};
+use crate::import::exchanged::exchanged;
+use crate::import::mapping::{self, Mapping};
+use crate::library;
+use crate::problem::{Problem, Problems, plain};
+use crate::report::findings;
+use crate::run::Settings;
+use crate::run::needs::needs;
+use crate::source::{Source, Spanned};
+
+#[derive(Debug, Args)]
+pub struct Import {
+    /// The mapping: what the channels of the files are in the campaign; with `--draft` the files.
+    #[arg(required = true, value_name = "MAPPING")]
+    inputs: Vec<PathBuf>,
+    /// Output folder for the campaign; with `--draft` the file of the draft [default: standard output]
+    #[arg(long, required_unless_present = "draft")]
+    out: Option<PathBuf>,
+    /// Propose a mapping from the files themselves, to be completed by hand.
+    #[arg(long)]
+    draft: bool,
+    /// Protocol whose channels the draft looks for: a path, or the name of a shipped one.
+    #[arg(long, requires = "draft", default_value = library::SHIPPED[0].name)]
+    protocol: String,
+    /// Names of channels for the draft: a path, or the name of a shipped convention.
+    #[arg(long, requires = "draft", default_value = library::CONVENTIONS[0].name)]
+    convention: String,
+    /// Number of files processed in parallel [default: one per core]
+    #[arg(long, short)]
+    jobs: Option<NonZeroUsize>,
+}
+
+impl Import {
+    pub fn run(self, console: &Console) -> Exit {
+        if let Err(exit) = start_jobs(self.jobs, console) {
+            return exit;
+        }
+        if self.draft {
+            return self.propose(console);
+        }
+        let ([path], Some(out)) = (&self.inputs[..], &self.out) else {
+            let problem = Problem::error("several-mappings", "an import takes one mapping");
+            return console.fail(problem.help("to propose a mapping from files, add `--draft`"), Exit::Wrong);
+        };
+        let mut problems = Problems::default();
+        let checked = checked(path, out, &mut problems);
+        console.problems(&problems);
+        let Some((mapping, compiled)) = checked.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let needs = compiled.as_ref().map(|compiled| needs(&compiled.plan, &compiled.graph));
+        let bar = progress_bar(console, mapping.sections.names.len() * mapping.sides.len());
+        let mut outputs = Outputs::of(SetKind::Campaign, out);
+        let done = crate::import::import(&mapping, needs.as_ref(), &mut outputs, &|section| {
+            bar.set_message(plain(section));
+            bar.inc(1);
+        });
+        bar.finish_and_clear();
+        match done {
+            Ok(warnings) => console.problems(&warnings),
+            Err(problems) => {
+                console.problems(&problems);
+                let failed = problems.0.iter().any(|problem| problem.code == "write-failed");
+                return if failed { Exit::Unfinished } else { Exit::Wrong };
+            }
+        }
+        if let Err(exit) = console.commit(Ok(outputs)) {
+            return exit;
+        }
+        let records = mapping.sections.names.len() * mapping.sides.len();
+        console.say(&format!("written: {records} records of {} sections to {}", mapping.sections.names.len(), out.display()));
+        if !console.quiet {
+            look(&mapping, compiled.as_ref(), out, console);
+        }
+        Exit::Done
+    }
+
+    fn propose(&self, console: &Console) -> Exit {
+        let mut problems = Problems::default();
+        let compiled = load(&self.protocol, &mut problems).and_then(|family| compile(family, &Overrides::new(), &mut problems));
+        let named = Spanned::new(self.convention.clone(), Source::new("--convention", self.convention.clone()).whole());
+        let convention = mapping::find_convention(&named, Path::new(""), &mut problems);
+        console.problems(&problems);
+        let (Some(compiled), Some(convention)) = (compiled, convention) else { return Exit::Wrong };
+        if let Some(out) = &self.out
+            && let Some(input) = self.inputs.iter().find(|input| same(input, out))
+        {
+            let problem = Problem::error("output-is-input", format!("`{}` is an input and cannot be overwritten", input.display()));
+            return console.fail(problem, Exit::Wrong);
+        }
+        let paths: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
+        let mut groups = match groups(&paths) {
+            Ok(groups) => groups,
+            Err(problems) => {
+                console.problems(&Problems(problems));
+                return Exit::Wrong;
+            }
+        };
+        relative_to(&mut groups, self.out.as_deref().and_then(Path::parent).unwrap_or(Path::new("")));
+        let needs = needs(&compiled.plan, &compiled.graph);
+        let (text, open) = draft(&groups, &With { needs: &needs, protocol: &self.protocol, convention: &convention });
+        let exit = match &self.out {
+            Some(out) => console.write(out, text.as_bytes()),
+            None => console.print_file(&text),
+        };
+        console.say(&format!("{open} open places; each is marked by `?`"));
+        exit
+    }
+}
+
+/// The mapping and its protocol, checked against each other before any record is read.
+fn checked(path: &Path, out: &Path, problems: &mut Problems) -> Option<(Mapping, Option<Compiled>)> {
+    let (source, _) = read_text(path, &path.display().to_string()).map_err(|problem| problems.push(problem)).ok()?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mapping = mapping::read(&source, folder, problems);
+    if same(out, if folder.as_os_str().is_empty() { Path::new(".") } else { folder }) {
+        let says = format!("the campaign cannot go to `{}`, the folder of the mapping", out.display());
+        problems.push(Problem::error("output-is-input", says).help("give another folder; it is created if it does not exist"));
+    }
+    let mapping = mapping?;
+    for side in &mapping.sides {
+        let pattern = &side.files;
+        let inside = mapping.sections.names.iter().any(|name| {
+            let (path, _) = mapping.place(&mapping.sections.fill(&pattern.value, &name.value));
+            path.parent().is_some_and(|parent| same(parent, &out.join(side.kind.key())) || same(parent, out))
+        });
+        if inside {
+            let says = format!("the campaign cannot go to `{}`: it contains files of the {}", out.display(), side.kind.key());
+            problems.push(Problem::error("output-is-input", says).at(&pattern.span).help("give another folder"));
+        }
+    }
+    let Some(named) = &mapping.protocol else { return Some((mapping, None)) };
+    let before = problems.errors();
+    let compiled = protocol(named, folder, problems).and_then(|family| {
+        let compiled = compile(family, &Overrides::new(), problems)?;
+        mapping::agree::agree(&mapping, &needs(&compiled.plan, &compiled.graph), problems);
+        Some(compiled)
+    });
+    (problems.errors() == before).then_some((mapping, compiled))
+}
+
+/// The protocol of a mapping: a shipped one, or a file relative to the mapping.
+fn protocol(named: &Spanned<String>, folder: &Path, problems: &mut Problems) -> Option<Family> {
+    let source = match library::shipped(&named.value) {
+        Some(source) => source,
+        None => library::find(&named.value, Some(folder)).map_err(|problem| problems.push(problem.at(&named.span))).ok()?,
+    };
+    Some(family::read(&source, &library::parent, problems))
+}
+
+/// What is told about the campaign that was made: exchanged channels, and the findings of the protocol.
+fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Console) {
+    let mut problems = Problems::default();
+    let Some(campaign) = Campaign::open(out, &mut problems) else { return console.problems(&problems) };
+    console.problems(&Problems(exchanged(mapping, &campaign)));
+    let Some(compiled) = compiled else { return };
+    let lacks = |side: Side, kind| compiled.plan.reads(side) && !campaign.has(kind);
+    if lacks(Side::Simulated, RecordKind::Simulation) || lacks(Side::Measured, RecordKind::Measurement) {
+        return console.say("the plausibility of the records is not examined: the campaign lacks a side that the protocol reads");
+    }
+    match certify(&compiled.only_telling(), &campaign, Settings { traces: 0 }, &|_| {}) {
+        Ok(found) => {
+            for section in found.sections.iter().filter(|section| !section.used) {
+                console.say(&format!("section {} cannot be used: {}", section.section, section.reason.clone().unwrap_or_default()));
+            }
+            let rows = findings::rows(&found.findings);
+            rows.iter().for_each(|row| console.say(&format!("finding: {}", findings::line(row))));
+            if rows.is_empty() {
+                console.say("no findings about the plausibility of the records");
+            }
+        }
+        Err(problems) => {
+            console.say("the plausibility of the records could not be examined:");
+            console.problems(&problems);
+        }
+    }
+}

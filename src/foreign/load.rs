@@ -1,0 +1,122 @@
+//! The bytes of a file, and the limits of what is read from it.
+
+use std::io::Read;
+use std::path::Path;
+
+use crate::disk::{self, Kind};
+use crate::problem::Problem;
+
+/// Maximum size of a file in bytes, as for a record of a campaign.
+const LARGEST: u64 = 1 << 30;
+
+/// Maximum number of values of a file: 2 GB of numbers, a hundred channels at 1 kHz for 45 minutes.
+/// A compressed file can hold more than its size suggests.
+pub(super) const MOST_VALUES: usize = 1 << 28;
+
+/// Maximum number of channels of a file; a large measuring system has some thousands.
+pub(super) const MOST_CHANNELS: usize = 100_000;
+
+/// All bytes of a plain file.
+pub(super) fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, Vec<Problem>> {
+    let unreadable =
+        |why: &dyn std::fmt::Display| vec![Problem::error("file-unreadable", format!("`{shown}` {} {why}", crate::data::text::UNREADABLE))];
+    let too_large = |size: u64| {
+        let says = format!("`{shown}` has {} MB; the maximum is {} MB", size >> 20, LARGEST >> 20);
+        vec![Problem::error("file-too-large", says).help("export it in parts, or leave out channels that are not needed")]
+    };
+    // Other kinds are refused before they are opened, since reading a pipe could block for ever.
+    let size = match disk::kind(path).map_err(|error| unreadable(&error))? {
+        None => return Err(vec![Problem::error("file-missing", format!("there is no file `{shown}`"))]),
+        Some(Kind::Folder) => return Err(unreadable(&"it is a folder")),
+        Some(Kind::Other) => return Err(unreadable(&"it is not a plain file")),
+        Some(Kind::File(size)) if size > LARGEST => return Err(too_large(size)),
+        Some(Kind::File(size)) => size,
+    };
+    let mut bytes = Vec::new();
+    let wanted = usize::try_from(size).unwrap_or(usize::MAX).saturating_add(1);
+    disk::reserve(&mut bytes, wanted, path).map_err(|error| unreadable(&error))?;
+    let file = disk::open(path).map_err(|error| unreadable(&error))?;
+    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|error| unreadable(&error))?;
+    match bytes.len() as u64 {
+        0 => Err(vec![Problem::error("file-empty", format!("`{shown}` is empty"))]),
+        grown if grown > LARGEST => Err(too_large(grown)),
+        _ => Ok(bytes),
+    }
+}
+
+/// Bytes that any file may hold when it is unpacked, and the multiple of its size that it may hold beyond. Records compress by
+/// less than 20; deflate packs zeros by 1000. A file beyond that is a mistake or an attack, and its memory stays bounded.
+const ALWAYS_UNPACKED: usize = 64 << 20;
+const MOST_EXPANSION: usize = 100;
+
+/// Bytes that a file of this size may hold when it is unpacked.
+pub(super) fn most_unpacked(size: usize) -> usize {
+    size.saturating_mul(MOST_EXPANSION).saturating_add(ALWAYS_UNPACKED).min(8 * MOST_VALUES)
+}
+
+/// A file that unpacks to more than [`most_unpacked`].
+pub(super) fn unpacks_to_more(shown: &str, place: &str, size: usize) -> Problem {
+    let says = format!("{place} of `{shown}` unpacks to more than {} MB, the maximum for a file of its size", most_unpacked(size) >> 20);
+    Problem::error("too-many-values", says).help("export it again with fewer channels, or without compression")
+}
+
+/// Counts the values of a file, which can be many more than its bytes suggest.
+#[derive(Debug)]
+pub(super) struct Budget<'a> {
+    shown: &'a str,
+    most: usize,
+    values: usize,
+    channels: usize,
+}
+
+impl<'a> Budget<'a> {
+    /// For a file of this size in bytes.
+    pub fn new(size: usize, shown: &'a str) -> Self {
+        Self { shown, most: most_unpacked(size) / 8, values: 0, channels: 0 }
+    }
+
+    /// Adds channels of so many values each; the place is for the message.
+    ///
+    /// # Errors
+    /// `too-many-values`.
+    pub fn take(&mut self, channels: usize, rows: usize, place: &str) -> Result<(), Problem> {
+        self.channels = self.channels.saturating_add(channels);
+        if self.channels > MOST_CHANNELS {
+            return Err(self.exceeded(place, &format!("{MOST_CHANNELS} channels")));
+        }
+        self.add(channels.saturating_mul(rows), place)
+    }
+
+    /// Adds values of channels that are counted already.
+    ///
+    /// # Errors
+    /// `too-many-values`.
+    pub fn add(&mut self, values: usize, place: &str) -> Result<(), Problem> {
+        self.values = self.values.saturating_add(values);
+        if self.values > self.most {
+            return Err(self.exceeded(place, &format!("{} million values, the maximum for a file of its size", self.most >> 20)));
+        }
+        Ok(())
+    }
+
+    fn exceeded(&self, place: &str, most: &str) -> Problem {
+        Problem::error("too-many-values", format!("{place} of `{}` declares more than {most}", self.shown))
+            .help("check whether the file is damaged; else export it in parts, with fewer channels")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn declared_sizes_are_counted_without_overflow() {
+        let mut budget = Budget::new(1000, "f");
+        assert!(budget.take(24, 1794, "table").is_ok());
+        assert_eq!(budget.take(2, usize::MAX, "table").map_err(|problem| problem.code), Err("too-many-values"));
+        assert!(budget.take(1, 1, "table").is_err());
+        assert!(Budget::new(1000, "f").take(MOST_CHANNELS + 1, 0, "table").is_err());
+        // A text of empty cells: eight bytes of numbers for each byte of the file.
+        assert!(Budget::new(1 << 30, "f").take(1, 1 << 28, "table").is_ok());
+    }
+}

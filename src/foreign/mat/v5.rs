@@ -1,0 +1,343 @@
+//! The format of MATLAB 5 to 7 (MathWorks, "MAT-File Format", version 5).
+//!
+//! An element is a tag (type, number of bytes) and data; a matrix is an element of elements. Sizes are checked against the bytes that
+//! are there before anything is allocated.
+
+use std::io::Read;
+
+use flate2::read::ZlibDecoder;
+
+use super::super::guard::damaged;
+use super::super::load::{Budget, most_unpacked, unpacks_to_more};
+use super::super::{Format, Input};
+use super::{DEEPEST, OBJECT, Value};
+use crate::problem::Problem;
+
+/// Bytes of the header of a file.
+const HEADER: usize = 128;
+
+// Types of elements.
+const INT8: u32 = 1;
+const UINT8: u32 = 2;
+const INT16: u32 = 3;
+const UINT16: u32 = 4;
+const INT32: u32 = 5;
+const UINT32: u32 = 6;
+const SINGLE: u32 = 7;
+const DOUBLE: u32 = 9;
+const INT64: u32 = 12;
+const UINT64: u32 = 13;
+const MATRIX: u32 = 14;
+const COMPRESSED: u32 = 15;
+const UTF8: u32 = 16;
+const UTF16: u32 = 17;
+const UTF32: u32 = 18;
+
+// Classes of arrays.
+const CELL: u8 = 1;
+const STRUCT: u8 = 2;
+const CHAR: u8 = 4;
+const SPARSE: u8 = 5;
+/// Double, single and the integers.
+const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
+
+/// Why an element cannot be read.
+type Reason = String;
+
+/// The variables of a file in their order.
+pub(super) fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Vec<(String, Value)>, Problem> {
+    let shown = input.shown;
+    let bad = |place: String, why: &str| damaged(Format::Mat, shown, &place, why);
+    let big = input.bytes.get(126..128) == Some(b"MI");
+    let mut rest = Bytes { bytes: input.bytes.get(HEADER..).unwrap_or(&[]), big };
+    let mut found = Vec::new();
+    let mut unpacked = 0usize;
+    while !rest.bytes.is_empty() {
+        let place = format!("variable {} (byte {})", found.len() + 1, input.bytes.len() - rest.bytes.len() + 1);
+        // Some writers fill the end with zeros.
+        if rest.bytes.iter().all(|byte| *byte == 0) {
+            break;
+        }
+        let (kind, data) = rest.element(false).map_err(|why| bad(place.clone(), &why))?;
+        let most = most_unpacked(input.bytes.len()).saturating_sub(unpacked);
+        let (matrix, inflated);
+        match kind {
+            MATRIX => matrix = Bytes { bytes: data, big },
+            COMPRESSED => {
+                inflated = inflate(data, most).map_err(|why| match why {
+                    Some(why) => bad(place.clone(), &why),
+                    None => unpacks_to_more(shown, &place, input.bytes.len()),
+                })?;
+                unpacked += inflated.len();
+                let mut element = Bytes { bytes: &inflated, big };
+                let (kind, data) = element.element(true).map_err(|why| bad(place.clone(), &why))?;
+                if kind != MATRIX {
+                    return Err(bad(place, &format!("an element of type {kind} in place of an array")));
+                }
+                matrix = Bytes { bytes: data, big };
+            }
+            other => return Err(bad(place, &format!("an element of type {other} in place of an array"))),
+        }
+        let mut names = String::new();
+        let (name, value) = array(matrix, 0, budget, &mut names, &place).map_err(|why| match why {
+            Failure::Budget(problem) => problem,
+            Failure::Reason(why) => bad(if names.is_empty() { place.clone() } else { format!("{place}, `{names}`") }, &why),
+        })?;
+        // MATLAB keeps functions and objects in a variable without a name.
+        if !name.is_empty() {
+            found.push((name, value));
+        }
+    }
+    Ok(found)
+}
+
+/// Unpacks an element, up to a limit. The error is `None` if it has more.
+fn inflate(data: &[u8], most: usize) -> Result<Vec<u8>, Option<Reason>> {
+    let mut unpacked = Vec::new();
+    let mut decoder = ZlibDecoder::new(data).take(most as u64 + 1);
+    match decoder.read_to_end(&mut unpacked) {
+        Ok(_) if unpacked.len() > most => Err(None),
+        Ok(_) => Ok(unpacked),
+        Err(error) => Err(Some(format!("the compressed data cannot be unpacked ({error})"))),
+    }
+}
+
+enum Failure {
+    Budget(Problem),
+    Reason(Reason),
+}
+
+impl From<&str> for Failure {
+    fn from(why: &str) -> Self {
+        Self::Reason(why.into())
+    }
+}
+
+impl From<Reason> for Failure {
+    fn from(why: Reason) -> Self {
+        Self::Reason(why)
+    }
+}
+
+/// The name and value of an array. `names` keeps the path to a failure.
+fn array(mut bytes: Bytes<'_>, depth: usize, budget: &mut Budget<'_>, names: &mut String, place: &str) -> Result<(String, Value), Failure> {
+    if depth > DEEPEST {
+        return Err(format!("cells or structs nested more than {DEEPEST} deep").into());
+    }
+    // An empty cell may have no content at all.
+    if bytes.bytes.is_empty() {
+        return Ok((String::new(), Value::Numbers { rows: 0, columns: 0, values: Vec::new() }));
+    }
+    let big = bytes.big;
+    let (_, flags) = bytes.element(true)?;
+    let word = Bytes { bytes: flags, big }.u32().ok_or("the flags of the array are not complete")?;
+    let (class, complex) = (word as u8, word & 0x0800 != 0);
+    if matches!(class, 16 | 17 | 18) || !(NUMERIC.contains(&class) || matches!(class, CELL | STRUCT | CHAR | SPARSE | 3)) {
+        return Ok((names_of_object(bytes), Value::Other(OBJECT)));
+    }
+    let (kind, sizes) = bytes.element(true)?;
+    let sizes: Vec<usize> = numbers(kind, sizes, big)?.into_iter().map(|size| if size >= 0.0 { size as usize } else { 0 }).collect();
+    let count = sizes.iter().try_fold(1usize, |product, size| product.checked_mul(*size));
+    let count = count.ok_or("the declared size of the array is beyond any memory")?;
+    let rows = sizes.first().copied().unwrap_or(0);
+    let columns = if rows == 0 { 0 } else { count / rows };
+    let (_, name) = bytes.element(true)?;
+    let name = latin(name);
+    let before = names.len();
+    if !name.is_empty() {
+        names.push_str(&name);
+    }
+    let value = match class {
+        CHAR => Value::Text(text(&mut bytes, rows, columns)?),
+        CELL => {
+            // Each cell has a tag of eight bytes at least.
+            bytes.holds(count, 8, "cells")?;
+            let mut cells = Vec::with_capacity(count);
+            for index in 0..count {
+                let length = names.len();
+                names.push_str(&format!("{{{}}}", index + 1));
+                let (_, data) = bytes.element(true)?;
+                cells.push(array(Bytes { bytes: data, big }, depth + 1, budget, names, place)?.1);
+                names.truncate(length);
+            }
+            Value::Cells(cells)
+        }
+        STRUCT => Value::Structs(structs(&mut bytes, count, depth, budget, names, place)?),
+        SPARSE => Value::Other("a sparse matrix; save it with `full(...)`"),
+        3 => Value::Other(OBJECT),
+        _ if complex => Value::Other("complex numbers; save their parts as arrays of their own"),
+        _ => {
+            let (kind, data) = bytes.element(true)?;
+            let size = size_of(kind).ok_or_else(|| format!("numbers of the unknown type {kind}"))?;
+            if data.len() / size != count || data.len() % size != 0 {
+                let has = data.len() / size;
+                return Err(format!("the array is declared with {rows} x {columns} values and holds {has}").into());
+            }
+            budget.take(1, count, place).map_err(Failure::Budget)?;
+            Value::Numbers { rows, columns, values: numbers(kind, data, big)? }
+        }
+    };
+    names.truncate(before);
+    Ok((name, value))
+}
+
+/// The name of an object, which follows its flags; empty if it cannot be found.
+fn names_of_object(mut bytes: Bytes<'_>) -> String {
+    let name = bytes.element(true).map(|(_, name)| latin(name)).unwrap_or_default();
+    let plain = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if plain { name } else { String::new() }
+}
+
+type Fields = Vec<(String, Value)>;
+
+fn structs(
+    bytes: &mut Bytes<'_>,
+    count: usize,
+    depth: usize,
+    budget: &mut Budget<'_>,
+    names: &mut String,
+    place: &str,
+) -> Result<Vec<Fields>, Failure> {
+    let big = bytes.big;
+    let (kind, length) = bytes.element(true)?;
+    let length = numbers(kind, length, big)?.first().map_or(0, |length| *length as usize);
+    let (_, list) = bytes.element(true)?;
+    if length == 0 || length > 1024 {
+        return Err(format!("a length of {length} for names of fields").into());
+    }
+    let fields: Vec<String> = list.chunks(length).map(latin).collect();
+    let total = fields.len().checked_mul(count).ok_or("the declared size of the struct is beyond any memory")?;
+    bytes.holds(total, 8, "fields")?;
+    if fields.is_empty() {
+        return Ok(vec![Vec::new(); count.min(1)]);
+    }
+    let mut found = Vec::with_capacity(count);
+    for _ in 0..count {
+        let mut element = Vec::with_capacity(fields.len());
+        for field in &fields {
+            let before = names.len();
+            names.push_str(&format!(".{field}"));
+            let (_, data) = bytes.element(true)?;
+            element.push((field.clone(), array(Bytes { bytes: data, big }, depth + 1, budget, names, place)?.1));
+            names.truncate(before);
+        }
+        found.push(element);
+    }
+    Ok(found)
+}
+
+/// A char array; the rows of a matrix are joined by line breaks.
+fn text(bytes: &mut Bytes<'_>, rows: usize, columns: usize) -> Result<String, Reason> {
+    let big = bytes.big;
+    if rows == 0 || columns == 0 {
+        return Ok(String::new());
+    }
+    let (kind, data) = bytes.element(true)?;
+    if kind == UTF8 && rows == 1 {
+        return Ok(String::from_utf8_lossy(data).into_owned());
+    }
+    let code = |number: f64| char::from_u32(number as u32).unwrap_or('\u{fffd}');
+    let letters: Vec<char> = match kind {
+        UTF16 | UINT16 if rows == 1 => {
+            let units: Vec<u16> = numbers(UINT16, data, big)?.into_iter().map(|unit| unit as u16).collect();
+            char::decode_utf16(units).map(|letter| letter.unwrap_or('\u{fffd}')).collect()
+        }
+        UTF8 => String::from_utf8_lossy(data).chars().collect(),
+        UTF16 => numbers(UINT16, data, big)?.into_iter().map(code).collect(),
+        UTF32 => numbers(UINT32, data, big)?.into_iter().map(code).collect(),
+        kind => numbers(kind, data, big)?.into_iter().map(code).collect(),
+    };
+    if rows == 1 {
+        return Ok(letters.into_iter().collect());
+    }
+    if letters.len() != rows.saturating_mul(columns) {
+        return Err(format!("a text is declared with {rows} x {columns} letters and holds {}", letters.len()));
+    }
+    let line = |row: usize| -> String { letters.iter().skip(row).step_by(rows).collect::<String>().trim_end().to_string() };
+    Ok((0..rows).map(line).collect::<Vec<_>>().join("\n"))
+}
+
+fn latin(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes.split(|byte| *byte == 0).next().unwrap_or(&[])).into_owned()
+}
+
+fn size_of(kind: u32) -> Option<usize> {
+    match kind {
+        INT8 | UINT8 | UTF8 => Some(1),
+        INT16 | UINT16 | UTF16 => Some(2),
+        INT32 | UINT32 | SINGLE | UTF32 => Some(4),
+        DOUBLE | INT64 | UINT64 => Some(8),
+        _ => None,
+    }
+}
+
+/// Numbers of an element. MATLAB stores doubles that are small integers as bytes.
+fn numbers(kind: u32, data: &[u8], big: bool) -> Result<Vec<f64>, Reason> {
+    macro_rules! each {
+        ($type:ty) => {
+            data.as_chunks::<{ size_of::<$type>() }>()
+                .0
+                .iter()
+                .map(|bytes| if big { <$type>::from_be_bytes(*bytes) } else { <$type>::from_le_bytes(*bytes) } as f64)
+                .collect()
+        };
+    }
+    use std::mem::size_of;
+    Ok(match kind {
+        INT8 => each!(i8),
+        UINT8 | UTF8 => each!(u8),
+        INT16 => each!(i16),
+        UINT16 | UTF16 => each!(u16),
+        INT32 => each!(i32),
+        UINT32 | UTF32 => each!(u32),
+        SINGLE => each!(f32),
+        DOUBLE => each!(f64),
+        INT64 => each!(i64),
+        UINT64 => each!(u64),
+        other => return Err(format!("numbers of the unknown type {other}")),
+    })
+}
+
+/// Bytes that are read from the front.
+#[derive(Clone, Copy)]
+struct Bytes<'a> {
+    bytes: &'a [u8],
+    big: bool,
+}
+
+impl<'a> Bytes<'a> {
+    fn u32(&mut self) -> Option<u32> {
+        let (word, rest) = self.bytes.split_first_chunk::<4>()?;
+        self.bytes = rest;
+        Some(if self.big { u32::from_be_bytes(*word) } else { u32::from_le_bytes(*word) })
+    }
+
+    /// Type and data of the next element; inside an array they are padded to eight bytes.
+    fn element(&mut self, padded: bool) -> Result<(u32, &'a [u8]), Reason> {
+        let cut = || "the file ends within an element".to_string();
+        let tag = self.u32().ok_or_else(cut)?;
+        // A small element has its size in the upper half of the tag and up to four bytes of data.
+        if tag >> 16 != 0 {
+            let size = (tag >> 16) as usize;
+            let (data, rest) = self.bytes.split_at_checked(4).ok_or_else(cut)?;
+            self.bytes = rest;
+            return Ok((tag & 0xffff, data.get(..size).ok_or_else(|| format!("a small element of {size} bytes"))?));
+        }
+        let size = self.u32().ok_or_else(cut)? as usize;
+        if size > self.bytes.len() {
+            return Err(format!("an element is declared with {size} bytes; {} are left", self.bytes.len()));
+        }
+        let (data, rest) = self.bytes.split_at(size);
+        let padding = if padded && size % 8 != 0 { 8 - size % 8 } else { 0 };
+        self.bytes = rest.get(padding..).unwrap_or(&[]);
+        Ok((tag, data))
+    }
+
+    /// Refuses a number of parts that the bytes cannot hold.
+    fn holds(&self, count: usize, each: usize, what: &str) -> Result<(), Reason> {
+        if count > self.bytes.len() / each {
+            return Err(format!("{count} {what} are declared; the file has bytes for {}", self.bytes.len() / each));
+        }
+        Ok(())
+    }
+}

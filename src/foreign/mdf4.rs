@@ -1,0 +1,173 @@
+//! ASAM MDF 4: each channel group is a table with a time base of its own.
+
+use falcon_mdf::model::{Channel as Source, ChannelGroup, ValueKind};
+use falcon_mdf::{Mf4File, OpenOptions};
+
+use super::guard::damaged;
+use super::load::{Budget, most_unpacked, unpacks_to_more};
+use super::{Channel, Format, Input, Place, Read, Table, Want};
+use crate::problem::Problem;
+
+/// Bytes of a block before its links, and of its data before the number of samples of a group (ASAM MDF 4.1, block CG).
+const LINKS_AT: usize = 24;
+const SAMPLES_AT: usize = 8;
+
+pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
+    let (bytes, shown) = (input.bytes, input.shown);
+    let most = most_unpacked(bytes.len());
+    let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Mdf4, shown, place, why);
+    // One more than is accepted: what reaches the limit would be cut without a word.
+    let options = OpenOptions { max_decompressed: most as u64 + 1, parallel_parsing: false, ..OpenOptions::default() };
+    let file = Mf4File::from_bytes_with_options(bytes.to_vec(), options).map_err(|error| bad("the headers", &error))?;
+    if let Some(flags) = file.unfinalized() {
+        let why = format!("it was not finalised ({flags:?}); open and save it in the program that recorded it");
+        return Err(bad("the header", &why).into());
+    }
+    let mut budget = Budget::new(bytes.len(), shown);
+    let mut read = Read::default();
+    read.facts.push(("version".into(), file.version().to_string()));
+    if !file.comment().trim().is_empty() {
+        read.facts.push(("comment".into(), plain(file.comment())));
+    }
+    let groups: usize = file.data_groups().iter().map(|data| data.channel_groups.len()).sum();
+    let mut number = 0;
+    for data in file.data_groups() {
+        if data.block_index().total_size() > most as u64 {
+            return Err(unpacks_to_more(shown, &format!("group {}", number + 1), bytes.len()).into());
+        }
+        for group in &data.channel_groups {
+            number += 1;
+            if group.is_vlsd() || group.channels.is_empty() {
+                continue;
+            }
+            let place = place(group, number);
+            let rows = usize::try_from(group.sample_count).unwrap_or(usize::MAX);
+            budget.take(group.channels.len(), rows, &place)?;
+            complete(bytes, group).map_err(|why| bad(&place, &why))?;
+            let mut table = Table { name: name(group, number, groups), rows, first_row: 1, ..Table::default() };
+            if !group.comment.trim().is_empty() {
+                table.facts.push(("comment".into(), plain(&group.comment)));
+            }
+            for (index, source) in group.channels.iter().enumerate() {
+                if let Some(why) = unreadable(source) {
+                    table.left_out.push((source.name.clone(), why));
+                    continue;
+                }
+                let values = match input.want {
+                    Want::Outline if !source.is_master() => Vec::new(),
+                    _ => values(&file, source, rows).map_err(|why| bad(&format!("{place}, channel `{}`", source.name), &why))?,
+                };
+                table.channels.push(Channel {
+                    name: source.name.clone(),
+                    unit: unit(source),
+                    comment: Some(plain(&source.comment)).filter(|comment| !comment.is_empty()),
+                    values,
+                    place: Place { column: index + 1, span: None },
+                });
+            }
+            if !table.channels.is_empty() {
+                read.tables.push(table);
+            }
+        }
+    }
+    if read.tables.is_empty() {
+        return Err(Problem::error("no-numbers", format!("`{shown}` has no channels of numbers")).into());
+    }
+    Ok(read)
+}
+
+/// The name of a group in the file, or its number; empty if there is only one and it has no name.
+fn name(group: &ChannelGroup, number: usize, groups: usize) -> String {
+    match group.acquisition_name.trim() {
+        "" if groups == 1 => String::new(),
+        "" => format!("group {number}"),
+        name => name.to_string(),
+    }
+}
+
+fn place(group: &ChannelGroup, number: usize) -> String {
+    match group.acquisition_name.trim() {
+        "" => format!("group {number}"),
+        name => format!("group {number} (`{name}`)"),
+    }
+}
+
+/// The reader corrects the number of samples to what is there; a difference is a file that was cut off.
+fn complete(bytes: &[u8], group: &ChannelGroup) -> Result<(), String> {
+    let number = |at: usize| bytes.get(at..)?.first_chunk::<8>().map(|bytes| u64::from_le_bytes(*bytes));
+    let start = usize::try_from(group.block_offset()).unwrap_or(usize::MAX);
+    let declared = number(start.saturating_add(16))
+        .and_then(|links| usize::try_from(links).ok())
+        .and_then(|links| links.checked_mul(8))
+        .and_then(|links| start.checked_add(LINKS_AT + SAMPLES_AT)?.checked_add(links))
+        .and_then(number);
+    match declared {
+        Some(declared) if declared == group.sample_count => Ok(()),
+        Some(declared) => Err(format!("{declared} samples are declared, {} are there", group.sample_count)),
+        None => Err("its block ends beyond the file".into()),
+    }
+}
+
+fn unreadable(source: &Source) -> Option<String> {
+    if let Some(why) = source.unreadable() {
+        return Some(why.to_string());
+    }
+    if source.is_array() {
+        return Some("an array".into());
+    }
+    match source.value_kind() {
+        ValueKind::Str => Some("text".into()),
+        ValueKind::Bytes => Some("bytes".into()),
+        ValueKind::U8 | ValueKind::U16 | ValueKind::U32 | ValueKind::U64 => None,
+        ValueKind::I8 | ValueKind::I16 | ValueKind::I32 | ValueKind::I64 => None,
+        ValueKind::F32 | ValueKind::F64 => None,
+        _ => Some("neither numbers nor text".into()),
+    }
+}
+
+fn values(file: &Mf4File, source: &Source, rows: usize) -> Result<Vec<f64>, String> {
+    let signal = file.signal(source).map_err(|error| error.to_string())?;
+    if signal.len() > rows {
+        return Err(format!("it has {} samples, its group {rows}", signal.len()));
+    }
+    let mut values = signal.values_f64().map_err(|error| error.to_string())?;
+    if values.len() != rows {
+        return Err(format!("{rows} samples are declared, {} are there", values.len()));
+    }
+    for (value, valid) in values.iter_mut().zip(signal.validity().unwrap_or_default()) {
+        if !valid {
+            *value = f64::NAN;
+        }
+    }
+    Ok(values)
+}
+
+/// A master without a unit is in the SI unit of its kind.
+fn unit(source: &Source) -> Option<String> {
+    let written = source.unit.trim();
+    if written.is_empty() && source.is_time_channel() {
+        return Some("s".into());
+    }
+    (!written.is_empty()).then(|| written.to_string())
+}
+
+/// Longest comment that is kept.
+const LONGEST_COMMENT: usize = 200;
+
+/// The text of a comment without its XML tags.
+fn plain(comment: &str) -> String {
+    let mut inside = false;
+    let mut text = String::new();
+    for c in comment.chars() {
+        match c {
+            '<' => inside = true,
+            '>' if inside => {
+                inside = false;
+                text.push(' ');
+            }
+            c if !inside => text.push(c),
+            _ => {}
+        }
+    }
+    text.split_whitespace().collect::<Vec<_>>().join(" ").chars().take(LONGEST_COMMENT).collect()
+}

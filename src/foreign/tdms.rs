@@ -1,0 +1,340 @@
+//! TDMS of National Instruments, version 2 ("TDMS File Format Internal Structure").
+//!
+//! A file is a list of segments: a lead-in, the objects of the segment with their properties, and raw data in one or more chunks.
+//! A reader of another project was tried (`tdms-rs` 2.0): it allocates what the file declares, and reads one chunk of each segment.
+
+use indexmap::IndexMap;
+
+use super::guard::damaged;
+use super::load::{Budget, MOST_CHANNELS};
+use super::{Channel, Format, Input, Place, Read, Table};
+use crate::problem::Problem;
+
+mod bytes;
+mod scale;
+
+use bytes::{Bytes, Property};
+
+/// Bytes of a lead-in.
+const LEAD_IN: usize = 28;
+
+// Bits of the table of contents of a segment.
+const META_DATA: u32 = 1 << 1;
+const NEW_LIST: u32 = 1 << 2;
+const RAW_DATA: u32 = 1 << 3;
+const INTERLEAVED: u32 = 1 << 5;
+const BIG_ENDIAN: u32 = 1 << 6;
+const DAQMX: u32 = 1 << 7;
+
+/// Seconds from 1904, from which LabVIEW counts, to 1970.
+const EPOCH: i64 = 2_082_844_800;
+
+/// What an object has in the raw data of a segment.
+#[derive(Clone, Copy, Debug)]
+struct Index {
+    kind: u32,
+    count: usize,
+    /// Bytes in each chunk.
+    size: usize,
+}
+
+#[derive(Debug, Default)]
+struct Object {
+    properties: IndexMap<String, Property>,
+    index: Option<Index>,
+    /// It is in the list of the present segment.
+    listed: bool,
+    values: Vec<f64>,
+    /// Why its data are not read.
+    left_out: Option<String>,
+}
+
+#[derive(Default)]
+struct Reader {
+    objects: IndexMap<String, Object>,
+    /// Objects with data in the present segment, in order.
+    active: Vec<usize>,
+}
+
+pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
+    let (bytes, shown) = (input.bytes, input.shown);
+    let mut reader = Reader::default();
+    let mut budget = Budget::new(bytes.len(), shown);
+    let mut at = 0;
+    let mut segment = 0;
+    while at < bytes.len() {
+        segment += 1;
+        let place = format!("segment {segment} (byte {})", at + 1);
+        at = reader.segment(bytes, at, &mut budget, &place).map_err(|failure| match failure {
+            Failure::Problem(problem) => problem,
+            Failure::Reason(why) => damaged(Format::Tdms, shown, &place, why),
+        })?;
+    }
+    let read = tables(reader.objects);
+    if read.tables.iter().all(|table| table.channels.is_empty()) {
+        return Err(Problem::error("no-numbers", format!("`{shown}` has no channels of numbers")).into());
+    }
+    Ok(read)
+}
+
+enum Failure {
+    Problem(Problem),
+    Reason(String),
+}
+
+impl From<String> for Failure {
+    fn from(why: String) -> Self {
+        Self::Reason(why)
+    }
+}
+
+impl From<&str> for Failure {
+    fn from(why: &str) -> Self {
+        Self::Reason(why.into())
+    }
+}
+
+impl Reader {
+    /// Reads the segment at a byte; returns the byte after it.
+    fn segment(&mut self, bytes: &[u8], at: usize, budget: &mut Budget<'_>, place: &str) -> Result<usize, Failure> {
+        let rest = &bytes[at..];
+        let mut lead = Bytes::new(rest.get(..LEAD_IN).ok_or("the file ends within its lead-in")?, false);
+        if lead.take(4)? != b"TDSm" {
+            return Err("it does not begin with `TDSm`".into());
+        }
+        let contents = lead.u32()?;
+        lead.big = contents & BIG_ENDIAN != 0;
+        let _version = lead.u32()?;
+        let (next, raw) = (lead.u64()?, lead.u64()?);
+        // LabVIEW writes all ones if it was interrupted; what is there is then the last segment.
+        let end = if next == u64::MAX { rest.len() } else { position(next)? };
+        let raw = position(raw)?;
+        if end > rest.len() {
+            return Err(format!("{} bytes are declared, {} are left", end - LEAD_IN, rest.len() - LEAD_IN).into());
+        }
+        if raw > end {
+            return Err("its raw data begin after its end".into());
+        }
+        if contents & META_DATA != 0 {
+            if contents & NEW_LIST != 0 {
+                let objects = &mut self.objects;
+                self.active.drain(..).for_each(|at| objects[at].listed = false);
+            }
+            self.meta_data(Bytes::new(&rest[LEAD_IN..raw], lead.big))?;
+        }
+        if contents & RAW_DATA != 0 && raw < end {
+            if contents & DAQMX != 0 {
+                for index in &self.active {
+                    self.objects[*index].left_out = Some("raw data of DAQmx; save the file again in LabVIEW or DIAdem".into());
+                }
+            } else {
+                self.raw_data(&rest[raw..end], contents, budget, place)?;
+            }
+        }
+        Ok(at + end)
+    }
+
+    fn meta_data(&mut self, mut bytes: Bytes<'_>) -> Result<(), Failure> {
+        let objects = bytes.u32()?;
+        for _ in 0..objects {
+            let path = bytes.text()?;
+            let length = bytes.u32()?;
+            if self.objects.len() > MOST_CHANNELS {
+                return Err(format!("more than {MOST_CHANNELS} objects").into());
+            }
+            let entry = self.objects.entry(path.clone());
+            let at = entry.index();
+            let object = entry.or_default();
+            let has_data = match length {
+                u32::MAX => false,
+                0 => object.index.is_some(),
+                // DAQmx: the raw data are those of a card; see `segment`.
+                0x1269 | 0x126a | 0x1369 => {
+                    return Err(
+                        format!("`{path}` holds raw data of DAQmx, which are not read; save the file again in LabVIEW or DIAdem").into()
+                    );
+                }
+                _ => {
+                    let kind = bytes.u32()?;
+                    let _dimension = bytes.u32()?;
+                    let count = size(bytes.u64()?)?;
+                    let bytes_of = match bytes::size_of(kind) {
+                        Some(width) => count.checked_mul(width).ok_or_else(|| format!("`{path}` declares {count} values"))?,
+                        None if kind == bytes::TEXT => size(bytes.u64()?)?,
+                        None => return Err(format!("`{path}` has values of the unknown type {kind:#x}").into()),
+                    };
+                    object.index = Some(Index { kind, count, size: bytes_of });
+                    true
+                }
+            };
+            let properties = bytes.u32()?;
+            for _ in 0..properties {
+                let name = bytes.text()?;
+                let value = bytes.property()?;
+                object.properties.insert(name, value);
+            }
+            if has_data && !object.listed {
+                object.listed = true;
+                self.active.push(at);
+            }
+        }
+        Ok(())
+    }
+
+    fn raw_data(&mut self, data: &[u8], contents: u32, budget: &mut Budget<'_>, place: &str) -> Result<(), Failure> {
+        let big = contents & BIG_ENDIAN != 0;
+        let parts: Vec<(usize, Index)> =
+            self.active.iter().filter_map(|at| Some((*at, self.objects[*at].index?))).filter(|(_, index)| index.size > 0).collect();
+        let chunk =
+            parts.iter().try_fold(0usize, |sum, (_, index)| sum.checked_add(index.size)).ok_or("its chunks are beyond any memory")?;
+        if chunk == 0 {
+            return Err(format!("it has {} bytes of raw data and no channel for them", data.len()).into());
+        }
+        for part in data.chunks(chunk) {
+            if contents & INTERLEAVED != 0 {
+                self.interleaved(part, &parts, big, budget, place)?;
+                continue;
+            }
+            if part.len() < chunk {
+                return Err(format!("a chunk of raw data has {chunk} bytes; the last one has {}", part.len()).into());
+            }
+            let mut from = 0;
+            for (at, index) in &parts {
+                self.add(*at, *index, &part[from..from + index.size], big, budget, place)?;
+                from += index.size;
+            }
+        }
+        Ok(())
+    }
+
+    /// One value of each channel after the other.
+    fn interleaved(
+        &mut self,
+        part: &[u8],
+        parts: &[(usize, Index)],
+        big: bool,
+        budget: &mut Budget<'_>,
+        place: &str,
+    ) -> Result<(), Failure> {
+        let widths: Option<Vec<usize>> = parts.iter().map(|(_, index)| bytes::size_of(index.kind)).collect();
+        let widths = widths.ok_or("it has interleaved texts")?;
+        let row: usize = widths.iter().sum();
+        if part.len() % row != 0 || parts.iter().any(|(_, index)| index.count != parts[0].1.count) {
+            return Err(format!("its rows have {row} bytes, its data {}", part.len()).into());
+        }
+        let mut from = 0;
+        for ((at, index), width) in parts.iter().zip(widths) {
+            let column: Vec<u8> = part.chunks_exact(row).flat_map(|row| &row[from..from + width]).copied().collect();
+            from += width;
+            self.add(*at, *index, &column, big, budget, place)?;
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, at: usize, index: Index, data: &[u8], big: bool, budget: &mut Budget<'_>, place: &str) -> Result<(), Failure> {
+        let object = &mut self.objects[at];
+        let Some(numbers) = bytes::numbers(index.kind, data, big) else {
+            object.left_out = Some(bytes::what(index.kind).into());
+            return Ok(());
+        };
+        budget.add(numbers.len(), place).map_err(Failure::Problem)?;
+        object.values.extend(numbers);
+        Ok(())
+    }
+}
+
+fn size(number: u64) -> Result<usize, String> {
+    usize::try_from(number).ok().filter(|number| *number < usize::MAX / 2).ok_or_else(|| format!("a size of {number} bytes"))
+}
+
+/// A distance from the end of the lead-in as one from its start.
+fn position(number: u64) -> Result<usize, String> {
+    size(number).map(|number| number + LEAD_IN)
+}
+
+/// `/'group'/'channel'`, with doubled quotes.
+fn names(path: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut rest = path;
+    while let Some(inside) = rest.find('\'').map(|open| &rest[open + 1..]) {
+        let mut name = String::new();
+        let mut letters = inside.char_indices().peekable();
+        let mut end = inside.len();
+        while let Some((at, letter)) = letters.next() {
+            if letter != '\'' {
+                name.push(letter);
+            } else if letters.next_if(|(_, next)| *next == '\'').is_some() {
+                name.push('\'');
+            } else {
+                end = at + 1;
+                break;
+            }
+        }
+        names.push(name);
+        rest = &inside[end..];
+    }
+    names
+}
+
+/// Channels of a group with the same time base: number of values, step, offset.
+type Base = (usize, u64, u64);
+
+fn tables(objects: IndexMap<String, Object>) -> Read {
+    let mut read = Read::default();
+    let mut groups: IndexMap<String, (IndexMap<Base, Table>, Vec<(String, String)>, Vec<(String, String)>)> = IndexMap::new();
+    for (path, mut object) in objects {
+        let mut names = names(&path).into_iter();
+        let (Some(group), channel) = (names.next(), names.next()) else {
+            read.facts.extend(object.properties.iter().map(|(name, value)| (name.clone(), value.text())));
+            continue;
+        };
+        let (tables, facts, left_out) = groups.entry(group).or_default();
+        let Some(name) = channel else {
+            facts.extend(object.properties.iter().map(|(name, value)| (name.clone(), value.text())));
+            continue;
+        };
+        if let Err(why) = scale::apply(&object.properties, &mut object.values) {
+            object.left_out = Some(why);
+        }
+        if let Some(why) = object.left_out.or_else(|| object.values.is_empty().then(|| "it has no values".into())) {
+            left_out.push((name, why));
+            continue;
+        }
+        let number = |name: &str| object.properties.get(name).and_then(Property::number);
+        let (step, offset) = (number("wf_increment").unwrap_or(0.0), number("wf_start_offset").unwrap_or(0.0));
+        let rows = object.values.len();
+        let table = tables.entry((rows, step.to_bits(), offset.to_bits())).or_default();
+        if table.channels.is_empty() {
+            table.rate = (step > 0.0 && step.is_finite()).then(|| 1.0 / step);
+            let waveform = object.properties.iter().filter(|(name, _)| name.starts_with("wf_"));
+            table.facts.extend(waveform.map(|(name, value)| (name.clone(), value.text())));
+        }
+        let text = |name: &str| {
+            object.properties.get(name).map(Property::text).map(|text| text.trim().to_string()).filter(|text| !text.is_empty())
+        };
+        let time = object.index.is_some_and(|index| index.kind == bytes::TIME);
+        table.channels.push(Channel {
+            name,
+            unit: text("unit_string").or_else(|| text("NI_UnitDescription")).or_else(|| time.then(|| "s".into())),
+            comment: text("description"),
+            place: Place { column: table.channels.len() + 1, span: None },
+            values: if time { from_first(object.values) } else { object.values },
+        });
+    }
+    for (group, (tables, facts, mut left_out)) in groups {
+        let several = tables.len() > 1;
+        for (index, (_, table)) in tables.into_iter().enumerate() {
+            let name = if several { format!("{group} ({})", index + 1) } else { group.clone() };
+            let facts = facts.iter().cloned().chain(table.facts).collect();
+            read.tables.push(Table { name, facts, first_row: 1, left_out: std::mem::take(&mut left_out), ..table });
+        }
+    }
+    read
+}
+
+/// Times as seconds from the first.
+fn from_first(mut times: Vec<f64>) -> Vec<f64> {
+    let first = times.first().copied().unwrap_or(0.0);
+    times.iter_mut().for_each(|time| *time -= first);
+    times
+}

@@ -1,0 +1,233 @@
+//! Lines, cells, separator and decimal mark.
+
+use std::ops::Range;
+
+use super::super::Options;
+use super::{numbers, stamps};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Separator {
+    Mark(char),
+    /// Any number of blanks and tabs.
+    Blanks,
+}
+
+impl Separator {
+    /// In words, for facts.
+    pub(super) fn words(self) -> String {
+        match self {
+            Self::Mark('\t') => "tab".into(),
+            Self::Mark(mark) => format!("`{mark}`"),
+            Self::Blanks => "blanks".into(),
+        }
+    }
+}
+
+/// A line without its line break.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line<'a> {
+    /// From 1.
+    pub number: usize,
+    pub text: &'a str,
+}
+
+/// The lines of a text with LF, CR LF or CR.
+pub(super) fn lines(text: &str) -> Vec<Line<'_>> {
+    let old = !text.contains('\n');
+    let split = text.split(if old { '\r' } else { '\n' });
+    split.enumerate().map(|(at, line)| Line { number: at + 1, text: line.strip_suffix('\r').unwrap_or(line) }).collect()
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Dialect {
+    pub separator: Separator,
+    pub decimal: char,
+    /// Number of cells of a row.
+    pub columns: usize,
+}
+
+/// Cells of a line: bytes of the line without quotes and surrounding blanks.
+pub(super) fn split(line: &str, separator: Separator) -> Vec<Range<usize>> {
+    let mut cells = Vec::new();
+    let mut from = 0;
+    match separator {
+        Separator::Blanks => {
+            while let Some(start) = line[from..].find(|c: char| !c.is_whitespace()).map(|at| from + at) {
+                let end = match line[start..].strip_prefix('"').and_then(|rest| rest.find('"')) {
+                    Some(close) => start + close + 2,
+                    None => line[start..].find(char::is_whitespace).map_or(line.len(), |at| start + at),
+                };
+                cells.push(trim(line, start..end));
+                from = end;
+            }
+        }
+        Separator::Mark(mark) => {
+            let quotes = line.contains('"');
+            loop {
+                // A separator in quotes does not separate.
+                let skip = if quotes { quoted(&line[from..], mark) } else { 0 };
+                let end = line[from + skip..].find(mark).map_or(line.len(), |at| from + skip + at);
+                cells.push(trim(line, from..end));
+                if end >= line.len() {
+                    break;
+                }
+                from = end + mark.len_utf8();
+            }
+        }
+    }
+    cells
+}
+
+/// Bytes of a quoted cell at the start of a text, or 0.
+fn quoted(text: &str, separator: char) -> usize {
+    let open = text.len() - text.trim_start_matches([' ', '\t']).len();
+    let Some(inside) = text[open..].strip_prefix('"') else { return 0 };
+    let mut from = 0;
+    while let Some(close) = inside[from..].find('"').map(|at| from + at) {
+        let after = &inside[close + 1..];
+        let rest = after.trim_start_matches([' ', '\t']);
+        if rest.is_empty() || rest.starts_with(separator) {
+            return open + 1 + close + 1;
+        }
+        from = close + 1 + usize::from(after.starts_with('"'));
+    }
+    0
+}
+
+fn trim(line: &str, place: Range<usize>) -> Range<usize> {
+    let inner = |range: Range<usize>| {
+        let text = &line[range.clone()];
+        let start = range.start + (text.len() - text.trim_start().len());
+        start..start + text.trim().len()
+    };
+    let place = inner(place);
+    let text = &line[place.clone()];
+    if text.len() >= 2 && text.starts_with('"') && text.ends_with('"') { inner(place.start + 1..place.end - 1) } else { place }
+}
+
+/// Beginnings of comments that are recognised without being named.
+const COMMENTS: [&str; 5] = ["#", "%", "!", "//", "*"];
+
+/// The text after the mark of a comment.
+pub(super) fn comment<'a>(line: &'a str, options: &Options) -> Option<&'a str> {
+    let start = line.trim_start();
+    match &options.comment {
+        Some(mark) => (!mark.is_empty()).then(|| start.strip_prefix(mark.as_str())).flatten(),
+        None => COMMENTS.iter().find_map(|mark| start.strip_prefix(mark)),
+    }
+}
+
+/// Lines looked at to detect the dialect.
+const SAMPLE: usize = 300;
+/// Bytes of these lines looked at.
+const SAMPLE_BYTES: usize = 1 << 20;
+
+/// Detects what was not said, from lines in the middle of the file, where there is no header.
+pub(super) fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
+    let from =
+        options.header_lines.map_or_else(|| (lines.len() / 2).min(lines.len().saturating_sub(SAMPLE)), |count| count.min(lines.len()));
+    let mut bytes = 0;
+    let sample: Vec<&str> = lines[from..]
+        .iter()
+        .map(|line| line.text)
+        .filter(|line| !line.trim().is_empty() && comment(line, options).is_none())
+        .take(SAMPLE)
+        .take_while(|line| {
+            bytes += line.len();
+            bytes <= SAMPLE_BYTES
+        })
+        .collect();
+    let separators = match options.separator {
+        Some(said) => vec![said],
+        None => vec![Separator::Mark(';'), Separator::Mark('\t'), Separator::Mark(','), Separator::Mark('|'), Separator::Blanks],
+    };
+    let decimals = match options.decimal {
+        Some(said) => vec![said],
+        None => vec!['.', ','],
+    };
+    let mut best: Option<(f64, Dialect)> = None;
+    for separator in separators {
+        for decimal in decimals.iter().copied().filter(|decimal| separator != Separator::Mark(*decimal)) {
+            let rows: Vec<(usize, f64)> = sample.iter().filter_map(|line| weigh(line, separator, decimal)).collect();
+            let Some(columns) = most_frequent(rows.iter().map(|(cells, _)| *cells)) else { continue };
+            let score: f64 = rows.iter().filter(|(cells, _)| *cells == columns).map(|(_, weight)| weight).sum();
+            if best.is_none_or(|(before, _)| score > before) {
+                best = Some((score, Dialect { separator, decimal, columns }));
+            }
+        }
+    }
+    best.map(|(_, dialect)| dialect)
+}
+
+/// Number of cells of a row of numbers, and its weight: the more of its cells are numbers, the better fits the dialect.
+fn weigh(line: &str, separator: Separator, decimal: char) -> Option<(usize, f64)> {
+    let mut cells = split(line, separator);
+    // A separator at the end of the line.
+    if cells.len() > 1 && cells.last().is_some_and(Range::is_empty) {
+        cells.pop();
+    }
+    let numbers = numbers_among(line, &cells, decimal)?;
+    Some((cells.len(), (numbers * numbers) as f64 / cells.len() as f64))
+}
+
+/// Number of cells that are numbers, time stamps or empty, if a row can be one of numbers: at least one number or time, and half of
+/// the cells.
+pub(super) fn numbers_among(line: &str, cells: &[Range<usize>], decimal: char) -> Option<usize> {
+    let (mut numbers, mut empty) = (0, 0);
+    for cell in cells {
+        let text = &line[cell.clone()];
+        match numbers::read(text, decimal) {
+            numbers::Cell::Empty => empty += 1,
+            numbers::Cell::Other if stamps::read(text).is_none() => {}
+            _ => numbers += 1,
+        }
+    }
+    (numbers > 0 && 2 * (numbers + empty) >= cells.len()).then_some(numbers + empty)
+}
+
+fn most_frequent(counts: impl Iterator<Item = usize>) -> Option<usize> {
+    let mut counts: Vec<usize> = counts.collect();
+    counts.sort_unstable();
+    counts.chunk_by(|a, b| a == b).max_by_key(|same| same.len()).map(|same| same[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(text: &str) -> Option<(String, char, usize)> {
+        detect(&lines(text), &Options::default()).map(|dialect| (dialect.separator.words(), dialect.decimal, dialect.columns))
+    }
+
+    #[test]
+    fn dialects_are_detected() {
+        for (text, separator, decimal, columns) in [
+            ("t;y\ns;kN\n0,000;1,5\n0,005;1,25\n", "`;`", ',', 2),
+            ("t,y\n0.0,1.5\n0.1,2\n", "`,`", '.', 2),
+            ("t\ty\n0.0\t1.5\n0.1\t\n", "tab", '.', 2),
+            ("t y\n0.0  1.5\n0.1  2\n", "blanks", '.', 2),
+            ("t y\n0,0  1,5\n0,1  2,5\n", "blanks", ',', 2),
+            ("a;b;c\n1.234,5;1;2\n2.345,6;3;4\n", "`;`", ',', 3),
+            ("Zeit;y\n13.05.2024 12:00:00,005;1,5\n13.05.2024 12:00:00,010;1,5\n", "`;`", ',', 2),
+            ("date time y\n2024-05-13 12:00:00 1.5\n", "blanks", '.', 3),
+            ("a, b\n1, 2\n3, 4\n", "`,`", '.', 2),
+            ("a;b;\n1,5;2,5;\n", "`;`", ',', 2),
+        ] {
+            assert_eq!(found(text), Some((separator.into(), decimal, columns)), "{text}");
+        }
+        assert_eq!(found("one\ntwo\n"), None);
+    }
+
+    #[test]
+    fn cells_have_their_places() {
+        let cells =
+            |line: &str, separator| -> Vec<String> { split(line, separator).into_iter().map(|cell| line[cell].to_string()).collect() };
+        let semicolon = Separator::Mark(';');
+        assert_eq!(cells("a; \"b;c\" ;;d ", semicolon), ["a", "b;c", "", "d"]);
+        assert_eq!(cells("\"a", semicolon), ["\"a"]);
+        assert_eq!(cells("", semicolon), [""]);
+        assert_eq!(cells("\"a\"\"b;\";c", semicolon), ["a\"\"b;", "c"]);
+        assert_eq!(cells(" 1  2\t\"a b\" ", Separator::Blanks), ["1", "2", "a b"]);
+        assert_eq!(cells("", Separator::Blanks), [""; 0]);
+    }
+}

@@ -1,0 +1,264 @@
+//! Which channel of the protocol a channel of a file may be: by name, and by what is in it.
+
+use super::look::{Look, short};
+use crate::import::mapping::Convention;
+use crate::run::needs::ChannelNeed;
+use crate::units::{Dimension, Unit};
+
+/// A channel of the protocol with what was found for it.
+#[derive(Debug, PartialEq)]
+pub struct Guess {
+    pub channel: String,
+    /// The foreign channel; `None` where a person must decide.
+    pub from: Option<String>,
+    /// Foreign channels that a person may choose.
+    pub candidates: Vec<String>,
+    /// Reasons and figures, one comment each.
+    pub reasons: Vec<String>,
+}
+
+/// A mean this many standard deviations from zero is a load and not a vibration.
+const STEADY: f64 = 3.0;
+/// A mean this share above the median of its group is told.
+const ABOVE: f64 = 1.03;
+
+/// Letters and digits in lower case; `*` and `.` stand for derivatives and are kept.
+fn plain(name: &str) -> String {
+    name.to_lowercase().chars().filter(|letter| letter.is_alphanumeric() || *letter == '*').collect()
+}
+
+/// Whether a foreign name is known for a channel.
+fn is_name_of(convention: &Convention, foreign: &str, channel: &str) -> bool {
+    let foreign = plain(foreign);
+    let known = convention.names.iter().find(|(name, _)| name == channel).map_or(&[][..], |(_, others)| others);
+    plain(channel) == foreign || known.iter().any(|other| plain(other) == foreign)
+}
+
+/// The foreign channels that carry a name of a channel.
+fn named<'a>(looks: &'a [Look], convention: &Convention, channel: &str) -> Vec<&'a Look> {
+    looks.iter().filter(|look| is_name_of(convention, &look.name, channel)).collect()
+}
+
+/// The channel of time or distance: by name, else by content.
+pub fn axis<'a>(looks: &'a [Look], convention: &Convention, name: &str, dimension: Dimension) -> (Option<&'a Look>, String) {
+    let fits = |look: &&&Look| look.unit.as_ref().is_some_and(|unit| unit.dimension == dimension);
+    let named = named(looks, convention, name);
+    if let [one, ..] = named.iter().filter(fits).collect::<Vec<_>>()[..] {
+        let content = match (one.increases, one.even) {
+            (true, true) => "increases in even steps",
+            (true, false) => "increases",
+            (false, _) => "BUT does not increase",
+        };
+        return (Some(one), format!("by name; {content}"));
+    }
+    let content: Vec<&Look> = looks.iter().filter(|look| fits(&look)).filter(|look| look.increases).collect();
+    match content[..] {
+        [one] => (Some(one), format!("by content: the only {} that increases", words(dimension))),
+        _ => (None, String::new()),
+    }
+}
+
+/// The channel of the speed.
+pub fn speed<'a>(looks: &'a [Look], convention: &Convention) -> (Option<&'a Look>, String) {
+    let speed = Dimension::LENGTH / Dimension::TIME;
+    let all: Vec<&Look> = looks.iter().filter(|look| look.unit.as_ref().is_some_and(|unit| unit.dimension == speed)).collect();
+    match (all.iter().find(|look| is_name_of(convention, &look.name, "speed")), &all[..]) {
+        (Some(one), _) => (Some(one), "by name".into()),
+        (None, [one]) => (Some(one), "by content: the only speed".into()),
+        _ => (None, String::new()),
+    }
+}
+
+fn words(dimension: Dimension) -> String {
+    dimension.in_words().split_once(' ').map_or_else(String::new, |(_, word)| word.to_string())
+}
+
+/// Median of the means of steady channels of a dimension in SI, with their number.
+fn common_mean(looks: &[Look], dimension: Dimension, within: f64) -> Option<(f64, usize)> {
+    let steady =
+        |look: &&Look| look.mean.abs() > STEADY * look.deviation && look.unit.as_ref().is_some_and(|unit| unit.dimension == dimension);
+    let mut means: Vec<f64> = looks.iter().filter(steady).filter_map(|look| Some(look.unit.as_ref()?.to_si(look.mean))).collect();
+    means.sort_by(f64::total_cmp);
+    let median = *means.get(means.len() / 2)?;
+    let near = means.iter().filter(|mean| (1.0 / within..=within).contains(&(*mean / median))).count();
+    Some((median, near))
+}
+
+/// One guess for each channel that is needed, and for each other one of the convention that a file has; in the order of the
+/// convention.
+pub fn guesses(looks: &[Look], needs: &[&ChannelNeed], convention: &Convention) -> Vec<Guess> {
+    let mut guesses: Vec<Guess> = needs.iter().map(|need| one(looks, need, convention)).collect();
+    let axes = ["time", "distance", "speed"];
+    for (name, _) in
+        convention.names.iter().filter(|(name, _)| !axes.contains(&name.as_str()) && !needs.iter().any(|need| need.column == *name))
+    {
+        if let [look] = named(looks, convention, name)[..] {
+            let reasons = vec!["by name; the protocol does not need it".to_string(), look.in_words()];
+            guesses.push(Guess { channel: name.clone(), from: Some(look.name.clone()), candidates: Vec::new(), reasons });
+        }
+    }
+    let place = |guess: &Guess| convention.names.iter().position(|(name, _)| *name == guess.channel).unwrap_or(usize::MAX);
+    guesses.sort_by_key(place);
+    for group in &convention.opposite {
+        for (right, left) in &group.pairs {
+            let mean = |guesses: &[Guess], name: &str| {
+                let guess = guesses.iter().find(|guess| guess.channel == name)?;
+                let look = looks.iter().find(|look| Some(&look.name) == guess.from.as_ref())?;
+                Some((look.mean, look.name.clone(), look.unit_text.clone()))
+            };
+            let (Some((first, first_name, unit)), Some((second, name, _))) = (mean(&guesses, right), mean(&guesses, left)) else {
+                continue;
+            };
+            if first * second > 0.0
+                && let Some(guess) = guesses.iter_mut().find(|guess| guess.channel == *left)
+            {
+                guess.from = None;
+                guess.reasons.insert(0, format!("{name}, or with the other sign: -{name}"));
+                guess.candidates.push(name.clone());
+                guess.reasons.push(format!(
+                    "its mean {} {unit} has the sign of {first_name} ({} {unit}); {}",
+                    short(second),
+                    short(first),
+                    group.title
+                ));
+            }
+        }
+    }
+    guesses
+}
+
+fn one(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Guess {
+    let found = named(looks, convention, &need.column);
+    let names = found.iter().map(|look| look.name.clone()).collect::<Vec<_>>();
+    let open = |reasons: Vec<String>| Guess { channel: need.column.clone(), from: None, candidates: names.clone(), reasons };
+    let taken =
+        |look: &Look, reasons| Guess { channel: need.column.clone(), from: Some(look.name.clone()), candidates: Vec::new(), reasons };
+    let wanted = Unit::parse(&need.unit).ok();
+    let [look] = found[..] else {
+        let mut reasons = Vec::new();
+        if found.is_empty() {
+            reasons.push(format!("{}; no channel has a known name of it", need.unit));
+        } else {
+            reasons.push(format!(
+                "several channels have a name of it: {}",
+                found.iter().map(|look| look.name.as_str()).collect::<Vec<_>>().join(", ")
+            ));
+        }
+        reasons.extend(by_content(looks, need, convention));
+        return open(reasons);
+    };
+    let mut reasons = vec!["by name".to_string(), look.in_words()];
+    if look.missing == look.rows || look.deviation == 0.0 {
+        reasons.insert(0, look.name.clone());
+        reasons.push("BUT it has no signal".into());
+        return open(reasons);
+    }
+    let (Some(wanted), Some(unit)) = (&wanted, &look.unit) else {
+        return taken(look, reasons);
+    };
+    if unit.dimension != wanted.dimension {
+        reasons.push(format!("{unit} is {}; {} is needed", unit.dimension.in_words(), wanted.dimension.in_words()));
+        return taken(look, reasons);
+    }
+    for group in convention.common.iter().filter(|group| group.channels.contains(&need.column)) {
+        let Some((median, near)) = common_mean(looks, wanted.dimension, group.within) else { continue };
+        let ratio = unit.to_si(look.mean) / median;
+        if near < group.channels.len() {
+            continue;
+        }
+        if (1.0 / group.within..=group.within).contains(&ratio) {
+            reasons.push(format!("by content: its mean is common to {near} channels, {}", group.title));
+            if ratio > ABOVE && !group.above.is_empty() {
+                reasons.push(format!("{:.0} % above the median: {}", 100.0 * (ratio - 1.0), group.above));
+            }
+        } else {
+            reasons.insert(0, look.name.clone());
+            reasons.push(format!("BUT its mean is {:.2} times that of the {near} channels with a common mean ({})", ratio, group.title));
+            return open(reasons);
+        }
+    }
+    taken(look, reasons)
+}
+
+/// Candidates by content for a channel of a group with a common mean.
+fn by_content(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Option<String> {
+    let wanted = Unit::parse(&need.unit).ok()?;
+    let group = convention.common.iter().find(|group| group.channels.contains(&need.column))?;
+    let (median, near) = common_mean(looks, wanted.dimension, group.within)?;
+    if near < group.channels.len() {
+        return None;
+    }
+    let alike = looks.iter().filter(|look| {
+        look.unit.as_ref().is_some_and(|unit| {
+            unit.dimension == wanted.dimension && (1.0 / group.within..=group.within).contains(&(unit.to_si(look.mean) / median))
+        })
+    });
+    let names: Vec<&str> = alike.map(|look| look.name.as_str()).collect();
+    Some(format!("by content, one of {} ({}; mean {} {wanted})", names.join(", "), group.title, short(wanted.from_si(median))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::needs::Users;
+
+    fn look(name: &str, unit: &str, mean: f64) -> Look {
+        Look {
+            table: 0,
+            name: name.into(),
+            unit_text: unit.into(),
+            unit: Unit::parse(unit).ok(),
+            comment: None,
+            rate: Some(200.0),
+            rows: 100,
+            missing: 0,
+            low: mean - 1.0,
+            high: mean + 1.0,
+            mean,
+            deviation: 0.5,
+            increases: false,
+            even: false,
+        }
+    }
+
+    fn need(column: &str, unit: &str) -> ChannelNeed {
+        ChannelNeed { record: "measured", column: column.into(), channel: None, unit: unit.into(), required: true, users: Users::default() }
+    }
+
+    fn convention() -> Convention {
+        Convention {
+            names: vec![("Q_1R".into(), vec!["ST1 Q re".into()]), ("Y_1L".into(), vec!["ST1 Y li".into()])],
+            common: vec![crate::import::mapping::Common {
+                title: "vertical".into(),
+                channels: vec!["Q_1R".into(), "Q_1L".into()],
+                within: 1.5,
+                above: "outer".into(),
+            }],
+            opposite: vec![crate::import::mapping::Opposite { title: "guiding".into(), pairs: vec![("Y_1R".into(), "Y_1L".into())] }],
+            ..Convention::default()
+        }
+    }
+
+    #[test]
+    fn names_and_contents_agree_or_the_place_is_open() {
+        let looks = [look("st1 q RE", "kN", 60.0), look("Q 1L", "N", 50_000.0), look("Y_1R", "kN", 2.0), look("ST1 Y li", "kN", 1.5)];
+        let needs = [need("Q_1R", "kN"), need("Q_1L", "kN"), need("Y_1R", "kN"), need("Y_1L", "kN"), need("az_I", "m/s^2")];
+        let found = guesses(&looks, &needs.iter().collect::<Vec<_>>(), &convention());
+        let from: Vec<Option<&str>> = found.iter().map(|guess| guess.from.as_deref()).collect();
+        // The sign of the left guiding force is open, and there is no acceleration.
+        assert_eq!(from, [Some("st1 q RE"), Some("Q 1L"), Some("Y_1R"), None, None]);
+        assert!(found[0].reasons.iter().any(|reason| reason.contains("common to 2 channels")), "{found:?}");
+        assert!(found[3].reasons[0].contains("-ST1 Y li"), "{found:?}");
+    }
+
+    #[test]
+    fn a_name_with_another_content_is_open() {
+        let looks = [look("Q_1R", "kN", 60.0), look("Q_1L", "kN", 58.0), look("a", "kN", 59.0)];
+        let mut wrong = looks.to_vec();
+        wrong[0].mean = 6.0;
+        let found = guesses(&wrong, &[&need("Q_1R", "kN")], &convention());
+        assert_eq!(found[0].from, None, "{found:?}");
+        let unnamed = guesses(&[look("x", "kN", 60.0), look("y", "kN", 58.0)], &[&need("Q_1R", "kN")], &convention());
+        assert!(unnamed[0].reasons.iter().any(|reason| reason.contains("one of x, y")), "{unnamed:?}");
+    }
+}

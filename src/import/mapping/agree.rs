@@ -1,0 +1,129 @@
+//! Compares a mapping with the needs of a protocol, before any record is read.
+
+use super::{ChannelMap, Channels, Distance, Mapping, Side};
+use crate::data::RecordKind;
+use crate::problem::{Problem, Problems, nearest};
+use crate::run::needs::{ChannelNeed, Needs};
+use crate::source::Spanned;
+use crate::units::Unit;
+
+/// What the needs call the records of a side.
+pub fn record_of(kind: RecordKind) -> &'static str {
+    match kind {
+        RecordKind::Measurement => "measured",
+        RecordKind::Simulation => "simulated",
+        RecordKind::Track => "track",
+    }
+}
+
+/// Problems: `channel-missing`, `unit-mismatch`, `column-missing`, `datum-missing`; warnings: `side-missing`, `unknown-channel`.
+pub fn agree(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
+    for kind in [RecordKind::Measurement, RecordKind::Simulation] {
+        let of_side: Vec<&ChannelNeed> = needs.channels.iter().filter(|need| need.record == record_of(kind)).collect();
+        match mapping.side(kind) {
+            Some(side) => agree_side(side, &of_side, problems),
+            None if of_side.iter().any(|need| need.required) => {
+                let says = format!("the protocol also reads the {}, which this mapping does not import", kind.key());
+                problems.push(Problem::warning("side-missing", says).at(&mapping.top()));
+            }
+            None => {}
+        }
+    }
+    for need in needs.sections.iter().filter(|need| need.required && mapping.sections.table.is_some()) {
+        if !mapping.sections.has_column(&need.key) {
+            let says = format!("the table of sections has no column `{}`, which the protocol needs: {}", need.key, need.title);
+            problems.push(Problem::error("column-missing", says).at(&mapping.sections.span).suggest(&need.key, mapping.sections.columns()));
+        }
+    }
+    if needs.sections.iter().any(|need| need.required) && mapping.sections.table.is_none() {
+        let problem = Problem::error("column-missing", "the protocol evaluates sections, and the mapping lists only names")
+            .at(&mapping.sections.span);
+        problems.push(problem.help("name the table of sections: `sections: sections.csv`"));
+    }
+    for need in needs.vehicle.iter().filter(|need| need.required) {
+        match &mapping.vehicle {
+            None => {
+                let problem = Problem::error(
+                    "key-missing",
+                    format!("the protocol needs vehicle data (`{}`: {}), and the mapping names no vehicle file", need.key, need.title),
+                );
+                problems.push(problem.at(&mapping.top()).help("write `vehicle: vehicle.yaml`"));
+                break;
+            }
+            Some((written, node)) if node.lookup(&need.key).is_none() => {
+                let says = format!("the vehicle file has no `{}`, which the protocol needs: {}", need.key, need.title);
+                let known = node.entries().iter().map(|(key, _)| key.text.as_str());
+                problems.push(Problem::error("datum-missing", says).at(&written.span).suggest(&need.key, known));
+            }
+            Some(_) => {}
+        }
+    }
+}
+
+fn agree_side(side: &Side, needs: &[&ChannelNeed], problems: &mut Problems) {
+    let named = |name: &str| needs.iter().find(|need| need.column == name);
+    let axes: Vec<(&str, bool)> = vec![("time", true), ("distance", side.distance.is_some())];
+    let Channels::Maps(maps) = &side.channels else { return };
+    let is_mapped = |name: &str| maps.iter().any(|map| map.name.value == name) || axes.iter().any(|(axis, there)| *axis == name && *there);
+    let strangers: Vec<&Spanned<String>> = maps.iter().map(|map| &map.name).filter(|name| named(&name.value).is_none()).collect();
+    let missing: Vec<&&ChannelNeed> = needs.iter().filter(|need| need.required && !is_mapped(&need.column)).collect();
+    if let [first, ..] = missing[..] {
+        let list: Vec<String> = missing.iter().map(|need| format!("`{}`", need.column)).collect();
+        let says = match &list[..] {
+            [one] => format!("the protocol needs {one} of the {}, and it is not mapped", side.kind.key()),
+            _ => format!("the protocol needs {} channels of the {} that are not mapped: {}", list.len(), side.kind.key(), list.join(", ")),
+        };
+        let users = &first.users;
+        let user = users.quantities.iter().chain(&users.rules).next();
+        let mut problem = Problem::error("channel-missing", says).at(&side.span);
+        let near = missing.iter().find_map(|need| {
+            let slip = nearest(&need.column, strangers.iter().map(|name| name.value.as_str()))?;
+            strangers.iter().find(|name| name.value == slip).map(|name| (need, *name))
+        });
+        if let Some((need, slip)) = near {
+            problem = problem.also(&slip.span, format!("is `{}` meant?", need.column));
+        } else if let Some(user) = user {
+            problem = problem.help(format!("`{}` is for {user}; `fishplate explain PROTOCOL --stage needs` lists all needs", first.column));
+        }
+        problems.push(problem);
+    }
+    let others = maps.iter().chain(side.distance.iter().filter_map(|distance| match distance {
+        Distance::Channel(map) => Some(map),
+        Distance::Speed { .. } | Distance::Trigger { .. } => None,
+    }));
+    for map in others {
+        if let Some(need) = named(&map.name.value) {
+            units(map, need, problems);
+        }
+    }
+}
+
+/// Units that the mapping states must be of the dimension of the channel.
+fn units(map: &ChannelMap, need: &ChannelNeed, problems: &mut Problems) {
+    let Ok(wanted) = Unit::parse(&need.unit) else { return };
+    let stated = map.unit.iter().chain(&map.written_in).map(|unit| (&unit.value, &unit.span));
+    for (unit, span) in stated.chain(map.offset.iter().map(|offset| (&offset.value.1, &offset.span))) {
+        if unit.dimension != wanted.dimension {
+            let says = format!(
+                "`{}` is {} in the protocol ({wanted}), and {unit} is {}",
+                map.name.value,
+                wanted.dimension.in_words(),
+                unit.dimension.in_words()
+            );
+            problems.push(Problem::error("unit-mismatch", says).at(span).also(&map.name.span, wanted.dimension.in_words()));
+        }
+    }
+}
+
+/// The unit in which a channel is written: as stated, else as the protocol has it.
+pub fn target(map: &ChannelMap, kind: RecordKind, needs: Option<&Needs>) -> Option<Unit> {
+    if let Some(unit) = &map.written_in {
+        return Some(unit.value.clone());
+    }
+    unit_needed(&map.name.value, kind, needs)
+}
+
+pub fn unit_needed(name: &str, kind: RecordKind, needs: Option<&Needs>) -> Option<Unit> {
+    let need = needs?.channels.iter().find(|need| need.record == record_of(kind) && need.column == name)?;
+    Unit::parse(&need.unit).ok()
+}

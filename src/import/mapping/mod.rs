@@ -1,0 +1,68 @@
+//! A mapping: what the channels of foreign records are in a campaign, as an engineer states it in a YAML file.
+
+pub mod agree;
+mod channels;
+mod convention;
+mod distance;
+mod format;
+mod read;
+mod sections;
+mod side;
+mod stated;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+pub use channels::{ChannelMap, Channels, Term};
+pub use convention::{Common, Convention, Opposite, Turning, find as find_convention};
+pub use distance::{Distance, Match, Time};
+pub use read::read;
+pub use sections::{Sections, record_path};
+pub use side::{Side, Turned};
+pub use stated::Stated;
+
+use crate::data::RecordKind;
+use crate::source::{Source, Span, Spanned};
+use crate::yaml::{Key, Node};
+
+/// A checked mapping. Nothing of the records has been read yet.
+#[derive(Debug)]
+pub struct Mapping {
+    pub source: Arc<Source>,
+    /// The folder that paths are relative to.
+    pub folder: PathBuf,
+    /// Name of the campaign.
+    pub name: Spanned<String>,
+    pub protocol: Option<Spanned<String>>,
+    /// Further keys of `campaign.yaml`, as written.
+    pub campaign: Vec<(Key, Node)>,
+    pub sections: Sections,
+    /// The vehicle file as written, and its content.
+    pub vehicle: Option<(Spanned<String>, Node)>,
+    /// Files copied as they are.
+    pub copies: Vec<Spanned<String>>,
+    /// Path of the track file of a section, with `{section}`.
+    pub track: Option<Spanned<String>>,
+    /// Distance kept before and after each section, in m; the whole record where it is not stated.
+    pub margin: Option<f64>,
+    pub turning: Option<Turning>,
+    pub sides: Vec<Side>,
+}
+
+impl Mapping {
+    pub fn side(&self, kind: RecordKind) -> Option<&Side> {
+        self.sides.iter().find(|side| side.kind == kind)
+    }
+
+    /// The path of a file that the mapping names, and its name in messages.
+    pub fn place(&self, written: &str) -> (PathBuf, String) {
+        let path = self.folder.join(written);
+        let shown = path.display().to_string();
+        (path, shown)
+    }
+
+    /// Start of the text, for problems of what is missing.
+    pub fn top(&self) -> Span {
+        self.source.span(0..0)
+    }
+}

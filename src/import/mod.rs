@@ -1,0 +1,156 @@
+//! Imports records of other systems: from a mapping and its files to a campaign.
+//!
+//! | file | content |
+//! |---|---|
+//! | `mapping/` | the mapping: read, checked, compared with the needs of a protocol |
+//! | `process/` | from a file to the record of a section |
+//! | `write` | the campaign, with an account of what was done |
+//! | `exchanged` | after the import: channels that agree better with another one |
+//! | `draft/` | a mapping proposed from the files themselves |
+
+#![allow(clippy::cast_precision_loss)]
+
+pub mod draft;
+pub mod exchanged;
+pub mod mapping;
+pub mod process;
+pub mod write;
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::data::RecordKind;
+use crate::data::origin::ImportedRecord;
+use crate::data::write::Outputs;
+use crate::foreign::{self, File};
+use crate::problem::{Problem, Problems};
+use crate::run::needs::Needs;
+use mapping::{Mapping, Side};
+use process::{Made, Of, record};
+use write::{SourceFile, account, add_campaign, record_text};
+
+/// Files that are read together: each worker holds one file and its records.
+const AT_A_TIME: usize = 16;
+
+/// Sections that are read from one file.
+struct Job<'a> {
+    side: &'a Side,
+    path: String,
+    sections: Vec<&'a str>,
+}
+
+/// Reads all records and adds the campaign to the outputs; nothing is in place before these are committed.
+///
+/// `progress` is called after each record.
+///
+/// # Errors
+/// Those of the files and of [`record`], of all sections; of writing.
+pub fn import(
+    mapping: &Mapping,
+    needs: Option<&Needs>,
+    outputs: &mut Outputs,
+    progress: &(dyn Fn(&str) + Sync),
+) -> Result<Problems, Problems> {
+    let mut jobs: Vec<Job<'_>> = Vec::new();
+    for side in &mapping.sides {
+        for name in &mapping.sections.names {
+            let path = mapping.sections.fill(&side.files.value, &name.value);
+            match jobs.iter_mut().find(|job| job.side.kind == side.kind && job.path == path) {
+                Some(job) => job.sections.push(&name.value),
+                None => jobs.push(Job { side, path, sections: vec![&name.value] }),
+            }
+        }
+    }
+    let (mut faults, mut warnings) = (Problems::default(), Problems::default());
+    let mut sources: Vec<SourceFile> = Vec::new();
+    let mut accounts: BTreeMap<(RecordKind, usize), ImportedRecord> = BTreeMap::new();
+    for some in jobs.chunks(AT_A_TIME) {
+        let done: Vec<Done> = some.par_iter().map(|job| work(job, mapping, needs, progress)).collect();
+        for job in done {
+            let Done { source, texts, problems } = job;
+            problems.into_iter().for_each(|problem| faults.push(problem));
+            let Some(source) = source else { continue };
+            for (made, text) in texts {
+                // After a fault nothing is written; the rest is read for its faults.
+                if !faults.any_error() {
+                    let inside = mapping::record_path(made.kind, &made.section, "csv");
+                    outputs.add(&inside, text.as_bytes()).map_err(|problem| Problems(vec![problem]))?;
+                }
+                let number = mapping.sections.names.iter().position(|name| name.value == made.section).unwrap_or(0);
+                accounts.insert((made.kind, number), account(&made, &source));
+                made.warnings.into_iter().for_each(|problem| warnings.push(problem));
+            }
+            if !sources.contains(&source) {
+                sources.push(source);
+            }
+        }
+    }
+    if faults.any_error() {
+        return Err(few(faults));
+    }
+    add_campaign(outputs, mapping, &sources, accounts.into_values().collect()).map_err(|problem| Problems(vec![problem]))?;
+    Ok(warnings)
+}
+
+struct Done {
+    source: Option<SourceFile>,
+    texts: Vec<(Made, String)>,
+    problems: Vec<Problem>,
+}
+
+fn work(job: &Job<'_>, mapping: &Mapping, needs: Option<&Needs>, progress: &(dyn Fn(&str) + Sync)) -> Done {
+    let (path, shown) = mapping.place(&job.path);
+    let file = match foreign::read(&path, &shown, &job.side.format) {
+        Ok(file) => file,
+        Err(problems) => {
+            let problems =
+                problems.into_iter().map(|problem| if problem.at.is_some() { problem } else { problem.at(&job.side.files.span) }).collect();
+            return Done { source: None, texts: Vec::new(), problems };
+        }
+    };
+    let mut done = Done { source: None, texts: Vec::new(), problems: Vec::new() };
+    for section in &job.sections {
+        let of = Of { mapping, side: job.side, needs, section, file: &file, shown: &shown };
+        match record(&of) {
+            Ok(made) => {
+                let text = record_text(&made.columns);
+                done.texts.push((Made { columns: Vec::new(), ..made }, text));
+            }
+            Err(problems) => done.problems.extend(problems),
+        }
+        progress(section);
+    }
+    done.source = Some(SourceFile { path: job.path.clone(), sha256: file.sha256.clone(), read_as: read_as(&file) });
+    done
+}
+
+/// The format and what was detected in it, in a line.
+fn read_as(file: &File) -> String {
+    let facts = file.facts.iter().map(|(name, value)| format!("{name} {value}"));
+    std::iter::once(file.format.word().to_string()).chain(facts).collect::<Vec<_>>().join("; ")
+}
+
+/// Most problems reported; the same fault is usually in every section.
+const MOST_TOLD: usize = 20;
+
+/// The same fault of several sections once, each with its place.
+fn few(problems: Problems) -> Problems {
+    let mut told = Problems::default();
+    let mut more = 0;
+    for problem in problems.0 {
+        let same = |known: &Problem| {
+            let place = |problem: &Problem| problem.at.as_ref().map(|at| (at.source.name.clone(), at.start, at.end));
+            known.code == problem.code && known.at.is_some() && place(known) == place(&problem)
+        };
+        if told.0.len() >= MOST_TOLD || told.0.iter().any(same) {
+            more += 1;
+        } else {
+            told.push(problem);
+        }
+    }
+    if more > 0 {
+        told.push(Problem::error("more-problems", format!("{more} more of other sections, most of the same kind")));
+    }
+    told
+}

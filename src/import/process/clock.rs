@@ -1,0 +1,189 @@
+//! Time of a table, and the grid of a record.
+
+use std::ops::Range;
+
+use super::find::Of;
+use crate::foreign::Table;
+use crate::metrics::{resample, sinc};
+use crate::problem::Problem;
+use crate::units::{Dimension, Unit};
+
+/// A rate within this share of another is the same: rates are rounded, and clocks differ by less than 0.01 %.
+pub const SAME_RATE: f64 = 1e-3;
+/// Largest deviation of a time from even steps, as a share of a step, for a filter to apply. Times rounded to milliseconds at 200 Hz
+/// deviate by a tenth.
+const EVEN: f64 = 0.2;
+
+/// The times of a table in s, increasing, and its mean rate.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    pub times: Vec<f64>,
+    pub rate: f64,
+    pub even: bool,
+}
+
+/// The times of a table, with the shift and the drift of the mapping.
+pub fn clock(of: &Of<'_>, table: &Table, alone: bool, facts: &[(String, String)]) -> Result<Clock, Problem> {
+    let time = &of.side.time;
+    let named = |name: &str| table.channels.iter().find(|channel| channel.name == name);
+    let which = if table.name.is_empty() { String::new() } else { format!(", table `{}`", table.name) };
+    let found = time.from.iter().find_map(|name| named(&name.value).map(|channel| (name, channel)));
+    let mut times = match (found, time.from.first()) {
+        (Some((name, channel)), _) => {
+            let text = channel.unit.as_deref().map(str::trim).filter(|text| !text.is_empty());
+            let stated = text.and_then(|text| of.side.units.iter().find(|(known, _)| known == text).map(|(_, unit)| unit.clone()));
+            let unit = time.unit.as_ref().map(|unit| unit.value.clone()).or(stated).or_else(|| Unit::parse(text?).ok());
+            let Some(unit) = unit.filter(|unit| unit.dimension == Dimension::TIME) else {
+                let unit = text.map_or_else(|| "no unit".to_string(), |text| format!("the unit `{text}`"));
+                let problem =
+                    Problem::error("unit-missing", format!("`{}`{which}: the time `{}` has {unit}", of.shown, name.value)).at(&name.span);
+                return Err(problem.help(format!("write its unit: `time: {{from: {}, unit: s}}`", name.value)));
+            };
+            channel.values.iter().map(|value| unit.to_si(*value)).collect::<Vec<f64>>()
+        }
+        (None, Some(first)) => {
+            let known = table.channels.iter().map(|channel| channel.name.as_str());
+            let problem = Problem::error("unknown-channel", format!("`{}`{which} has no channel `{}`", of.shown, first.value));
+            let problem = problem.at(&first.span).suggest(&first.value, known);
+            return Err(match problem.help {
+                Some(_) => problem,
+                None => problem.help("where the groups of a file call their time differently, list the names: `time: [Time, t_slow]`"),
+            });
+        }
+        (None, None) => {
+            let Some(rate) = time.rate.or(table.rate).filter(|rate| *rate > 0.0 && alone) else {
+                let says = match alone {
+                    true => format!("`{}`{which} states neither a time nor a sampling rate", of.shown),
+                    false => format!("`{}`: the channels are in several tables, and the mapping does not say what their time is", of.shown),
+                };
+                let problem = Problem::error("time-missing", says).at(&time.span);
+                return Err(problem.help("write `time: NAME`, the channel of the time, or `time: {rate: 200 Hz}`"));
+            };
+            (0..table.rows).map(|row| row as f64 / rate).collect()
+        }
+    };
+    let shift = time.shift.as_ref().map(|shift| shift.of(of.section, &of.mapping.sections, facts)).transpose()?.flatten().unwrap_or(0.0);
+    times.iter_mut().for_each(|at| *at = *at / (1.0 + time.drift) + shift);
+    increasing(of, table, &times, &which)?;
+    let (first, last) = (times[0], times[times.len() - 1]);
+    let rate = (times.len() - 1) as f64 / (last - first);
+    let even = times.iter().enumerate().all(|(at, time)| (time - (first + at as f64 / rate)).abs() * rate <= EVEN);
+    Ok(Clock { times, rate, even })
+}
+
+fn increasing(of: &Of<'_>, table: &Table, times: &[f64], which: &str) -> Result<(), Problem> {
+    if times.len() < 2 {
+        return Err(Problem::error("too-short", format!("`{}`{which} has {} samples", of.shown, times.len())).at(&of.side.files.span));
+    }
+    let Some(at) = (0..times.len()).find(|&at| !times[at].is_finite() || (at > 0 && times[at] <= times[at - 1])) else { return Ok(()) };
+    let row = table.first_row + at;
+    let is = if times[at].is_finite() { "does not increase" } else { "has no value" };
+    let problem =
+        Problem::error("time-not-increasing", format!("`{}`{which}: the time {is} in row {row}", of.shown)).at(&of.side.time.span);
+    Err(problem.help("export a record without interruption, or repair its time"))
+}
+
+/// The points in time of a record.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    pub times: Vec<f64>,
+    pub rate: f64,
+    /// The rows of the base table that these are; absent for another rate.
+    pub rows: Option<Range<usize>>,
+}
+
+/// The grid inside a span: the samples of the base table, or even steps of a wanted rate.
+pub fn grid(base: &Clock, wanted: Option<f64>, (start, end): (f64, f64)) -> Option<Grid> {
+    /// Rounding of times, in s.
+    const ROUNDING: f64 = 1e-9;
+    match wanted.filter(|rate| (rate / base.rate - 1.0).abs() > SAME_RATE) {
+        None => {
+            let from = base.times.partition_point(|time| *time < start - ROUNDING);
+            let to = base.times.partition_point(|time| *time <= end + ROUNDING);
+            (from + 1 < to).then(|| Grid { times: base.times[from..to].to_vec(), rate: base.rate, rows: Some(from..to) })
+        }
+        Some(rate) => {
+            let steps = ((end - start) * rate + 1e-6).floor();
+            // A step that is wrong by orders of magnitude gives an error instead of filling the memory.
+            (1.0..1e8).contains(&steps).then(|| Grid {
+                times: (0..=steps as usize).map(|at| start + at as f64 / rate).collect(),
+                rate,
+                rows: None,
+            })
+        }
+    }
+}
+
+/// How a signal came to the points of the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum How {
+    AsRecorded,
+    /// Filtered and interpolated by a windowed sinc.
+    Filtered,
+    /// Linear between samples.
+    Linear,
+}
+
+/// A signal at the points of the grid.
+///
+/// # Errors
+/// A reason, to follow the name of the channel.
+pub fn on_grid(values: &[f64], clock: &Clock, is_base: bool, grid: &Grid, axis: bool) -> Result<(Vec<f64>, How), String> {
+    if let Some(rows) = grid.rows.as_ref().filter(|_| is_base) {
+        return Ok((values[rows.clone()].to_vec(), How::AsRecorded));
+    }
+    // A slow channel is interpolated linearly; an axis as well, which then increases.
+    if axis || clock.rate < grid.rate * (1.0 - SAME_RATE) {
+        let (first, last) = (clock.times[0], clock.times[clock.times.len() - 1]);
+        let points: Vec<f64> = grid.times.iter().map(|time| time.clamp(first, last)).collect();
+        return resample::interpolate(&clock.times, values, &points).map(|values| (values, How::Linear)).map_err(|error| error.to_string());
+    }
+    if !clock.even {
+        return Err("has uneven steps in time and cannot be resampled; export it with a constant rate".into());
+    }
+    if let Some(at) = values.iter().position(|value| !value.is_finite()) {
+        return Err(format!("has no value in sample {}, and cannot be filtered", at + 1));
+    }
+    let last = (values.len() - 1) as f64;
+    let points: Vec<f64> = grid.times.iter().map(|time| ((time - clock.times[0]) * clock.rate).clamp(0.0, last)).collect();
+    sinc::interpolate(values, &points, grid.rate / clock.rate)
+        .map(|values| (values, How::Filtered))
+        .ok_or_else(|| "is too short to be resampled".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn clock(rate: f64, samples: usize) -> Clock {
+        Clock { times: (0..samples).map(|at| at as f64 / rate).collect(), rate, even: true }
+    }
+
+    #[test]
+    fn slow_channels_are_linear_and_fast_ones_filtered() {
+        let base = clock(200.0, 401);
+        let grid = grid(&base, None, (0.0, 1.0)).expect("a grid");
+        assert_eq!((grid.times.len(), grid.rows.clone()), (201, Some(0..201)));
+        let slow = clock(20.0, 41);
+        let line: Vec<f64> = slow.times.iter().map(|time| 3.0 * time).collect();
+        let (found, how) = on_grid(&line, &slow, false, &grid, false).expect("inside");
+        assert_eq!(how, How::Linear);
+        assert!((found[7] - 3.0 * 0.035).abs() < 1e-12);
+        let fast = clock(1000.0, 2001);
+        let (found, how) = on_grid(&vec![2.0; 2001], &fast, false, &grid, false).expect("inside");
+        assert!(how == How::Filtered && found.iter().all(|value| (value - 2.0).abs() < 1e-12));
+        assert_eq!(on_grid(&vec![1.0; 401], &base, true, &grid, false).map(|(_, how)| how), Ok(How::AsRecorded));
+        let uneven = Clock { even: false, ..clock(1000.0, 2001) };
+        assert!(on_grid(&vec![2.0; 2001], &uneven, false, &grid, false).is_err_and(|says| says.contains("uneven")));
+    }
+
+    #[test]
+    fn a_wanted_rate_makes_even_steps() {
+        let base = clock(600.0, 1201);
+        let other = grid(&base, Some(200.0), (0.0, 2.0)).expect("a grid");
+        assert_eq!((other.times.len(), other.rows), (401, None));
+        // The same rate within a thousandth is kept as recorded.
+        assert_eq!(grid(&base, Some(600.1), (0.0, 2.0)).and_then(|grid| grid.rows), Some(0..1201));
+        assert!(grid(&base, Some(1e12), (0.0, 2.0)).is_none() && grid(&base, None, (5.0, 6.0)).is_none());
+    }
+}

@@ -1,0 +1,418 @@
+//! From a foreign file to the record of a section: what the mapping states, in a fixed order, each step told with its numbers.
+//!
+//! | file | content |
+//! |---|---|
+//! | `find` | channels in the file, and their units |
+//! | `clock` | time of a table, the grid of a record, resampling |
+//! | `distance` | distance from a channel, a speed or a trigger; match with the track file |
+
+mod clock;
+mod distance;
+mod find;
+
+pub use find::Of;
+
+use super::mapping::{ChannelMap, Channels, Term, agree};
+use crate::data::RecordKind;
+use crate::foreign::Table;
+use crate::problem::Problem;
+use crate::source::Spanned;
+use crate::units::{Dimension, Unit};
+use clock::{Clock, Grid, How, clock, grid, on_grid};
+
+/// A column of a record in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    pub name: String,
+    pub unit: Unit,
+    pub values: Vec<f64>,
+}
+
+/// The record of a section as it is written.
+#[derive(Clone, Debug)]
+pub struct Made {
+    pub kind: RecordKind,
+    pub section: String,
+    /// Time and distance first.
+    pub columns: Vec<Column>,
+    /// What was done, in order.
+    pub steps: Vec<String>,
+    /// What deserves attention.
+    pub warnings: Vec<Problem>,
+}
+
+/// Number of faults of one record that are reported.
+const MOST_TOLD: usize = 8;
+
+/// Makes the record of a section.
+///
+/// # Errors
+/// `unknown-table`, `unknown-channel`, `ambiguous-channel`, `no-channel`, `unit-missing`, `unknown-unit`, `unit-mismatch`,
+/// `time-missing`, `time-not-increasing`, `too-short`, `no-common-time`, `uneven-time`, `sum-of-tables`, `no-pulses`, `no-match`,
+/// `not-finite`, `axis-not-increasing`, `outside-record`; of stated values `unknown-fact`, `wrong-number`.
+pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
+    let one = |problem: Problem| vec![problem];
+    let tables = of.tables().map_err(one)?;
+    let facts: Vec<(String, String)> = tables.iter().flat_map(|table| &table.facts).chain(&of.file.facts).cloned().collect();
+    let maps = maps(of, &tables)?;
+    // Every channel in its own table.
+    let mut faults = Vec::new();
+    let mut raw: Vec<(usize, Vec<f64>, Unit)> = Vec::new();
+    for map in &maps {
+        let target = of.target(map);
+        match distance::values(of, map, &tables, target.as_ref()) {
+            Ok((found, values)) => {
+                let own = target.map_or_else(|| of.unit(map, &map.terms[0].name, found.channel, None).map(plainly), Ok);
+                match own {
+                    Ok(unit) => raw.push((found.table, values, unit)),
+                    Err(problem) => faults.push(problem),
+                }
+            }
+            Err(problem) => faults.push(problem),
+        }
+    }
+    if !faults.is_empty() {
+        return Err(few(faults));
+    }
+    let matched: Vec<(usize, Vec<f64>, Unit)> = match &of.side.matched {
+        None => Vec::new(),
+        Some(wanted) => wanted.channels.iter().map(|map| values_for_match(of, map, &tables)).collect::<Result<_, _>>().map_err(one)?,
+    };
+    let base = most_used(raw.iter().map(|(table, ..)| *table), &tables);
+    let clocks = clocks(of, &tables, &facts, raw.iter().chain(&matched).map(|(table, ..)| *table)).map_err(one)?;
+    let curve =
+        of.side.distance.as_ref().map(|distance| distance::curve(of, distance, &tables, &clocks, &facts)).transpose().map_err(one)?;
+    let Some(base_clock) = clocks.get(base).and_then(Option::as_ref) else {
+        return Err(vec![Problem::error("time-missing", format!("`{}` has no time", of.shown)).at(&of.side.time.span)]);
+    };
+    let mut steps = Vec::new();
+    let span = span(&clocks, raw.iter().chain(&matched).map(|(table, ..)| *table), curve.as_ref().map(|curve| &curve.clock));
+    let rate = of.side.rate.as_ref().map(|rate| rate.value);
+    let Some(grid) = grid(base_clock, rate, span) else {
+        let says =
+            format!("section `{}`: the channels of `{}` have no time in common ({} s to {} s)", of.section, of.shown, span.0, span.1);
+        return Err(vec![Problem::error("no-common-time", says).at(&of.side.time.span)]);
+    };
+    told_times(of, base_clock, &grid, &mut steps);
+    let mut sampled = Vec::new();
+    for (map, (table, values, _)) in maps.iter().zip(&raw) {
+        match clocks[*table].as_ref().map(|clock| on_grid(values, clock, *table == base, &grid, false)) {
+            Some(Ok((values, how))) => sampled.push((values, how, *table)),
+            Some(Err(why)) => faults.push(
+                Problem::error("uneven-time", format!("section `{}`: `{}` {why}", of.section, map.name.value)).at(&map.terms[0].name.span),
+            ),
+            None => {}
+        }
+    }
+    if !faults.is_empty() {
+        return Err(few(faults));
+    }
+    told_resampling(&maps, &sampled, &clocks, &grid, &tables, &mut steps);
+    let mut columns: Vec<Column> = maps
+        .iter()
+        .zip(sampled)
+        .zip(&raw)
+        .map(|((map, (values, ..)), (.., unit))| Column { name: map.name.value.clone(), unit: unit.clone(), values })
+        .collect();
+    turn(of, &mut columns, &mut steps);
+    let mut at = None;
+    if let Some(curve) = curve {
+        let as_recorded = curve.table == Some(base);
+        let along = on_grid(&curve.values, &curve.clock, as_recorded, &grid, true);
+        let (mut values, how) = along.map_err(|why| {
+            vec![Problem::error("uneven-time", format!("section `{}`: the distance {why}", of.section)).at(&of.side.span)]
+        })?;
+        let linear = if how == How::Linear && curve.table.is_some() {
+            format!(", interpolated linearly from {} Hz", short(curve.clock.rate))
+        } else {
+            String::new()
+        };
+        steps.push(format!("{}{linear}", curve.says));
+        along_track(of, &mut values, &matched, &clocks, (base, &grid), &facts, &mut steps)?;
+        at = Some(values);
+    }
+    finish(of, grid, at, columns, steps)
+}
+
+/// A unit of a file as it is written in campaigns: `m/s^2` for `m/s²`.
+fn plainly(unit: Unit) -> Unit {
+    let powers = [("⁻¹", "^-1"), ("⁻²", "^-2"), ("²", "^2"), ("³", "^3")];
+    Unit { text: powers.iter().fold(unit.text, |text, (power, plain)| text.replace(power, plain)), ..unit }
+}
+
+/// The channels, written out where they keep their names.
+fn maps(of: &Of<'_>, tables: &[&Table]) -> Result<Vec<ChannelMap>, Vec<Problem>> {
+    match &of.side.channels {
+        Channels::Maps(maps) => Ok(maps.clone()),
+        Channels::AsNamed => {
+            let span = of.side.span.clone();
+            let axis = |name: &str| {
+                of.side.time.from.iter().any(|time| time.value == name)
+                    || matches!(&of.side.distance, Some(super::mapping::Distance::Channel(map)) if map.terms.iter().any(|term| term.name.value == name))
+            };
+            let named = tables.iter().flat_map(|table| &table.channels).filter(|channel| !axis(&channel.name));
+            let maps: Vec<ChannelMap> = named
+                .map(|channel| {
+                    let name = Spanned::new(channel.name.clone(), span.clone());
+                    let terms = vec![Term { name: name.clone(), reversed: false }];
+                    ChannelMap { name, terms, table: None, unit: None, factor: 1.0, offset: None, written_in: None }
+                })
+                .collect();
+            if maps.is_empty() {
+                return Err(vec![Problem::error("no-channel", format!("`{}` has no channels", of.shown)).at(&span)]);
+            }
+            Ok(maps)
+        }
+    }
+}
+
+fn values_for_match(of: &Of<'_>, map: &ChannelMap, tables: &[&Table]) -> Result<(usize, Vec<f64>, Unit), Problem> {
+    let target =
+        map.written_in.as_ref().map(|unit| unit.value.clone()).or_else(|| agree::unit_needed(&map.name.value, RecordKind::Track, of.needs));
+    let (found, values) = distance::values(of, map, tables, target.as_ref())?;
+    let unit = of.unit(map, &map.terms[0].name, found.channel, target.as_ref())?;
+    Ok((found.table, values, unit))
+}
+
+/// The table with the most channels; of equal ones that with the most rows.
+fn most_used(used: impl Iterator<Item = usize>, tables: &[&Table]) -> usize {
+    let mut counts = vec![0_usize; tables.len()];
+    used.for_each(|table| counts[table] += 1);
+    (0..tables.len()).max_by_key(|&table| (counts[table], tables[table].rows, std::cmp::Reverse(table))).unwrap_or(0)
+}
+
+/// The clocks of the tables that are used, with those of the distance.
+fn clocks(
+    of: &Of<'_>,
+    tables: &[&Table],
+    facts: &[(String, String)],
+    used: impl Iterator<Item = usize>,
+) -> Result<Vec<Option<Clock>>, Problem> {
+    use super::mapping::Distance;
+    let mut wanted = vec![false; tables.len()];
+    used.for_each(|table| wanted[table] = true);
+    if let Some(Distance::Channel(map) | Distance::Speed { speed: map, .. } | Distance::Trigger { channel: map, .. }) = &of.side.distance {
+        for term in &map.terms {
+            wanted[find::find(of, tables, &term.name, map.table.as_ref())?.table] = true;
+        }
+    }
+    let alone = wanted.iter().filter(|wanted| **wanted).count() == 1;
+    tables.iter().zip(wanted).map(|(table, wanted)| wanted.then(|| clock(of, table, alone, facts)).transpose()).collect()
+}
+
+/// The time that all used tables cover.
+fn span(clocks: &[Option<Clock>], used: impl Iterator<Item = usize>, curve: Option<&Clock>) -> (f64, f64) {
+    let ends = |clock: &Clock| (clock.times[0], clock.times[clock.times.len() - 1]);
+    let all = used.filter_map(|table| clocks.get(table)?.as_ref()).chain(curve).map(ends);
+    all.fold((f64::MIN, f64::MAX), |(start, end), (first, last)| (start.max(first), end.min(last)))
+}
+
+fn told_times(of: &Of<'_>, base: &Clock, grid: &Grid, steps: &mut Vec<String>) {
+    if of.side.time.drift != 0.0 {
+        steps.push(format!("time divided by 1 + {:.6} (drift of the clock)", of.side.time.drift));
+    }
+    if let Some(shift) = &of.side.time.shift {
+        steps.push(format!("time shifted ({})", shift.from_where()));
+    }
+    match &grid.rows {
+        Some(rows) => {
+            let (before, after) = (rows.start, base.times.len() - rows.end);
+            let dropped = if before + after == 0 {
+                String::new()
+            } else {
+                format!(", without {before} rows at the start and {after} at the end that other channels do not cover")
+            };
+            steps.push(format!("{} rows at {} Hz{dropped}", grid.times.len(), short(grid.rate)));
+        }
+        None => steps.push(format!(
+            "resampled from {} Hz to {} Hz, {} rows (windowed sinc, -6 dB at {} Hz)",
+            short(base.rate),
+            short(grid.rate),
+            grid.times.len(),
+            short(crate::metrics::sinc::CUTOFF * grid.rate.min(base.rate))
+        )),
+    }
+}
+
+/// Channels of other tables than the base.
+fn told_resampling(
+    maps: &[ChannelMap],
+    sampled: &[(Vec<f64>, How, usize)],
+    clocks: &[Option<Clock>],
+    grid: &Grid,
+    tables: &[&Table],
+    steps: &mut Vec<String>,
+) {
+    if grid.rows.is_none() && sampled.iter().all(|(_, how, _)| *how == How::Filtered) {
+        return;
+    }
+    for (number, table) in tables.iter().enumerate() {
+        for how in [How::Linear, How::Filtered] {
+            let names: Vec<&str> = maps
+                .iter()
+                .zip(sampled)
+                .filter(|(_, (_, its, of))| *its == how && *of == number)
+                .map(|(map, _)| map.name.value.as_str())
+                .collect();
+            let (false, Some(clock)) = (names.is_empty(), &clocks[number]) else { continue };
+            let way = if how == How::Linear { "interpolated linearly" } else { "filtered and interpolated (windowed sinc)" };
+            steps.push(format!("{} {way} from {} Hz (table `{}`)", names.join(", "), short(clock.rate), table.name));
+        }
+    }
+}
+
+/// Exchanges channels and signs in a section that was run with the other end leading.
+fn turn(of: &Of<'_>, columns: &mut [Column], steps: &mut Vec<String>) {
+    let Some(turning) = of.mapping.turning.as_ref().filter(|_| of.side.turned.has(of.section, &of.mapping.sections)) else { return };
+    let before: Vec<(String, Vec<f64>)> = columns.iter().map(|column| (column.name.clone(), column.values.clone())).collect();
+    let (mut exchanged, mut reversed) = (0, 0);
+    for column in columns.iter_mut() {
+        let partner = turning.partner(&column.name);
+        if let Some((_, values)) = before.iter().find(|(name, _)| name == partner && *name != column.name) {
+            column.values.clone_from(values);
+            exchanged += 1;
+        }
+        if turning.reverses(&column.name) {
+            column.values.iter_mut().for_each(|value| *value = -*value);
+            reversed += 1;
+        }
+    }
+    steps.push(format!(
+        "turned, with the other end leading: {exchanged} channels exchanged, {reversed} with the opposite sign ({})",
+        turning.from
+    ));
+}
+
+/// Matches the distance with the track and adds the stated offset.
+fn along_track(
+    of: &Of<'_>,
+    values: &mut [f64],
+    matched: &[(usize, Vec<f64>, Unit)],
+    clocks: &[Option<Clock>],
+    (base, grid): (usize, &Grid),
+    facts: &[(String, String)],
+    steps: &mut Vec<String>,
+) -> Result<(), Vec<Problem>> {
+    if let Some(wanted) = &of.side.matched {
+        let mut channels = Vec::new();
+        for (table, values, _) in matched {
+            let sampled = clocks[*table].as_ref().map(|clock| on_grid(values, clock, *table == base, grid, true));
+            let values = sampled.unwrap_or_else(|| Err("has no time".into()));
+            channels
+                .push(values.map_err(|why| vec![Problem::error("uneven-time", format!("the channel matched {why}")).at(&wanted.span)])?.0);
+        }
+        let units: Vec<Unit> = matched.iter().map(|(.., unit)| unit.clone()).collect();
+        let (shift, says) = distance::matched(of, wanted, values, &channels, &units)?;
+        values.iter_mut().for_each(|value| *value += shift);
+        steps.push(says);
+    }
+    let offset = of.side.offsets.as_ref().map(|offsets| offsets.of(of.section, &of.mapping.sections, facts)).transpose();
+    if let Some(offset) = offset.map_err(|problem| vec![problem])?.flatten() {
+        values.iter_mut().for_each(|value| *value += offset);
+        steps.push(format!("{offset:+} m added to the distance (synchronisation)"));
+    }
+    Ok(())
+}
+
+/// Cuts the record, checks that its axes increase and that all values are there.
+fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, mut steps: Vec<String>) -> Result<Made, Vec<Problem>> {
+    let unit = |text: &str, dimension: Dimension| Unit { text: text.into(), factor: 1.0, dimension };
+    let mut columns = vec![Column { name: "time".into(), unit: unit("s", Dimension::TIME), values: grid.times }];
+    columns.extend(at.map(|values| Column { name: "distance".into(), unit: unit("m", Dimension::LENGTH), values }));
+    let along = columns.len() > 1;
+    columns.extend(channels);
+    let extent = of.mapping.sections.extent(of.section).filter(|_| along);
+    let mut warnings = Vec::new();
+    if let (Some((start, end)), Some(margin)) = (extent, of.mapping.margin) {
+        let inside: Vec<usize> =
+            (0..columns[1].values.len()).filter(|&row| (start - margin..=end + margin).contains(&columns[1].values[row])).collect();
+        let (Some(&first), Some(&last)) = (inside.first(), inside.last()) else {
+            return Err(vec![outside(of, (start, end), &columns[1].values)]);
+        };
+        steps.push(format!("cut to {margin} m before and after the section, {} rows", last + 1 - first));
+        columns.iter_mut().for_each(|column| column.values = column.values[first..=last].to_vec());
+    }
+    let mut faults = Vec::new();
+    for column in &columns {
+        if let Some(row) = column.values.iter().position(|value| !value.is_finite()) {
+            let missing = column.values.iter().filter(|value| !value.is_finite()).count();
+            let says = format!(
+                "section `{}`: `{}` has no value in {missing} of {} rows, first at {} s",
+                of.section,
+                column.name,
+                column.values.len(),
+                short(columns[0].values[row])
+            );
+            let place = of
+                .side
+                .channels
+                .maps()
+                .and_then(|maps| maps.iter().find(|map| map.name.value == column.name))
+                .map_or(&of.side.span, |map| &map.name.span);
+            faults.push(
+                Problem::error("not-finite", says)
+                    .at(place)
+                    .help("repair the record, leave the channel out, or cut the record: `margin: 60 m`"),
+            );
+        }
+    }
+    if along && faults.is_empty() {
+        let values = &columns[1].values;
+        if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
+            let says = format!(
+                "section `{}`: the distance does not increase at {} s: {} m after {} m",
+                of.section,
+                short(columns[0].values[row]),
+                short(values[row]),
+                short(values[row - 1])
+            );
+            let backwards = values[values.len() - 1] < values[0];
+            let help = if backwards {
+                "it falls along the record: reverse it, `distance: {from: ..., factor: -1, offset: ... m}`"
+            } else {
+                "cut off the standstill: `margin: 60 m`"
+            };
+            faults.push(Problem::error("axis-not-increasing", says).at(&of.side.span).help(help));
+        } else if let Some((start, end)) = extent.filter(|(start, end)| *start < values[0] || *end > values[values.len() - 1]) {
+            let mut problem = outside(of, (start, end), values);
+            problem.severity = crate::problem::Severity::Warning;
+            warnings.push(problem);
+        }
+        let ends = (values.first().copied().unwrap_or(0.0), values.last().copied().unwrap_or(0.0));
+        steps.push(format!("distance {} m to {} m", short(ends.0), short(ends.1)));
+    }
+    if !faults.is_empty() {
+        return Err(few(faults));
+    }
+    Ok(Made { kind: of.side.kind, section: of.section.to_string(), columns, steps, warnings })
+}
+
+fn outside(of: &Of<'_>, (start, end): (f64, f64), values: &[f64]) -> Problem {
+    let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(*value), high.max(*value)));
+    let says = format!(
+        "section `{}`, {} to {} m, is not inside its {}, {} to {} m",
+        of.section,
+        short(start),
+        short(end),
+        of.side.kind.key(),
+        short(low),
+        short(high)
+    );
+    let place = of.mapping.sections.cell(of.section, "start").map_or(&of.side.span, |cell| &cell.span);
+    Problem::error("outside-record", says).at(place).help("check start and unit of the distance, and the table of sections")
+}
+
+fn few(mut faults: Vec<Problem>) -> Vec<Problem> {
+    let more = faults.len().saturating_sub(MOST_TOLD);
+    if more > 0 {
+        faults.truncate(MOST_TOLD);
+        faults.push(Problem::error("more-problems", format!("{more} more channels have such a fault")));
+    }
+    faults
+}
+
+/// Six digits, for sentences.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    format!("{rounded}")
+}

@@ -1,0 +1,157 @@
+//! Writes the campaign: records, tables, vehicle, track, the mapping and an account of what was done.
+
+use super::mapping::{Channels, Distance, Mapping};
+use super::process::{Column, Made};
+use crate::data::origin::{Imported, ImportedRecord, ORIGIN_FILE, ORIGIN_KEY, Origin, OriginFile};
+use crate::data::text::read_any;
+use crate::data::write::{Entry, Outputs, campaign_yaml};
+use crate::problem::Problem;
+use crate::source::{Span, Spanned};
+
+/// Significant digits of a channel: those of a 32-bit number, and more than any sensor resolves.
+const DIGITS: usize = 9;
+/// Significant digits of time and distance, which may begin far from zero: a micrometre at 100 km, a microsecond in a day.
+const AXIS_DIGITS: usize = 12;
+
+/// The text of a record.
+pub fn record_text(columns: &[Column]) -> String {
+    let headings: Vec<String> = columns.iter().map(|column| format!("{} [{}]", column.name, column.unit)).collect();
+    let mut text = crate::data::write::table_csv(&[headings]);
+    let rows = columns.first().map_or(0, |column| column.values.len());
+    text.reserve(rows * columns.len() * 9);
+    for row in 0..rows {
+        for (at, column) in columns.iter().enumerate() {
+            text.push_str(if at == 0 { "" } else { "," });
+            let digits = if ["time", "distance"].contains(&column.name.as_str()) { AXIS_DIGITS } else { DIGITS };
+            push(&mut text, column.unit.from_si(column.values[row]), digits);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The shortest text of a number rounded to so many digits.
+fn push(text: &mut String, value: f64, digits: usize) {
+    use std::fmt::Write;
+    let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
+    // Adding zero removes the sign of a zero; writing to a string cannot fail.
+    let _ = write!(text, "{}", rounded + 0.0);
+}
+
+/// A file that is read, by the path in the mapping.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SourceFile {
+    pub path: String,
+    pub sha256: String,
+    /// What was detected in it.
+    pub read_as: String,
+}
+
+/// How a record was made: its side, section and file, and the steps.
+pub fn account(made: &Made, file: &SourceFile) -> ImportedRecord {
+    ImportedRecord {
+        side: made.kind.key().into(),
+        section: made.section.clone(),
+        file: file.path.clone(),
+        read_as: file.read_as.clone(),
+        steps: made.steps.clone(),
+    }
+}
+
+/// Adds all files but the records.
+///
+/// # Errors
+/// A file that the mapping names cannot be read; `write-failed`, `path-outside`.
+pub fn add_campaign(outputs: &mut Outputs, mapping: &Mapping, sources: &[SourceFile], records: Vec<ImportedRecord>) -> Result<(), Problem> {
+    let mut copied: Vec<OriginFile> = Vec::new();
+    let mut copy = |outputs: &mut Outputs, written: &str, inside: &str, at: &Span| -> Result<(), Problem> {
+        let (path, shown) = mapping.place(written);
+        let bytes = read_any(&path, &shown).map_err(|problem| if problem.at.is_some() { problem } else { problem.at(at) })?;
+        copied.push(OriginFile { path: written.to_string(), sha256: crate::data::hash::sha256(&bytes) });
+        outputs.add(inside, &bytes)
+    };
+    let mut lines: Vec<(&str, Entry<'_>)> = vec![("name", Entry::Text(&mapping.name.value))];
+    let file = |written: &str| written.rsplit(['/', '\\']).next().unwrap_or(written).to_string();
+    let (mut vehicle_file, mut sections_file) = (String::new(), String::new());
+    if let Some(protocol) = &mapping.protocol {
+        if crate::library::shipped(&protocol.value).is_none() {
+            copy(outputs, &protocol.value, &file(&protocol.value), &protocol.span)?;
+        }
+    }
+    let protocol = mapping.protocol.as_ref().map(|protocol| match crate::library::shipped(&protocol.value) {
+        Some(_) => protocol.value.clone(),
+        None => file(&protocol.value),
+    });
+    if let Some((written, _)) = &mapping.vehicle {
+        vehicle_file = file(&written.value);
+        copy(outputs, &written.value, &vehicle_file, &written.span)?;
+    }
+    if let Some((written, _)) = &mapping.sections.table {
+        sections_file = file(&written.value);
+        copy(outputs, &written.value, &sections_file, &written.span)?;
+    }
+    for written in &mapping.copies {
+        copy(outputs, &written.value, &file(&written.value), &written.span)?;
+    }
+    if let Some(pattern) = &mapping.track {
+        for name in &mapping.sections.names {
+            let written = mapping.sections.fill(&pattern.value, &name.value);
+            copy(outputs, &written, &format!("track/{}.csv", name.value), &pattern.span)?;
+        }
+    }
+    lines.extend(protocol.as_deref().map(|protocol| ("protocol", Entry::Text(protocol))));
+    lines.extend((!vehicle_file.is_empty()).then_some(("vehicle", Entry::Text(&vehicle_file))));
+    lines.extend((!sections_file.is_empty()).then_some(("sections", Entry::Text(&sections_file))));
+    lines.extend(mapping.sides.iter().map(|side| (side.kind.key(), Entry::Text(side.kind.key()))));
+    lines.extend(mapping.track.as_ref().map(|_| ("track", Entry::Text("track"))));
+    lines.extend(mapping.campaign.iter().map(|(key, node)| (key.text.as_str(), Entry::Node(node))));
+    lines.push((ORIGIN_KEY, Entry::Text(ORIGIN_FILE)));
+    outputs.add("campaign.yaml", campaign_yaml(&lines).as_bytes())?;
+    let sources = sources.iter().map(|source| OriginFile { path: source.path.clone(), sha256: source.sha256.clone() });
+    let origin = Origin {
+        program: concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string(),
+        command: "import".into(),
+        campaign: mapping.name.value.clone(),
+        sources: sources.chain(copied).collect(),
+        imported: Some(Imported { mapping: mapping.source.text.clone(), channels: channels(mapping), records }),
+        ..Origin::default()
+    };
+    outputs.add(ORIGIN_FILE, origin.text().as_bytes())
+}
+
+/// What the channels of each side were made of.
+fn channels(mapping: &Mapping) -> Vec<(String, Vec<String>)> {
+    let of_side = |side: &super::mapping::Side| {
+        let mut lines: Vec<String> = match &side.channels {
+            Channels::AsNamed => vec!["every channel as named in the file".into()],
+            Channels::Maps(maps) => maps.iter().map(|map| format!("{} = {}", map.name.value, map.in_words())).collect(),
+        };
+        if let Some(Distance::Channel(map)) = &side.distance {
+            lines.insert(0, format!("distance = {}", map.in_words()));
+        }
+        let names = |list: &[Spanned<String>]| list.iter().map(|name| name.value.as_str()).collect::<Vec<_>>().join(" or ");
+        if !side.time.from.is_empty() {
+            lines.insert(0, format!("time = {}", names(&side.time.from)));
+        }
+        lines.extend(side.units.iter().map(|(text, unit)| format!("unit `{text}` read as {unit}")));
+        (side.kind.key().to_string(), lines)
+    };
+    mapping.sides.iter().map(of_side).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Unit;
+
+    #[test]
+    fn numbers_keep_nine_digits_and_no_more() {
+        let unit = |text: &str| Unit::parse(text).expect("known");
+        let columns = [
+            Column { name: "time".into(), unit: unit("s"), values: vec![86_399.000_5, 86_399.005_5] },
+            Column { name: "Y".into(), unit: unit("kN"), values: vec![f64::from(1130.1_f32), -0.0] },
+            Column { name: "a".into(), unit: unit("m/s^2"), values: vec![0.1 * 9.806_65 * 3.0, 1e-7] },
+        ];
+        assert_eq!(record_text(&columns), "time [s],Y [kN],a [m/s^2]\n86399.0005,1.1301,2.941995\n86399.0055,0,0.0000001\n");
+    }
+}
