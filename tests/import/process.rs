@@ -202,7 +202,7 @@ fn offsets_of_the_table_are_applied_when_records_are_read() {
     let campaign = Campaign::open(&case.out(), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
     let first = |kind: fishplate::data::RecordKind, section: usize| {
         let wanted = [Wanted::new("distance", Dimension::LENGTH), Wanted::new("copy", Dimension::LENGTH)];
-        let (record, _) = campaign.read(kind.into(), &campaign.names[section], &wanted).expect("readable");
+        let (record, _) = campaign.read(kind.into(), &campaign.names[section], &wanted, None).expect("readable");
         (record.columns[0].values[0], record.columns[1].values[0])
     };
     use fishplate::data::RecordKind::{Measurement, Simulation};
