@@ -5,8 +5,8 @@ protocol en14363-2016-annex-t-found-sections "Validation by on-track tests, EN 1
   source   "Goetz & Polach, Verification and validation of simulations in a rail vehicle certification"
            "context, Table 1 and section 4.1"
   author   "Fishplate"
-  scope    "As Annex T. The test sections are looked for in continuous runs: almost constant speed, full curve or"
-           "straight track, length by zone. At most nine sections of each zone and country are kept."
+  scope    "As Annex T. The test sections are looked for in continuous runs: almost constant speed, full"
+           "curve or straight track, length by zone. At most nine sections of each zone and country are kept."
 
 parameter speed_change "Largest change of the speed inside a section"
   default  2 km/h
@@ -28,7 +28,9 @@ section radius
   found  1 / |mean of curvature| when |mean of curvature| >= 0.00001 1/m
 
 section direction
-  found  right when mean of curvature >= 0.00001 1/m, left when mean of curvature <= -0.00001 1/m, otherwise straight
+  found  right when mean of curvature >= 0.00001 1/m,
+         left when mean of curvature <= -0.00001 1/m,
+         otherwise straight
   note   "Straight: radius above 100 km."
 
 section cant
@@ -67,5 +69,5 @@ find steady_speed "Almost constant speed"
 
 find deficiency "Cant deficiency as in a test of this zone"
   require  |cant_deficiency| <= 40 mm when zone is 1, otherwise 60 mm <= cant_deficiency <= 150 mm
-  note     "Curves are run with a cant deficiency near the admissible one; 60 mm and 150 mm are this protocol's"
-           "own."
+  note     "Curves are run with a cant deficiency near the admissible one; 60 mm and 150 mm are this"
+           "protocol's own."

@@ -59,6 +59,8 @@ fn every_node_is_used() {
         used.extend(graph.verdicts.iter().copied());
         // Checks on sections end by themselves; so does a signal before its cut where a metric cuts for itself.
         used.extend(graph.checks.iter().flatten().map(|input| input.node));
+        let find = &graph.find;
+        used.extend(find.data.iter().chain(&find.conditions).flatten().chain(&find.prefer).map(|input| input.node));
         let positions = || graph.plausibility.iter().flat_map(|rule| &rule.positions);
         used.extend(positions().flat_map(|position| position.own.into_iter().chain(position.inputs.iter().map(|input| input.node))));
         used.extend(graph.quantities.iter().flat_map(|quantity| quantity.signals.iter().map(|signal| signal.filtered)));

@@ -15,7 +15,7 @@ pub use facts::Fact;
 pub use files::{Inputs, ReadFile};
 pub use opening::POINT_KEY;
 pub use records::RecordKind;
-pub use runs::{Part, RUN_COLUMN, Run, RunFact};
+pub use runs::{Part, RUN_COLUMN, RUNS, Run, RunFact};
 
 use super::folder::{Folder, Place, check_file_name};
 use super::identification::{self, Stated};

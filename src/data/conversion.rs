@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::campaign::CAMPAIGN_FILE;
+use super::campaign::{CAMPAIGN_FILE, RUNS};
 use super::hash::sha256;
 use super::origin::{ORIGIN_FILE, ORIGIN_KEY};
 use super::record::{Format, read_raw};
@@ -102,10 +102,27 @@ fn rest(campaign: &Campaign, pairs: &[Pair], outputs: &mut Outputs) -> Result<()
         entries.push((ORIGIN_KEY, Entry::Text(&origin_inside)));
     }
     entries.push((KEY, Entry::Text(TABLE)));
-    outputs.add(CAMPAIGN_FILE, campaign_yaml(&entries).as_bytes())?;
+    outputs.add(CAMPAIGN_FILE, of_runs(campaign_yaml(&entries), pairs).as_bytes())?;
     let mut rows = vec![["record", "sha256", "converted from", "sha256 before"].map(str::to_string).to_vec()];
     rows.extend(pairs.iter().map(|Pair { before, after }| vec![after.0.clone(), after.1.clone(), before.0.clone(), before.1.clone()]));
     outputs.add(TABLE, table_csv(&rows).as_bytes())
+}
+
+/// The text of `campaign.yaml` with the converted records in place of those that it names, which are those of runs.
+fn of_runs(text: String, pairs: &[Pair]) -> String {
+    let Some(tree) = yaml::load(&Source::new(CAMPAIGN_FILE, text.clone()), &mut Problems::default()) else { return text };
+    let runs = tree.get(RUNS).map(Node::entries).unwrap_or_default();
+    let files = runs.iter().flat_map(|(_, run)| run.entries()).filter_map(|(_, file)| Some((file.span.clone(), file.scalar_text()?)));
+    let of = |path: &str| pairs.iter().find(|pair| pair.before.0 == path.trim());
+    let changes = files.filter_map(|(span, path)| Some((span.start..span.end, yaml_text(&of(path)?.after.0)))).collect();
+    replaced(text, changes)
+}
+
+/// The text with other words at some places.
+fn replaced(mut text: String, mut changes: Vec<(std::ops::Range<usize>, String)>) -> String {
+    changes.sort_by_key(|(range, _)| std::cmp::Reverse(range.start));
+    changes.into_iter().for_each(|(range, new)| text.replace_range(range, &new));
+    text
 }
 
 /// The origin with the converted records in place of those to which the simulation was fitted: `certify` recognises them by their hash.
@@ -121,10 +138,7 @@ fn fitted(text: String, pairs: &[Pair]) -> String {
             changes.push((hash.span.start..hash.span.end, yaml_text(&after.1)));
         }
     }
-    changes.sort_by_key(|(range, _)| std::cmp::Reverse(range.start));
-    let mut changed = text;
-    changes.into_iter().for_each(|(range, new)| changed.replace_range(range, &new));
-    changed
+    replaced(text, changes)
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::source::{Span, Spanned};
 use crate::yaml::{Node, Value};
 
 /// The key of the runs in `campaign.yaml`.
-pub(super) const RUNS: &str = "runs";
+pub const RUNS: &str = "runs";
 /// The column of the table of sections that says from which run a section is cut.
 pub const RUN_COLUMN: &str = "run";
 /// The key of a run that says what is done with a drift of the distance between both sides, and its words.

@@ -1,0 +1,177 @@
+//! Sections that are found in continuous runs. `examples/run` is cut from a practice run whose sections were found by an independent
+//! program, by the rules below.
+
+mod common {
+    pub mod program;
+}
+
+use std::fs;
+use std::path::Path;
+
+use common::program::fishplate;
+
+fn done(words: &[&str], codes: &[i32]) -> String {
+    let ran = fishplate(words);
+    assert!(codes.contains(&ran.code), "{words:?}: {}{}", ran.stdout, ran.stderr);
+    ran.stdout + &ran.stderr
+}
+
+/// Lengths by zone, speed within 2 km/h, curvature and cant constant from 30 m before to 15 m behind, the first place on whole metres.
+const RULES: &str = "protocol rules \"Rules of the practice run\"
+  extends  en14363-2016-annex-t-found-sections
+
+remove
+  zone  every
+
+zone 1 \"Straight track and very large radius curves\"
+  where  direction is straight or radius >= 2500 m
+
+zone 2 \"Large radius curves\"
+  where  direction is not straight and 600 m < radius < 2500 m
+
+zone 3 \"Small radius curves\"
+  where  direction is not straight and 400 m <= radius <= 600 m
+
+zone 4 \"Very small radius curves\"
+  where  direction is not straight and 250 m <= radius < 400 m
+
+sections
+  length  250 m when zone is 1, 70 m when zone is 4, otherwise 100 m
+  keep    at most 100 for each zone
+
+find full_curve
+  require  range of curvature <= 0.000000002 1/m and range of track_cant <= 0.000002 mm
+";
+
+/// Run, zone, start and end in m, cant deficiency in mm and speed in km/h of the independent program.
+const FOUND: [(&str, &str, f64, f64, f64, f64); 12] = [
+    ("north", "1", 1229.0, 1479.0, 34.396, 147.7576),
+    ("north", "1", 1479.0, 1729.0, 34.827, 148.2519),
+    ("north", "1", 1842.0, 2092.0, 0.0, 150.0223),
+    ("north", "2", 2367.0, 2467.0, 100.996, 143.1618),
+    ("north", "1", 2782.0, 3032.0, 0.0, 150.0735),
+    ("north", "2", 3311.0, 3411.0, 110.858, 140.361),
+    ("south", "3", 7472.0, 7572.0, 93.781, 89.7959),
+    ("south", "3", 7572.0, 7672.0, 95.135, 90.0798),
+    ("south", "4", 8028.0, 8098.0, 85.655, 66.9639),
+    ("south", "4", 8098.0, 8168.0, 86.443, 67.1581),
+    ("south", "4", 8530.0, 8600.0, 90.48, 67.1042),
+    ("south", "4", 8956.0, 9026.0, 72.955, 72.1199),
+];
+
+struct Found {
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+fn found(folder: &Path, campaign: &str) -> Found {
+    let (rules, table) = (folder.join("rules.fp"), folder.join("found.csv"));
+    fs::write(&rules, RULES).expect("written");
+    let shown = |path: &Path| path.display().to_string();
+    done(&["sections", campaign, "--protocol", &shown(&rules), "--out", &shown(&table)], &[0]);
+    let text = fs::read_to_string(&table).expect("a table");
+    let mut lines = text.lines().map(|line| line.split(',').map(str::to_string).collect::<Vec<_>>());
+    Found { header: lines.next().expect("a header"), rows: lines.collect() }
+}
+
+impl Found {
+    fn cell<'a>(&self, row: &'a [String], name: &str) -> &'a str {
+        &row[self.header.iter().position(|heading| heading.split(" [").next() == Some(name)).expect(name)]
+    }
+
+    fn number(&self, row: &[String], name: &str) -> f64 {
+        self.cell(row, name).parse().expect(name)
+    }
+}
+
+/// Every section begins where that of the independent program does; its table has the cant deficiency to 0.001 mm and the speed to 0.0001
+/// km/h.
+#[test]
+fn the_sections_are_those_of_an_independent_program() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let found = found(folder.path(), "examples/run");
+    let places: Vec<_> = found
+        .rows
+        .iter()
+        .map(|row| (found.cell(row, "run"), found.cell(row, "zone"), found.number(row, "start"), found.number(row, "end")))
+        .collect();
+    assert_eq!(places, FOUND.map(|(run, zone, start, end, ..)| (run, zone, start, end)));
+    for (row, (.., deficiency, speed)) in found.rows.iter().zip(FOUND) {
+        assert!((found.number(row, "cant deficiency") - deficiency).abs() < 2e-3, "{row:?}");
+        assert!((found.number(row, "speed") - speed).abs() < 1e-4, "{row:?}");
+    }
+}
+
+/// A run as text gives the same sections and the same numbers as the run as Parquet: the stretches are read in another way.
+#[test]
+fn runs_as_text_give_the_same_numbers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let copy = folder.path().join("copy").display().to_string();
+    done(&["convert-records", "examples/run", "--to", "csv", "--out", &copy], &[0]);
+    let (as_parquet, as_text) = (found(folder.path(), "examples/run"), found(folder.path(), &copy));
+    assert_eq!(as_text.rows, as_parquet.rows);
+    let numbers = |campaign: &str, name: &str| {
+        let out = folder.path().join(name);
+        done(&["certify", campaign, "--only", "results", "--out", &out.display().to_string()], &[0]);
+        let text = fs::read_to_string(out.join("results.json")).expect("results");
+        let results: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(results["verdict"], "validated");
+        (results["quantities"].clone(), results["sections"].as_array().map(Vec::len))
+    };
+    let (first, second) = (numbers("examples/run", "a"), numbers(&copy, "b"));
+    assert_eq!(first, second);
+    assert_eq!(first.1, Some(12));
+}
+
+/// What is written as a table and used as such gives what is found and used at once.
+#[test]
+fn a_table_of_found_sections_can_be_used() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let copy = folder.path().join("copy");
+    let shown = copy.display().to_string();
+    done(&["convert-records", "examples/run", "--to", "parquet", "--out", &shown], &[0]);
+    done(&["sections", "examples/run", "--out", &copy.join("sections.csv").display().to_string()], &[0]);
+    let yaml = fs::read_to_string(copy.join("campaign.yaml")).expect("a campaign");
+    fs::write(copy.join("campaign.yaml"), yaml + "sections: sections.csv\n").expect("written");
+    let quantities = |campaign: &str, name: &str| {
+        let out = folder.path().join(name);
+        done(&["certify", campaign, "--only", "results", "--out", &out.display().to_string()], &[0]);
+        let results: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(out.join("results.json")).expect("results")).expect("JSON");
+        results["quantities"].as_array().expect("a list").iter().map(|quantity| quantity["std"].as_f64()).collect::<Vec<_>>()
+    };
+    let (found, used) = (quantities("examples/run", "a"), quantities(&shown, "b"));
+    for (found, used) in found.iter().zip(&used) {
+        let (Some(found), Some(used)) = (found, used) else { panic!("{found:?} {used:?}") };
+        assert!((found - used).abs() < 1e-6 * found.abs(), "{found} {used}");
+    }
+}
+
+#[test]
+fn what_cannot_be_looked_into_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("found.csv").display().to_string();
+    let refused = |words: &[&str], code: &str| {
+        let said = done(words, &[2]);
+        assert!(said.contains(&format!("error[{code}]")), "{said}");
+        assert!(!Path::new(&out).exists());
+    };
+    refused(&["sections", "examples/coach", "--out", &out], "no-search");
+    refused(&["sections", "examples/coach", "--protocol", "en14363-2016-annex-t-found-sections", "--out", &out], "no-runs");
+    refused(
+        &[
+            "sections",
+            "examples/run",
+            "--set",
+            "speed_change=0.1 km/h",
+            "--set",
+            "steady_before=200 m",
+            "--set",
+            "steady_behind=200 m",
+            "--out",
+            &out,
+        ],
+        "nothing-found",
+    );
+    refused(&["diagnose", "examples/run", "--out", &out], "section-in-run");
+}
