@@ -11,7 +11,7 @@ use arrow_array::{Array, RecordBatch};
 use arrow_schema::DataType;
 use parquet::DecodeResult;
 use parquet::arrow::ProjectionMask;
-use parquet::arrow::arrow_reader::{ArrowReaderMetadata, RowSelection};
+use parquet::arrow::arrow_reader::RowSelection;
 use parquet::arrow::push_decoder::{ParquetPushDecoderBuilder, PushBuffers};
 use parquet::basic::Type;
 
@@ -94,7 +94,7 @@ impl Opened<'_> {
         for column in columns {
             let place = || format!("row group {}, column `{}`", group + 1, column.name);
             let Some(leaf) = self.leaf(column.position) else { return Err(damaged(shown, &format!("{}: no values", place()))) };
-            let chunk = ArrowReaderMetadata::metadata(&self.metadata).row_group(group).column(leaf);
+            let chunk = self.metadata.metadata().row_group(group).column(leaf);
             let start = chunk.dictionary_page_offset().unwrap_or(chunk.data_page_offset());
             let bounds = u64::try_from(start).ok().zip(u64::try_from(chunk.compressed_size()).ok());
             let range = bounds.and_then(|(start, length)| Some(start..start.checked_add(length)?));

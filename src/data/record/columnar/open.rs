@@ -145,7 +145,7 @@ impl<'a> Opened<'a> {
             Ok((metadata, described))
         });
         let (metadata, described) = parsed.map_err(|why| damaged(shown, &why))?;
-        let starts = starts(ArrowReaderMetadata::metadata(&metadata), shown)?;
+        let starts = starts(metadata.metadata(), shown)?;
         let headings = headings(metadata.schema(), &described, shown)?;
         let fields = fields(&metadata);
         let decimals =
