@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::convert_records::Records;
 use super::inputs::{progress_bar, start_jobs};
 use super::output::{Console, Exit};
 use super::places::same;
@@ -13,6 +14,7 @@ use crate::certify::{Compiled, certify, compile};
 use crate::check::Overrides;
 use crate::check::family::{self, Family};
 use crate::check::plan::Side;
+use crate::data::record::Format;
 use crate::data::text::read_text;
 use crate::data::write::Outputs;
 use crate::data::{Campaign, RecordKind};
@@ -44,6 +46,9 @@ pub struct Import {
     /// Names of channels for the draft: a path, or the name of a shipped convention.
     #[arg(long, requires = "draft", default_value = library::CONVENTIONS[0].name)]
     convention: String,
+    /// Format of the records of the campaign.
+    #[arg(long, value_enum, default_value_t, conflicts_with = "draft")]
+    records: Records,
     /// Number of files processed in parallel [default: one per core]
     #[arg(long, short)]
     jobs: Option<NonZeroUsize>,
@@ -68,7 +73,7 @@ impl Import {
         let needs = compiled.as_ref().map(|compiled| needs(&compiled.plan, &compiled.graph));
         let bar = progress_bar(console, mapping.sections.names.len() * mapping.sides.len());
         let mut outputs = Outputs::of(SetKind::Campaign, out);
-        let done = crate::import::import(&mapping, needs.as_ref(), &mut outputs, &|section| {
+        let done = crate::import::import(&mapping, needs.as_ref(), Format::from(self.records), &mut outputs, &|section| {
             bar.set_message(plain(section));
             bar.inc(1);
         });

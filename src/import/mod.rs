@@ -22,13 +22,14 @@ use rayon::prelude::*;
 
 use crate::data::RecordKind;
 use crate::data::origin::ImportedRecord;
+use crate::data::record::Format;
 use crate::data::write::Outputs;
 use crate::foreign::{self, File};
 use crate::problem::{Problem, Problems};
 use crate::run::needs::Needs;
 use mapping::{Mapping, Side};
 use process::{Made, Of, record};
-use write::{SourceFile, account, add_campaign, record_text};
+use write::{SourceFile, account, add_campaign, record_bytes};
 
 /// Files that are read together: each worker holds one file and its records.
 const AT_A_TIME: usize = 16;
@@ -49,6 +50,7 @@ struct Job<'a> {
 pub fn import(
     mapping: &Mapping,
     needs: Option<&Needs>,
+    format: Format,
     outputs: &mut Outputs,
     progress: &(dyn Fn(&str) + Sync),
 ) -> Result<Problems, Problems> {
@@ -66,7 +68,7 @@ pub fn import(
     let mut sources: Vec<SourceFile> = Vec::new();
     let mut accounts: BTreeMap<(RecordKind, usize), ImportedRecord> = BTreeMap::new();
     for some in jobs.chunks(AT_A_TIME) {
-        let done: Vec<Done> = some.par_iter().map(|job| work(job, mapping, needs, progress)).collect();
+        let done: Vec<Done> = some.par_iter().map(|job| work(job, mapping, needs, format, progress)).collect();
         for job in done {
             let Done { source, texts, problems } = job;
             problems.into_iter().for_each(|problem| faults.push(problem));
@@ -74,8 +76,8 @@ pub fn import(
             for (made, text) in texts {
                 // After a fault nothing is written; the rest is read for its faults.
                 if !faults.any_error() {
-                    let inside = mapping::record_path(made.kind, &made.section, "csv");
-                    outputs.add(&inside, text.as_bytes()).map_err(|problem| Problems(vec![problem]))?;
+                    let inside = mapping::record_path(made.kind, &made.section, format.ending());
+                    outputs.add(&inside, &text).map_err(|problem| Problems(vec![problem]))?;
                 }
                 let number = mapping.sections.names.iter().position(|name| name.value == made.section).unwrap_or(0);
                 accounts.insert((made.kind, number), account(&made, &source));
@@ -95,11 +97,11 @@ pub fn import(
 
 struct Done {
     source: Option<SourceFile>,
-    texts: Vec<(Made, String)>,
+    texts: Vec<(Made, Vec<u8>)>,
     problems: Vec<Problem>,
 }
 
-fn work(job: &Job<'_>, mapping: &Mapping, needs: Option<&Needs>, progress: &(dyn Fn(&str) + Sync)) -> Done {
+fn work(job: &Job<'_>, mapping: &Mapping, needs: Option<&Needs>, format: Format, progress: &(dyn Fn(&str) + Sync)) -> Done {
     let (path, shown) = mapping.place(&job.path);
     let file = match foreign::read(&path, &shown, &job.side.format) {
         Ok(file) => file,
@@ -113,10 +115,10 @@ fn work(job: &Job<'_>, mapping: &Mapping, needs: Option<&Needs>, progress: &(dyn
     for section in &job.sections {
         let of = Of { mapping, side: job.side, needs, section, file: &file, shown: &shown };
         match record(&of) {
-            Ok(made) => {
-                let text = record_text(&made.columns);
-                done.texts.push((Made { columns: Vec::new(), ..made }, text));
-            }
+            Ok(made) => match record_bytes(&made.columns, format) {
+                Ok(text) => done.texts.push((Made { columns: Vec::new(), ..made }, text)),
+                Err(problem) => done.problems.push(problem),
+            },
             Err(problems) => done.problems.extend(problems),
         }
         progress(section);

@@ -3,8 +3,9 @@
 use super::mapping::{Channels, Distance, Mapping};
 use super::process::{Column, Made};
 use crate::data::origin::{Imported, ImportedRecord, ORIGIN_FILE, ORIGIN_KEY, Origin, OriginFile};
+use crate::data::record::Format;
 use crate::data::text::read_any;
-use crate::data::write::{Entry, Outputs, campaign_yaml};
+use crate::data::write::{Entry, FileColumn, Outputs, Values, campaign_yaml, csv, parquet};
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
 
@@ -13,29 +14,29 @@ const DIGITS: usize = 9;
 /// Significant digits of time and distance, which may begin far from zero: a micrometre at 100 km, a microsecond in a day.
 const AXIS_DIGITS: usize = 12;
 
-/// The text of a record.
-pub fn record_text(columns: &[Column]) -> String {
-    let headings: Vec<String> = columns.iter().map(|column| format!("{} [{}]", column.name, column.unit)).collect();
-    let mut text = crate::data::write::table_csv(&[headings]);
-    let rows = columns.first().map_or(0, |column| column.values.len());
-    text.reserve(rows * columns.len() * 9);
-    for row in 0..rows {
-        for (at, column) in columns.iter().enumerate() {
-            text.push_str(if at == 0 { "" } else { "," });
-            let digits = if ["time", "distance"].contains(&column.name.as_str()) { AXIS_DIGITS } else { DIGITS };
-            push(&mut text, column.unit.from_si(column.values[row]), digits);
+/// The record in a format; both hold the same numbers.
+///
+/// # Errors
+/// `write-failed`.
+pub fn record_bytes(columns: &[Column], format: Format) -> Result<Vec<u8>, Problem> {
+    let file = |column: &Column| {
+        let digits = if ["time", "distance"].contains(&column.name.as_str()) { AXIS_DIGITS } else { DIGITS };
+        FileColumn {
+            heading: format!("{} [{}]", column.name, column.unit),
+            values: Values::Numbers(column.values.iter().map(|value| rounded(column.unit.from_si(*value), digits)).collect()),
+            decimals: None,
         }
-        text.push('\n');
+    };
+    let columns: Vec<FileColumn> = columns.iter().map(file).collect();
+    match format {
+        Format::Csv => Ok(csv(&columns)),
+        Format::Parquet => parquet(columns),
     }
-    text
 }
 
-/// The shortest text of a number rounded to so many digits.
-fn push(text: &mut String, value: f64, digits: usize) {
-    use std::fmt::Write;
-    let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
-    // Adding zero removes the sign of a zero; writing to a string cannot fail.
-    let _ = write!(text, "{}", rounded + 0.0);
+/// The number with so many digits; adding zero removes the sign of a zero.
+fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value) + 0.0
 }
 
 /// A file that is read, by the path in the mapping.
@@ -73,10 +74,8 @@ pub fn add_campaign(outputs: &mut Outputs, mapping: &Mapping, sources: &[SourceF
     let mut lines: Vec<(&str, Entry<'_>)> = vec![("name", Entry::Text(&mapping.name.value))];
     let file = |written: &str| written.rsplit(['/', '\\']).next().unwrap_or(written).to_string();
     let (mut vehicle_file, mut sections_file) = (String::new(), String::new());
-    if let Some(protocol) = &mapping.protocol {
-        if crate::library::shipped(&protocol.value).is_none() {
-            copy(outputs, &protocol.value, &file(&protocol.value), &protocol.span)?;
-        }
+    if let Some(protocol) = mapping.protocol.as_ref().filter(|protocol| crate::library::shipped(&protocol.value).is_none()) {
+        copy(outputs, &protocol.value, &file(&protocol.value), &protocol.span)?;
     }
     let protocol = mapping.protocol.as_ref().map(|protocol| match crate::library::shipped(&protocol.value) {
         Some(_) => protocol.value.clone(),
@@ -152,6 +151,8 @@ mod tests {
             Column { name: "Y".into(), unit: unit("kN"), values: vec![f64::from(1130.1_f32), -0.0] },
             Column { name: "a".into(), unit: unit("m/s^2"), values: vec![0.1 * 9.806_65 * 3.0, 1e-7] },
         ];
-        assert_eq!(record_text(&columns), "time [s],Y [kN],a [m/s^2]\n86399.0005,1.1301,2.941995\n86399.0055,0,0.0000001\n");
+        let text = String::from_utf8(record_bytes(&columns, Format::Csv).expect("written")).expect("a text");
+        assert_eq!(text, "time [s],Y [kN],a [m/s^2]\n86399.0005,1.1301,2.941995\n86399.0055,0,1e-7\n");
+        assert!(record_bytes(&columns, Format::Parquet).expect("written").starts_with(b"PAR1"));
     }
 }

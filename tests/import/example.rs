@@ -74,6 +74,7 @@ fn a_draft_is_a_mapping_with_open_places() {
         "Q_1R: ST1 Q re",
         "common to 8 channels",
         "Y_1L: \"?\"",
+        "Y_2L: \"?\"",
         "Y_1R: Y11",
     ] {
         assert!(draft.contains(part), "no `{part}` in\n{draft}");

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use fishplate::certify::compile;
 use fishplate::check::Overrides;
 use fishplate::check::family;
+use fishplate::data::record::Format;
 use fishplate::data::write::Outputs;
 use fishplate::disk::SetKind;
 use fishplate::import::{import, mapping};
@@ -44,7 +45,7 @@ pub fn imported(text: &str, name: &str, folder: &Path, out: &Path) -> (Problems,
         return (problems, false);
     }
     let mut outputs = Outputs::of(SetKind::Campaign, out).for_this_run();
-    match import(&mapping, needs.as_ref(), &mut outputs, &|_| {}) {
+    match import(&mapping, needs.as_ref(), Format::Csv, &mut outputs, &|_| {}) {
         Ok(warnings) => {
             warnings.0.into_iter().for_each(|warning| problems.push(warning));
             outputs.commit().expect("written");

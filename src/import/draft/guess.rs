@@ -100,28 +100,25 @@ pub fn guesses(looks: &[Look], needs: &[&ChannelNeed], convention: &Convention) 
     let place = |guess: &Guess| convention.names.iter().position(|(name, _)| *name == guess.channel).unwrap_or(usize::MAX);
     guesses.sort_by_key(place);
     for group in &convention.opposite {
-        for (right, left) in &group.pairs {
-            let mean = |guesses: &[Guess], name: &str| {
-                let guess = guesses.iter().find(|guess| guess.channel == name)?;
-                let look = looks.iter().find(|look| Some(&look.name) == guess.from.as_ref())?;
-                Some((look.mean, look.name.clone(), look.unit_text.clone()))
-            };
-            let (Some((first, first_name, unit)), Some((second, name, _))) = (mean(&guesses, right), mean(&guesses, left)) else {
-                continue;
-            };
-            if first * second > 0.0
-                && let Some(guess) = guesses.iter_mut().find(|guess| guess.channel == *left)
-            {
-                guess.from = None;
-                guess.reasons.insert(0, format!("{name}, or with the other sign: -{name}"));
-                guess.candidates.push(name.clone());
-                guess.reasons.push(format!(
-                    "its mean {} {unit} has the sign of {first_name} ({} {unit}); {}",
-                    short(second),
-                    short(first),
-                    group.title
-                ));
-            }
+        let look = |guesses: &[Guess], name: &str| {
+            let guess = guesses.iter().find(|guess| guess.channel == name)?;
+            looks.iter().find(|look| Some(&look.name) == guess.from.as_ref())
+        };
+        let pairs: Vec<(&String, &Look, &Look)> =
+            group.pairs.iter().filter_map(|(right, left)| Some((left, look(&guesses, right)?, look(&guesses, left)?))).collect();
+        // One pair with equal signs leaves the sign of all open: a file has one convention, and not every pair shows it.
+        if pairs.iter().all(|(_, first, second)| first.mean * second.mean <= 0.0) {
+            continue;
+        }
+        for (left, first, second) in pairs {
+            let Some(guess) = guesses.iter_mut().find(|guess| guess.channel == *left) else { continue };
+            let name = &second.name;
+            let sign = if first.mean * second.mean > 0.0 { "the sign of" } else { "the sign opposite to" };
+            guess.from = None;
+            guess.candidates.push(name.clone());
+            guess.reasons.insert(0, format!("{name}, or with the other sign: -{name}"));
+            let (mean, other, unit) = (short(second.mean), short(first.mean), &second.unit_text);
+            guess.reasons.push(format!("its mean {mean} {unit} has {sign} {} ({other} {unit}); {}", first.name, group.title));
         }
     }
     guesses

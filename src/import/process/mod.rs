@@ -74,6 +74,7 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     if !faults.is_empty() {
         return Err(few(faults));
     }
+    of_their_dimension(of, &maps, &mut raw);
     let matched: Vec<(usize, Vec<f64>, Unit)> = match &of.side.matched {
         None => Vec::new(),
         Some(wanted) => wanted.channels.iter().map(|map| values_for_match(of, map, &tables)).collect::<Result<_, _>>().map_err(one)?,
@@ -132,6 +133,16 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
         at = Some(values);
     }
     finish(of, grid, at, columns, steps)
+}
+
+/// A channel that the protocol does not know is written in the unit that other channels of its dimension have by the protocol.
+fn of_their_dimension(of: &Of<'_>, maps: &[ChannelMap], raw: &mut [(usize, Vec<f64>, Unit)]) {
+    let known: Vec<Unit> = maps.iter().filter_map(|map| of.target(map)).collect();
+    for (map, (.., unit)) in maps.iter().zip(raw) {
+        if let (None, Some(other)) = (of.target(map), known.iter().find(|other| other.dimension == unit.dimension)) {
+            *unit = other.clone();
+        }
+    }
 }
 
 /// A unit of a file as it is written in campaigns: `m/s^2` for `m/s²`.
