@@ -445,6 +445,7 @@ fn seen(found: &Diagnosis) -> Chapter {
 
 fn how(found: &Diagnosis) -> Chapter {
     let how = &found.how;
+    let share = |value: f64| number::with_unit(&number::fixed(100.0 * value, 1), "%");
     let rows = [
         ("Catalogue of effects", how.catalogue.clone()),
         ("Simulator", how.simulator.clone()),
@@ -454,6 +455,7 @@ fn how(found: &Diagnosis) -> Chapter {
         ("Features", how.features.to_string()),
         ("Simulated sections", found.simulations_run.to_string()),
         ("Evidence required", number::fixed(how.threshold, 1)),
+        ("Drawn campaigns without an effect in which one would be named", share(found.false_name_rate)),
         ("Chi-squared per feature, before", number::fixed(how.chi_squared_before, 3)),
         ("Chi-squared per feature, after", number::fixed(how.chi_squared_after, 3)),
         (

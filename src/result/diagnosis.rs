@@ -18,6 +18,8 @@ pub struct Diagnosis {
     /// The verdict of the protocol on the campaign as it is, and with the effects by cross-validation.
     pub protocol_before: Verdict,
     pub protocol_after: Option<Verdict>,
+    /// Share of campaigns drawn from what is allowed, with nothing hidden, in which an effect would be named.
+    pub false_name_rate: f64,
     /// Faults of the recording; their channels are excluded.
     pub faults: Vec<Fault>,
     pub r#where: Vec<Where>,

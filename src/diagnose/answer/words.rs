@@ -102,6 +102,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, protocol: Pr
         verdict: verdict.word(),
         says,
         fit,
+        false_name_rate: found.false_name_rate,
         protocol_before: protocol.0,
         protocol_after: protocol.1,
         faults: found.seen.faults.clone(),
