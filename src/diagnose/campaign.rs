@@ -93,7 +93,8 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
         added = effects_of_origin(&all, inputs.catalogue);
         break;
     }
-    let mut diagnosis = super::answer::words::diagnosis(inputs, &found, &units, shrink);
+    let protocol = (before.verdict, after.as_ref().map(|after: &Certification| after.verdict));
+    let mut diagnosis = super::answer::words::diagnosis(inputs, &found, &units, protocol, shrink);
     diagnosis.pictures = super::answer::pictures::pictures(inputs.settings, &found, &records, &units);
     let simulator = inputs.simulator.map(|simulator| simulator.name().to_string());
     Ok(Outcome { diagnosis, found, before, after, improved: records, units, added, simulator, warnings: problems })

@@ -61,6 +61,8 @@ pub struct Found {
     pub lack_before: Vec<Lack>,
     pub lack_after: Vec<Lack>,
     pub bars: Bars,
+    /// Share of drawn campaigns with nothing hidden in which a cause would be named.
+    pub false_name_rate: f64,
     pub runs: Runs,
     pub strata: Vec<Vec<usize>>,
     pub declared: Declared,
@@ -112,7 +114,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         let places = tolerances.looked_at().clone();
         (candidates, converged, places)
     });
-    let Converged { chosen, refused, bars, known } = converged;
+    let Converged { chosen, refused, bars, false_name_rate, known } = converged;
     let alone = Arc::new(alone);
     let mut found = Found {
         candidates,
@@ -134,6 +136,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         lack_after: lack_before.clone(),
         lack_before,
         bars,
+        false_name_rate,
         runs,
         strata,
         seen,

@@ -277,6 +277,10 @@ fn value(value: &Value) -> String {
     value.value.as_f64().map_or_else(|| value.text(), printed)
 }
 
+fn assumed(value: &Value) -> String {
+    value.assumed.map_or_else(|| "-".into(), |assumed| number::with_unit(&number::significant(assumed, 4), &value.unit))
+}
+
 fn interval(value: &Value) -> String {
     match (value.low, value.high) {
         (Some(low), Some(high)) => format!("{} to {}", number::significant(low, 4), number::significant(high, 4)),
@@ -294,6 +298,7 @@ fn cause_rows(cause: &Cause) -> Vec<Vec<String>> {
                 only(cause.rank.to_string()),
                 if at == 0 { format!("{}{}{}", effect.title, told.on(), effect.only_in()) } else { String::new() },
                 told.parameter.clone(),
+                assumed(told.value),
                 value(told.value),
                 interval(told.value),
                 only(number::with_unit(&number::fixed(100.0 * cause.probability, 1), "%")),
@@ -317,7 +322,8 @@ fn causes(found: &Diagnosis) -> Chapter {
         Head::short("Rank"),
         Head::text("Effect"),
         Head::short("Parameter"),
-        Head::number("Value"),
+        Head::number("Assumed"),
+        Head::number("Found"),
         Head::number("90 % interval"),
         Head::number("Probability"),
         Head::number("Evidence"),
@@ -439,6 +445,7 @@ fn seen(found: &Diagnosis) -> Chapter {
 
 fn how(found: &Diagnosis) -> Chapter {
     let how = &found.how;
+    let share = |value: f64| number::with_unit(&number::fixed(100.0 * value, 1), "%");
     let rows = [
         ("Catalogue of effects", how.catalogue.clone()),
         ("Simulator", how.simulator.clone()),
@@ -448,8 +455,17 @@ fn how(found: &Diagnosis) -> Chapter {
         ("Features", how.features.to_string()),
         ("Simulated sections", found.simulations_run.to_string()),
         ("Evidence required", number::fixed(how.threshold, 1)),
+        ("Drawn campaigns without an effect in which one would be named", share(found.false_name_rate)),
         ("Chi-squared per feature, before", number::fixed(how.chi_squared_before, 3)),
         ("Chi-squared per feature, after", number::fixed(how.chi_squared_after, 3)),
+        (
+            "Factor by which what is allowed would fit what is left",
+            format!(
+                "{} \u{b1} {} (90 %)",
+                number::fixed(found.fit.allowance_scale, 2),
+                number::fixed(1.645 * found.fit.allowance_scale_sd, 2)
+            ),
+        ),
         ("Seed", how.seed.to_string()),
     ];
     let table = Table {

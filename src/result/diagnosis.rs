@@ -14,6 +14,12 @@ pub struct Diagnosis {
     pub verdict: &'static str,
     /// The verdict in sentences.
     pub says: Vec<String>,
+    pub fit: Fit,
+    /// The verdict of the protocol on the campaign as it is, and with the effects by cross-validation.
+    pub protocol_before: Verdict,
+    pub protocol_after: Option<Verdict>,
+    /// Share of campaigns drawn from what is allowed, with nothing hidden, in which an effect would be named.
+    pub false_name_rate: f64,
     /// Faults of the recording; their channels are excluded.
     pub faults: Vec<Fault>,
     pub r#where: Vec<Where>,
@@ -45,6 +51,18 @@ pub struct Diagnosis {
     /// Signals of the sections with the largest gap, for figures.
     #[serde(skip)]
     pub pictures: Vec<Picture>,
+}
+
+/// Chi-squared of what is left with the answer, against noise, tolerances and model discrepancy.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Fit {
+    /// Near 1 where these describe what is left.
+    pub chi2_per_feature: f64,
+    /// Probability of a larger chi-squared if they do.
+    pub p_value: f64,
+    /// The factor by which they would have to be multiplied, with its standard deviation.
+    pub allowance_scale: f64,
+    pub allowance_scale_sd: f64,
 }
 
 /// Signals of one section.
@@ -312,6 +330,8 @@ fn flat(value: &serde_json::Value) -> String {
 pub struct Value {
     pub value: serde_json::Value,
     pub unit: String,
+    /// The value that the simulation assumes; nothing where the parameter is not a size.
+    pub assumed: Option<f64>,
     pub low: Option<f64>,
     pub high: Option<f64>,
 }
@@ -430,7 +450,7 @@ mod tests {
     use serde_json::json;
 
     fn effect(parameters: &[(&str, serde_json::Value)]) -> NamedEffect {
-        let value = |value: &serde_json::Value| Value { value: value.clone(), unit: "-".into(), low: None, high: None };
+        let value = |value: &serde_json::Value| Value { value: value.clone(), unit: "-".into(), assumed: None, low: None, high: None };
         NamedEffect {
             name: "effect".into(),
             title: "Effect".into(),

@@ -28,7 +28,8 @@ fn in_words(effect: &NamedEffect) -> String {
         };
         let number = value.value.as_f64().map_or_else(|| value.text(), short);
         let unit = if value.unit == "-" { String::new() } else { format!(" {}", value.unit) };
-        format!("{parameter} {number}{unit}{interval}{}", told.on())
+        let assumed = value.assumed.map_or_else(String::new, |assumed| format!("{} -> ", short(assumed)));
+        format!("{parameter} {assumed}{number}{unit}{interval}{}", told.on())
     });
     format!("{}: {}{}", effect.title, values.collect::<Vec<_>>().join(", "), effect.only_in())
 }
@@ -96,7 +97,8 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
     let interval = interval(found, member);
     let mut push = |name: String, value: serde_json::Value, interval: Option<(f64, f64)>| {
         let unit = of.unit.text.clone();
-        parameters.insert(name, Value { value, unit, low: interval.map(|(low, _)| low), high: interval.map(|(_, high)| high) });
+        let assumed = interval.and(of.neutral()).filter(|neutral| neutral.is_finite());
+        parameters.insert(name, Value { value, unit, assumed, low: interval.map(|(low, _)| low), high: interval.map(|(_, high)| high) });
     };
     if of.effect_is_swap() {
         push(of.size.clone(), json!([of.channels]), None);
@@ -108,12 +110,14 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
         push(of.size.clone(), json!(member.size), interval);
         let every = effect.is_some_and(|effect| matches!(&effect.action, Action::Signals(_, all) if all.len() > of.channels.len()));
         if every {
-            parameters
-                .insert(format!("{}_channels", of.size), Value { value: json!(of.channels), unit: "-".into(), low: None, high: None });
+            parameters.insert(
+                format!("{}_channels", of.size),
+                Value { value: json!(of.channels), unit: "-".into(), assumed: None, low: None, high: None },
+            );
         }
     }
     for (name, value) in &of.fixed {
-        parameters.insert(name.clone(), Value { value: json!(value), unit: unit(name), low: None, high: None });
+        parameters.insert(name.clone(), Value { value: json!(value), unit: unit(name), assumed: None, low: None, high: None });
     }
     NamedEffect {
         name: of.effect.clone(),

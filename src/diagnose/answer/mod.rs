@@ -7,4 +7,5 @@ pub(super) mod pictures;
 pub(super) mod rivals;
 pub mod shrink;
 pub mod steady;
+pub mod verdict;
 pub(super) mod words;

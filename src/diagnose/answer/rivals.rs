@@ -2,6 +2,7 @@
 
 use super::apart::{Apart, apart};
 use super::causes::cause;
+use super::verdict::Verdict;
 use crate::diagnose::inputs::Inputs;
 use crate::diagnose::run::{Found, deviations};
 use crate::diagnose::search::choose::{TOLERANCE_SD, plausible};
@@ -53,7 +54,7 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
 
 /// Sets the probability of each cause. `failing` is the smallest share of resamples in which a member has the most evidence, where that
 /// share is too small. The probabilities are then these shares, which the causes contain as `probability` on entry.
-pub fn probabilities(causes: &mut [Cause], verdict: &str, suspected: bool, failing: Option<f64>) {
+pub fn probabilities(causes: &mut [Cause], verdict: Verdict, suspected: bool, failing: Option<f64>) {
     // A rival may have more evidence than an answer that was selected with the simulated tolerances: both are then equally probable.
     let best = causes.first().map_or(0.0, |answer| answer.evidence);
     let by_evidence = |cause: &Cause| ((cause.evidence - best).min(0.0) / (2.0 * TEMPERATURE)).exp();
@@ -63,19 +64,19 @@ pub fn probabilities(causes: &mut [Cause], verdict: &str, suspected: bool, faili
     };
     // A cause outside the catalogue is always possible, and more probable where a residual remains.
     let outside = match verdict {
-        "unexplained" => 4.0,
+        Verdict::Unexplained => 4.0,
         _ if suspected => 1.0,
         _ => 0.05,
     };
     let all = weights.iter().sum::<f64>() + outside;
     causes.iter_mut().zip(weights).for_each(|(cause, weight)| cause.probability = weight / all);
-    if verdict == "unexplained" {
+    if verdict == Verdict::Unexplained {
         causes.iter_mut().for_each(|cause| cause.in_ambiguity_set = false);
     }
 }
 
-pub fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: &str) -> Option<String> {
-    if verdict != "ambiguous" {
+pub fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: Verdict) -> Option<String> {
+    if verdict != Verdict::Ambiguous {
         return None;
     }
     let effects = causes.iter().filter(|cause| cause.in_ambiguity_set).flat_map(|cause| &cause.effects);
@@ -98,8 +99,8 @@ const TOLD_APART: f64 = 5.0;
 
 /// A statement where two possible causes are far apart but neither is preferred: the data would discriminate them if one were the whole
 /// cause.
-pub fn neither(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: &str) -> Option<String> {
-    let (names, apart) = nearest(found, causes).filter(|(_, apart)| verdict == "ambiguous" && apart.now >= TOLD_APART)?;
+pub fn neither(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: Verdict) -> Option<String> {
+    let (names, apart) = nearest(found, causes).filter(|(_, apart)| verdict == Verdict::Ambiguous && apart.now >= TOLD_APART)?;
     let [one, other] = names.map(|name| inputs.catalogue.effect(name).map_or(name, |effect| effect.title.as_str()));
     Some(format!(
         "{one} | {other}: their changes differ by {:.1} standard deviations on these sections. If one of them were the whole cause, these \

@@ -3,6 +3,7 @@
 use super::causes::cause;
 use super::detectable::detectable;
 use super::rivals::{ambiguity, discriminating, neither, probabilities};
+use super::verdict::{self, Facts, Verdict};
 use crate::diagnose::inputs::Inputs;
 use crate::diagnose::observe::features::Kind;
 use crate::diagnose::run::{Found, chi, deviations};
@@ -10,15 +11,19 @@ use crate::diagnose::search::choose::TOLERANCE_SD;
 use crate::diagnose::search::fit::Fitted;
 use crate::diagnose::search::lack::{LACK, unexplained};
 use crate::diagnose::search::suspects::Suspect;
+use crate::result::Verdict as OfProtocol;
 use crate::result::diagnosis::{Cause, Diagnosis, Fault, How, Nearest, Shrink, Vetoed};
 use crate::simulate::Units;
 
 /// Trends with a probability below this are reported, whether significant or not.
 const TOLD: f64 = 0.05;
 
+/// The verdict of the protocol without the effects and, where effects are named, with them.
+pub type Protocol = (OfProtocol, Option<OfProtocol>);
+
 /// Converts the results into the diagnosis of the report.
 #[must_use]
-pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Option<Shrink>) -> Diagnosis {
+pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, protocol: Protocol, shrink: Option<Shrink>) -> Diagnosis {
     let (before, after) = chi(found);
     let (unexplained_share, too_much) = unexplained(&found.lack_before, &found.lack_after);
     // An outlying section does not refute an answer, but without an answer it is a significant difference.
@@ -34,29 +39,35 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         || crate::diagnose::gap::invariants::stays(&invariants).is_some();
     // The smallest share of resamples in which a member has the most evidence, where that share is too small.
     let least = found.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
-    let verdict = match () {
-        () if !named && !lacking && !left && found.seen.faults.is_empty() => "no significant gap",
-        () if !named || left => "unexplained",
-        () if too_much || found.suspect.as_ref().is_some_and(Suspect::beats) || found.contradicting.is_some() => "unexplained",
-        () if found.suspect.is_some() || least.is_some() || ambiguous.iter().any(|rival| rival.in_ambiguity_set) => "ambiguous",
-        () => "explained",
+    let fit = verdict::fit(found);
+    let facts = Facts {
+        named,
+        faulty: !found.seen.faults.is_empty(),
+        lacking,
+        systematic: left,
+        much_left: too_much || found.suspect.as_ref().is_some_and(Suspect::beats) || found.contradicting.is_some(),
+        tied: found.suspect.is_some() || least.is_some() || ambiguous.iter().any(|rival| rival.in_ambiguity_set),
+        protocol_fails: verdict::fails(protocol.0),
+        removed: verdict::removed(shrink.as_ref()),
+        misfit: fit.chi2_per_feature,
     };
+    let (verdict, reason) = verdict::verdict(&facts);
     let mut causes = vec![];
     if named {
-        causes.push(cause(inputs, found, &found.chosen.members, 1));
+        causes.push(Cause { evidence: found.chosen.evidence(), ..cause(inputs, found, &found.chosen.members, 1) });
         // Where the gap remains, the candidate with more evidence than the answer was refused. It is reported there and is not a rival.
         let best = causes[0].evidence;
-        causes.extend(ambiguous.into_iter().filter(|rival| verdict != "unexplained" || rival.evidence <= best));
+        causes.extend(ambiguous.into_iter().filter(|rival| verdict != Verdict::Unexplained || rival.evidence <= best));
         causes.iter_mut().enumerate().for_each(|(at, cause)| cause.rank = at + 1);
     }
     probabilities(&mut causes, verdict, found.suspect.is_some(), least);
     let discriminating_measurement = discriminating(inputs, found, &causes, verdict);
     let radius = |key: &str| crate::diagnose::inputs::value_of(inputs.campaign, key);
     let shapes = crate::diagnose::gap::shapes::shapes(inputs.settings, &found.seen, &radius, inputs.seed);
-    let mut says = says(inputs, found, (verdict, left), &causes, shrink.as_ref(), unexplained_share);
+    let mut says = says(inputs, found, (verdict, left, reason), &causes, shrink.as_ref(), unexplained_share);
     let trends_tested = trends.len();
     trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
-    if verdict == "unexplained" {
+    if verdict == Verdict::Unexplained {
         says.extend(super::steady::worth_a_word(inputs.catalogue, &drifts));
         says.extend(crate::diagnose::gap::trends::worth_a_word(&trends));
         says.extend(crate::diagnose::gap::invariants::worst(&invariants));
@@ -77,6 +88,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
         "documented defaults"
     };
     notes.extend(alone(found));
+    notes.extend(verdict::remark(&fit));
     if !inputs.references.is_empty() {
         let names: Vec<&str> = inputs.references.iter().map(|reference| reference.campaign.name.as_str()).collect();
         notes.push(format!("the standing discrepancy of the simulation was estimated from: {}", names.join(", ")));
@@ -87,8 +99,12 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, shrink: Opti
     Diagnosis {
         fishplate: env!("CARGO_PKG_VERSION"),
         campaign: inputs.campaign.name.clone(),
-        verdict,
+        verdict: verdict.word(),
         says,
+        fit,
+        false_name_rate: found.false_name_rate,
+        protocol_before: protocol.0,
+        protocol_after: protocol.1,
         faults: found.seen.faults.clone(),
         r#where: crate::diagnose::gap::locate::locate(inputs.settings, found, units),
         invariants,
@@ -182,7 +198,7 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
 fn says(
     inputs: &Inputs<'_>,
     found: &Found,
-    (verdict, left): (&str, bool),
+    (verdict, left, reason): (Verdict, bool, Option<&str>),
     causes: &[Cause],
     shrink: Option<&Shrink>,
     unexplained: f64,
@@ -190,11 +206,11 @@ fn says(
     let faulty = |fault: &Fault| format!("Fault of the recording: {} (sections {}).", fault.says, fault.sections.join(", "));
     let mut lines: Vec<String> = found.seen.faults.iter().map(faulty).collect();
     match verdict {
-        "no significant gap" => {
+        Verdict::NoSignificantGap => {
             lines.push("The differences are within noise, declared tolerances and the allowed model discrepancy.".into())
         }
-        "explained" => lines.push(format!("{}.", causes[0].says)),
-        "ambiguous" => {
+        Verdict::Explained => lines.push(format!("{}.", causes[0].says)),
+        Verdict::Ambiguous => {
             let mut set: Vec<String> = causes.iter().filter(|cause| cause.in_ambiguity_set).map(|cause| cause.says.clone()).collect();
             set.extend(found.suspect.as_ref().map(|suspect| {
                 format!("`{}` multiplied by {:.2}, a parameter that no effect of the catalogue changes", suspect.key, suspect.factor)
@@ -244,6 +260,7 @@ fn says(
                 true if left => {
                     format!("No effect of the catalogue `{catalogue}` explains the gap: the remaining difference is systematic.")
                 }
+                true if reason.is_some() => reason.unwrap_or_default().into(),
                 true => {
                     format!("Apart from that, no difference remains that an effect of the catalogue `{catalogue}` would have to explain.")
                 }
@@ -254,6 +271,7 @@ fn says(
             }
         }
     }
+    lines.extend(reason.map(str::to_string).filter(|reason| !lines.contains(reason)).into_iter().collect::<Vec<_>>());
     if let Some(shrink) = shrink {
         let (before, after, low, high) = (shrink.before, shrink.after, 100.0 * shrink.low, 100.0 * shrink.high);
         let removed = 100.0 * shrink.fraction_removed;

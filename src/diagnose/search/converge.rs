@@ -14,6 +14,8 @@ use crate::effects::Gauss;
 
 /// Random draws for the threshold.
 const DRAWS: usize = 60;
+/// Campaigns drawn from the covariance, with nothing hidden, for the rate of false names: 200 resolve half a per cent.
+const NOTHING_HIDDEN: usize = 200;
 /// Least evidence of a cause: real discrepancies deviate from the assumed covariance.
 const FLOOR: f64 = 30.0;
 /// The same for an operation on the signals, which such discrepancies do not affect: half as much; 10 is called very strong (Kass and
@@ -43,6 +45,8 @@ pub struct Converged {
     pub chosen: Chosen,
     pub refused: Vec<Refused>,
     pub bars: Bars,
+    /// Share of drawn campaigns with nothing hidden in which a cause has enough evidence.
+    pub false_name_rate: f64,
     pub known: Known,
 }
 
@@ -79,13 +83,34 @@ impl Converging<'_> {
             wanted.into_iter().for_each(|(at, size)| workshop.refine(&mut candidates[at], size, runs));
             (workshop.trying)("weighing");
         };
-        let now = self.simulated((candidates, masks), Converged { chosen, refused, bars, known }, runs);
+        let fitter = Fitter::knowing(whitener, candidates, masks.clone(), known);
+        let false_name_rate = self.false_name_rate(&fitter, z.len(), &bars);
+        let known = fitter.whitened;
+        let now = self.simulated((candidates, masks), Converged { chosen, refused, bars, false_name_rate, known }, runs);
         let mut now = self.beside((candidates, masks), now, runs);
         if self.exchange((candidates, masks), &mut now.chosen, &now.bars, &now.refused, &mut now.known) {
             alone_again(candidates, &now.chosen.members);
             now = self.simulated((candidates, masks), now, runs);
         }
         now
+    }
+
+    /// Share of campaigns drawn from the covariance, with nothing hidden, in which some candidate meets the criteria of a first member. The
+    /// guards are not asked, so that the rate is not underestimated by them.
+    fn false_name_rate(&self, fitter: &Fitter<'_>, features: usize, bars: &Bars) -> f64 {
+        use rayon::prelude::*;
+        let named = |draw: &usize| {
+            let z = drawn(features, self.seed.wrapping_add(1), *draw);
+            let mut fits = fitter.all(&z);
+            fits.retain(|fit| fit.evidence >= bars.least(&fitter.candidates[fit.candidate]));
+            fits.iter_mut().for_each(|fit| unconfine(fitter, &z, fit, bars));
+            fits.iter().any(|fit| {
+                let (of, mask) = (&fitter.candidates[fit.candidate], &fitter.masks[fit.mask]);
+                let needed = if mask.asked_by.is_some() { 2.0 * bars.least(of) } else { bars.least(of) };
+                fit.evidence >= needed && (self.far)(of, fit.size) >= bars.tolerance_sd + mask.picked() && plausible(of, fit.size)
+            })
+        };
+        (0..NOTHING_HIDDEN).into_par_iter().filter(named).count() as f64 / NOTHING_HIDDEN as f64
     }
 
     /// The same with another weighing.
@@ -207,17 +232,16 @@ fn bars(chance: f64) -> Bars {
     Bars { first, exact: chance.max(FLOOR_EXACT), confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.08, most: 3 }
 }
 
+/// A whitened difference with nothing hidden.
+fn drawn(features: usize, seed: u64, draw: usize) -> Vec<f64> {
+    let mut random = Gauss::new(seed ^ (draw as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    (0..features).map(|_| random.next()).collect()
+}
+
 /// Evidence larger than that of the best candidate in any random draw from the covariance.
 fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
     use rayon::prelude::*;
-    let mut most: Vec<f64> = (0..DRAWS)
-        .into_par_iter()
-        .map(|draw| {
-            let mut random = Gauss::new(seed ^ (draw as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15));
-            let z: Vec<f64> = (0..features).map(|_| random.next()).collect();
-            fitter.most(&z)
-        })
-        .collect();
+    let mut most: Vec<f64> = (0..DRAWS).into_par_iter().map(|draw| fitter.most(&drawn(features, seed, draw))).collect();
     most.sort_by(f64::total_cmp);
     most.last().copied().unwrap_or(0.0) + 3.0
 }

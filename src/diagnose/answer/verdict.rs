@@ -1,0 +1,200 @@
+//! The verdict of a diagnosis: one table of rules over what was found, of which the first that applies decides.
+
+use crate::diagnose::run::Found;
+use crate::diagnose::search::lack::{left, with_room};
+use crate::result::Verdict as OfProtocol;
+use crate::result::diagnosis::{Fit, Shrink};
+
+/// The verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    NoSignificantGap,
+    Explained,
+    Ambiguous,
+    Unexplained,
+}
+
+impl Verdict {
+    /// As in `diagnosis.json`.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::NoSignificantGap => "no significant gap",
+            Self::Explained => "explained",
+            Self::Ambiguous => "ambiguous",
+            Self::Unexplained => "unexplained",
+        }
+    }
+}
+
+/// What the verdict depends on.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Facts {
+    /// Whether effects are named.
+    pub named: bool,
+    /// Whether a recording is faulty.
+    pub faulty: bool,
+    /// Whether a channel differs by more than is allowed, or a trend or a sum of forces remains.
+    pub lacking: bool,
+    pub systematic: bool,
+    /// Whether most of the excess remains, a parameter outside the catalogue explains more, or an effect that the data contradict does.
+    pub much_left: bool,
+    /// Whether alternatives are as good, or another effect is better in many resamples.
+    pub tied: bool,
+    /// Whether the criteria of the protocol are not met without effects.
+    pub protocol_fails: bool,
+    /// The gap on sections excluded from the fit that the effects remove, as a share; nothing where no quantity of the protocol feels them.
+    pub removed: Option<f64>,
+    /// What is left, in units of what is allowed.
+    pub misfit: f64,
+}
+
+/// Ratio of chi-squared to the number of features from which the fit is refuted: what is left is then on average 1.4 times as large as
+/// noise, tolerances and model discrepancy together. Below a quarter, they are more than twice as large as what is left.
+pub const MISFIT: f64 = 2.0;
+pub const ROOMY: f64 = 0.25;
+
+/// A rule: its condition, its verdict, and its reason where the answer does not state it elsewhere.
+struct Rule {
+    applies: fn(&Facts) -> bool,
+    verdict: Verdict,
+    reason: Option<&'static str>,
+}
+
+const fn rule(applies: fn(&Facts) -> bool, verdict: Verdict, reason: Option<&'static str>) -> Rule {
+    Rule { applies, verdict, reason }
+}
+
+/// In this order.
+const RULES: [Rule; 9] = [
+    rule(|of| !of.named && (of.faulty || of.lacking || of.systematic), Verdict::Unexplained, None),
+    rule(
+        |of| !of.named && of.protocol_fails,
+        Verdict::Unexplained,
+        Some(
+            "The acceptance criteria are not met, but the gap lies within what noise and the declared tolerances allow: no effect can be named.",
+        ),
+    ),
+    rule(|of| !of.named, Verdict::NoSignificantGap, None),
+    rule(|of| of.systematic || of.much_left, Verdict::Unexplained, None),
+    rule(
+        |of| of.misfit > MISFIT,
+        Verdict::Unexplained,
+        Some("With the named effects, the remaining differences are still larger than noise, tolerances and model discrepancy allow."),
+    ),
+    rule(
+        |of| of.removed.is_some_and(|removed| removed <= 0.0),
+        Verdict::Unexplained,
+        Some("The named effects improve the fit, but do not decrease the gap on sections excluded from the fit."),
+    ),
+    rule(|of| of.tied, Verdict::Ambiguous, None),
+    rule(
+        |of| of.removed.is_none() && of.protocol_fails,
+        Verdict::Explained,
+        Some("No quantity of the protocol depends on the named effects: they do not explain why its criteria are not met."),
+    ),
+    rule(|_| true, Verdict::Explained, None),
+];
+
+/// The verdict, and its reason where the answer does not state it elsewhere.
+#[must_use]
+pub fn verdict(facts: &Facts) -> (Verdict, Option<&'static str>) {
+    let first = RULES.iter().find(|rule| (rule.applies)(facts));
+    first.map_or((Verdict::Unexplained, None), |rule| (rule.verdict, rule.reason))
+}
+
+/// Whether criteria of the protocol are not met.
+#[must_use]
+pub fn fails(protocol: OfProtocol) -> bool {
+    protocol == OfProtocol::NotValidated
+}
+
+/// The share of the gap that the effects remove on sections excluded from the fit: the larger of that of all quantities and of those that
+/// the effects change. Nothing where they change none.
+#[must_use]
+pub fn removed(shrink: Option<&Shrink>) -> Option<f64> {
+    let shrink = shrink?;
+    let touched = shrink.touched.as_ref()?;
+    Some(shrink.fraction_removed.max(touched.fraction_removed))
+}
+
+/// How well the answer fits: chi-squared of all that is left, with the model error of the simulated effects allowed.
+#[must_use]
+pub fn fit(found: &Found) -> Fit {
+    use statrs::distribution::{ChiSquared, ContinuousCDF};
+    let covariance = with_room(&found.beside.covariance, &found.candidates, &found.masks, &found.chosen);
+    let rest = left(&found.candidates, &found.masks, &found.beside.difference, &found.chosen);
+    let z = covariance.whitener().apply(&rest);
+    let features = z.len().max(1) as f64;
+    let chi_squared: f64 = z.iter().map(|z| z * z).sum();
+    let freedom = (features - found.chosen.members.len() as f64).max(1.0);
+    let p_value = ChiSquared::new(freedom).map_or(f64::NAN, |law| law.sf(chi_squared));
+    let per_feature = chi_squared / features;
+    let scale = per_feature.sqrt();
+    Fit { chi2_per_feature: per_feature, p_value, allowance_scale: scale, allowance_scale_sd: scale / (2.0 * freedom).sqrt() }
+}
+
+/// A remark where what is allowed does not fit what is left.
+#[must_use]
+pub fn remark(fit: &Fit) -> Option<String> {
+    let Fit { chi2_per_feature, allowance_scale, allowance_scale_sd, .. } = fit;
+    let scale = format!("{allowance_scale:.2} \u{b1} {:.2}", 1.645 * allowance_scale_sd);
+    if *chi2_per_feature > MISFIT {
+        Some(format!(
+            "chi-squared per feature is {chi2_per_feature:.2}: noise, tolerances and model discrepancy would have to be {scale} times as large"
+        ))
+    } else if *chi2_per_feature < ROOMY {
+        Some(format!(
+            "chi-squared per feature is {chi2_per_feature:.2}: noise, tolerances and model discrepancy are assumed larger than the data show \
+             (a factor of {scale} would suffice), so smaller effects cannot be seen"
+        ))
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each fact alone, from an answer that explains everything and from no answer.
+    #[test]
+    fn each_fact_decides_as_the_table_says() {
+        let answer = Facts { named: true, removed: Some(0.6), misfit: 1.0, ..Facts::default() };
+        let nothing = Facts { misfit: 1.0, ..Facts::default() };
+        let of = |facts: Facts| verdict(&facts).0;
+        assert_eq!(of(answer), Verdict::Explained);
+        assert_eq!(of(Facts { tied: true, ..answer }), Verdict::Ambiguous);
+        for facts in [
+            Facts { systematic: true, ..answer },
+            Facts { much_left: true, ..answer },
+            Facts { misfit: 7.8, ..answer },
+            Facts { removed: Some(-0.11), ..answer },
+            Facts { removed: Some(0.0), tied: true, ..answer },
+        ] {
+            assert_eq!(of(facts), Verdict::Unexplained, "{facts:?}");
+        }
+        // An effect that no quantity of the protocol feels is not refuted by the protocol; that it does not explain it is said.
+        let unfelt = Facts { removed: None, protocol_fails: true, ..answer };
+        assert_eq!(of(unfelt), Verdict::Explained);
+        assert!(verdict(&unfelt).1.is_some_and(|reason| reason.starts_with("No quantity")));
+        assert_eq!(of(nothing), Verdict::NoSignificantGap);
+        for facts in [Facts { lacking: true, ..nothing }, Facts { faulty: true, ..nothing }, Facts { systematic: true, ..nothing }] {
+            assert_eq!(verdict(&facts), (Verdict::Unexplained, None), "{facts:?}");
+        }
+        let (within, reason) = verdict(&Facts { protocol_fails: true, ..nothing });
+        assert_eq!(within, Verdict::Unexplained);
+        assert!(reason.is_some_and(|reason| reason.contains("declared tolerances allow")));
+    }
+
+    #[test]
+    fn allowances_far_from_what_is_left_are_told() {
+        let of = |per_feature: f64| {
+            let scale = per_feature.sqrt();
+            remark(&Fit { chi2_per_feature: per_feature, p_value: 0.5, allowance_scale: scale, allowance_scale_sd: scale / 20.0 })
+        };
+        assert!(of(1.0).is_none());
+        assert!(of(7.8).is_some_and(|says| says.contains("2.79 \u{b1} 0.23 times as large")));
+        assert!(of(0.04).is_some_and(|says| says.contains("0.20 \u{b1} 0.02")));
+    }
+}
