@@ -152,7 +152,7 @@ mod tests {
             Column { name: "a".into(), unit: unit("m/s^2"), values: vec![0.1 * 9.806_65 * 3.0, 1e-7] },
         ];
         let text = String::from_utf8(record_bytes(&columns, Format::Csv).expect("written")).expect("a text");
-        assert_eq!(text, "time [s],Y [kN],a [m/s^2]\n86399.0005,1.1301,2.941995\n86399.0055,0,1e-7\n");
+        assert_eq!(text, "time [s],Y [kN],a [m/s^2]\n86399.0005,1.13009998,2.941995\n86399.0055,0,1e-7\n");
         assert!(record_bytes(&columns, Format::Parquet).expect("written").starts_with(b"PAR1"));
     }
 }

@@ -242,10 +242,10 @@ mod tests {
         let needs = [need("Q_1R", "kN"), need("Q_1L", "kN"), need("Y_1R", "kN"), need("Y_1L", "kN"), need("az_I", "m/s^2")];
         let found = guesses(&looks, &needs.iter().collect::<Vec<_>>(), &convention());
         let from: Vec<Option<&str>> = found.iter().map(|guess| guess.from.as_deref()).collect();
-        // The sign of the left guiding force is open, and there is no acceleration.
-        assert_eq!(from, [Some("st1 q RE"), Some("Q 1L"), Some("Y_1R"), None, None]);
+        // In the order of the convention. The sign of the left guiding force is open, and there is no acceleration.
+        assert_eq!(from, [Some("st1 q RE"), None, Some("Q 1L"), Some("Y_1R"), None]);
         assert!(found[0].reasons.iter().any(|reason| reason.contains("common to 2 channels")), "{found:?}");
-        assert!(found[3].reasons[0].contains("-ST1 Y li"), "{found:?}");
+        assert!(found[1].reasons[0].contains("-ST1 Y li"), "{found:?}");
     }
 
     #[test]
