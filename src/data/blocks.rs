@@ -39,7 +39,7 @@ impl Blocks {
     ///
     /// # Errors
     /// Those of [`stream`].
-    pub fn next(&mut self) -> Result<Option<Columns>, Vec<Problem>> {
+    pub fn following(&mut self) -> Result<Option<Columns>, Vec<Problem>> {
         self.blocks.recv().map_or(Ok(None), |block| block.map(Some))
     }
 }

@@ -219,7 +219,7 @@ impl Reader {
         let widths: Option<Vec<usize>> = parts.iter().map(|(_, index)| bytes::size_of(index.kind)).collect();
         let widths = widths.ok_or("it has interleaved texts")?;
         let row: usize = widths.iter().sum();
-        if part.len() % row != 0 || parts.iter().any(|(_, index)| index.count != parts[0].1.count) {
+        if !part.len().is_multiple_of(row) || parts.iter().any(|(_, index)| index.count != parts[0].1.count) {
             return Err(format!("its rows have {row} bytes, its data {}", part.len()).into());
         }
         let mut from = 0;
@@ -279,9 +279,12 @@ fn names(path: &str) -> Vec<String> {
 /// Channels of a group with the same time base: number of values, step, offset.
 type Base = (usize, u64, u64);
 
+/// Tables of a group, its facts, and the channels that are left out with the reasons.
+type Group = (IndexMap<Base, Table>, Vec<(String, String)>, Vec<(String, String)>);
+
 fn tables(objects: IndexMap<String, Object>) -> Read {
     let mut read = Read::default();
-    let mut groups: IndexMap<String, (IndexMap<Base, Table>, Vec<(String, String)>, Vec<(String, String)>)> = IndexMap::new();
+    let mut groups: IndexMap<String, Group> = IndexMap::new();
     for (path, mut object) in objects {
         let mut names = names(&path).into_iter();
         let (Some(group), channel) = (names.next(), names.next()) else {

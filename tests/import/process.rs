@@ -13,8 +13,11 @@ use crate::imported;
 
 const SECTIONS: &str = "section,start [m],end [m],leading end,chainage [m]\nS01,120,180,A,100\nS02,120,180,B,100\n";
 
+/// A column: name, unit, function of time.
+type Made<'a> = (&'a str, &'a str, &'a dyn Fn(f64) -> f64);
+
 /// A table of a foreign record at a rate, for 6 s: columns with unit and function of time.
-fn table(columns: &[(&str, &str, &dyn Fn(f64) -> f64)], rate: f64) -> String {
+fn table(columns: &[Made<'_>], rate: f64) -> String {
     let line = |cells: Vec<String>| cells.join(";") + "\n";
     let mut text = line(columns.iter().map(|(name, ..)| (*name).to_string()).collect());
     text += &line(columns.iter().map(|(_, unit, _)| (*unit).to_string()).collect());
@@ -29,7 +32,7 @@ struct Case {
 }
 
 impl Case {
-    fn new(columns: &[(&str, &str, &dyn Fn(f64) -> f64)], rate: f64) -> Self {
+    fn new(columns: &[Made<'_>], rate: f64) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         fs::write(folder.path().join("sections.csv"), SECTIONS).expect("written");
         for section in ["S01", "S02"] {
@@ -213,7 +216,7 @@ fn offsets_of_the_table_are_applied_when_records_are_read() {
 
 #[test]
 fn the_same_files_give_the_same_bytes() {
-    let columns: [(&str, &str, &dyn Fn(f64) -> f64); 3] = [("t", "s", &|t| t), ("s", "m", &|t| 100.0 + 20.0 * t), ("a", "kN", &|t| t * t)];
+    let columns: [Made<'_>; 3] = [("t", "s", &|t| t), ("s", "m", &|t| 100.0 + 20.0 * t), ("a", "kN", &|t| t * t)];
     let case = Case::new(&columns, 200.0);
     let body = "measurement:\n  files: '{section}.txt'\n  time: t\n  distance: s\n  channels: as named\n";
     case.import(body);

@@ -132,7 +132,7 @@ fn array(mut bytes: Bytes<'_>, depth: usize, budget: &mut Budget<'_>, names: &mu
     let (_, flags) = bytes.element(true)?;
     let word = Bytes { bytes: flags, big }.u32().ok_or("the flags of the array are not complete")?;
     let (class, complex) = (word as u8, word & 0x0800 != 0);
-    if matches!(class, 16 | 17 | 18) || !(NUMERIC.contains(&class) || matches!(class, CELL | STRUCT | CHAR | SPARSE | 3)) {
+    if matches!(class, 16..=18) || !(NUMERIC.contains(&class) || matches!(class, CELL | STRUCT | CHAR | SPARSE | 3)) {
         return Ok((names_of_object(bytes), Value::Other(OBJECT)));
     }
     let (kind, sizes) = bytes.element(true)?;
@@ -140,7 +140,7 @@ fn array(mut bytes: Bytes<'_>, depth: usize, budget: &mut Budget<'_>, names: &mu
     let count = sizes.iter().try_fold(1usize, |product, size| product.checked_mul(*size));
     let count = count.ok_or("the declared size of the array is beyond any memory")?;
     let rows = sizes.first().copied().unwrap_or(0);
-    let columns = if rows == 0 { 0 } else { count / rows };
+    let columns = count.checked_div(rows).unwrap_or(0);
     let (_, name) = bytes.element(true)?;
     let name = latin(name);
     let before = names.len();
@@ -328,7 +328,7 @@ impl<'a> Bytes<'a> {
             return Err(format!("an element is declared with {size} bytes; {} are left", self.bytes.len()));
         }
         let (data, rest) = self.bytes.split_at(size);
-        let padding = if padded && size % 8 != 0 { 8 - size % 8 } else { 0 };
+        let padding = if padded { size.next_multiple_of(8) - size } else { 0 };
         self.bytes = rest.get(padding..).unwrap_or(&[]);
         Ok((tag, data))
     }

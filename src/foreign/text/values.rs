@@ -36,8 +36,8 @@ pub(super) fn read(
     let mut more = 0;
     for line in rows.iter().filter(|line| super::is_row(text, **line)) {
         let found: Result<(), Problem> = row(text, *line, dialect).and_then(|cells| {
-            let each = columns.iter_mut().zip(&headings).zip(cells);
-            each.map(|((column, heading), cell)| add(text, column, heading, *line, cell, dialect.decimal)).collect()
+            let mut each = columns.iter_mut().zip(&headings).zip(cells);
+            each.try_for_each(|((column, heading), cell)| add(text, column, heading, *line, cell, dialect.decimal))
         });
         if let Err(problem) = found {
             if problems.len() < SHOWN { problems.push(problem) } else { more += 1 }
@@ -77,7 +77,7 @@ fn row(text: &Text<'_>, line: Line<'_>, dialect: Dialect) -> Result<Vec<Range<us
 /// Cells of fixed width, which may touch: `-1.500000E+03-1.380000E+03`.
 fn fixed(line: &str, dialect: Dialect) -> Option<Vec<Range<usize>>> {
     let length = line.trim_end().len();
-    if dialect.separator != dialect::Separator::Blanks || length == 0 || length % dialect.columns != 0 || !line.is_ascii() {
+    if dialect.separator != dialect::Separator::Blanks || length == 0 || !length.is_multiple_of(dialect.columns) || !line.is_ascii() {
         return None;
     }
     let width = length / dialect.columns;

@@ -16,8 +16,11 @@ const MOST: usize = 12;
 /// press them onto the axis.
 const HIGHEST: f64 = 5.0;
 
+/// Name of a metric, and pairs of size and sensitivity.
+type Curve = (String, Vec<(f64, f64)>);
+
 /// Where the axis ends: at the largest value, or below it.
-fn highest(curves: &[(String, Vec<(f64, f64)>)]) -> f64 {
+fn highest(curves: &[Curve]) -> f64 {
     let mut reached: Vec<f64> = curves.iter().map(|(_, points)| points.iter().map(|(_, value)| *value).fold(0.0, f64::max)).collect();
     reached.sort_by(f64::total_cmp);
     let most = reached.last().copied().unwrap_or(0.0);
@@ -26,10 +29,10 @@ fn highest(curves: &[(String, Vec<(f64, f64)>)]) -> f64 {
 }
 
 /// One curve for each metric: its name, and pairs of size and sensitivity.
-pub fn sensitivity(disturbance: &str, curves: &[(String, Vec<(f64, f64)>)]) -> String {
+pub fn sensitivity(disturbance: &str, curves: &[Curve]) -> String {
     let curves = &curves[..curves.len().min(MOST)];
     let high = highest(curves);
-    let entry = |(n, (name, points)): (usize, &(String, Vec<(f64, f64)>))| {
+    let entry = |(n, (name, points)): (usize, &Curve)| {
         let name = cut(name, 8.0, 0.35 * WIDTH);
         let beyond = points.iter().any(|(_, value)| *value > high);
         Entry::mark(Mark::nth(n), color(n), if beyond { format!("{name} (beyond the axis)") } else { name })

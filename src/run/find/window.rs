@@ -42,7 +42,7 @@ impl Window {
     pub fn fill(&mut self, to: f64) -> Result<(), Vec<Problem>> {
         while self.last <= to || self.first.is_none() {
             let Some(blocks) = &mut self.blocks else { return Ok(()) };
-            let Some(block) = blocks.next()? else {
+            let Some(block) = blocks.following()? else {
                 self.blocks = None;
                 return Ok(());
             };

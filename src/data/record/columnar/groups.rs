@@ -26,6 +26,12 @@ const BATCH: usize = 1 << 13;
 /// Called after each batch with the columns and the row of the file with which the batch begins; it may empty the columns.
 pub(super) type Each<'e> = &'e mut dyn FnMut(&mut [Column], usize);
 
+/// Place in the file and bytes of a column of a group.
+type Chunk = (Range<u64>, Vec<u8>);
+
+/// Takes the numbers of a batch into the columns; the last argument gives the place of each column in the batch.
+type Take<'t> = &'t mut dyn FnMut(&RecordBatch, &mut [Column], &[usize]) -> Result<(), String>;
+
 impl Opened<'_> {
     /// Appends the numbers of a group to the columns, in SI units.
     pub(super) fn group(&mut self, group: usize, columns: &mut [Column], faults: &mut Faults<'_>, each: Each<'_>) -> Result<(), Problem> {
@@ -87,7 +93,7 @@ impl Opened<'_> {
     }
 
     /// Ranges and bytes of the wanted columns of a group, with checked sizes.
-    fn chunks(&mut self, group: usize, columns: &[Column]) -> Result<Vec<(Range<u64>, Vec<u8>)>, Problem> {
+    fn chunks(&mut self, group: usize, columns: &[Column]) -> Result<Vec<Chunk>, Problem> {
         let shown = self.shown;
         let mut chunks = Vec::new();
         let mut memory = 0_u64;
@@ -117,14 +123,7 @@ impl Opened<'_> {
         Ok(chunks)
     }
 
-    fn decode(
-        &self,
-        group: usize,
-        rows: &Range<usize>,
-        chunks: &[(Range<u64>, Vec<u8>)],
-        columns: &mut [Column],
-        take: &mut dyn FnMut(&RecordBatch, &mut [Column], &[usize]) -> Result<(), String>,
-    ) -> Result<(), String> {
+    fn decode(&self, group: usize, rows: &Range<usize>, chunks: &[Chunk], columns: &mut [Column], take: Take<'_>) -> Result<(), String> {
         // A batch has the columns in the order of the file.
         let mut order: Vec<usize> = (0..columns.len()).collect();
         order.sort_by_key(|at| columns[*at].position);
@@ -158,7 +157,7 @@ impl Opened<'_> {
     }
 
     /// Which column is damaged: each is decoded alone.
-    fn where_damaged(&self, group: usize, rows: &Range<usize>, chunks: &[(Range<u64>, Vec<u8>)], columns: &[Column], why: &str) -> Problem {
+    fn where_damaged(&self, group: usize, rows: &Range<usize>, chunks: &[Chunk], columns: &[Column], why: &str) -> Problem {
         for (column, chunk) in columns.iter().zip(chunks) {
             let mut found = 0;
             let mut one = [Column { values: Vec::new(), ..column.clone() }];
