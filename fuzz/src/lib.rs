@@ -6,6 +6,7 @@
 
 mod campaign;
 mod escape;
+mod foreign;
 mod language;
 mod promise;
 mod records;
@@ -16,13 +17,15 @@ mod simulators;
 type Try = fn(&[u8]);
 
 /// Every target: its name and what it is given.
-pub const TARGETS: [(&str, Try); 14] = [
+pub const TARGETS: [(&str, Try); 16] = [
     ("protocol_text", language::protocol_text),
     ("protocol_yaml", language::protocol_yaml),
     ("check", language::check),
     ("phrase", language::phrase),
     ("record", records::record),
     ("parquet", records::parquet),
+    ("foreign", foreign::foreign),
+    ("mapping", foreign::mapping),
     ("table", records::table),
     ("campaign", campaign::campaign),
     ("vehicle", campaign::vehicle),

@@ -90,7 +90,9 @@ pub fn parquet(input: &[u8]) {
             rows += block.rows;
         });
         assert!(run.is_ok() && rows == record.rows, "{}", heading.name);
-        if let Err(problems) = read_stretch(&path, "record.parquet", &wanted, &heading.name, 0.0..1.0) {
+        if let Err(problems) =
+            read_stretch(&path, "record.parquet", &wanted, &heading.name, 0.0..1.0, &fishplate::data::hash::Known::default())
+        {
             promise::told(&problems);
         }
     }

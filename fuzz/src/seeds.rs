@@ -38,6 +38,7 @@ pub fn seeds(root: &Path) -> Vec<Seed> {
     seeds.push(("campaign", CAMPAIGN.into()));
     seeds.push(("vehicle", VEHICLE.into()));
     seeds.push(("sections", SECTIONS.into()));
+    seeds.extend(DIALECTS.map(|text| ("foreign", text.into())));
     for text in HOSTILE {
         seeds.push(("escape", text.into()));
         seeds.push(("report", text.into()));
@@ -45,6 +46,15 @@ pub fn seeds(root: &Path) -> Vec<Seed> {
     seeds.retain(|(_, bytes)| bytes.len() <= LONGEST);
     seeds
 }
+
+/// Texts of other systems in small.
+const DIALECTS: [&str; 5] = [
+    "t;y\ns;kN\n0;1,5\n0,5;-2\n",
+    "# Channel 1: t [s]\n# Channel 2: y [kN]\n  0.0   1.5\n  0.5  -2.0\n",
+    "* GENSYS\n* 1 t s\n* 2 y kN\n*\n 0.0D+00 1.5D+00\n 5.0D-01-2.0D+00\n",
+    "Zeit;y\n13.05.2024 23:59:59,500;1\n14.05.2024 00:00:00,000;2\n",
+    "\"time [s]\"\t\"Y (kN)\"\r\n0\t1.5\r\n0.5\t\r\n",
+];
 
 /// Texts that were trouble to others.
 const HOSTILE: [&str; 8] = [
@@ -83,9 +93,11 @@ fn of_file(path: &Path, bytes: Vec<u8>, seeds: &mut Vec<Seed>) {
         Some("yaml") if inside("effects") || name == "effects.yaml" => {
             seeds.push(("catalogue", bytes));
         }
+        Some("yaml") if name == "mapping.yaml" || shown.contains("cases/import/") => seeds.push(("mapping", bytes)),
         Some("yaml") if inside("protocols") || inside("syntax") || inside("check") => {
             protocol(&name, bytes, seeds);
         }
+        Some("csv") if inside("messung") => seeds.push(("foreign", first_rows(bytes))),
         Some("csv") if inside("record") || inside("measurement") || inside("simulation") => {
             let rows = first_rows(bytes);
             seeds.extend(parquet(&rows).map(|bytes| ("parquet", bytes)));

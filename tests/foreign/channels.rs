@@ -136,8 +136,9 @@ fn an_outline_has_the_same_channels() {
     for (name, _) in FILES {
         let outline = outline(&data(name), name, &Options::default()).expect("an outline");
         let whole = good(name, &Options::default());
-        let names = |file: &File| -> Vec<(String, usize, Vec<(String, Option<String>)>)> {
-            let channels = |channels: &[Channel]| channels.iter().map(|channel| (channel.name.clone(), channel.unit.clone())).collect();
+        let names = |file: &File| -> Vec<_> {
+            let channels =
+                |channels: &[Channel]| channels.iter().map(|channel| (channel.name.clone(), channel.unit.clone())).collect::<Vec<_>>();
             file.tables.iter().map(|table| (table.name.clone(), table.rows, channels(&table.channels))).collect()
         };
         assert_eq!(names(&outline), names(&whole), "{name}");

@@ -208,8 +208,11 @@ impl Campaign {
             RecordKind::Simulation | RecordKind::Track => None,
         };
         let moved = offset.as_ref().map_or(0.0, |(_, offset)| *offset);
-        let mut record = match part.filter(|_| self.run_of(section).is_some()) {
-            Some(part) => read_stretch(&place.path, &place.inside, wanted, &part.axis, part.from - moved..part.to - moved)?,
+        let mut record = match part.zip(self.run_of(section)) {
+            Some((part, run)) => {
+                let range = part.from - moved..part.to - moved;
+                read_stretch(&place.path, &place.inside, wanted, &part.axis, range, run.hash(which.kind))?
+            }
             None => read_record(&place.path, &place.inside, wanted)?,
         };
         if let Some((axis, offset)) = offset {

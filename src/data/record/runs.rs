@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::{Column, Format, Record, Wanted, columnar, find_columns, header, rows};
-use crate::data::hash::Hasher;
+use crate::data::hash::{Hasher, Known};
 use crate::data::text::{LONGEST_LINE, decode_from, long_line, open_text, read_line_of, unreadable};
 use crate::problem::Problem;
 use crate::source::Source;
@@ -50,14 +50,21 @@ pub fn stream(path: &Path, shown: &str, wanted: &[Wanted], mut each: impl FnMut(
 }
 
 /// Reads the rows of a record whose axis lies in a range, in SI units with both ends, with the hash of the whole file. `axis` is one of
-/// the wanted columns. Row groups of a Parquet file whose statistics exclude the range are not decoded; a text is read to its end.
+/// the wanted columns; `hash` is that of the file, if it was read before. Row groups of a Parquet file whose statistics exclude the range are not decoded; a text is read to its end.
 ///
 /// # Errors
 /// As [`super::read_record`], of the rows that are decoded; `axis-not-increasing` if rows outside lie between those inside;
 /// `outside-record` if none lies inside.
-pub fn read_stretch(path: &Path, shown: &str, wanted: &[Wanted], axis: &str, range: Range<f64>) -> Result<Record, Vec<Problem>> {
+pub fn read_stretch(
+    path: &Path,
+    shown: &str,
+    wanted: &[Wanted],
+    axis: &str,
+    range: Range<f64>,
+    hash: &Known,
+) -> Result<Record, Vec<Problem>> {
     if Format::of(path) == Format::Parquet {
-        return columnar::stretch(path, shown, wanted, axis, &range);
+        return columnar::stretch(path, shown, wanted, (axis, &range), hash);
     }
     let mut stretch: Option<Stretch> = None;
     let run = stream(path, shown, wanted, |block| {

@@ -8,7 +8,7 @@ use parquet::file::statistics::Statistics;
 use super::open::{Opened, Store};
 use super::{Column, no_rows};
 use crate::data::faults::Faults;
-use crate::data::hash::Hasher;
+use crate::data::hash::{Hasher, Known};
 use crate::data::record::runs::{Block, Run, Stretch, axis_of};
 use crate::data::record::{Record, Wanted};
 use crate::data::text::unreadable;
@@ -17,7 +17,7 @@ use crate::problem::Problem;
 
 /// Calls `each` with the wanted columns, batch by batch in the order of the file.
 pub(crate) fn stream(path: &Path, shown: &str, wanted: &[Wanted], each: &mut dyn FnMut(&Block<'_>)) -> Result<Run, Vec<Problem>> {
-    let (mut opened, sha256) = open(path, shown)?;
+    let (mut opened, sha256) = open(path, shown, &Known::default())?;
     let mut columns = opened.find(wanted)?;
     if opened.rows() == 0 {
         return Err(vec![no_rows(shown)]);
@@ -38,8 +38,14 @@ pub(crate) fn stream(path: &Path, shown: &str, wanted: &[Wanted], each: &mut dyn
 }
 
 /// The rows whose axis lies in a range. Row groups whose statistics exclude the range are not decoded.
-pub(crate) fn stretch(path: &Path, shown: &str, wanted: &[Wanted], axis: &str, range: &Range<f64>) -> Result<Record, Vec<Problem>> {
-    let (mut opened, sha256) = open(path, shown)?;
+pub(crate) fn stretch(
+    path: &Path,
+    shown: &str,
+    wanted: &[Wanted],
+    (axis, range): (&str, &Range<f64>),
+    hash: &Known,
+) -> Result<Record, Vec<Problem>> {
+    let (mut opened, sha256) = open(path, shown, hash)?;
     let mut columns = opened.find(wanted)?;
     let at = axis_of(&columns, axis, shown)?;
     let mut faults = Faults::new(shown);
@@ -87,11 +93,15 @@ impl Opened<'_> {
 }
 
 /// The file and its hash. It is read twice, since it need not fit into memory.
-fn open<'a>(path: &Path, shown: &'a str) -> Result<(Opened<'a>, String), Vec<Problem>> {
+fn open<'a>(path: &Path, shown: &'a str, known: &Known) -> Result<(Opened<'a>, String), Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
     let opened = Opened::open(Store::disk(path, shown).map_err(one)?, shown).map_err(one)?;
-    let mut hash = Hasher::default();
-    let mut file = disk::open(path).map_err(|error| one(unreadable(shown, &error)))?;
-    hash.add_all(&mut file).map_err(|error| one(unreadable(shown, &error)))?;
-    Ok((opened, hash.finish()))
+    let compute = || {
+        let mut hash = Hasher::default();
+        let mut file = disk::open(path)?;
+        hash.add_all(&mut file)?;
+        Ok(hash.finish())
+    };
+    let hash = known.or(compute).map_err(|error: std::io::Error| one(unreadable(shown, &error)))?;
+    Ok((opened, hash))
 }

@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::data::hash::Known;
 use crate::data::record::{Record, read_headings, read_record, read_stretch, stream};
 use crate::data::write::{FileColumn, Values, parquet};
 use crate::units::Dimension;
@@ -83,7 +84,7 @@ fn blocks_and_stretches_are_the_record() {
             assert_eq!((run.rows, run.sha256.as_str(), run.bytes), (40_000, sha256(&bytes).as_str(), bytes.len() as u64));
             assert_eq!(joined[0], whole.columns[0].values, "{name}");
             for range in [100.0..101.0, 0.0..0.0, 199.9..1e9, 81.9..82.0] {
-                let part = read_stretch(path, name, &wanted(), "time", range.clone()).expect("inside");
+                let part = read_stretch(path, name, &wanted(), "time", range.clone(), &Known::default()).expect("inside");
                 let (first, rows) = (part.first_row, part.rows);
                 let times = &whole.columns[0].values;
                 assert!(first == 0 || times[first - 1] < range.start);
@@ -92,7 +93,7 @@ fn blocks_and_stretches_are_the_record() {
                 assert_eq!(part.columns[1].values.len(), rows);
                 assert_eq!(part.place(0, part.column("time")).map(|place| place.line()), Some(part.row_shown(0)));
             }
-            let none = read_stretch(path, name, &wanted(), "time", 500.0..600.0).expect_err("outside");
+            let none = read_stretch(path, name, &wanted(), "time", 500.0..600.0, &Known::default()).expect_err("outside");
             assert_eq!(none[0].code, "outside-record");
         });
     }
@@ -103,7 +104,7 @@ fn an_axis_that_returns_has_no_stretch() {
     let there_and_back = |row: usize| if row < 100 { row as f64 } else { 200.0 - row as f64 };
     let columns = || vec![numbers("time [s]", (0..200).map(there_and_back)), numbers("Y [kN]", vec![1.0; 200])];
     with(&parquet(columns()).expect("written"), "r.parquet", |path| {
-        let problems = read_stretch(path, "r.parquet", &wanted(), "time", 10.0..20.0).expect_err("twice");
+        let problems = read_stretch(path, "r.parquet", &wanted(), "time", 10.0..20.0, &Known::default()).expect_err("twice");
         assert_eq!(problems[0].code, "axis-not-increasing");
         assert!(problems[0].says.contains("row 181"), "{}", problems[0].says);
     });
@@ -162,7 +163,7 @@ fn survived(bytes: &[u8]) {
             }
             Err(problems) => problems.iter().for_each(|problem| drop(problem.render(false))),
         }
-        drop(read_stretch(path, "r.parquet", &wanted(), "time", 0.1..0.2));
+        drop(read_stretch(path, "r.parquet", &wanted(), "time", 0.1..0.2, &Known::default()));
     });
 }
 
