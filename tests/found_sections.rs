@@ -225,4 +225,8 @@ fn what_cannot_be_looked_into_is_told() {
         "nothing-found",
     );
     refused(&["diagnose", "examples/run", "--out", &out], "section-in-run");
+    let copy = folder.path().join("copy");
+    done(&["convert-records", "examples/run", "--to", "csv", "--out", &copy.display().to_string()], &[0]);
+    fs::copy(copy.join("records/south-measured.csv"), copy.join("records/north-measured.csv")).expect("copied");
+    refused(&["sections", &copy.display().to_string(), "--out", &out], "records-apart");
 }
