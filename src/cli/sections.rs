@@ -10,7 +10,7 @@ use super::inputs::{Pool, compiled_for, start_jobs};
 use super::output::{Console, Exit};
 use super::places::check_file;
 use crate::problem::Problems;
-use crate::report::found::in_words;
+use crate::report::found::{drift_in_words, in_words};
 use crate::report::number::count;
 use crate::result::found::FoundSections;
 use crate::run::find;
@@ -78,6 +78,9 @@ fn told(found: &FoundSections) -> String {
     let unit = &found.axis_unit;
     for run in &found.runs {
         let _ = writeln!(out, "\n{}: {} to {} {unit}, {} sections", run.run, run.start, run.end, run.found);
+        if let Some(says) = drift_in_words(run, unit) {
+            let _ = writeln!(out, "  {says}");
+        }
         for rejected in &run.rejected {
             let _ = writeln!(out, "  {:>8}  {}", count(rejected.places as u64), rejected.reason);
         }

@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub use facts::Fact;
 pub use files::{Inputs, ReadFile};
 pub use opening::POINT_KEY;
-pub use records::RecordKind;
+pub use records::{OFFSET, RecordKind};
 pub use runs::{Part, RUN_COLUMN, RUNS, Run, RunFact};
 
 use super::folder::{Folder, Place, check_file_name};

@@ -30,6 +30,29 @@ pub struct FoundInRun {
     pub rejected: Vec<Rejected>,
     /// Stretches of places next to each other that were rejected for the same reason.
     pub stretches: Vec<Stretch>,
+    /// Shift of the measurement against the simulation along the run, where it can be estimated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drift: Option<Drift>,
+}
+
+/// What would have to be added to the distance of the measurement, along a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Drift {
+    pub points: Vec<DriftPoint>,
+    /// Whether it was added.
+    pub corrected: bool,
+}
+
+/// The shift at a section, in `axis_unit`, with its 95 % interval.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct DriftPoint {
+    pub section: String,
+    pub start: f64,
+    pub shift: f64,
+    pub low: f64,
+    pub high: f64,
+    /// Correlation of both sides at this shift.
+    pub correlation: f64,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -264,7 +264,7 @@ impl Campaign {
 }
 
 /// The column of the section table with what is added to the axis of the measurement.
-const OFFSET: &str = "offset";
+pub const OFFSET: &str = "offset";
 /// The axes of records with their dimensions.
 const AXES: [(&str, Dimension); 2] = [("distance", Dimension::LENGTH), ("time", Dimension::TIME)];
 

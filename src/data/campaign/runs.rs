@@ -14,6 +14,11 @@ use crate::yaml::{Node, Value};
 pub const RUNS: &str = "runs";
 /// The column of the table of sections that says from which run a section is cut.
 pub const RUN_COLUMN: &str = "run";
+/// The key of a run that says what is done with a drift of the distance between both sides, and its words.
+const DRIFT: &str = "drift";
+const CORRECT: &str = "correct";
+const TELL: &str = "tell";
+
 /// A run: a record of each kind, and what the campaign says of it.
 #[derive(Clone, Debug)]
 pub struct Run {
@@ -22,6 +27,8 @@ pub struct Run {
     /// Of each file, in the order of [`RecordKind::ALL`].
     hashes: [Known; 3],
     pub facts: Vec<RunFact>,
+    /// Whether the shift of the measurement along the run is corrected.
+    pub correct_drift: bool,
 }
 
 /// What the campaign says of a run: data of every section in it.
@@ -59,7 +66,7 @@ impl Run {
 
 /// Reads the runs of a campaign.
 ///
-/// Problems: `wrong-kind`, `no-records`, `name-invalid`, `unknown-key`, and those of [`Folder::place`].
+/// Problems: `wrong-kind`, `no-records`, `name-invalid`, `unknown-key`, `unknown-choice`, and those of [`Folder::place`].
 pub(super) fn read(tree: &Node, folder: &Folder, problems: &mut Problems) -> Vec<Run> {
     const EXAMPLE: &str = "for instance: `runs: {R1: {measurement: R1/measurement.parquet, simulation: R1/simulation.parquet}}`";
     let Some(node) = tree.get(RUNS) else { return Vec::new() };
@@ -89,7 +96,7 @@ pub(super) fn read(tree: &Node, folder: &Folder, problems: &mut Problems) -> Vec
 
 fn one(name: Spanned<String>, node: &Node, folder: &Folder, problems: &mut Problems) -> Option<Run> {
     let before = problems.errors();
-    let mut run = Run { name, files: Vec::new(), facts: Vec::new(), hashes: <[Known; 3]>::default() };
+    let mut run = Run { name, files: Vec::new(), facts: Vec::new(), hashes: <[Known; 3]>::default(), correct_drift: false };
     for (key, value) in node.entries() {
         let Some(text) = value.scalar_text().map(str::trim).filter(|text| !text.is_empty()) else {
             let says = format!("`{}` of a run must be a single value; this is {}", key.text, value.kind_in_words());
@@ -97,11 +104,20 @@ fn one(name: Spanned<String>, node: &Node, folder: &Folder, problems: &mut Probl
             continue;
         };
         let written = Spanned::new(text.to_string(), value.span.clone());
-        let known = || RecordKind::ALL.into_iter().map(RecordKind::key);
+        let known = || RecordKind::ALL.into_iter().map(RecordKind::key).chain([DRIFT]);
         if let Some(kind) = RecordKind::ALL.into_iter().find(|kind| kind.key() == key.text) {
             match folder.place(&written.value, &written.span) {
                 Ok(_) => run.files.push((kind, written)),
                 Err(problem) => problems.push(problem),
+            }
+        } else if key.text == DRIFT {
+            match text {
+                CORRECT => run.correct_drift = true,
+                TELL => {}
+                other => {
+                    let says = format!("`{DRIFT}` cannot be `{other}`");
+                    problems.push(Problem::error("unknown-choice", says).at(&value.span).suggest(other, [CORRECT, TELL]));
+                }
             }
         } else if let Some(near) = known().find(|known| strsim::damerau_levenshtein(&key.text.to_lowercase(), known) <= 1) {
             let problem = Problem::error("unknown-key", format!("a run has no key `{}`", key.text)).at(&key.span);

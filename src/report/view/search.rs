@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::report::found::in_words;
+use crate::report::found::{drift_in_words, in_words};
 use crate::report::number;
 use crate::result::Certification;
 use crate::result::found::{FoundInRun, FoundSections};
@@ -16,6 +16,8 @@ pub struct SearchView {
     pub sentence: String,
     pub runs: Vec<RunRow>,
     pub rejected: Vec<RejectedRow>,
+    /// The shift of the measurement of each run, in a sentence.
+    pub drifts: Vec<String>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -80,6 +82,12 @@ fn search(found: &FoundSections) -> SearchView {
         sentence: format!("{}.", in_words(found)),
         runs: found.runs.iter().map(run).collect(),
         rejected: rejected.collect(),
+        drifts: found
+            .runs
+            .iter()
+            .filter_map(|run| drift_in_words(run, &found.axis_unit))
+            .map(|says| format!("{}.", super::capital(&says)))
+            .collect(),
     }
 }
 

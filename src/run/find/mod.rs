@@ -2,6 +2,7 @@
 //! search. What is in memory does not grow with the length of a run.
 
 mod chosen;
+mod drift;
 mod place;
 mod signals;
 mod table;
@@ -85,8 +86,35 @@ pub fn find(plan: &Plan, graph: &Graph, campaign: &Campaign, progress: Progress<
         let says = format!("no section was found in the runs of the campaign{why}");
         return Err(one(Problem::error("nothing-found", says).at(&campaign.runs_span())));
     }
-    let table = table::table(plan, &places).map_err(one)?;
-    Ok(Found { campaign: campaign.with_sections(table), told })
+    let table = table::table(plan, &places, None).map_err(one)?;
+    let found = campaign.with_sections(table);
+    let offsets = drifts(plan, graph, &found, &places, &mut told);
+    let found = match offsets {
+        Some(offsets) => campaign.with_sections(table::table(plan, &places, Some(&offsets)).map_err(one)?),
+        None => found,
+    };
+    Ok(Found { campaign: found, told })
+}
+
+/// Tells the shift of the measurement along each run, and gives what is added to the axis of each section where runs ask for it.
+fn drifts(plan: &Plan, graph: &Graph, found: &Campaign, places: &[(&Run, Place)], told: &mut FoundSections) -> Option<Vec<f64>> {
+    let shifts = drift::shifts(plan, graph, found, places);
+    let mut offsets = vec![0.0; places.len()];
+    let mut corrected = false;
+    for in_run in &mut told.runs {
+        let own: Vec<usize> = (0..places.len()).filter(|&at| places[at].0.name.value == in_run.run).collect();
+        let Some(&(run, _)) = own.first().map(|&at| &places[at]) else { continue };
+        let starts: Vec<f64> = own.iter().map(|&at| places[at].1.start).collect();
+        let names: Vec<&str> = own.iter().filter_map(|&at| found.names.get(at)).map(|name| name.value.as_str()).collect();
+        let of_run: Vec<_> = own.iter().map(|&at| shifts[at].clone()).collect();
+        in_run.drift = drift::told(plan, run, &names, &starts, &of_run);
+        let shift: Vec<Option<f64>> = of_run.iter().map(|shift| shift.as_ref().map(|shift| shift.shift)).collect();
+        if let Some(along) = drift::along(&starts, &shift).filter(|_| run.correct_drift) {
+            own.iter().zip(along).for_each(|(&at, shift)| offsets[at] = shift);
+            corrected = true;
+        }
+    }
+    corrected.then_some(offsets)
 }
 
 /// Replaces each campaign whose sections are found by one that has them.
@@ -220,6 +248,7 @@ fn in_run(plan: &Plan, graph: &Graph, campaign: &Campaign, run: &Run, rules: &Ru
         tried,
         rejected,
         stretches,
+        drift: None,
     };
     Ok((found, told))
 }

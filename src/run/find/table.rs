@@ -3,7 +3,7 @@
 use super::place::{Place, is_stated};
 use crate::check::plan::{Datum, DatumKind, Find, Plan, Scalar};
 use crate::data::Campaign;
-use crate::data::campaign::{RUN_COLUMN, Run};
+use crate::data::campaign::{OFFSET, RUN_COLUMN, Run};
 use crate::data::table::Table;
 use crate::data::write::table_csv;
 use crate::problem::{Problem, Problems};
@@ -36,9 +36,11 @@ pub fn check_facts(plan: &Plan, find: &Find, campaign: &Campaign, problems: &mut
     }
 }
 
+/// `offsets` is what is added to the axis of each section's measurement, SI.
+///
 /// # Errors
 /// Those of a table that is read.
-pub fn table(plan: &Plan, places: &[(&Run, Place)]) -> Result<Table, Problem> {
+pub fn table(plan: &Plan, places: &[(&Run, Place)], offsets: Option<&[f64]>) -> Result<Table, Problem> {
     let axis = &plan.axis.unit;
     let columns: Vec<usize> = (0..plan.columns.len()).filter(|index| plan.columns[*index].kind != DatumKind::Campaign).collect();
     let of_line = places.iter().any(|(run, _)| run.fact(LINE).is_some()) && plan.columns.iter().all(|datum| datum.key != "track");
@@ -50,12 +52,15 @@ pub fn table(plan: &Plan, places: &[(&Run, Place)]) -> Result<Table, Problem> {
     let mut rows = vec![vec!["section".to_string(), RUN_COLUMN.to_string(), format!("start [{axis}]"), format!("end [{axis}]")]];
     rows[0].extend(of_line.then(|| "track".to_string()));
     rows[0].extend(columns.iter().map(|&index| heading(&plan.columns[index], plan.sections.zone == Some(index))));
+    rows[0].extend(offsets.map(|_| format!("{OFFSET} [{axis}]")));
     let digits = places.len().to_string().len().max(2);
     for (number, (run, place)) in places.iter().enumerate() {
         let mut row = vec![format!("S{:0digits$}", number + 1), run.name.value.clone()];
         row.extend([place.start, place.end].map(|x| trimmed(axis.from_si(x))));
         row.extend(of_line.then(|| run.fact(LINE).map_or(run.name.value.clone(), |fact| fact.value.value.clone())));
         row.extend(columns.iter().map(|&index| cell(&plan.columns[index], &place.columns[index])));
+        // To a thousandth: an estimate is not better than a tenth of the distance between samples.
+        row.extend(offsets.map(|offsets| format!("{:.3}", axis.from_si(offsets[number]))));
         rows.push(row);
     }
     Table::of_text(NAME, &table_csv(&rows))
