@@ -177,7 +177,7 @@ fn a_drift_of_the_distance_is_found_and_corrected() {
     let yaml = fs::read_to_string(copy.join("campaign.yaml")).expect("a campaign");
     fs::write(copy.join("campaign.yaml"), yaml.replace("    country: DE", "    country: DE\n    drift: correct")).expect("written");
     let corrected = results("corrected");
-    let run = &corrected["found"][0]["runs"][0];
+    let run = &corrected["found_sections"][0]["runs"][0];
     let points = run["drift"]["points"].as_array().expect("points");
     assert!(points.len() >= 4 && run["drift"]["corrected"] == true, "{run:#}");
     for point in points {
@@ -187,7 +187,7 @@ fn a_drift_of_the_distance_is_found_and_corrected() {
         assert!((shift - expected).abs() < 0.3, "{start}: {shift} for {expected}");
     }
     // What the program finds without a drift is within a few centimetres of nothing.
-    for point in sound["found"][0]["runs"][0]["drift"]["points"].as_array().expect("points") {
+    for point in sound["found_sections"][0]["runs"][0]["drift"]["points"].as_array().expect("points") {
         assert!(point["shift"].as_f64().is_some_and(|shift| shift.abs() < 0.2), "{point}");
     }
     let std = |results: &serde_json::Value| -> Vec<f64> {
