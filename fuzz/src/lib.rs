@@ -17,7 +17,7 @@ mod simulators;
 type Try = fn(&[u8]);
 
 /// Every target: its name and what it is given.
-pub const TARGETS: [(&str, Try); 16] = [
+pub const TARGETS: [(&str, Try); 21] = [
     ("protocol_text", language::protocol_text),
     ("protocol_yaml", language::protocol_yaml),
     ("check", language::check),
@@ -25,6 +25,11 @@ pub const TARGETS: [(&str, Try); 16] = [
     ("record", records::record),
     ("parquet", records::parquet),
     ("foreign", foreign::foreign),
+    ("mdf4", foreign::mdf4),
+    ("mat", foreign::mat),
+    ("xlsx", foreign::xlsx),
+    ("tdms", foreign::tdms),
+    ("columnar", foreign::columnar),
     ("mapping", foreign::mapping),
     ("table", records::table),
     ("campaign", campaign::campaign),

@@ -26,7 +26,7 @@ pub type Seed = (&'static str, Vec<u8>);
 /// All seeds, from the folder of the package.
 pub fn seeds(root: &Path) -> Vec<Seed> {
     let mut files = Vec::new();
-    for folder in ["protocols", "effects", "examples", "tests/cases"] {
+    for folder in ["protocols", "effects", "examples", "tests/cases", "tests/foreign/data/small"] {
         walk(&root.join(folder), &mut files);
     }
     files.sort();
@@ -97,6 +97,11 @@ fn of_file(path: &Path, bytes: Vec<u8>, seeds: &mut Vec<Seed>) {
         Some("yaml") if inside("protocols") || inside("syntax") || inside("check") => {
             protocol(&name, bytes, seeds);
         }
+        Some("mf4") => seeds.push(("mdf4", bytes)),
+        Some("mat") => seeds.push(("mat", bytes)),
+        Some("xlsx") => seeds.push(("xlsx", bytes)),
+        Some("tdms") => seeds.push(("tdms", bytes)),
+        Some("parquet" | "feather" | "arrow") => seeds.push(("columnar", bytes)),
         Some("csv") if inside("messung") => seeds.push(("foreign", first_rows(bytes))),
         Some("csv") if inside("record") || inside("measurement") || inside("simulation") => {
             let rows = first_rows(bytes);

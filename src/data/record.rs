@@ -12,6 +12,7 @@ mod raw;
 mod rows;
 mod runs;
 
+pub(crate) use columnar::{guard, guarded};
 pub use raw::read_raw;
 pub use runs::{Block, Run, read_stretch, stream};
 

@@ -1,35 +1,15 @@
 //! Calls readers of other projects: a panic in one of them becomes an error.
 
-use std::cell::Cell;
-use std::panic::{self, AssertUnwindSafe};
-use std::sync::Once;
-
 use super::Format;
+use crate::data::record::guarded;
 use crate::problem::Problem;
-
-thread_local! {
-    static GUARDED: Cell<bool> = const { Cell::new(false) };
-}
 
 /// Calls a reader.
 ///
 /// # Errors
 /// `format-damaged` if it panics: its authors did not expect the content.
 pub(super) fn call<T>(format: Format, shown: &str, reader: impl FnOnce() -> Result<T, Vec<Problem>>) -> Result<T, Vec<Problem>> {
-    static HOOK: Once = Once::new();
-    HOOK.call_once(|| {
-        let before = panic::take_hook();
-        panic::set_hook(Box::new(move |info| {
-            // The error says it; a message of the hook would stand among the program's own.
-            if !GUARDED.get() {
-                before(info);
-            }
-        }));
-    });
-    let outer = GUARDED.replace(true);
-    let result = panic::catch_unwind(AssertUnwindSafe(reader));
-    GUARDED.set(outer);
-    result.unwrap_or_else(|_| Err(damaged(format, shown, "the file", "its content is not what its headers declare").into()))
+    guarded(|| Ok(reader())).unwrap_or_else(|why| Err(damaged(format, shown, "the file", why).into()))
 }
 
 /// A file that is not as its format prescribes, at a place in it.

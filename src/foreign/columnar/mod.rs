@@ -1,9 +1,9 @@
 //! Parquet and Arrow files: a table each, with units in the metadata of the fields.
 //!
-//! Both readers allocate what a file declares. What it declares is therefore checked before: in `thrift` for Parquet, in `ipc` for Arrow.
+//! Both readers allocate what a file declares. What it declares is therefore checked before: for Parquet as in a record of a campaign
+//! (`data::record::guard`), for Arrow in `ipc`.
 
 mod ipc;
-mod thrift;
 mod values;
 
 use std::io::Cursor;
@@ -14,11 +14,14 @@ use arrow_schema::{Field, Schema};
 use bytes::Bytes;
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder};
+use parquet::basic::Type;
+use parquet::file::metadata::ParquetMetaData;
 
 use super::guard::damaged;
 use super::load::Budget;
 use super::text::name_and_unit;
 use super::{Channel, Format, Input, Place, Read, Table, Want};
+use crate::data::record::guard;
 use crate::problem::Problem;
 
 /// Rows read at a time.
@@ -36,7 +39,7 @@ const LONGEST_FACT: usize = 200;
 pub(super) fn parquet(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let shown = input.shown;
     let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Parquet, shown, place, why);
-    thrift::check(input.bytes, shown)?;
+    guard::footer(footer(input.bytes).map_err(|why| bad("the footer", &why))?).map_err(|why| bad("the footer", &why))?;
     let bytes = Bytes::copy_from_slice(input.bytes);
     let metadata = ArrowReaderMetadata::load(&bytes, ArrowReaderOptions::new()).map_err(|error| bad("the footer", &error))?;
     let rows =
@@ -48,9 +51,9 @@ pub(super) fn parquet(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let pairs = metadata.metadata().file_metadata().key_value_metadata().into_iter().flatten();
     table.facts = facts(pairs.filter_map(|pair| Some((pair.key.clone(), pair.value.clone()?))));
     if input.want == Want::Values {
-        thrift::check_pages(input.bytes, metadata.metadata(), shown)?;
+        let mask = ProjectionMask::roots(metadata.parquet_schema(), columns.iter().copied());
+        pages(input.bytes, metadata.metadata(), &mask).map_err(|(place, why)| bad(&place, &why))?;
         let builder = ParquetRecordBatchReaderBuilder::new_with_metadata(bytes, metadata);
-        let mask = ProjectionMask::roots(builder.parquet_schema(), columns.iter().copied());
         let reader = builder.with_projection(mask).with_batch_size(BATCH).build().map_err(|error| bad("the columns", &error))?;
         let (mut found, mut origins) = (0, vec![None; table.channels.len()]);
         for batch in reader {
@@ -63,6 +66,40 @@ pub(super) fn parquet(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
         }
     }
     finish(table, shown)
+}
+
+/// Bytes after the footer: its length and the mark.
+const END: usize = 8;
+
+fn footer(bytes: &[u8]) -> Result<&[u8], String> {
+    let Some((body, end)) = bytes.split_last_chunk::<END>().filter(|(_, end)| end[4..] == *b"PAR1") else {
+        return Err("the file does not end as it should".into());
+    };
+    let length = u32::from_le_bytes([end[0], end[1], end[2], end[3]]) as usize;
+    let footer = body.len().checked_sub(length).and_then(|from| body.get(from..));
+    footer.ok_or_else(|| format!("{length} bytes are declared, {} are there", body.len()))
+}
+
+/// Checks the pages of the columns that are read. The error has its place.
+fn pages(bytes: &[u8], metadata: &ParquetMetaData, mask: &ProjectionMask) -> Result<(), (String, String)> {
+    for (group, row_group) in metadata.row_groups().iter().enumerate() {
+        for (leaf, chunk) in row_group.columns().iter().enumerate().filter(|(leaf, _)| mask.leaf_included(*leaf)) {
+            let place = || format!("row group {}, column {} (`{}`)", group + 1, leaf + 1, chunk.column_path().string());
+            let start = chunk.dictionary_page_offset().filter(|at| *at > 0).unwrap_or(chunk.data_page_offset());
+            let part = usize::try_from(start).ok().zip(usize::try_from(chunk.compressed_size()).ok());
+            let part = part.and_then(|(start, size)| bytes.get(start..start.checked_add(size)?));
+            let part = part.ok_or_else(|| (place(), "its values are beyond the file".to_string()))?;
+            let width = match chunk.column_type() {
+                Type::DOUBLE | Type::INT64 => 8,
+                Type::FLOAT | Type::INT32 => 4,
+                // A truth value takes a bit, which has no dictionary.
+                _ => 1,
+            };
+            let values = u64::try_from(chunk.num_values()).unwrap_or(0);
+            guard::pages(part, values, width).map_err(|why| (place(), why))?;
+        }
+    }
+    Ok(())
 }
 
 pub(super) fn arrow(input: &Input<'_>) -> Result<Read, Vec<Problem>> {

@@ -41,6 +41,12 @@ pub(super) fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Fi
         .with_max_object_header_bytes(1 << 20);
     let bad = |place: &str, error: Error| damaged(Format::Mat, shown, place, error);
     let file = Hdf5File::from_bytes_with_options(input.bytes, options).map_err(|error| bad("the header", error))?;
+    // The library of the HDF Group refuses such a file; this reader would read what is there.
+    let end = file.superblock().eof_address;
+    if end > input.bytes.len() as u64 {
+        let why = format!("{end} bytes are declared, {} are there", input.bytes.len());
+        return Err(damaged(Format::Mat, shown, "the header", why));
+    }
     let root = file.root_group().map_err(|error| bad("the root group", error))?;
     let (groups, sets) = root.members().map_err(|error| bad("the root group", error))?;
     let mut targets = HashMap::new();

@@ -4,7 +4,7 @@
 //! would end the process, which no handler can prevent. Footers and page headers are therefore walked first. They are structures of the
 //! Thrift compact protocol: each declared length is compared with the bytes that follow, and sizes of pages with the limits below.
 
-/// Maximum nesting of a footer. A schema is a list, not a tree; the deepest part of a footer is the statistics of a column, level 6.
+/// Maximum nesting of a footer, and of the columns of its schema. The deepest part of a footer is the statistics of a column, level 6.
 const DEEPEST: usize = 16;
 /// Maximum number of elements of all lists of a footer: 1000 channels in 250 row groups, with about four list elements each. The decoder
 /// takes up to 1 kB for an element.
@@ -13,6 +13,9 @@ const MOST_ELEMENTS: usize = 1 << 20;
 pub(super) const LARGEST_PAGE: u64 = 64 << 20;
 
 const STOP: u8 = 0;
+/// The schema in a footer, and the number of children in one of its elements.
+const SCHEMA: [i64; 1] = [2];
+const CHILDREN: [i64; 3] = [2, 0, 5];
 const DICTIONARY_PAGE: i64 = 2;
 /// Encodings of Parquet that are read, by number: plain, dictionary (both forms), run lengths, deltas of integers, split bytes. Those of
 /// texts by deltas declare sizes inside the page.
@@ -28,13 +31,15 @@ struct Walk<'a> {
     fields: Vec<(Vec<i64>, i64)>,
     /// Fields deeper than this are not kept.
     kept: usize,
+    /// Numbers of children of the columns of a schema that are still to come, from the root; only in a footer.
+    open: Option<Vec<u64>>,
 }
 
 type Checked<T> = Result<T, String>;
 
 impl<'a> Walk<'a> {
     fn new(bytes: &'a [u8], kept: usize) -> Self {
-        Self { bytes, at: 0, elements: 0, path: Vec::new(), fields: Vec::new(), kept }
+        Self { bytes, at: 0, elements: 0, path: Vec::new(), fields: Vec::new(), kept, open: None }
     }
 
     fn byte(&mut self) -> Checked<u8> {
@@ -97,7 +102,7 @@ impl<'a> Walk<'a> {
             1..=3 => self.skip(1),
             4..=6 => {
                 let number = self.signed()?;
-                if self.path.len() <= self.kept {
+                if self.path.len() <= self.kept || self.open.is_some() && self.path == CHILDREN {
                     self.fields.push((self.path.clone(), number));
                 }
                 Ok(())
@@ -125,14 +130,41 @@ impl<'a> Walk<'a> {
         if self.elements > MOST_ELEMENTS {
             return Err(format!("its lists have more than {MOST_ELEMENTS} elements"));
         }
+        let schema = self.open.is_some() && self.path == SCHEMA;
         self.path.push(0);
         if self.path.len() > DEEPEST {
             return Err(format!("its structures are nested more than {DEEPEST} deep"));
         }
-        for _ in 0..count {
+        for index in 0..count {
             self.value(head & 15, false)?;
+            if schema {
+                self.column(count - index - 1)?;
+            }
         }
         self.path.pop();
+        Ok(())
+    }
+
+    /// A column of the schema, which is a tree: each column is followed by its children. The decoder calls itself for each level, and
+    /// reserves memory for as many children as a column declares.
+    fn column(&mut self, left: u64) -> Checked<()> {
+        let children = self.fields.pop().map_or(0, |(_, number)| number);
+        self.fields.clear();
+        let children = u64::try_from(children).ok().filter(|children| *children <= left);
+        let children =
+            children.ok_or_else(|| format!("a column of its schema declares more children than the {left} columns that follow"))?;
+        let open = self.open.get_or_insert_default();
+        open.push(children);
+        if open.len() > DEEPEST {
+            return Err(format!("the columns of its schema are nested more than {DEEPEST} deep"));
+        }
+        // A column without children left is complete, and one child less of the column above.
+        while open.last() == Some(&0) {
+            open.pop();
+            if let Some(above) = open.last_mut() {
+                *above -= 1;
+            }
+        }
         Ok(())
     }
 
@@ -142,19 +174,19 @@ impl<'a> Walk<'a> {
 }
 
 /// Checks the lengths in a footer.
-pub(super) fn footer(bytes: &[u8]) -> Checked<()> {
-    Walk::new(bytes, 0).structure()
+pub(crate) fn footer(bytes: &[u8]) -> Checked<()> {
+    Walk { open: Some(Vec::new()), ..Walk::new(bytes, 0) }.structure()
 }
 
 /// What is declared of the pages of a column chunk.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pages {
+pub(crate) struct Pages {
     /// Bytes of the largest page and of the dictionary, which are in memory at the same time.
     pub memory: u64,
 }
 
 /// Checks the headers of the pages of a column chunk, which has `values` numbers of `width` bytes.
-pub(super) fn pages(chunk: &[u8], values: u64, width: u64) -> Checked<Pages> {
+pub(crate) fn pages(chunk: &[u8], values: u64, width: u64) -> Checked<Pages> {
     let (mut largest, mut dictionary, mut at) = (0, 0, 0);
     while at < chunk.len() {
         let mut walk = Walk::new(&chunk[at..], 2);
@@ -210,6 +242,19 @@ mod tests {
         assert!(footer(&[0x19, 0x19, 0x19, 0x19].repeat(9)).is_err());
         assert!(footer(&[0x15]).is_err());
         assert!(footer(&[0x15, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff]).is_err());
+    }
+
+    #[test]
+    fn the_schema_is_a_tree_of_bounded_depth() {
+        // Field 2 of the footer: a list of structures with field 5, the number of children.
+        let walk = |children: &[u8]| {
+            let elements: Vec<u8> = children.iter().flat_map(|count| [0x55, 2 * count, 0]).collect();
+            footer(&[&[0x29, 0xfc, children.len() as u8][..], &elements, &[0]].concat())
+        };
+        assert_eq!(walk(&[2, 0, 1, 0]), Ok(()));
+        assert!(walk(&[9, 0, 0]).is_err_and(|why| why.contains("more children than the 2 columns")));
+        let deep: Vec<u8> = std::iter::repeat_n(1, DEEPEST + 4).chain([0]).collect();
+        assert!(walk(&deep).is_err_and(|why| why.contains("nested")));
     }
 
     #[test]

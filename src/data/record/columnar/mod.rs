@@ -9,12 +9,13 @@
 //! | `guard` | declared sizes, checked before the decoder reserves memory for them |
 
 mod groups;
-mod guard;
+pub(crate) mod guard;
 mod open;
 mod runs;
 
 use std::path::Path;
 
+pub(crate) use open::guarded;
 use open::{Opened, Store};
 pub(super) use runs::{stream, stretch};
 

@@ -96,7 +96,7 @@ thread_local! {
 
 /// Runs the decoder. It checks its input in most places but asserts in some, so that a damaged file can make it panic: this becomes an
 /// error like any other, and the message of the panic is not printed.
-pub(super) fn guarded<T>(run: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+pub(crate) fn guarded<T>(run: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     static QUIET: std::sync::Once = std::sync::Once::new();
     QUIET.call_once(|| {
         let before = std::panic::take_hook();
