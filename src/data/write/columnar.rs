@@ -10,6 +10,7 @@ use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 
+use super::digits::Digits;
 use super::table_csv;
 use crate::problem::Problem;
 
@@ -18,8 +19,6 @@ use crate::problem::Problem;
 const GROUP: usize = 1 << 14;
 /// Level of compression: higher levels save some percent of the size and take several times as long.
 const LEVEL: i32 = 3;
-/// Key of the metadata of a field: how many decimals its numbers have in a text.
-pub const DECIMALS_KEY: &str = "decimals";
 
 /// The values of a column.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,8 +46,8 @@ pub struct FileColumn {
     /// `name [unit]`, as in the header of a text.
     pub heading: String,
     pub values: Values,
-    /// If all numbers have the same number of decimals.
-    pub decimals: Option<usize>,
+    /// How its numbers are written in a text, if all are written alike. It is in the metadata of the field.
+    pub digits: Option<Digits>,
 }
 
 /// The bytes of a Parquet file.
@@ -64,7 +63,7 @@ pub fn parquet(columns: Vec<FileColumn>) -> Result<Vec<u8>, Problem> {
             Values::Numbers(values) => (DataType::Float64, Arc::new(Float64Array::from(values))),
             Values::Texts(texts) => (DataType::Utf8, Arc::new(StringArray::from(texts))),
         };
-        let metadata = column.decimals.map(|decimals| (DECIMALS_KEY.to_string(), decimals.to_string()));
+        let metadata = column.digits.map(Digits::metadata).map(|(key, value)| (key.to_string(), value));
         fields.push(Field::new(column.heading, kind, false).with_metadata(metadata.into_iter().collect::<HashMap<_, _>>()));
         arrays.push(array);
     }
@@ -78,8 +77,8 @@ pub fn parquet(columns: Vec<FileColumn>) -> Result<Vec<u8>, Problem> {
     Ok(bytes)
 }
 
-/// The bytes of a text with the same columns. Numbers have the decimals of their column, or else the fewest digits that give the same
-/// double again.
+/// The bytes of a text with the same columns. Numbers have the form of their column, or else the fewest digits that give the same double
+/// again.
 pub fn csv(columns: &[FileColumn]) -> Vec<u8> {
     let rows = columns.iter().map(|column| column.values.len()).max().unwrap_or(0);
     let mut text = table_csv(&[columns.iter().map(|column| column.heading.as_str()).collect::<Vec<_>>()]);
@@ -87,24 +86,15 @@ pub fn csv(columns: &[FileColumn]) -> Vec<u8> {
         for (at, column) in columns.iter().enumerate() {
             text.push_str(if at == 0 { "" } else { "," });
             match &column.values {
-                Values::Numbers(values) => push_exact(&mut text, values.get(row).copied().unwrap_or(f64::NAN), column.decimals),
+                Values::Numbers(values) => {
+                    text.push_str(&Digits::exact(column.digits, values.get(row).copied().unwrap_or(f64::NAN)));
+                }
                 Values::Texts(texts) => push_cell(&mut text, texts.get(row).map_or("", String::as_str)),
             }
         }
         text.push('\n');
     }
     text.into_bytes()
-}
-
-fn push_exact(text: &mut String, value: f64, decimals: Option<usize>) {
-    // Beyond these, plain digits would be long rows of zeros.
-    let plain = value == 0.0 || (1e-5..1e16).contains(&value.abs());
-    // Writing to a string cannot fail.
-    let _ = match decimals {
-        Some(decimals) => write!(text, "{value:.decimals$}"),
-        None if plain => write!(text, "{value}"),
-        None => write!(text, "{value:e}"),
-    };
 }
 
 /// Line breaks cannot stand in a cell of a record: they become blanks.

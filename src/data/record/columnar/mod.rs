@@ -95,7 +95,7 @@ pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Probl
             let [column] = column;
             Values::Numbers(column.values)
         };
-        columns.push(FileColumn { heading: heading.span.text().to_string(), values, decimals: opened.decimals(position) });
+        columns.push(FileColumn { heading: heading.span.text().to_string(), values, digits: opened.digits(position) });
     }
     Ok(columns)
 }

@@ -15,7 +15,7 @@ use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 use super::{Column, Heading, MAGIC, Wanted, find_columns, guard};
 use crate::data::cells::{HeadingUnit, duplicates, name_and_unit, shortened};
 use crate::data::text::{LARGEST_RECORD, plain_size, unreadable};
-use crate::data::write::DECIMALS_KEY;
+use crate::data::write::Digits;
 use crate::disk;
 use crate::problem::Problem;
 use crate::source::Source;
@@ -27,9 +27,6 @@ const LARGEST_FOOTER: u64 = 32 << 20;
 const TAIL: u64 = 8;
 /// Key of the metadata of a field that holds its unit.
 const UNIT_KEY: &str = "unit";
-
-/// Most decimals of a number in a text: those of the smallest double.
-const MOST_DECIMALS: usize = 324;
 
 /// Most bytes of numbers and pages for a byte of the file, above [`FREE`]: a record of one section has 10 to 50, a column that never
 /// changes more. A file of some kilobytes can declare gigabytes.
@@ -126,7 +123,7 @@ pub(super) struct Opened<'a> {
     pub(super) metadata: ArrowReaderMetadata,
     fields: Vec<Field>,
     headings: Vec<Heading>,
-    decimals: Vec<Option<usize>>,
+    digits: Vec<Option<Digits>>,
     /// Row before the first one of each group, and the number of rows of the file.
     starts: Vec<usize>,
 }
@@ -148,10 +145,9 @@ impl<'a> Opened<'a> {
         let starts = starts(metadata.metadata(), shown)?;
         let headings = headings(metadata.schema(), &described, shown)?;
         let fields = fields(&metadata);
-        let decimals =
-            described.fields().iter().map(|field| field.metadata().get(DECIMALS_KEY)?.parse().ok().filter(|count| *count <= MOST_DECIMALS));
-        let decimals = decimals.collect();
-        Ok(Self { store, shown, metadata, fields, headings, decimals, starts })
+        let kept = |field: &Arc<arrow_schema::Field>| Digits::read(|key| field.metadata().get(key).map(String::as_str));
+        let digits = described.fields().iter().map(kept).collect();
+        Ok(Self { store, shown, metadata, fields, headings, digits, starts })
     }
 
     /// Refuses a part of the file that needs too much memory.
@@ -205,9 +201,9 @@ impl<'a> Opened<'a> {
         self.fields.get(position).is_some_and(|field| field.kind == DataType::Utf8 && field.leaf.is_some())
     }
 
-    /// How many decimals the numbers of a column have in a text.
-    pub fn decimals(&self, position: usize) -> Option<usize> {
-        self.decimals.get(position).copied().flatten()
+    /// How the numbers of a column are written in a text.
+    pub fn digits(&self, position: usize) -> Option<Digits> {
+        self.digits.get(position).copied().flatten()
     }
 
     /// A problem for a column that does not hold numbers.
