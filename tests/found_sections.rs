@@ -177,7 +177,7 @@ fn a_drift_of_the_distance_is_found_and_corrected() {
     let yaml = fs::read_to_string(copy.join("campaign.yaml")).expect("a campaign");
     fs::write(copy.join("campaign.yaml"), yaml.replace("    country: DE", "    country: DE\n    drift: correct")).expect("written");
     let corrected = results("corrected");
-    let run = &corrected["found"][0]["runs"][0];
+    let run = &corrected["found_sections"][0]["runs"][0];
     let points = run["drift"]["points"].as_array().expect("points");
     assert!(points.len() >= 4 && run["drift"]["corrected"] == true, "{run:#}");
     for point in points {
@@ -187,7 +187,7 @@ fn a_drift_of_the_distance_is_found_and_corrected() {
         assert!((shift - expected).abs() < 0.3, "{start}: {shift} for {expected}");
     }
     // What the program finds without a drift is within a few centimetres of nothing.
-    for point in sound["found"][0]["runs"][0]["drift"]["points"].as_array().expect("points") {
+    for point in sound["found_sections"][0]["runs"][0]["drift"]["points"].as_array().expect("points") {
         assert!(point["shift"].as_f64().is_some_and(|shift| shift.abs() < 0.2), "{point}");
     }
     let std = |results: &serde_json::Value| -> Vec<f64> {
@@ -225,4 +225,8 @@ fn what_cannot_be_looked_into_is_told() {
         "nothing-found",
     );
     refused(&["diagnose", "examples/run", "--out", &out], "section-in-run");
+    let copy = folder.path().join("copy");
+    done(&["convert-records", "examples/run", "--to", "csv", "--out", &copy.display().to_string()], &[0]);
+    fs::copy(copy.join("records/south-measured.csv"), copy.join("records/north-measured.csv")).expect("copied");
+    refused(&["sections", &copy.display().to_string(), "--out", &out], "records-apart");
 }

@@ -127,7 +127,8 @@ fn text_of_users_is_printed_as_it_is() {
     let mut found = certification::certification();
     found.campaign.name = HOSTILE.into();
     found.protocol.title = format!("{HOSTILE} {HOSTILE}");
-    found.reasons = vec![HOSTILE.into(); 40];
+    // The same reason is printed once.
+    found.reasons = (0..40).map(|number| format!("{HOSTILE} {number}")).collect();
     let Some(text) = text(&rendered(&found)) else { return };
     let text = dense(&text);
     let times = text.matches(&dense(HOSTILE)).count();

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-/// Frequency of the filter at -6 dB as a share of the lower of both sampling rates. With [`CROSSINGS`] and [`BETA`] the band below 0.41
+/// Frequency of the filter at -6 dB as a share of the lower of both sampling rates. With `CROSSINGS` and `BETA` the band below 0.41
 /// of that rate is unchanged (to 1e-4), and what is above 0.49 of it is suppressed to 1e-4.
 pub const CUTOFF: f64 = 0.45;
 /// Zero crossings of the sinc on each side.

@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use indexmap::IndexMap;
 
 use super::facts::Known;
-use super::record::{Fault, Opened, Work, chosen, opened};
+use super::record::{Fault, Opened, Work, chosen, opened, part_of_run};
 use super::sections::Unit;
 use super::signal::{Extent, Signal};
 use super::trial::Trial;
@@ -235,10 +235,9 @@ impl<'a> Store<'a> {
         unit.cell.value == self.cell.value
     }
 
-    /// The part of a run that is read: the section with its own length on both sides, since protocols ask for different margins.
+    /// The part of a run that is read, without the margin of a protocol: protocols may ask for different ones.
     fn part(&self) -> Option<Part> {
-        let (axis, (start, end)) = self.place.as_ref()?;
-        Some(Part { axis: axis.clone(), from: start - (end - start), to: end + (end - start) })
+        self.place.as_ref().map(|(axis, extent)| part_of_run(axis, *extent, None))
     }
 
     fn rows(&self, record: &Record) -> std::ops::Range<usize> {

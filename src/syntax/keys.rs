@@ -369,7 +369,7 @@ pub const KINDS: &[Kind] = &[
             ),
             phrase(
                 "margin",
-                "Of sections cut from a run: the record that is needed, and read for filters, on each side. The default is the length of the section.",
+                "Of found sections: the record that there must be on each side. The default is the length of the section.",
                 "30 m",
             ),
             phrase(

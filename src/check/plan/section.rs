@@ -99,7 +99,7 @@ pub struct SectionRules {
     pub whole_records: bool,
     /// How sections are found in the runs of a campaign that has no table of sections.
     pub find: Option<Find>,
-    /// Record needed on each side of a section that is cut from a run, SI of the axis; without it, the length of the section.
+    /// Record that there must be on each side of a found section, SI of the axis; without it, the length of the section.
     pub margin: Option<f64>,
     pub keep: Option<Keep>,
     /// Index of the column of the zone.

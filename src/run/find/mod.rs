@@ -43,7 +43,7 @@ pub fn applies(plan: &Plan, campaign: &Campaign) -> bool {
 /// Finds the sections of a campaign.
 ///
 /// # Errors
-/// `no-search`: the protocol does not look for sections; `no-runs`; `nothing-found`; a record of a run cannot be read, or lacks a channel;
+/// `no-search`: the protocol does not look for sections; `no-runs`; `nothing-found`; `records-apart`; a record of a run cannot be read, or lacks a channel;
 /// vehicle data are missing.
 pub fn find(plan: &Plan, graph: &Graph, campaign: &Campaign, progress: Progress<'_>) -> Result<Found, Problems> {
     let one = |problem: Problem| Problems(vec![problem]);
@@ -237,8 +237,17 @@ fn in_run(plan: &Plan, graph: &Graph, campaign: &Campaign, run: &Run, rules: &Ru
             }
         }
     }
-    let found = chosen.finish();
     let unit = &plan.axis.unit;
+    if windows.end() < start {
+        let (from, to) = (unit.from_si(start), unit.from_si(windows.end()));
+        let says = format!(
+            "the records of run `{}` have no stretch in common: one begins at {from} {unit}, another ends at {to} {unit}",
+            run.name.value
+        );
+        let problem = Problem::error("records-apart", says).at(&run.name.span);
+        return Err(Problems(vec![problem.help("check the files of the run, and whether all count the same distance")]));
+    }
+    let found = chosen.finish();
     let (tried, rejected, stretches) = rejections.told(|x| unit.from_si(x));
     let told = FoundInRun {
         run: run.name.value.clone(),
