@@ -37,7 +37,7 @@ pub(super) fn read(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record
     let mut bytes = Vec::new();
     read_plain(path, shown, &mut bytes).map_err(one)?;
     let (hash, size) = (sha256(&bytes), bytes.len());
-    let mut opened = Opened::open(Store::Memory(bytes), shown).map_err(one)?;
+    let mut opened = Opened::open(Store::memory(bytes), shown).map_err(one)?;
     let mut columns = opened.find(wanted)?;
     let rows = opened.rows();
     if rows == 0 {

@@ -9,8 +9,10 @@ use std::sync::Arc;
 use arrow_schema::{DataType, Schema};
 use parquet::arrow::arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions};
 use parquet::arrow::parquet_to_arrow_schema;
+use parquet::arrow::push_decoder::PushBuffers;
 use parquet::basic::Compression;
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
+use parquet::file::reader::ChunkReader;
 
 use super::{Column, Heading, MAGIC, Wanted, find_columns, guard};
 use crate::data::cells::{HeadingUnit, duplicates, name_and_unit, shortened};
@@ -36,8 +38,12 @@ const FREE: u64 = guard::LARGEST_PAGE;
 
 /// Where the bytes are.
 pub(super) enum Store {
-    Memory(Vec<u8>),
-    Disk { file: disk::Reader, size: u64 },
+    /// The whole file: its parts are used where they lie, without a copy.
+    Memory(PushBuffers, u64),
+    Disk {
+        file: disk::Reader,
+        size: u64,
+    },
 }
 
 impl Store {
@@ -47,9 +53,47 @@ impl Store {
         Ok(Self::Disk { file, size })
     }
 
+    pub fn memory(bytes: Vec<u8>) -> Self {
+        let size = bytes.len() as u64;
+        let mut whole = PushBuffers::default();
+        whole.push_range(0..size, bytes.into());
+        Self::Memory(whole, size)
+    }
+
+    /// What a decoder is given before any part is added.
+    pub fn buffers(&self) -> PushBuffers {
+        match self {
+            Self::Memory(whole, _) => whole.clone(),
+            Self::Disk { .. } => PushBuffers::default(),
+        }
+    }
+
+    /// Adds a part of the file to the buffers of a decoder; `look` sees its bytes.
+    pub fn add<T>(
+        &mut self,
+        range: Range<u64>,
+        buffers: &mut PushBuffers,
+        shown: &str,
+        look: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T, Problem> {
+        match self {
+            Self::Memory(whole, _) => {
+                let count = usize::try_from(range.end - range.start).unwrap_or(usize::MAX);
+                let bytes = whole.get_bytes(range.start, count).map_err(|error| damaged(shown, &error.to_string()))?;
+                Ok(look(&bytes))
+            }
+            Self::Disk { .. } => {
+                let bytes = self.read(range.clone(), shown)?;
+                let seen = look(&bytes);
+                buffers.push_range(range, bytes.into());
+                Ok(seen)
+            }
+        }
+    }
+
     pub fn size(&self) -> u64 {
         match self {
-            Self::Memory(bytes) => bytes.len() as u64,
+            Self::Memory(_, size) => *size,
             Self::Disk { size, .. } => *size,
         }
     }
@@ -60,9 +104,9 @@ impl Store {
         }
         let count = usize::try_from(range.end - range.start).map_err(|_| damaged(shown, "a part of it is too large"))?;
         match self {
-            Self::Memory(bytes) => {
-                let start = usize::try_from(range.start).unwrap_or(usize::MAX);
-                Ok(bytes.get(start..start.saturating_add(count)).map(<[u8]>::to_vec).unwrap_or_default())
+            Self::Memory(whole, _) => {
+                let bytes = whole.get_bytes(range.start, count).map_err(|error| damaged(shown, &error.to_string()))?;
+                Ok(bytes.to_vec())
             }
             Self::Disk { file, .. } => {
                 let mut bytes = vec![0; count];
