@@ -7,6 +7,10 @@
 //! - `FISHPLATE_PEER`: a Python script with `run(folder, jobs=N)` and `--make-test-campaign DIR`. Its process start and imports
 //!   are not counted (see `peer.py`); those of `fishplate` are. Its synthetic campaign of 33 sections is timed too. A library
 //!   below it may use more threads than `jobs` asks for (polars reads with all; `POLARS_MAX_THREADS=1` holds it to one).
+//!
+//! Each campaign is timed twice: as it is, and with its records as Parquet files, which the peer reads with polars (left out
+//! with a word if it has none).
+//!
 //! - `FISHPLATE_PYTHON`: the interpreter, `python3` by default.
 //! - `FISHPLATE_QUIET`: longest wait in s before each round until the machine is idle, 0 by default; for machines that others use.
 //! - `FISHPLATE_ROUNDS`: rounds that count, 7 by default. One more goes before them, to warm up caches.
@@ -51,22 +55,49 @@ fn main() -> Outcome<()> {
 
 fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) -> Outcome<()> {
     let out = Path::new(SCRATCH).join("out");
-    let results = ["certify".as_ref(), campaign.as_os_str(), "--only".as_ref(), "results".as_ref(), "--out".as_ref(), out.as_os_str()];
-    println!("\n{}, {:.1} MB", campaign.display(), folder_size(campaign)? as f64 / 1e6);
+    let columns = Path::new(SCRATCH).join("as-parquet");
+    if columns.exists() {
+        fs::remove_dir_all(&columns)?;
+    }
+    seconds(
+        &["convert-records".as_ref(), campaign.as_os_str(), "--to".as_ref(), "parquet".as_ref(), "--out".as_ref(), columns.as_os_str()],
+        1,
+    )?;
+    let results_of = |folder: &'_ Path| -> Vec<std::ffi::OsString> {
+        ["certify".as_ref(), folder.as_os_str(), "--only".as_ref(), "results".as_ref(), "--out".as_ref(), out.as_os_str()]
+            .map(OsStr::to_os_string)
+            .to_vec()
+    };
+    let both = [results_of(campaign), results_of(&columns)];
+    let [results, _] = both.each_ref().map(|words| words.iter().map(|word| word.as_os_str()).collect::<Vec<_>>());
+    let sizes = [folder_size(campaign)?, folder_size(&columns)?].map(|bytes| bytes as f64 / 1e6);
+    println!("\n{}, {:.1} MB; as Parquet {:.1} MB", campaign.display(), sizes[0], sizes[1]);
     let mut counts = vec![1, threads()];
     counts.dedup();
     for jobs in counts {
-        let (mut here, mut there) = (Vec::new(), Vec::new());
+        let (mut here, mut there) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
         for round in 0..=rounds {
-            wait_until_idle();
-            let ours = seconds(&results, jobs)?;
-            let theirs = peer.as_mut().map(|peer| peer.run(campaign, jobs)).transpose()?;
-            if round > 0 {
-                here.push(ours);
-                there.extend(theirs.map(|(seconds, _)| seconds));
+            for (at, folder) in [campaign, &columns].into_iter().enumerate() {
+                wait_until_idle();
+                let words: Vec<&OsStr> = both[at].iter().map(|word| word.as_os_str()).collect();
+                let ours = seconds(&words, jobs)?;
+                let able = |peer: &&mut &mut Peer| at == 0 || peer.columns;
+                let theirs = peer.as_mut().filter(able).map(|peer| peer.run(folder, jobs)).transpose()?;
+                if round > 0 {
+                    here[at].push(ours);
+                    there[at].extend(theirs.map(|(seconds, _)| seconds));
+                }
             }
         }
-        print_row(&format!("results, {jobs} thread{}", if jobs == 1 { "" } else { "s" }), here, there);
+        let [text, as_columns] = here;
+        let [peer_text, peer_columns] = there;
+        let of = format!("{jobs} thread{}", if jobs == 1 { "" } else { "s" });
+        print_row(&format!("results, {of}"), text, peer_text.clone());
+        print_row(&format!("results from Parquet, {of}"), as_columns.clone(), peer_columns);
+        print_row("  against the peer on the texts", as_columns, peer_text);
+    }
+    if peer.as_ref().is_some_and(|peer| !peer.columns) {
+        println!("  the peer has no polars and was not timed on Parquet");
     }
     let whole = ["certify".as_ref(), campaign.as_os_str(), "--out".as_ref(), out.as_os_str()];
     print_row("results and report (PDF, HTML)", repeat(rounds, || seconds(&whole, threads()))?, Vec::new());
@@ -134,6 +165,8 @@ struct Peer {
     process: Child,
     requests: ChildStdin,
     answers: BufReader<ChildStdout>,
+    /// Whether it reads Parquet files.
+    columns: bool,
 }
 
 impl Peer {
@@ -141,8 +174,10 @@ impl Peer {
         let driver = Path::new(ROOT).join("benches/peer.py");
         let mut process = python().arg(driver).arg(script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
         let requests = process.stdin.take().ok_or("no pipe to the peer")?;
-        let answers = BufReader::new(process.stdout.take().ok_or("no pipe from the peer")?);
-        Ok(Self { script: script.into(), process, requests, answers })
+        let mut answers = BufReader::new(process.stdout.take().ok_or("no pipe from the peer")?);
+        let mut able = String::new();
+        answers.read_line(&mut able)?;
+        Ok(Self { script: script.into(), process, requests, answers, columns: able.trim() == "parquet" })
     }
 
     /// Seconds of one evaluation and peak memory of the process so far [MB].

@@ -1,9 +1,11 @@
 //! Output files, written completely or not at all.
 
 mod columnar;
+mod digits;
 mod format;
 
-pub use columnar::{DECIMALS_KEY, FileColumn, Values, csv, parquet};
+pub use columnar::{FileColumn, Values, csv, parquet};
+pub use digits::Digits;
 pub use format::{Entry, OutColumn, campaign_yaml, record, record_csv, table_csv, yaml_text};
 
 use std::io;

@@ -24,7 +24,7 @@ pub fn record_bytes(columns: &[Column], format: Format) -> Result<Vec<u8>, Probl
         FileColumn {
             heading: format!("{} [{}]", column.name, column.unit),
             values: Values::Numbers(column.values.iter().map(|value| rounded(column.unit.from_si(*value), digits)).collect()),
-            decimals: None,
+            digits: None,
         }
     };
     let columns: Vec<FileColumn> = columns.iter().map(file).collect();

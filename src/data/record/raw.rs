@@ -6,7 +6,7 @@ use super::{Format, columnar, fault, header};
 use crate::data::cells::{self, RawCell, StrayQuote};
 use crate::data::faults::Faults;
 use crate::data::text::{decode, read_large};
-use crate::data::write::{FileColumn, Values};
+use crate::data::write::{Digits, FileColumn, Values};
 use crate::problem::Problem;
 
 /// Reads all columns: numbers in the unit of the file, or texts if a cell is not a number.
@@ -28,33 +28,38 @@ pub fn read_raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Problem
     }
     let mut faults = Faults::new(shown);
     let mut columns: Vec<Numbers> = vec![Numbers::default(); headings.len()];
-    each_row(rows, shown, headings.len(), &mut faults, |cells| {
+    each_row(rows, shown, headings.len(), &mut faults, |_, cells| {
         columns.iter_mut().zip(cells).for_each(|(column, cell)| column.add(&cell.text));
     });
     faults.finish(())?;
     let mut texts: Vec<Vec<String>> = vec![Vec::new(); headings.len()];
-    if columns.iter().any(|column| column.text) {
+    if columns.iter().any(|column| column.text || column.irregular) {
+        // Only now it is known which columns are texts, and the most digits of the others.
         let mut none = Faults::new(shown);
-        each_row(rows, shown, headings.len(), &mut none, |cells| {
-            let of_text = columns.iter().zip(texts.iter_mut()).zip(cells).filter(|((column, _), _)| column.text);
-            of_text.for_each(|((_, texts), cell)| texts.push(cell.text));
+        each_row(rows, shown, headings.len(), &mut none, |row, cells| {
+            for ((column, texts), cell) in columns.iter_mut().zip(&mut texts).zip(cells) {
+                match column.text {
+                    true => texts.push(cell.text),
+                    false => column.compare(row, &cell.text),
+                }
+            }
         });
     }
     let made = headings.iter().zip(columns).zip(texts).map(|((heading, column), texts)| {
         let heading = heading.unit.as_ref().map_or_else(|| heading.name.clone(), |unit| format!("{} [{}]", heading.name, unit.text));
-        let decimals = column.decimals.filter(|_| !column.text && !column.irregular);
+        let digits = column.form();
         let values = if column.text { Values::Texts(texts) } else { Values::Numbers(column.values) };
-        FileColumn { heading, values, decimals }
+        FileColumn { heading, values, digits }
     });
     Ok(made.collect())
 }
 
-fn each_row(rows: &str, shown: &str, width: usize, faults: &mut Faults<'_>, mut each: impl FnMut(Vec<RawCell>)) {
+fn each_row(rows: &str, shown: &str, width: usize, faults: &mut Faults<'_>, mut each: impl FnMut(usize, Vec<RawCell>)) {
     for (row, line) in rows.split('\n').enumerate() {
         let line = fault::Line { text: line.trim_end_matches('\r'), number: row + 2, last: false, shown };
         match cells::split(line.text) {
             _ if line.text.trim().is_empty() => fault::slow_row(&line, width, &mut [], faults),
-            Ok(cells) if cells.len() == width => each(cells),
+            Ok(cells) if cells.len() == width => each(row, cells),
             Ok(_) | Err(StrayQuote(_)) => fault::slow_row(&line, width, &mut [], faults),
         }
     }
@@ -69,6 +74,11 @@ struct Numbers {
     decimals: Option<usize>,
     /// A cell has another number of decimals, or another form, such as `1e3` or `+1`.
     irregular: bool,
+    /// Most significant digits of a cell.
+    significant: usize,
+    /// A cell differs from this form.
+    not_significant: bool,
+    not_shortest: bool,
 }
 
 impl Numbers {
@@ -82,7 +92,26 @@ impl Numbers {
             return;
         };
         self.values.push(value);
-        let decimals = *self.decimals.get_or_insert_with(|| cell.split_once('.').map_or(0, |(_, decimals)| decimals.len()));
-        self.irregular = self.irregular || format!("{value:.decimals$}") != cell;
+        let decimals =
+            *self.decimals.get_or_insert_with(|| cell.split_once('.').map_or(0, |(_, decimals)| decimals.len().min(Digits::MOST)));
+        self.irregular = self.irregular || Digits::Decimals(decimals).write(value) != cell;
+        self.significant = self.significant.max(Digits::significant(cell));
+    }
+
+    /// Whether a cell of an irregular column has one of the other forms.
+    fn compare(&mut self, row: usize, cell: &str) {
+        let Some(value) = self.values.get(row).copied().filter(|_| self.irregular) else { return };
+        self.not_significant = self.not_significant || Digits::Significant(self.significant).write(value) != cell;
+        self.not_shortest = self.not_shortest || Digits::Shortest.write(value) != cell;
+    }
+
+    /// The form of all cells.
+    fn form(&self) -> Option<Digits> {
+        let forms = [
+            (!self.irregular).then(|| self.decimals.map(Digits::Decimals)).flatten(),
+            (!self.not_significant).then_some(Digits::Significant(self.significant)),
+            (!self.not_shortest).then_some(Digits::Shortest),
+        ];
+        forms.into_iter().flatten().next().filter(|_| !self.text)
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::columnar::{FileColumn, Values, parquet};
+use super::digits::Digits;
 use crate::data::record::Format;
 use crate::problem::Problem;
 use crate::units::Unit;
@@ -56,7 +57,7 @@ pub fn record(format: Format, columns: &[OutColumn<'_>]) -> Result<Vec<u8>, Prob
             let file = |(column, values): (&OutColumn<'_>, Vec<f64>)| FileColumn {
                 heading: format!("{} [{}]", column.name, column.unit),
                 values: Values::Numbers(values),
-                decimals: Some(column.decimals),
+                digits: Some(Digits::Decimals(column.decimals)),
             };
             parquet(columns.iter().zip(values).map(file).collect())
         }

@@ -26,9 +26,6 @@ const BATCH: usize = 1 << 13;
 /// Called after each batch with the columns and the row of the file with which the batch begins; it may empty the columns.
 pub(super) type Each<'e> = &'e mut dyn FnMut(&mut [Column], usize);
 
-/// Place in the file and bytes of a column of a group.
-type Chunk = (Range<u64>, Vec<u8>);
-
 /// Takes the numbers of a batch into the columns; the last argument gives the place of each column in the batch.
 type Take<'t> = &'t mut dyn FnMut(&RecordBatch, &mut [Column], &[usize]) -> Result<(), String>;
 
@@ -92,10 +89,10 @@ impl Opened<'_> {
         Ok(texts)
     }
 
-    /// Ranges and bytes of the wanted columns of a group, with checked sizes.
-    fn chunks(&mut self, group: usize, columns: &[Column]) -> Result<Vec<Chunk>, Problem> {
+    /// The bytes of the wanted columns of a group, with checked sizes.
+    fn chunks(&mut self, group: usize, columns: &[Column]) -> Result<PushBuffers, Problem> {
         let shown = self.shown;
-        let mut chunks = Vec::new();
+        let mut chunks = self.store.buffers();
         let mut memory = 0_u64;
         for column in columns {
             let place = || format!("row group {}, column `{}`", group + 1, column.name);
@@ -114,16 +111,22 @@ impl Opened<'_> {
             let values = u64::try_from(chunk.num_values()).unwrap_or(0);
             memory += range.end - range.start;
             self.within(memory, "a row group")?;
-            let bytes = self.store.read(range.clone(), shown)?;
-            let pages = guard::pages(&bytes, values, width).map_err(|why| damaged(shown, &format!("{}: {why}", place())))?;
+            let pages = self.store.add(range, &mut chunks, shown, |bytes| guard::pages(bytes, values, width))?;
+            let pages = pages.map_err(|why| damaged(shown, &format!("row group {}, column `{}`: {why}", group + 1, column.name)))?;
             memory += pages.memory;
             self.within(memory, "a row group")?;
-            chunks.push((range, bytes));
         }
         Ok(chunks)
     }
 
-    fn decode(&self, group: usize, rows: &Range<usize>, chunks: &[Chunk], columns: &mut [Column], take: Take<'_>) -> Result<(), String> {
+    fn decode(
+        &self,
+        group: usize,
+        rows: &Range<usize>,
+        chunks: &PushBuffers,
+        columns: &mut [Column],
+        take: Take<'_>,
+    ) -> Result<(), String> {
         // A batch has the columns in the order of the file.
         let mut order: Vec<usize> = (0..columns.len()).collect();
         order.sort_by_key(|at| columns[*at].position);
@@ -133,15 +136,11 @@ impl Opened<'_> {
         let part = rows.start - all.start..rows.end - all.start;
         guarded(|| {
             let said = |error: parquet::errors::ParquetError| error.to_string();
-            let mut buffers = PushBuffers::default();
-            for (range, bytes) in chunks {
-                buffers.push_range(range.clone(), bytes.clone().into());
-            }
             let mut builder = ParquetPushDecoderBuilder::new_with_metadata(self.metadata.clone())
                 .with_row_groups(vec![group])
                 .with_projection(mask)
                 .with_batch_size(BATCH)
-                .with_buffers(buffers);
+                .with_buffers(chunks.clone());
             if *rows != all {
                 builder = builder.with_row_selection(RowSelection::from_consecutive_ranges([part].into_iter(), all.len()));
             }
@@ -157,11 +156,11 @@ impl Opened<'_> {
     }
 
     /// Which column is damaged: each is decoded alone.
-    fn where_damaged(&self, group: usize, rows: &Range<usize>, chunks: &[Chunk], columns: &[Column], why: &str) -> Problem {
-        for (column, chunk) in columns.iter().zip(chunks) {
+    fn where_damaged(&self, group: usize, rows: &Range<usize>, chunks: &PushBuffers, columns: &[Column], why: &str) -> Problem {
+        for column in columns {
             let mut found = 0;
             let mut one = [Column { values: Vec::new(), ..column.clone() }];
-            let alone = self.decode(group, rows, std::slice::from_ref(chunk), &mut one, &mut |batch, _, _| {
+            let alone = self.decode(group, rows, chunks, &mut one, &mut |batch, _, _| {
                 found += batch.num_rows();
                 Ok(())
             });

@@ -38,7 +38,7 @@ pub(super) fn read(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record
     let mut bytes = Vec::new();
     read_plain(path, shown, &mut bytes).map_err(one)?;
     let (hash, size) = (sha256(&bytes), bytes.len());
-    let mut opened = Opened::open(Store::Memory(bytes), shown).map_err(one)?;
+    let mut opened = Opened::open(Store::memory(bytes), shown).map_err(one)?;
     let mut columns = opened.find(wanted)?;
     let rows = opened.rows();
     if rows == 0 {
@@ -96,7 +96,7 @@ pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Probl
             let [column] = column;
             Values::Numbers(column.values)
         };
-        columns.push(FileColumn { heading: heading.span.text().to_string(), values, decimals: opened.decimals(position) });
+        columns.push(FileColumn { heading: heading.span.text().to_string(), values, digits: opened.digits(position) });
     }
     Ok(columns)
 }

@@ -9,13 +9,15 @@ use std::sync::Arc;
 use arrow_schema::{DataType, Schema};
 use parquet::arrow::arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions};
 use parquet::arrow::parquet_to_arrow_schema;
+use parquet::arrow::push_decoder::PushBuffers;
 use parquet::basic::Compression;
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
+use parquet::file::reader::ChunkReader;
 
 use super::{Column, Heading, MAGIC, Wanted, find_columns, guard};
 use crate::data::cells::{HeadingUnit, duplicates, name_and_unit, shortened};
 use crate::data::text::{LARGEST_RECORD, plain_size, unreadable};
-use crate::data::write::DECIMALS_KEY;
+use crate::data::write::Digits;
 use crate::disk;
 use crate::problem::Problem;
 use crate::source::Source;
@@ -28,9 +30,6 @@ const TAIL: u64 = 8;
 /// Key of the metadata of a field that holds its unit.
 const UNIT_KEY: &str = "unit";
 
-/// Most decimals of a number in a text: those of the smallest double.
-const MOST_DECIMALS: usize = 324;
-
 /// Most bytes of numbers and pages for a byte of the file, above [`FREE`]: a record of one section has 10 to 50, a column that never
 /// changes more. A file of some kilobytes can declare gigabytes.
 const MOST_INFLATION: u64 = 1000;
@@ -39,8 +38,12 @@ const FREE: u64 = guard::LARGEST_PAGE;
 
 /// Where the bytes are.
 pub(super) enum Store {
-    Memory(Vec<u8>),
-    Disk { file: disk::Reader, size: u64 },
+    /// The whole file: its parts are used where they lie, without a copy.
+    Memory(PushBuffers, u64),
+    Disk {
+        file: disk::Reader,
+        size: u64,
+    },
 }
 
 impl Store {
@@ -50,9 +53,47 @@ impl Store {
         Ok(Self::Disk { file, size })
     }
 
+    pub fn memory(bytes: Vec<u8>) -> Self {
+        let size = bytes.len() as u64;
+        let mut whole = PushBuffers::default();
+        whole.push_range(0..size, bytes.into());
+        Self::Memory(whole, size)
+    }
+
+    /// What a decoder is given before any part is added.
+    pub fn buffers(&self) -> PushBuffers {
+        match self {
+            Self::Memory(whole, _) => whole.clone(),
+            Self::Disk { .. } => PushBuffers::default(),
+        }
+    }
+
+    /// Adds a part of the file to the buffers of a decoder; `look` sees its bytes.
+    pub fn add<T>(
+        &mut self,
+        range: Range<u64>,
+        buffers: &mut PushBuffers,
+        shown: &str,
+        look: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T, Problem> {
+        match self {
+            Self::Memory(whole, _) => {
+                let count = usize::try_from(range.end - range.start).unwrap_or(usize::MAX);
+                let bytes = whole.get_bytes(range.start, count).map_err(|error| damaged(shown, &error.to_string()))?;
+                Ok(look(&bytes))
+            }
+            Self::Disk { .. } => {
+                let bytes = self.read(range.clone(), shown)?;
+                let seen = look(&bytes);
+                buffers.push_range(range, bytes.into());
+                Ok(seen)
+            }
+        }
+    }
+
     pub fn size(&self) -> u64 {
         match self {
-            Self::Memory(bytes) => bytes.len() as u64,
+            Self::Memory(_, size) => *size,
             Self::Disk { size, .. } => *size,
         }
     }
@@ -63,9 +104,9 @@ impl Store {
         }
         let count = usize::try_from(range.end - range.start).map_err(|_| damaged(shown, "a part of it is too large"))?;
         match self {
-            Self::Memory(bytes) => {
-                let start = usize::try_from(range.start).unwrap_or(usize::MAX);
-                Ok(bytes.get(start..start.saturating_add(count)).map(<[u8]>::to_vec).unwrap_or_default())
+            Self::Memory(whole, _) => {
+                let bytes = whole.get_bytes(range.start, count).map_err(|error| damaged(shown, &error.to_string()))?;
+                Ok(bytes.to_vec())
             }
             Self::Disk { file, .. } => {
                 let mut bytes = vec![0; count];
@@ -126,7 +167,7 @@ pub(super) struct Opened<'a> {
     pub(super) metadata: ArrowReaderMetadata,
     fields: Vec<Field>,
     headings: Vec<Heading>,
-    decimals: Vec<Option<usize>>,
+    digits: Vec<Option<Digits>>,
     /// Row before the first one of each group, and the number of rows of the file.
     starts: Vec<usize>,
 }
@@ -148,10 +189,9 @@ impl<'a> Opened<'a> {
         let starts = starts(metadata.metadata(), shown)?;
         let headings = headings(metadata.schema(), &described, shown)?;
         let fields = fields(&metadata);
-        let decimals =
-            described.fields().iter().map(|field| field.metadata().get(DECIMALS_KEY)?.parse().ok().filter(|count| *count <= MOST_DECIMALS));
-        let decimals = decimals.collect();
-        Ok(Self { store, shown, metadata, fields, headings, decimals, starts })
+        let kept = |field: &Arc<arrow_schema::Field>| Digits::read(|key| field.metadata().get(key).map(String::as_str));
+        let digits = described.fields().iter().map(kept).collect();
+        Ok(Self { store, shown, metadata, fields, headings, digits, starts })
     }
 
     /// Refuses a part of the file that needs too much memory.
@@ -205,9 +245,9 @@ impl<'a> Opened<'a> {
         self.fields.get(position).is_some_and(|field| field.kind == DataType::Utf8 && field.leaf.is_some())
     }
 
-    /// How many decimals the numbers of a column have in a text.
-    pub fn decimals(&self, position: usize) -> Option<usize> {
-        self.decimals.get(position).copied().flatten()
+    /// How the numbers of a column are written in a text.
+    pub fn digits(&self, position: usize) -> Option<Digits> {
+        self.digits.get(position).copied().flatten()
     }
 
     /// A problem for a column that does not hold numbers.

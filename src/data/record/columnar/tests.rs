@@ -13,11 +13,11 @@ fn wanted() -> [Wanted; 2] {
 }
 
 fn numbers(heading: &str, values: impl IntoIterator<Item = f64>) -> FileColumn {
-    FileColumn { heading: heading.into(), values: Values::Numbers(values.into_iter().collect()), decimals: None }
+    FileColumn { heading: heading.into(), values: Values::Numbers(values.into_iter().collect()), digits: None }
 }
 
 fn sample(rows: usize) -> Vec<u8> {
-    let texts = FileColumn { heading: "note [-]".into(), values: Values::Texts(vec!["a, b".into(); rows]), decimals: None };
+    let texts = FileColumn { heading: "note [-]".into(), values: Values::Texts(vec!["a, b".into(); rows]), digits: None };
     let time = numbers("time [ms]", (0..rows).map(|row| 5.0 * row as f64));
     let force = numbers("Y [kN]", (0..rows).map(|row| (row as f64).sin() * 8.0));
     parquet(vec![force, texts, time]).expect("written")
@@ -126,7 +126,7 @@ fn each_fault_at_its_row_and_column() {
     assert_eq!(code(&with_values("Z [kN]", vec![1.0])), Some("unknown-channel"));
     assert_eq!(code(&with_values("time [kN]", vec![1.0])), Some("duplicate-column"));
     assert_eq!(code(&with_values("Y [kN]", Vec::new())), Some("no-rows"));
-    let text = FileColumn { heading: "Y [kN]".into(), values: Values::Texts(vec!["1".into()]), decimals: None };
+    let text = FileColumn { heading: "Y [kN]".into(), values: Values::Texts(vec!["1".into()]), digits: None };
     let problems = read_bytes(&parquet(vec![numbers("time [s]", [0.0]), text]).expect("written")).expect_err("text");
     assert_eq!((problems[0].code, problems[0].at.as_ref().map(ToString::to_string)), ("not-a-number", Some("r.parquet:1:11".into())));
 }
