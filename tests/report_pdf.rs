@@ -63,7 +63,7 @@ fn text(pdf: &Pdf) -> Option<String> {
 }
 
 /// The first attached file. Written to a folder: a program may not open `/dev/stdout` where that is a socket.
-fn attached(pdf: &Pdf) -> Option<Vec<u8>> {
+fn detached(pdf: &Pdf) -> Option<Vec<u8>> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("attached");
     poppler("pdfdetach", &["-save", "1", "-o", file.to_str().expect("a path in UTF-8")], pdf)?;
@@ -168,7 +168,7 @@ fn a_report_without_a_date_of_issue_bears_none() {
     let Some(info) = poppler("pdfinfo", &[], &pdf) else { return };
     let info = String::from_utf8_lossy(&info);
     assert!(info.contains("Tagged") && !info.contains("CreationDate"), "{info}");
-    let Some(attached) = attached(&pdf) else { return };
+    let Some(attached) = detached(&pdf) else { return };
     assert_eq!(attached, RESULTS, "the file is whole");
 }
 
@@ -187,7 +187,7 @@ fn what_a_report_is_known_by_stands_in_it() {
 fn results_are_attached() {
     let pdf = full();
     assert!(holds(&pdf.bytes, "results.json") && holds(&pdf.bytes, "AFRelationship"));
-    let Some(found) = attached(pdf) else { return };
+    let Some(found) = detached(pdf) else { return };
     assert_eq!(found, RESULTS);
 }
 
