@@ -60,7 +60,10 @@ pub fn present_columns(
     units: &[&Unit],
     notes: &mut Vec<String>,
 ) -> Vec<Vec<bool>> {
-    graph
+    let called = units.first().and_then(|unit| unit.campaign_name.as_ref());
+    let of = called.map_or_else(String::new, |name| format!(" of {name}"));
+    let mut left_out = LeftOut::default();
+    let present = graph
         .quantities
         .iter()
         .zip(&plan.quantities)
@@ -87,20 +90,60 @@ pub fn present_columns(
                 .map(|missing| {
                     if !none {
                         for (column, which) in missing {
-                            let called = units.first().and_then(|unit| unit.campaign_name.as_ref());
-                            let of = called.map_or_else(String::new, |name| format!(" of {name}"));
-                            let record = campaign.record_in_words(*which);
-                            let note = format!("`{column}` is in no record of the {record}{of}; its position is left out");
-                            if !notes.contains(&note) {
-                                notes.push(note);
-                            }
+                            left_out.add(column, format!("the {}{of}", campaign.record_in_words(*which)));
                         }
                     }
                     none || missing.is_empty()
                 })
                 .collect()
         })
-        .collect()
+        .collect();
+    notes.extend(left_out.notes());
+    present
+}
+
+/// Columns that are in no record of some records, in the order of the protocol.
+#[derive(Default)]
+struct LeftOut {
+    columns: Vec<(String, Vec<String>)>,
+}
+
+impl LeftOut {
+    fn add(&mut self, column: &str, record: String) {
+        let at = self.columns.iter().position(|(known, _)| known == column).unwrap_or_else(|| {
+            self.columns.push((column.to_owned(), Vec::new()));
+            self.columns.len() - 1
+        });
+        let records = &mut self.columns[at].1;
+        if !records.contains(&record) {
+            records.push(record);
+        }
+    }
+
+    /// One note for all columns that the same records lack.
+    fn notes(&self) -> Vec<String> {
+        let mut groups: Vec<(Vec<String>, &[String])> = Vec::new();
+        for (column, records) in &self.columns {
+            let column = format!("`{column}`");
+            match groups.iter_mut().find(|(_, known)| known == records) {
+                Some((columns, _)) => columns.push(column),
+                None => groups.push((vec![column], records)),
+            }
+        }
+        let said = |(columns, records): (Vec<String>, &[String])| {
+            let (are, their) = if columns.len() > 1 { ("are", "their positions are") } else { ("is", "its position is") };
+            format!("{} {are} in no record of {}; {their} left out", listed(&columns), listed(records))
+        };
+        groups.into_iter().map(said).collect()
+    }
+}
+
+/// `a, b and c`.
+fn listed(words: &[String]) -> String {
+    match words {
+        [several @ .., last] if !several.is_empty() => format!("{} and {last}", several.join(", ")),
+        _ => words.concat(),
+    }
 }
 
 /// Columns that a node needs in some section.

@@ -29,8 +29,20 @@ pub(super) fn typeset(symbol: &str) -> String {
     out
 }
 
-/// A text, escaped, with every known symbol in it typeset.
+/// A text, escaped, with every known symbol in it typeset and each name between backticks as code.
 pub(super) fn typeset_in(text: &str, known: &[String]) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some((before, (name, after))) = rest.split_once('`').and_then(|(before, after)| Some((before, after.split_once('`')?))) {
+        out += &symbols_in(before, known);
+        let is_name = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "_.-".contains(c));
+        out += &if is_name { format!("<code>{name}</code>") } else { format!("`{}`", symbols_in(name, known)) };
+        rest = after;
+    }
+    out + &symbols_in(rest, known)
+}
+
+fn symbols_in(text: &str, known: &[String]) -> String {
     let mut known: Vec<&str> = known.iter().map(String::as_str).filter(|symbol| symbol.contains('_')).collect();
     known.sort_by_key(|symbol| std::cmp::Reverse(symbol.len()));
     let (mut out, mut plain, mut rest) = (String::new(), String::new(), text);
@@ -61,6 +73,7 @@ mod tests {
         assert_eq!(typeset("a_b_c<"), "a_b_c&lt;");
         assert_eq!(typeset("<_>"), "&lt;<sub>&gt;</sub>");
         let known = ["Y_max".to_owned(), "ΣY_max".to_owned()];
+        assert_eq!(typeset_in("`Y_max` `b` `<` `", &known), "<code>Y_max</code> <code>b</code> `&lt;` `");
         assert_eq!(typeset_in("<ΣY_max: Y_max", &known), "&lt;Σ<i>Y</i><sub>max</sub>: <i>Y</i><sub>max</sub>");
     }
 }

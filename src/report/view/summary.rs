@@ -70,8 +70,9 @@ pub(super) fn tables(quantities: &[QuantityResult]) -> (Vec<SummaryRow>, Vec<Fur
         }
         let mean = overall(quantity, "mean");
         let std = overall(quantity, "std");
-        // A quantity without statistics is listed with its reason.
-        if mean.is_some() || std.is_some() || quantity.statistics.is_empty() {
+        // A quantity without statistics is listed with its reason. One without a limit that has values stands in its chapter.
+        let without_limit = quantity.decides_nothing() && quantity.reason.is_none() && !quantity.values.is_empty();
+        if mean.is_some() || std.is_some() || quantity.statistics.is_empty() && !without_limit {
             summary.push(summary_row(quantity, mean, std));
         }
         let single = estimates::single(quantity).into_iter();
