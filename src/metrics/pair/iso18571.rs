@@ -131,46 +131,48 @@ fn smoothed_slopes(signal: &[f64]) -> Vec<f64> {
 
 /// The cheapest way through both signals, as pairs of samples, last pair first: squared distances, steps of one sample of either
 /// signal or of both, no more than the width of the band apart.
+///
+/// Pairs are numbered by the simulated sample `i` on the diagonal `d = i + j`. A pair depends only on the two diagonals before its own,
+/// so that a processor can do several pairs of a diagonal at once.
 fn warp(simulated: &[f64], measured: &[f64]) -> Result<Vec<(usize, usize)>, Undefined> {
     let count = simulated.len();
     let band = ((WARPING * count as f64).ceil() as usize).saturating_sub(1);
-    // A row is a simulated sample. Its cells are the measured samples from `band` before to `band` behind, between two that bar the way.
-    let width = 2 * band + 3;
-    if count.saturating_mul(width) > MOST_CELLS {
+    let width = band + 1;
+    if count.saturating_mul(2 * width) > MOST_CELLS {
         return Err(Undefined::because(format!("{count} samples are too many to be warped onto each other; resample the signals")));
     }
-    let mut steps = vec![Step::Both; count * width];
-    let mut before = vec![f64::INFINITY; width];
-    let mut row = vec![f64::INFINITY; width];
-    for (i, &s) in simulated.iter().enumerate() {
-        row.fill(f64::INFINITY);
-        let first = (band + 1).saturating_sub(i).max(1);
-        let last = (2 * band + 1).min(count - 1 - i + band + 1);
-        for cell in first..=last {
-            let distance = (s - measured[i + cell - band - 1]).powi(2);
-            if i == 0 && cell == first {
-                row[cell] = distance;
-                continue;
-            }
+    let last = count - 1;
+    let range = |d: usize| d.saturating_sub(last).max(d.saturating_sub(band).div_ceil(2))..=last.min(d).min((d + band) / 2);
+    let backwards: Vec<f64> = measured.iter().rev().copied().collect();
+    let mut steps = vec![SIMULATED; (2 * last + 1) * width];
+    // Costs of a diagonal, of the one before it and of the one before that; the pair of sample `i` stands at `i + 1`.
+    let [mut row, mut before, mut earlier] = [(); 3].map(|()| vec![f64::INFINITY; count + 2]);
+    before[1] = (simulated[0] - measured[0]).powi(2);
+    for d in 1..=2 * last {
+        let (first, end) = range(d).into_inner();
+        let backwards = &backwards[last + first - d..];
+        // With a band of no width every second diagonal is empty.
+        let steps = &mut steps[d * width..][..end + 1 - first];
+        let pairs = simulated[first..].iter().zip(backwards).zip(&before[first..]).zip(&before[first + 1..]).zip(&earlier[first..]);
+        for ((cost, step), ((((s, m), along), across), both)) in row[first + 1..].iter_mut().zip(steps).zip(pairs) {
             // Of equal ways the one written first.
-            let (mut cheapest, mut step) = (before[cell + 1], Step::Simulated);
-            for (cost, other) in [(row[cell - 1], Step::Measured), (before[cell], Step::Both)] {
-                if cost < cheapest {
-                    (cheapest, step) = (cost, other);
-                }
-            }
-            row[cell] = cheapest + distance;
-            steps[i * width + cell] = step;
+            let (cheaper, first_step) = if across < along { (across, MEASURED) } else { (along, SIMULATED) };
+            let (cheapest, chosen) = if both < cheaper { (both, BOTH) } else { (cheaper, first_step) };
+            *cost = cheapest + (s - m) * (s - m);
+            *step = chosen;
         }
+        // The pairs beside the diagonal bar the way; older costs stand there.
+        (row[first], row[end + 2]) = (f64::INFINITY, f64::INFINITY);
+        std::mem::swap(&mut earlier, &mut before);
         std::mem::swap(&mut before, &mut row);
     }
-    let (mut i, mut j) = (count - 1, count - 1);
+    let (mut i, mut j) = (last, last);
     let mut path = vec![(i, j)];
     while (i, j) != (0, 0) {
-        match steps[i * width + j + band + 1 - i] {
-            Step::Simulated => i -= 1,
-            Step::Measured => j -= 1,
-            Step::Both => (i, j) = (i - 1, j - 1),
+        match steps[(i + j) * width + i - range(i + j).start()] {
+            SIMULATED => i -= 1,
+            MEASURED => j -= 1,
+            _ => (i, j) = (i - 1, j - 1),
         }
         path.push((i, j));
     }
@@ -178,12 +180,9 @@ fn warp(simulated: &[f64], measured: &[f64]) -> Result<Vec<(usize, usize)>, Unde
 }
 
 /// Which signal goes one sample on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Step {
-    Simulated,
-    Measured,
-    Both,
-}
+const SIMULATED: u8 = 0;
+const MEASURED: u8 = 1;
+const BOTH: u8 = 2;
 
 #[cfg(test)]
 mod tests {
