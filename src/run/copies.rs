@@ -106,13 +106,52 @@ pub fn find(plan: &Plan, campaigns: Campaigns<'_>, units: &[Unit], values: &[Sec
     findings
 }
 
+/// Which marks may stand in several places: nearly all stand in one, and need not be sorted. It errs on one side only: a mark that
+/// stands in several places is never left out.
+struct Several {
+    once: Vec<u64>,
+    again: Vec<u64>,
+}
+
+impl Several {
+    /// Bits for each mark: one mark in eight that stands alone is sorted with the others.
+    const BITS: usize = 8;
+
+    fn of(count: usize, marks: impl Iterator<Item = u64>) -> Self {
+        let words = (count * Self::BITS / 64 + 1).next_power_of_two();
+        let mut found = Self { once: vec![0; words], again: vec![0; words] };
+        for mark in marks {
+            let (word, bit) = found.place(mark);
+            found.again[word] |= found.once[word] & bit;
+            found.once[word] |= bit;
+        }
+        found
+    }
+
+    fn may_have(&self, mark: u64) -> bool {
+        let (word, bit) = self.place(mark);
+        self.again[word] & bit != 0
+    }
+
+    /// Marks are hashes: their bits are as good as random. The lowest four are alike in all of them.
+    fn place(&self, mark: u64) -> (usize, u64) {
+        ((mark >> 16) as usize & (self.once.len() - 1), 1 << (mark >> 8 & 63))
+    }
+}
+
 fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Shared<'a> {
     let print = |(section, at): Place| &values[section].prints[at];
+    let prints = || {
+        let of_section = |(section, values): (usize, &'a SectionValues)| {
+            values.prints.iter().enumerate().filter(|(_, print)| print.rule == rule).map(move |(at, print)| ((section, at), print))
+        };
+        values.iter().enumerate().flat_map(of_section)
+    };
+    let count = prints().map(|(_, print)| print.marks.len()).sum();
+    let several = Several::of(count, prints().flat_map(|(_, print)| print.marks.iter().copied()));
     let mut all: Vec<(u64, Place)> = Vec::new();
-    for (section, values) in values.iter().enumerate() {
-        for (at, print) in values.prints.iter().enumerate().filter(|(_, print)| print.rule == rule) {
-            all.extend(print.marks.iter().map(|mark| (*mark, (section, at))));
-        }
+    for (place, print) in prints() {
+        all.extend(print.marks.iter().filter(|mark| several.may_have(**mark)).map(|mark| (*mark, place)));
     }
     all.par_sort_unstable();
     let mut counts: BTreeMap<(Place, Place), usize> = BTreeMap::new();
@@ -195,6 +234,16 @@ mod tests {
                 ((state >> 40) as f64 / 100.0).round() * 0.01
             })
             .collect()
+    }
+
+    #[test]
+    fn no_mark_of_several_places_is_left_out() {
+        let mut marks: Vec<u64> = (0..20_000_u64).map(mixed).collect();
+        marks.extend((0..100).map(mixed));
+        let several = Several::of(marks.len(), marks.iter().copied());
+        assert!((0..100).all(|k| several.may_have(mixed(k))));
+        let alone = (100..20_000).filter(|k| several.may_have(mixed(*k))).count();
+        assert!(alone < 20_000 / 6, "{alone}");
     }
 
     fn values(prints: Vec<Print>) -> SectionValues {
