@@ -432,6 +432,26 @@ plausibility coarse "Channel with coarse resolution"
   cause    "insufficient resolution of the recorder, or too few decimals"
   note     "Steps of 15 % of the standard deviation increase it by 0.1 % and distort percentiles."
 
+plausibility noise "Noise of a channel"
+  of       Q
+  of       ay
+  of       az
+  require  noise_floor <= 0.6 * std
+  cause    "interference in the measuring chain, or a sensor that is not connected"
+  note     "Noise of more than 60 % of the standard deviation hides the signal. In 138 sound sections at 200"
+           "Hz it is at most 41 % for Q and 20 % for accelerations. Guiding forces on straight track are"
+           "small against their noise and are not checked."
+
+plausibility exchanged "Exchanged channels"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  exchanged  from 0.5, by 0.3
+  cause      "two channels exchanged in one of the records"
+  note       "Forces of neighbouring wheels are alike: in sound sections a channel agrees with another one"
+             "better than with its own by at most 0.04."
+
 plausibility same_sign "Simulation and measurement with the same sign"
   of         Y
   of         Q

@@ -147,6 +147,50 @@ fn a_table_of_found_sections_can_be_used() {
     }
 }
 
+/// Sections with records of their own give the numbers of the sections in the runs.
+#[test]
+fn sections_are_cut_out_of_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for format in ["csv", "parquet"] {
+        let cut = folder.path().join(format);
+        let shown = cut.display().to_string();
+        let said = done(&["sections", "examples/run", "--cut", &shown, "--records", format], &[0]);
+        assert!(said.contains("written: 36 records of 12 sections"), "{said}");
+        assert!(cut.join(format!("measurement/S01.{format}")).is_file() && !cut.join("records").exists());
+        let table = fs::read_to_string(cut.join("sections.csv")).expect("a table");
+        let header = table.lines().next().expect("a header");
+        assert!(header.starts_with("section,start [m],end [m]") && header.contains("Country") || header.contains("country"), "{header}");
+        let account = fs::read_to_string(cut.join("cut.csv")).expect("an account");
+        assert!(
+            account.contains(&format!("measurement/S12.{format}")) && account.contains("south,records/south-measured.parquet"),
+            "{account}"
+        );
+        let numbers = |campaign: &str, name: &str| -> Vec<f64> {
+            let out = folder.path().join(name);
+            done(&["certify", campaign, "--only", "results", "--out", &out.display().to_string()], &[0]);
+            let text = fs::read_to_string(out.join("results.json")).expect("results");
+            let results: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+            let quantities = results["quantities"].as_array().expect("a list");
+            quantities.iter().flat_map(|quantity| [&quantity["mean"], &quantity["std"]]).filter_map(serde_json::Value::as_f64).collect()
+        };
+        let (in_runs, cut) = (numbers("examples/run", "a"), numbers(&shown, "b"));
+        assert_eq!(in_runs.len(), cut.len());
+        for (one, other) in in_runs.iter().zip(&cut) {
+            assert!((one - other).abs() <= 1e-6 * one.abs().max(1e-3), "{one} {other}");
+        }
+    }
+}
+
+/// The diagnosis works on the sections that are found.
+#[test]
+fn runs_are_diagnosed_by_their_sections() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    done(&["diagnose", "examples/run", "--out", &out.display().to_string()], &[0, 1]);
+    let text = fs::read_to_string(out.join("diagnosis.json")).expect("a diagnosis");
+    assert!(text.contains("S12"), "no section in the diagnosis");
+}
+
 /// The wheel sensor of the measurement counts 3 m too much in 1 km, and begins 1 m ahead. The shift that is found at each section is the
 /// opposite of that in its middle; corrected, the numbers are those of the run without drift.
 #[test]
@@ -186,6 +230,13 @@ fn a_drift_of_the_distance_is_found_and_corrected() {
         let expected = -drift(start + length / 2.0);
         assert!((shift - expected).abs() < 0.3, "{start}: {shift} for {expected}");
     }
+    // Along the whole run as well, at places of the simulation.
+    let along = run["drift"]["along"].as_array().expect("points");
+    assert!(along.len() >= 2 && run["drift"]["windows"].as_u64().is_some_and(|looked| looked as usize >= along.len()), "{run:#}");
+    for point in along {
+        let (at, shift) = (point["at"].as_f64().expect("a place"), point["shift"].as_f64().expect("a shift"));
+        assert!((shift + drift(at)).abs() < 0.3, "{at}: {shift} for {}", -drift(at));
+    }
     // What the program finds without a drift is within a few centimetres of nothing.
     for point in sound["found_sections"][0]["runs"][0]["drift"]["points"].as_array().expect("points") {
         assert!(point["shift"].as_f64().is_some_and(|shift| shift.abs() < 0.2), "{point}");
@@ -224,9 +275,14 @@ fn what_cannot_be_looked_into_is_told() {
         ],
         "nothing-found",
     );
-    refused(&["diagnose", "examples/run", "--out", &out], "section-in-run");
+    refused(&["simulate", "examples/run", "--out", &out], "section-in-run");
+    refused(&["sections", "examples/coach", "--cut", &out], "no-runs");
+    // A protocol that does not look for sections leaves nothing to cut, and none of it may be written among the records.
+    refused(&["diagnose", "examples/run", "--protocol", "en14363-2016-annex-t", "--out", &out], "no-sections");
     let copy = folder.path().join("copy");
     done(&["convert-records", "examples/run", "--to", "csv", "--out", &copy.display().to_string()], &[0]);
+    let shown = copy.display().to_string();
+    refused(&["sections", &shown, "--cut", &shown], "output-is-input");
     fs::copy(copy.join("records/south-measured.csv"), copy.join("records/north-measured.csv")).expect("copied");
     refused(&["sections", &copy.display().to_string(), "--out", &out], "records-apart");
 }

@@ -103,6 +103,17 @@ fn coarse(step: f64) -> impl Fn(&[f64]) -> Vec<f64> + Sync {
     move |values| values.iter().map(|value| (value / step).round() * step).collect()
 }
 
+/// White noise with twice the range of the signal, as of an open input.
+fn hiss(values: &[f64]) -> Vec<f64> {
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+    let mut state = 3_u64;
+    let mut uniform = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    values.iter().map(|_| (high - low) * (2.0 * uniform() - 1.0)).collect()
+}
+
 /// Replaces columns of the records of some sections by others, by name.
 fn copied(folder: &mut Folder, side: Side, sections: &[String], from: &str, to: &str) {
     for kind in side.folders() {
@@ -260,6 +271,21 @@ fn signs() -> Vec<Fault> {
                 exchanged(folder, Side::Both, &sections, &format!("Q_{wheelset}R"), &format!("Q_{wheelset}L"));
             }
             Told { sections: Vec::new(), channels: OF_Q }
+        }),
+        fault("guiding forces of two wheelsets exchanged in the measurement", |folder| {
+            let sections = folder.sections("");
+            exchanged(folder, Side::Measurement, &sections, "Y_1R", "Y_3L");
+            Told { sections: Vec::new(), channels: &["Y_1R", "Y_3L"] }
+        }),
+        fault("accelerations of both ends exchanged in the measurement", |folder| {
+            let sections = folder.sections("");
+            exchanged(folder, Side::Measurement, &sections, "az_I", "az_II");
+            Told { sections: Vec::new(), channels: &["az_I", "az_II"] }
+        }),
+        fault("noise in place of the acceleration az_I in a section", |folder| {
+            let sections = folder.sections("").into_iter().take(1).collect::<Vec<_>>();
+            folder.channels(Side::Measurement, &sections, &["az_I"], hiss);
+            Told { sections, channels: &["az_I"] }
         }),
         fault("left and right guiding forces exchanged on both sides", |folder| {
             let sections = folder.sections("");

@@ -91,7 +91,7 @@ pub fn parquet(input: &[u8]) {
         });
         assert!(run.is_ok() && rows == record.rows, "{}", heading.name);
         if let Err(problems) =
-            read_stretch(&path, "record.parquet", &wanted, &heading.name, 0.0..1.0, &fishplate::data::hash::Known::default())
+            read_stretch(&path, "record.parquet", &wanted, &heading.name, 0.0..1.0, &fishplate::data::record::Known::default())
         {
             promise::told(&problems);
         }

@@ -57,6 +57,11 @@ pub const REDUCERS: &[ReducerEntry] = &[
     same("resolution", "Smallest change between consecutive samples: the quantisation step of a signal that varies.", |_, x| {
         sampling::resolution(x)
     }),
+    same(
+        "noise_floor",
+        "Standard deviation of the part that changes from sample to sample: for white noise its standard deviation, near 0 for a smooth signal.",
+        |_, x| sampling::noise_floor(x),
+    ),
     same("first", "First sample of the section.", |_, x| x.first().copied()),
     same("last", "Last sample of the section.", |_, x| x.last().copied()),
     ReducerEntry {

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::names::normalised;
-use super::plan::{Distinct, Expr, Input, InputSide, Looks, OnFault, Plausibility, Requirement, Signal, Step, Taken, Test};
+use super::plan::{Distinct, Exchanged, Expr, Input, InputSide, Looks, OnFault, Plausibility, Requirement, Signal, Step, Taken, Test};
 use super::scalars::Scope;
 use super::steps::after;
 use crate::problem::Problem;
@@ -19,17 +19,18 @@ type Of = (Vec<(String, Signal)>, Option<Unit>);
 impl Checker<'_> {
     /// One rule for each field `of` of the block.
     pub(super) fn plausibility(&mut self, block: &Block) -> Option<Vec<Plausibility>> {
-        let (require, distinct) = (block.field("require"), block.field("distinct"));
-        if let (Some(first), Some(second)) = (require, distinct) {
+        let (require, distinct, exchanged) = (block.field("require"), block.field("distinct"), block.field("exchanged"));
+        let tests: Vec<&Field> = [require, distinct, exchanged].into_iter().flatten().collect();
+        if let [first, second, ..] = tests[..] {
             self.problems.push(
-                Problem::error("require-and-distinct", "a plausibility rule has either `require` or `distinct`")
+                Problem::error("require-and-distinct", "a plausibility rule has one of `require`, `distinct` and `exchanged`")
                     .at(&second.key.span)
-                    .also(&first.key.span, "the condition")
+                    .also(&first.key.span, "the first of them")
                     .help("write two rules"),
             );
             return None;
         }
-        if distinct.is_none() {
+        if distinct.or(exchanged).is_none() {
             self.required(block, "require")?;
         } else {
             self.required(block, "of")?;
@@ -54,10 +55,11 @@ impl Checker<'_> {
         let chain = chain.filter(|_| whole)?;
         let mut rules = Vec::new();
         for (signals, unit) in all {
-            let test = match (require, distinct) {
-                (Some(field), _) => Test::Require(Box::new(self.requirement(field, &signals, &chain, unit.as_ref())?)),
-                (None, Some(field)) => Test::Distinct(self.distinct(field)?),
-                (None, None) => return None,
+            let test = match (require, distinct, exchanged) {
+                (Some(field), ..) => Test::Require(Box::new(self.requirement(field, &signals, &chain, unit.as_ref())?)),
+                (None, Some(field), _) => Test::Distinct(self.distinct(field)?),
+                (None, None, Some(field)) => Test::Exchanged(self.exchanged(field)?),
+                (None, None, None) => return None,
             };
             let otherwise = otherwise?;
             if let (Test::Require(requirement), Some(step)) = (&test, chain.iter().find(|step| !step.kind.keeps_samples()))
@@ -145,6 +147,19 @@ impl Checker<'_> {
             }
         }
         Some(distinct)
+    }
+
+    /// `from 0.5, by 0.3`.
+    fn exchanged(&mut self, field: &Field) -> Option<Exchanged> {
+        let text = normalised(&field.value.text);
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| *number > 0.0 && *number < 1.0);
+        let parts = text.strip_prefix("from ").and_then(|rest| rest.split_once(", by "));
+        let found = parts.and_then(|(least, more)| Some(Exchanged { least: number(least)?, more: number(more)? }));
+        if found.is_none() {
+            let says = "`exchanged` must be two numbers between 0 and 1: a correlation, and a difference of two";
+            self.problems.push(Problem::error("exchanged-numbers", says).at(&field.value.span).help("write `exchanged  from 0.5, by 0.3`"));
+        }
+        found
     }
 
     fn consequence(&mut self, block: &Block) -> Option<OnFault> {

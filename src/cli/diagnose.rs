@@ -12,13 +12,15 @@ use super::output::{Console, Exit, reports};
 use super::places::{CAMPAIGN, REPORT, check_folder, same};
 use super::simulate::load_catalogue;
 use super::simulator::{Chosen, SimulatorChoice};
+use crate::data::cut::cut;
 use crate::data::hash::sha256;
+use crate::data::record::Format;
 use crate::data::write::Outputs;
 use crate::data::{Campaign, RecordKind};
 use crate::diagnose::inputs::{Inputs, Reference};
 use crate::diagnose::settings::Settings;
 use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
-use crate::disk::SetKind;
+use crate::disk::{self, Scratch, SetKind};
 use crate::library;
 use crate::problem::{Problem, Problems, Severity};
 use crate::report::diagnosis as report;
@@ -101,7 +103,10 @@ impl Diagnose {
             bar.tick();
         };
         let mut problems = Problems::default();
-        let outcome = diagnosed(&self.asked(), &|campaign| self.check_folders(campaign), &trying, &mut problems);
+        let places = |campaign: &Campaign| self.check_folders(campaign);
+        let sections = self.of_runs(&places, &mut problems);
+        let asked = Asked { folder: sections.as_ref().map_or(&self.campaign, |folder| folder.path()), ..self.asked() };
+        let outcome = if problems.any_error() { None } else { diagnosed(&asked, &places, &trying, &mut problems) };
         bar.finish_and_clear();
         console.problems(&problems);
         let Some((campaign, outcome)) = outcome else { return Exit::Wrong };
@@ -130,6 +135,29 @@ impl Diagnose {
         }
         console.problems(&Problems(all.iter().filter_map(Outputs::mended).collect()));
         all.into_iter().try_for_each(Outputs::commit)
+    }
+
+    /// If the sections are parts of runs, a campaign in a folder of its own in which each of them has its records: found first, if the
+    /// protocol looks for them.
+    fn of_runs(&self, places: &dyn Fn(&Campaign) -> Result<(), Problem>, problems: &mut Problems) -> Option<Scratch> {
+        let opened = Campaign::open(&self.campaign, &mut Problems::default())?;
+        if opened.runs().is_empty() {
+            return None;
+        }
+        let Prepared { campaign, .. } =
+            prepare(&self.campaign, self.protocol.as_deref(), &[], problems).filter(|_| !problems.any_error())?;
+        places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
+        let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be made: {error}"));
+        let folder = disk::scratch().map_err(|error| problems.push(failed(error))).ok()?;
+        let mut outputs = Outputs::of(SetKind::Campaign, folder.path()).for_this_run();
+        match cut(&campaign, Format::Parquet, &mut outputs) {
+            Ok(_) => outputs.commit().map_err(|problem| problems.push(problem)).ok()?,
+            Err(found) => {
+                problems.0.extend(found);
+                return None;
+            }
+        }
+        Some(folder)
     }
 
     /// Refuses output folders that are inputs, or that are the same.

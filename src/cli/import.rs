@@ -25,8 +25,8 @@ use crate::import::mapping::{self, Mapping};
 use crate::library;
 use crate::problem::{Problem, Problems, plain};
 use crate::report::findings;
-use crate::run::Settings;
 use crate::run::needs::needs;
+use crate::run::{Settings, find};
 use crate::source::{Source, Spanned};
 
 #[derive(Debug, Args)]
@@ -90,7 +90,9 @@ impl Import {
             return exit;
         }
         let records = mapping.sections.names.len() * mapping.sides.len();
-        console.say(&format!("written: {records} records of {} sections to {}", mapping.sections.names.len(), out.display()));
+        let (count, word) = (mapping.sections.names.len(), mapping.sections.word);
+        let ending = if word == "run" && count == 1 { "" } else { "s" };
+        console.say(&format!("written: {records} records of {count} {word}{ending} to {}", out.display()));
         if !console.quiet {
             look(&mapping, compiled.as_ref(), out, console);
         }
@@ -173,9 +175,13 @@ fn protocol(named: &Spanned<String>, folder: &Path, problems: &mut Problems) -> 
 /// What is told about the campaign that was made: exchanged channels, and the findings of the protocol.
 fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Console) {
     let mut problems = Problems::default();
-    let Some(campaign) = Campaign::open(out, &mut problems) else { return console.problems(&problems) };
+    let Some(mut campaign) = Campaign::open(out, &mut problems) else { return console.problems(&problems) };
     console.problems(&Problems(exchanged(mapping, &campaign)));
     let Some(compiled) = compiled else { return };
+    match find::in_all(&compiled.plan, &compiled.graph, std::slice::from_mut(&mut campaign)) {
+        Ok(found) => found.iter().for_each(|found| console.say(&crate::report::found::in_words(found))),
+        Err(problems) => return console.problems(&problems),
+    }
     let lacks = |side: Side, kind| compiled.plan.reads(side) && !campaign.has(kind);
     if lacks(Side::Simulated, RecordKind::Simulation) || lacks(Side::Measured, RecordKind::Measurement) {
         return console.say("the plausibility of the records is not examined: the campaign lacks a side that the protocol reads");

@@ -2,13 +2,19 @@
 
 use std::fmt::Write;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::convert_records::Records;
 use super::inputs::{Pool, compiled_for, start_jobs};
 use super::output::{Console, Exit};
-use super::places::check_file;
+use super::places::{CAMPAIGN, check_file, check_folder};
+use crate::data::Campaign;
+use crate::data::cut::cut;
+use crate::data::record::Format;
+use crate::data::write::Outputs;
+use crate::disk::SetKind;
 use crate::problem::Problems;
 use crate::report::found::{drift_in_words, in_words};
 use crate::report::number::count;
@@ -27,8 +33,14 @@ pub struct Sections {
     #[arg(long, short)]
     protocol: Option<String>,
     /// Table of the sections that are found; in the folder of the campaign, `sections: sections.csv` in campaign.yaml then uses it.
-    #[arg(long, short)]
-    out: PathBuf,
+    #[arg(long, short, required_unless_present = "cut")]
+    out: Option<PathBuf>,
+    /// Folder for a copy of the campaign in which each section has records of its own.
+    #[arg(long, value_name = "DIR")]
+    cut: Option<PathBuf>,
+    /// Format of these records.
+    #[arg(long, value_enum, default_value_t, requires = "cut")]
+    records: Records,
     /// Set a parameter of the protocol.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
@@ -47,33 +59,59 @@ impl Sections {
         for campaign in pool.iter().flat_map(|pool| &pool.campaigns) {
             let inputs = campaign.inputs();
             let files: Vec<_> = inputs.files.iter().map(PathBuf::as_path).collect();
-            if let Err(problem) = check_file(&self.out, &files) {
-                problems.push(problem);
-            }
+            let table = self.out.as_ref().map_or(Ok(()), |out| check_file(out, &files));
+            let copy = self.cut.as_ref().map_or(Ok(()), |folder| check_folder(folder, CAMPAIGN, campaign));
+            [table, copy].into_iter().filter_map(Result::err).for_each(|problem| problems.push(problem));
         }
         console.problems(&problems);
         let Some(Pool { compiled, campaigns, .. }) = pool.filter(|_| !problems.any_error()) else { return Exit::Wrong };
-        let found = match find::find(&compiled.plan, &compiled.graph, &campaigns[0], &|_| {}) {
-            Ok(found) => found,
-            Err(problems) => {
-                console.problems(&problems);
-                return Exit::Wrong;
+        // A table that the campaign has can be cut by; it is not looked for again.
+        let given = campaigns[0].sections.is_some() && self.out.is_none();
+        let (campaign, told) = if given {
+            (campaigns[0].clone(), None)
+        } else {
+            match find::find(&compiled.plan, &compiled.graph, &campaigns[0], &|_| {}) {
+                Ok(found) => (found.campaign, Some(found.told)),
+                Err(problems) => {
+                    console.problems(&problems);
+                    return Exit::Wrong;
+                }
             }
         };
-        let Some(table) = &found.campaign.sections else { return Exit::Unfinished };
-        let written = console.write(&self.out, table.source.text.as_bytes());
-        if written != Exit::Done {
-            return written;
+        if let (Some(out), Some(table)) = (&self.out, &campaign.sections) {
+            let written = console.write(out, table.source.text.as_bytes());
+            if written != Exit::Done {
+                return written;
+            }
         }
+        let records = match self.cut.as_ref().map(|folder| cut_to(folder, &campaign, Format::from(self.records), console)).transpose() {
+            Ok(records) => records,
+            Err(exit) => return exit,
+        };
         if !console.quiet {
-            console.print(&told(&found.told));
-            console.say(&format!("written: {}", self.out.display()));
+            if let Some(found) = &told {
+                console.print(&words(found));
+            }
+            self.out.iter().for_each(|out| console.say(&format!("written: {}", out.display())));
+            for (folder, records) in self.cut.iter().zip(records) {
+                console.say(&format!("written: {records} records of {} sections to {}", campaign.names.len(), folder.display()));
+            }
         }
         Exit::Done
     }
 }
 
-fn told(found: &FoundSections) -> String {
+/// Writes the copy with a record for each section.
+fn cut_to(folder: &Path, campaign: &Campaign, format: Format, console: &Console) -> Result<usize, Exit> {
+    let mut outputs = Outputs::of(SetKind::Campaign, folder);
+    let records = cut(campaign, format, &mut outputs).map_err(|problems| {
+        console.problems(&Problems(problems));
+        Exit::Wrong
+    })?;
+    console.commit(Ok(outputs)).map(|()| records)
+}
+
+fn words(found: &FoundSections) -> String {
     let mut out = format!("{}\n", in_words(found));
     let unit = &found.axis_unit;
     for run in &found.runs {

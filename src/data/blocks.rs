@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
-use super::record::{Block, Wanted, stream};
+use super::record::{Block, Known, Wanted, stream_known};
 use crate::problem::Problem;
 
 /// Blocks that are read ahead: one is worked on while the next is read.
@@ -22,11 +22,12 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// The wanted columns of a record; all of them are required.
-    pub fn open(path: PathBuf, shown: String, wanted: Vec<Wanted>) -> Self {
+    /// The wanted columns of a record; all of them are required, and the first is its axis.
+    pub fn open(path: PathBuf, shown: String, wanted: Vec<Wanted>, known: Known) -> Self {
         let (to, blocks) = sync_channel(AHEAD);
         thread::spawn(move || {
-            let read = stream(&path, &shown, &wanted, |block| send(&to, block, &wanted));
+            let axis = wanted.first().map_or("", |axis| axis.name.as_str());
+            let read = stream_known(&path, &shown, &wanted, (axis, &known), |block| send(&to, block, &wanted));
             if let Err(problems) = read {
                 // Who asked may have gone.
                 let _ = to.send(Err(problems));

@@ -15,7 +15,7 @@ pub use facts::Fact;
 pub use files::{Inputs, ReadFile};
 pub use opening::POINT_KEY;
 pub use records::{OFFSET, RecordKind};
-pub use runs::{Part, RUN_COLUMN, RUNS, Run, RunFact};
+pub use runs::{CORRECT, Part, RUN_COLUMN, RUNS, Run, RunFact, TELL};
 
 use super::folder::{Folder, Place, check_file_name};
 use super::identification::{self, Stated};

@@ -120,7 +120,7 @@ impl Heading {
 }
 
 /// Splits `cant deficiency [mm]` into the name and the range of the unit.
-pub(super) fn name_and_unit(text: &str) -> (&str, Option<Range<usize>>) {
+pub(crate) fn name_and_unit(text: &str) -> (&str, Option<Range<usize>>) {
     let inner = text.strip_suffix(']').and_then(|inner| Some((inner.rfind('[')?, inner.len())));
     match inner {
         Some((open, close)) => (text[..open].trim_end(), Some(open + 1..close)),

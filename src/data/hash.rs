@@ -1,7 +1,6 @@
 //! Hashes of files.
 
 use std::io::{self, ErrorKind, Read};
-use std::sync::{Arc, OnceLock};
 
 use sha2::{Digest, Sha256};
 
@@ -39,21 +38,6 @@ impl Hasher {
     /// In lower-case hexadecimal digits.
     pub fn finish(self) -> String {
         hexadecimal(&self.0.finalize())
-    }
-}
-
-/// The hash of a file of which several stretches are read: it is computed once.
-#[derive(Clone, Debug, Default)]
-pub struct Known(Arc<OnceLock<String>>);
-
-impl Known {
-    /// # Errors
-    /// Of the computation.
-    pub fn or<E>(&self, compute: impl FnOnce() -> Result<String, E>) -> Result<String, E> {
-        match self.0.get() {
-            Some(hash) => Ok(hash.clone()),
-            None => compute().map(|hash| self.0.get_or_init(|| hash).clone()),
-        }
     }
 }
 

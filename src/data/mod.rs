@@ -9,6 +9,7 @@
 //! | `members` | the folders of records, one or several of a kind |
 //! | `record` | one sampled record, as text or as Parquet; optimised for speed |
 //! | `conversion` | a copy of a campaign with its records in another format |
+//! | `cut` | a copy of a campaign in which each section of a run has its own records |
 //! | `blocks` | a long record, block by block |
 //! | `table` | a small table such as `sections.csv` |
 //! | `crate::yaml` | YAML with places of all values |
@@ -22,9 +23,10 @@
 pub mod blocks;
 pub mod campaign;
 mod campaigns;
-mod cells;
+pub(crate) mod cells;
 pub mod checks;
 pub mod conversion;
+pub mod cut;
 mod faults;
 pub mod fingerprint;
 mod folder;

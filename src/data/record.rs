@@ -6,6 +6,8 @@
 mod columnar;
 mod fault;
 mod header_fault;
+mod indexed;
+mod known;
 mod marks;
 mod number;
 mod raw;
@@ -13,8 +15,9 @@ mod rows;
 mod runs;
 
 pub(crate) use columnar::{guard, guarded};
+pub use known::Known;
 pub use raw::read_raw;
-pub use runs::{Block, Run, read_stretch, stream};
+pub use runs::{Block, Run, read_stretch, stream, stream_known};
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

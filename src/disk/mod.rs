@@ -24,6 +24,7 @@ use std::path::{Path, PathBuf};
 use faults::{Op, pass, passed};
 pub use set::{SIGNATURE, Set, SetKind, UNFINISHED};
 pub use single::{create_new, keep, remove, write_whole};
+pub use tempfile::TempDir as Scratch;
 
 /// Kind of the object at a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

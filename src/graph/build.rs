@@ -285,7 +285,7 @@ impl Builder {
         let position = |builder: &mut Self, own: Option<Own<'_>>| {
             let inputs = match &rule.test {
                 Test::Require(requirement) => requirement.inputs.iter().map(|input| builder.input(input, own)).collect(),
-                Test::Distinct(_) => Vec::new(),
+                Test::Distinct(_) | Test::Exchanged(_) => Vec::new(),
             };
             PositionNodes { own: own.map(|own| own.processed), inputs }
         };

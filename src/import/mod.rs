@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `mapping/` | the mapping: read, checked, compared with the needs of a protocol |
 //! | `process/` | from a file to the record of a section |
+//! | `runs`, `drift` | whole runs; the drift of the distance along them |
 //! | `write` | the campaign, with an account of what was done |
 //! | `exchanged` | after the import: channels that agree better with another one |
 //! | `draft/` | a mapping proposed from the files themselves |
@@ -11,9 +12,11 @@
 #![allow(clippy::cast_precision_loss)]
 
 pub mod draft;
+mod drift;
 pub mod exchanged;
 pub mod mapping;
 pub mod process;
+mod runs;
 pub mod write;
 
 use std::collections::BTreeMap;
@@ -54,6 +57,16 @@ pub fn import(
     outputs: &mut Outputs,
     progress: &(dyn Fn(&str) + Sync),
 ) -> Result<Problems, Problems> {
+    if mapping.runs.is_some() {
+        let one = |problem: Problem| Problems(vec![problem]);
+        let runs::Imported { sources, accounts, faults, warnings } =
+            runs::import(mapping, needs, format, outputs, progress).map_err(one)?;
+        if faults.any_error() {
+            return Err(few(faults));
+        }
+        add_campaign(outputs, mapping, format, &sources, accounts).map_err(one)?;
+        return Ok(warnings);
+    }
     let mut jobs: Vec<Job<'_>> = Vec::new();
     for side in &mapping.sides {
         for name in &mapping.sections.names {
@@ -91,7 +104,7 @@ pub fn import(
     if faults.any_error() {
         return Err(few(faults));
     }
-    add_campaign(outputs, mapping, &sources, accounts.into_values().collect()).map_err(|problem| Problems(vec![problem]))?;
+    add_campaign(outputs, mapping, format, &sources, accounts.into_values().collect()).map_err(|problem| Problems(vec![problem]))?;
     Ok(warnings)
 }
 

@@ -1,13 +1,17 @@
 //! Writes the campaign: records, tables, vehicle, track, the mapping and an account of what was done.
 
-use super::mapping::{Channels, Distance, Mapping};
+use std::path::Path;
+
+use super::mapping::{Channels, Distance, Mapping, Runs, Side, record_path};
 use super::process::{Column, Made};
+use crate::data::campaign::RUNS;
 use crate::data::origin::{Imported, ImportedRecord, ORIGIN_FILE, ORIGIN_KEY, Origin, OriginFile};
 use crate::data::record::Format;
 use crate::data::text::read_any;
 use crate::data::write::{Entry, FileColumn, Outputs, Values, campaign_yaml, csv, parquet};
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
+use crate::yaml::{Key, Node, Value};
 
 /// Significant digits of a channel: those of a 32-bit number, and more than any sensor resolves.
 const DIGITS: usize = 9;
@@ -63,7 +67,13 @@ pub fn account(made: &Made, file: &SourceFile) -> ImportedRecord {
 ///
 /// # Errors
 /// A file that the mapping names cannot be read; `write-failed`, `path-outside`.
-pub fn add_campaign(outputs: &mut Outputs, mapping: &Mapping, sources: &[SourceFile], records: Vec<ImportedRecord>) -> Result<(), Problem> {
+pub fn add_campaign(
+    outputs: &mut Outputs,
+    mapping: &Mapping,
+    format: Format,
+    sources: &[SourceFile],
+    records: Vec<ImportedRecord>,
+) -> Result<(), Problem> {
     let mut copied: Vec<OriginFile> = Vec::new();
     let mut copy = |outputs: &mut Outputs, written: &str, inside: &str, at: &Span| -> Result<(), Problem> {
         let (path, shown) = mapping.place(written);
@@ -85,7 +95,8 @@ pub fn add_campaign(outputs: &mut Outputs, mapping: &Mapping, sources: &[SourceF
         vehicle_file = file(&written.value);
         copy(outputs, &written.value, &vehicle_file, &written.span)?;
     }
-    if let Some((written, _)) = &mapping.sections.table {
+    let table = mapping.sections.table.as_ref().map(|(written, _)| written);
+    if let Some(written) = table.or(mapping.runs.as_ref().and_then(|runs| runs.table.as_ref())) {
         sections_file = file(&written.value);
         copy(outputs, &written.value, &sections_file, &written.span)?;
     }
@@ -95,14 +106,19 @@ pub fn add_campaign(outputs: &mut Outputs, mapping: &Mapping, sources: &[SourceF
     if let Some(pattern) = &mapping.track {
         for name in &mapping.sections.names {
             let written = mapping.sections.fill(&pattern.value, &name.value);
-            copy(outputs, &written, &format!("track/{}.csv", name.value), &pattern.span)?;
+            copy(outputs, &written, &track_path(pattern, &name.value), &pattern.span)?;
         }
     }
     lines.extend(protocol.as_deref().map(|protocol| ("protocol", Entry::Text(protocol))));
     lines.extend((!vehicle_file.is_empty()).then_some(("vehicle", Entry::Text(&vehicle_file))));
     lines.extend((!sections_file.is_empty()).then_some(("sections", Entry::Text(&sections_file))));
-    lines.extend(mapping.sides.iter().map(|side| (side.kind.key(), Entry::Text(side.kind.key()))));
-    lines.extend(mapping.track.as_ref().map(|_| ("track", Entry::Text("track"))));
+    let runs = mapping.runs.as_ref().map(|runs| of_runs(mapping, runs, format));
+    if let Some(runs) = &runs {
+        lines.push((RUNS, Entry::Node(runs)));
+    } else {
+        lines.extend(mapping.sides.iter().map(|side| (side.kind.key(), Entry::Text(side.kind.key()))));
+        lines.extend(mapping.track.as_ref().map(|_| ("track", Entry::Text("track"))));
+    }
     lines.extend(mapping.campaign.iter().map(|(key, node)| (key.text.as_str(), Entry::Node(node))));
     lines.push((ORIGIN_KEY, Entry::Text(ORIGIN_FILE)));
     outputs.add("campaign.yaml", campaign_yaml(&lines).as_bytes())?;
@@ -118,9 +134,30 @@ pub fn add_campaign(outputs: &mut Outputs, mapping: &Mapping, sources: &[SourceF
     outputs.add(ORIGIN_FILE, origin.text().as_bytes())
 }
 
+/// The track file of a section or a run in the campaign; it keeps its format.
+fn track_path(pattern: &Spanned<String>, name: &str) -> String {
+    format!("track/{name}.{}", Format::of(Path::new(&pattern.value)).ending())
+}
+
+/// The block `runs`: the files of each run, and what the mapping says of it.
+fn of_runs(mapping: &Mapping, runs: &Runs, format: Format) -> Node {
+    let text = |text: String, at: &Span| Node { raw: text.clone(), value: Value::Text(text), span: at.clone(), exact: false };
+    let key = |text: &str, at: &Span| Key { text: text.to_string(), span: at.clone(), exact: false };
+    let of_one = |(name, facts): (&Spanned<String>, &Vec<(Key, Node)>)| {
+        let at = &name.span;
+        let record = |side: &Side| (key(side.kind.key(), at), text(record_path(side.kind, &name.value, format.ending()), at));
+        let mut entries: Vec<(Key, Node)> = mapping.sides.iter().map(record).collect();
+        entries.extend(mapping.track.iter().map(|pattern| (key("track", at), text(track_path(pattern, &name.value), at))));
+        entries.extend(facts.iter().cloned());
+        (key(&name.value, at), Node { value: Value::Map(entries), ..text(String::new(), at) })
+    };
+    let entries = mapping.sections.names.iter().zip(&runs.facts).map(of_one).collect();
+    Node { value: Value::Map(entries), ..text(String::new(), &mapping.sections.span) }
+}
+
 /// What the channels of each side were made of.
 fn channels(mapping: &Mapping) -> Vec<(String, Vec<String>)> {
-    let of_side = |side: &super::mapping::Side| {
+    let of_side = |side: &Side| {
         let mut lines: Vec<String> = match &side.channels {
             Channels::AsNamed => vec!["every channel as named in the file".into()],
             Channels::Maps(maps) => maps.iter().map(|map| format!("{} = {}", map.name.value, map.in_words())).collect(),

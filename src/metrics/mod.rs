@@ -20,6 +20,7 @@
 //! | [`hull`] | points | the nearest point of their convex hull, its corners |
 //! | [`random_effects`] | estimates with variances | the variance between them |
 //! | [`synchronise`] | signals of two records | the shift between them |
+//! | [`drift`] | signals of two long records | the shift along them |
 //! | [`coherence`] | simulated and measured signal | the linear dependence as a function of frequency |
 //! | [`along`] | signal over an axis | derivative, integral, shifted signal |
 //! | [`rank`] | pairs of values | rank correlation |
@@ -30,6 +31,7 @@ pub mod along;
 pub mod cluster;
 pub mod coherence;
 pub mod disturb;
+pub mod drift;
 pub mod filter;
 pub mod hull;
 pub mod hysteresis;

@@ -1,4 +1,6 @@
-//! How a signal was recorded: held values, saturation, quantisation.
+//! How a signal was recorded: held values, saturation, quantisation, noise.
+
+use super::statistics::median;
 
 /// Share of the samples in the longest run of equal values: near 0 for a signal that varies, 1 for a constant one.
 ///
@@ -31,6 +33,23 @@ pub fn resolution(values: &[f64]) -> Option<f64> {
     Some(steps.reduce(f64::min).unwrap_or(0.0))
 }
 
+/// Standard deviation of white noise in a signal, from its fourth differences, which a signal of less than a tenth of the sampling rate
+/// hardly has. Their median magnitude is used, so that steps and shocks do not count.
+///
+/// `None` for fewer than nine samples, or with one that is not finite.
+pub fn noise_floor(values: &[f64]) -> Option<f64> {
+    /// Samples of which the median of the differences is taken at least.
+    const LEAST: usize = 9;
+    /// Standard deviation of the fourth difference of white noise: the root of 1 + 16 + 36 + 16 + 1.
+    const OF_DIFFERENCE: f64 = 8.366_600_265_340_756;
+    /// Median magnitude of a normal distribution.
+    const MEDIAN: f64 = 0.674_489_750_196_082;
+    ends(values).filter(|_| values.len() >= LEAST)?;
+    let fourth = |part: &[f64]| (part[0] - 4.0 * part[1] + 6.0 * part[2] - 4.0 * part[3] + part[4]).abs();
+    let differences: Vec<f64> = values.windows(5).map(fourth).collect();
+    median(&differences).map(|middle| middle / (MEDIAN * OF_DIFFERENCE))
+}
+
 /// Relative to the largest value; smaller changes count as none.
 const ROUNDING: f64 = 1e-12;
 
@@ -44,6 +63,23 @@ fn ends(values: &[f64]) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Noise of standard deviation 0.2 on a slow wave of amplitude 5; and neither a step nor a smooth signal has noise.
+    #[test]
+    fn noise_is_found_below_a_signal() {
+        let mut state = 7_u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let wave = |at: usize| 5.0 * (at as f64 * 0.05).sin() + if at > 900 { 30.0 } else { 0.0 };
+        let noisy: Vec<f64> = (0..2000).map(|at| wave(at) + 0.2 * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0)).collect();
+        let found = noise_floor(&noisy).expect("finite");
+        assert!((found - 0.2).abs() < 0.02, "{found}");
+        let smooth: Vec<f64> = (0..2000).map(wave).collect();
+        assert!(noise_floor(&smooth).is_some_and(|floor| floor < 1e-4));
+        assert_eq!((noise_floor(&[1.0; 8]), noise_floor(&[1.0, f64::NAN]), noise_floor(&[3.0; 20])), (None, None, Some(0.0)));
+    }
 
     #[test]
     fn by_hand() {

@@ -20,16 +20,28 @@ pub fn in_words(found: &FoundSections) -> String {
     )
 }
 
-/// `The measurement of run R1 has to be moved by -0.3 to -11.0 m along the run ...`; nothing where it is not known.
+/// `run R1: the shift that aligns the measurement with the simulation, by correlation: +0.02 to -10.91 m along the run (28 of 30 windows)
+/// ...`; nothing where it is not known.
 pub fn drift_in_words(run: &FoundInRun, unit: &str) -> Option<String> {
-    let Drift { points, corrected } = run.drift.as_ref()?;
-    let least = points.iter().map(|point| point.shift).fold(f64::INFINITY, f64::min);
-    let most = points.iter().map(|point| point.shift).fold(f64::NEG_INFINITY, f64::max);
+    let Drift { points, along, windows, corrected } = run.drift.as_ref()?;
+    let range = |shifts: &mut dyn Iterator<Item = f64>| {
+        let (least, most) = shifts.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), shift| (least.min(shift), most.max(shift)));
+        format!("{least:+.2} to {most:+.2} {unit}")
+    };
+    let mut parts = Vec::new();
+    if !along.is_empty() {
+        let all = range(&mut along.iter().map(|point| point.shift));
+        parts.push(format!("{all} in {} of {windows} windows along the run", along.len()));
+    }
+    if !points.is_empty() {
+        let all = range(&mut points.iter().map(|point| point.shift));
+        parts.push(format!("{all} at {} section{}", points.len(), if points.len() == 1 { "" } else { "s" }));
+    }
     let done = if *corrected { "this was added to the distance of the measurement" } else { "nothing was corrected" };
     Some(format!(
-        "run {}: by correlation at {} sections, the measurement is aligned with the simulation by a shift of {least:+.2} to {most:+.2} {unit}; {done}",
+        "run {}: the shift that aligns the measurement with the simulation, by correlation, is {}; {done}",
         run.run,
-        points.len()
+        parts.join(", and ")
     ))
 }
 

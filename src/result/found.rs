@@ -38,7 +38,12 @@ pub struct FoundInRun {
 /// What would have to be added to the distance of the measurement, along a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Drift {
+    /// At the sections that were found.
     pub points: Vec<DriftPoint>,
+    /// In windows along the whole run.
+    pub along: Vec<CoursePoint>,
+    /// How many windows were looked at; in the others the shift is not certain.
+    pub windows: usize,
     /// Whether it was added.
     pub corrected: bool,
 }
@@ -52,6 +57,16 @@ pub struct DriftPoint {
     pub low: f64,
     pub high: f64,
     /// Correlation of both sides at this shift.
+    pub correlation: f64,
+}
+
+/// The shift in the middle of a window, in `axis_unit` of the simulation, with its 95 % interval.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct CoursePoint {
+    pub at: f64,
+    pub shift: f64,
+    pub low: f64,
+    pub high: f64,
     pub correlation: f64,
 }
 

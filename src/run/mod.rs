@@ -7,6 +7,7 @@ mod common;
 mod copies;
 mod domain;
 mod estimates;
+mod exchanged;
 mod extrapolation;
 mod facts;
 pub mod find;

@@ -21,6 +21,8 @@ pub struct Needs {
     /// Columns of the table of sections; none where whole records are evaluated.
     pub sections: Vec<DatumNeed>,
     pub vehicle: Vec<DatumNeed>,
+    /// Section data that are found in runs, by their columns; absent where the protocol does not look for sections.
+    pub found: Option<Vec<String>>,
     /// Columns of the table of wanted operation; none where the protocol has no domain.
     pub application: Vec<DatumNeed>,
 }
@@ -79,7 +81,11 @@ pub fn needs(plan: &Plan, graph: &Graph) -> Needs {
         sections.extend(others);
     }
     let vehicle = plan.vehicle.iter().zip(vehicle).map(|(datum, users)| datum_need(datum, users)).collect();
-    Needs { channels: channels(plan, graph), sections, vehicle, application: application(plan) }
+    let found = plan.sections.find.as_ref().map(|find| {
+        let is_found = |index: &usize| !super::find::is_stated(plan, find, *index);
+        (0..plan.columns.len()).filter(is_found).map(|index| plan.columns[index].key.clone()).collect()
+    });
+    Needs { channels: channels(plan, graph), sections, vehicle, found, application: application(plan) }
 }
 
 /// A column that the program itself reads.

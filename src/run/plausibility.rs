@@ -4,13 +4,14 @@ use std::collections::BTreeSet;
 
 use super::causes;
 use super::copies::Print;
+use super::exchanged;
 use super::facts::{Known, trimmed};
 use super::record::{Work, needed};
 use super::section::SectionValues;
 use super::sections::Unit;
 use super::sides::{Evaluated, RecordOfSide, Sides, number_of, samples_of, section};
 use crate::check::evaluate::{flag, number, words};
-use crate::check::plan::{InputSide, Looks, OnFault, Plausibility, Requirement, Test};
+use crate::check::plan::{Exchanged, InputSide, Looks, OnFault, Plausibility, Requirement, Test};
 use crate::graph::{InputNode, NodeId, PositionNodes};
 use crate::result::{Consequence, Finding};
 use crate::units::Dimension;
@@ -24,7 +25,7 @@ pub fn wanted(work: &Work<'_>, unit: &Unit, known: &Known<'_>, track: bool) -> B
     for (rule, nodes, _) in positions(work, unit, known) {
         let of_rule = nodes.inputs.iter().flat_map(InputNode::nodes);
         wanted.extend(of_rule.filter(|&node| work.graph.nodes[node].track == track));
-        if let (Test::Distinct(_), Some(own), false) = (&rule.test, nodes.own, track) {
+        if let (Test::Distinct(_) | Test::Exchanged(_), Some(own), false) = (&rule.test, nodes.own, track) {
             wanted.insert(own);
         }
     }
@@ -56,8 +57,14 @@ fn positions<'a>(
 
 /// Checks one section and adds its findings to the values.
 pub fn look(work: &Work<'_>, unit: &Unit, sides: &Sides<'_>, track: &Evaluated, values: &mut SectionValues) {
+    let mut channels: Vec<(&Plausibility, Exchanged, exchanged::Channels<'_>)> = Vec::new();
     for (rule, nodes, name) in positions(work, unit, sides.known) {
         match &rule.test {
+            Test::Exchanged(test) => match (nodes.own, channels.last_mut()) {
+                (Some(own), Some((of, _, list))) if std::ptr::eq(*of, rule) => list.push((name, own)),
+                (Some(own), _) => channels.push((rule, *test, vec![(name, own)])),
+                (None, _) => {}
+            },
             Test::Require(requirement) => {
                 let at = Position { work, rule, requirement, unit, name };
                 at.look(sides, nodes, track, &mut values.findings);
@@ -70,6 +77,9 @@ pub fn look(work: &Work<'_>, unit: &Unit, sides: &Sides<'_>, track: &Evaluated, 
                 }
             }
         }
+    }
+    for (rule, test, channels) in channels {
+        values.findings.extend(exchanged::find(work, rule, test, &channels, unit, sides));
     }
 }
 

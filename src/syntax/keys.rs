@@ -328,6 +328,11 @@ pub const KINDS: &[Kind] = &[
                 "median near 2 * Q0 within a factor of 1.4",
             ),
             phrase("distinct", "In place of a condition: signals that must not have the same samples.", "channels, sections, sides"),
+            phrase(
+                "exchanged",
+                "In place of a condition: from which correlation on a measured channel is reported that agrees with another simulated channel of the rule, and by how much more than with its own.",
+                "from 0.5, by 0.3",
+            ),
             phrase("unless", "Sections that do not need to satisfy it.", "direction is straight"),
             phrase(
                 "otherwise",

@@ -5,6 +5,7 @@
 
 mod example;
 mod process;
+mod runs;
 
 use std::fs;
 use std::path::{Path, PathBuf};

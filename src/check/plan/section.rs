@@ -58,6 +58,7 @@ pub struct Plausibility {
 pub enum Test {
     Require(Box<Requirement>),
     Distinct(Distinct),
+    Exchanged(Exchanged),
 }
 
 /// A condition on data and on values taken from signals.
@@ -92,6 +93,15 @@ pub struct Distinct {
     pub sections: bool,
     /// Simulation and measurement.
     pub sides: bool,
+}
+
+/// From when on a measured channel is reported that correlates with another simulated channel of its rule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exchanged {
+    /// Least correlation with the other channel.
+    pub least: f64,
+    /// By how much it exceeds that with its own channel.
+    pub more: f64,
 }
 
 #[derive(Clone, Debug)]

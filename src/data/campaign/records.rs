@@ -211,7 +211,7 @@ impl Campaign {
         let mut record = match part.zip(self.run_of(section)) {
             Some((part, run)) => {
                 let range = part.from - moved..part.to - moved;
-                read_stretch(&place.path, &place.inside, wanted, &part.axis, range, run.hash(which.kind))?
+                read_stretch(&place.path, &place.inside, wanted, &part.axis, range, run.known(which.kind))?
             }
             None => read_record(&place.path, &place.inside, wanted)?,
         };

@@ -3,7 +3,7 @@
 use super::{Campaign, RecordKind};
 use crate::data::cells::name_and_unit;
 use crate::data::folder::{Folder, Place};
-use crate::data::hash::Known;
+use crate::data::record::Known;
 use crate::data::table::{Cell, Table};
 use crate::disk;
 use crate::problem::{Problem, Problems};
@@ -16,8 +16,8 @@ pub const RUNS: &str = "runs";
 pub const RUN_COLUMN: &str = "run";
 /// The key of a run that says what is done with a drift of the distance between both sides, and its words.
 const DRIFT: &str = "drift";
-const CORRECT: &str = "correct";
-const TELL: &str = "tell";
+pub const CORRECT: &str = "correct";
+pub const TELL: &str = "tell";
 
 /// A run: a record of each kind, and what the campaign says of it.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub struct Run {
     pub name: Spanned<String>,
     files: Vec<(RecordKind, Spanned<String>)>,
     /// Of each file, in the order of [`RecordKind::ALL`].
-    hashes: [Known; 3],
+    known: [Known; 3],
     pub facts: Vec<RunFact>,
     /// Whether the shift of the measurement along the run is corrected.
     pub correct_drift: bool,
@@ -50,12 +50,12 @@ impl Run {
         self.file(kind).is_some()
     }
 
-    /// The hash of a file, of which each section reads a stretch.
-    pub fn hash(&self, kind: RecordKind) -> &Known {
+    /// What is known of a file, of which each section reads a stretch.
+    pub fn known(&self, kind: RecordKind) -> &Known {
         match kind {
-            RecordKind::Measurement => &self.hashes[0],
-            RecordKind::Simulation => &self.hashes[1],
-            RecordKind::Track => &self.hashes[2],
+            RecordKind::Measurement => &self.known[0],
+            RecordKind::Simulation => &self.known[1],
+            RecordKind::Track => &self.known[2],
         }
     }
 
@@ -96,7 +96,7 @@ pub(super) fn read(tree: &Node, folder: &Folder, problems: &mut Problems) -> Vec
 
 fn one(name: Spanned<String>, node: &Node, folder: &Folder, problems: &mut Problems) -> Option<Run> {
     let before = problems.errors();
-    let mut run = Run { name, files: Vec::new(), facts: Vec::new(), hashes: <[Known; 3]>::default(), correct_drift: false };
+    let mut run = Run { name, files: Vec::new(), facts: Vec::new(), known: <[Known; 3]>::default(), correct_drift: false };
     for (key, value) in node.entries() {
         let Some(text) = value.scalar_text().map(str::trim).filter(|text| !text.is_empty()) else {
             let says = format!("`{}` of a run must be a single value; this is {}", key.text, value.kind_in_words());
@@ -210,7 +210,9 @@ impl Campaign {
             return Ok(());
         }
         let says = "the sections of this campaign are parts of runs, and a file for each section is needed here";
-        Err(Problem::error("section-in-run", says).at(&self.runs_span()).help("`certify`, `study` and `compare` work on parts of runs"))
+        Err(Problem::error("section-in-run", says)
+            .at(&self.runs_span())
+            .help("`fishplate sections CAMPAIGN --cut FOLDER` writes a campaign with such files"))
     }
 
     /// The place of the runs in `campaign.yaml`.

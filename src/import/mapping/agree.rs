@@ -1,9 +1,10 @@
 //! Compares a mapping with the needs of a protocol, before any record is read.
 
-use super::{ChannelMap, Channels, Distance, Mapping, Side};
+use super::{ChannelMap, Channels, Distance, Mapping, Runs, Side};
 use crate::data::RecordKind;
+use crate::data::cells::name_and_unit;
 use crate::problem::{Problem, Problems, nearest};
-use crate::run::needs::{ChannelNeed, Needs};
+use crate::run::needs::{ChannelNeed, DatumNeed, Needs};
 use crate::source::Spanned;
 use crate::units::Unit;
 
@@ -29,6 +30,46 @@ pub fn agree(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
             None => {}
         }
     }
+    match &mapping.runs {
+        Some(runs) => agree_runs(mapping, runs, needs, problems),
+        None => agree_sections(mapping, needs, problems),
+    }
+    agree_vehicle(mapping, needs, problems);
+}
+
+/// Section data must be found in the runs or stated of each; otherwise there is a table of sections.
+fn agree_runs(mapping: &Mapping, runs: &Runs, needs: &Needs, problems: &mut Problems) {
+    if runs.table.is_some() || needs.sections.is_empty() {
+        return;
+    }
+    let Some(found) = &needs.found else {
+        let problem = Problem::error("no-search", "the protocol does not look for sections in runs").at(&mapping.sections.span);
+        problems
+            .push(problem.help("name a protocol with `use found sections`, or a table of sections with a column `run`: `sections: ...`"));
+        return;
+    };
+    let given = ["section", "start", "end"];
+    let is_open = |need: &&DatumNeed| need.required && !given.contains(&need.key.as_str()) && !found.contains(&need.key);
+    for need in needs.sections.iter().filter(is_open) {
+        for (name, facts) in mapping.sections.names.iter().zip(&runs.facts) {
+            let known = || facts.iter().map(|(key, _)| name_and_unit(&key.text).0);
+            if !known().any(|known| known == need.key) {
+                let says = format!(
+                    "`{}` of run `{}` is neither found nor stated, and the protocol needs it: {}",
+                    need.key, name.value, need.title
+                );
+                let problem = Problem::error("missing-run-data", says).at(&name.span).suggest(&need.key, known());
+                let example = need.words.first().map_or("...", String::as_str);
+                problems.push(match problem.help {
+                    Some(_) => problem,
+                    None => problem.help(format!("state it of the run: `{}: {{{}: {example}}}`", name.value, need.key)),
+                });
+            }
+        }
+    }
+}
+
+fn agree_sections(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
     for need in needs.sections.iter().filter(|need| need.required && mapping.sections.table.is_some()) {
         if !mapping.sections.has_column(&need.key) {
             let says = format!("the table of sections has no column `{}`, which the protocol needs: {}", need.key, need.title);
@@ -40,6 +81,9 @@ pub fn agree(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
             .at(&mapping.sections.span);
         problems.push(problem.help("name the table of sections: `sections: sections.csv`"));
     }
+}
+
+fn agree_vehicle(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
     for need in needs.vehicle.iter().filter(|need| need.required) {
         match &mapping.vehicle {
             None => {

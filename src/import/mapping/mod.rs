@@ -6,6 +6,7 @@ mod convention;
 mod distance;
 mod format;
 mod read;
+mod runs;
 mod sections;
 mod side;
 mod stated;
@@ -17,6 +18,7 @@ pub use channels::{ChannelMap, Channels, Term};
 pub use convention::{Common, Convention, Opposite, Turning, find as find_convention};
 pub use distance::{Distance, Match, Time};
 pub use read::read;
+pub use runs::{Drift, Runs};
 pub use sections::{Sections, record_path};
 pub use side::{Side, Turned};
 pub use stated::Stated;
@@ -36,12 +38,15 @@ pub struct Mapping {
     pub protocol: Option<Spanned<String>>,
     /// Further keys of `campaign.yaml`, as written.
     pub campaign: Vec<(Key, Node)>,
+    /// What is imported: sections, or whole runs.
     pub sections: Sections,
+    /// Where whole runs are imported.
+    pub runs: Option<Runs>,
     /// The vehicle file as written, and its content.
     pub vehicle: Option<(Spanned<String>, Node)>,
     /// Files copied as they are.
     pub copies: Vec<Spanned<String>>,
-    /// Path of the track file of a section, with `{section}`.
+    /// Path of the track file of a section or run, with `{section}` or `{run}`.
     pub track: Option<Spanned<String>>,
     /// Distance kept before and after each section, in m; the whole record where it is not stated.
     pub margin: Option<f64>,

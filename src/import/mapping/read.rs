@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Mapping, Sections, convention, sections, side};
+use super::{Mapping, Sections, convention, runs, sections, side};
 use crate::data::RecordKind;
 use crate::data::text::read_text;
 use crate::problem::{Problem, Problems};
@@ -11,10 +11,10 @@ use crate::source::{Source, Span, Spanned};
 use crate::units::{Unit, number};
 use crate::yaml::{self, Key, Node, Value};
 
-const TOP: [&str; 11] =
-    ["name", "protocol", "campaign", "sections", "vehicle", "track", "copy", "margin", "turning", "measurement", "simulation"];
+const TOP: [&str; 12] =
+    ["name", "protocol", "campaign", "sections", "runs", "vehicle", "track", "copy", "margin", "turning", "measurement", "simulation"];
 /// Keys of `campaign.yaml` that the import writes itself.
-const OWN: [&str; 8] = ["name", "protocol", "sections", "vehicle", "track", "measurement", "simulation", "origin"];
+const OWN: [&str; 9] = ["name", "protocol", "sections", "runs", "vehicle", "track", "measurement", "simulation", "origin"];
 
 /// Reads a mapping, the table of sections and the vehicle file. Paths are relative to `folder`.
 ///
@@ -41,7 +41,10 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
         let node = yaml::load(&read.ok()?.0, reader.problems)?;
         Some((written, node))
     });
-    let sections = sections::read(&mut reader, &tree, folder);
+    let (runs, sections) = match tree.get("runs") {
+        Some(node) => runs::read(&mut reader, &tree, node).map_or((None, None), |(runs, sections)| (Some(runs), Some(sections))),
+        None => (None, sections::read(&mut reader, &tree, folder)),
+    };
     let turning = tree.get("turning").and_then(|node| convention::turning(&mut reader, node, folder));
     let margin = reader.number(&tree, "margin", &metre());
     let copies = reader.texts(&tree, "copy");
@@ -49,7 +52,8 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
         if written.value.contains('{') {
             written
         } else {
-            Spanned::new(format!("{}/{{section}}.csv", written.value.trim_end_matches('/')), written.span)
+            let word = if tree.get("runs").is_some() { "run" } else { "section" };
+            Spanned::new(format!("{}/{{{word}}}.csv", written.value.trim_end_matches('/')), written.span)
         }
     });
     let known = sections.clone().unwrap_or_else(|| Sections::none(source));
@@ -73,6 +77,7 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
         protocol,
         campaign,
         sections: sections?,
+        runs,
         vehicle,
         copies,
         track,
@@ -234,15 +239,16 @@ impl Reader<'_> {
             .ok()
     }
 
-    /// Placeholders of a path must be known: `{section}` or a column of the table of sections.
+    /// Placeholders of a path must be known: `{section}`, of runs `{run}`, or a column of the table of sections.
     pub fn pattern(&mut self, written: &Spanned<String>, sections: &Sections) {
         for name in placeholders(&written.value) {
-            if name != "section" && !sections.has_column(name) {
-                let problem = Problem::error(
-                    "unknown-placeholder",
-                    format!("`{{{name}}}` is neither `{{section}}` nor a column of the table of sections"),
-                );
-                let known = std::iter::once("section").chain(sections.columns());
+            if name != sections.word && !sections.has_column(name) {
+                let says = match sections.word {
+                    "run" => format!("`{{{name}}}` is not `{{run}}`"),
+                    word => format!("`{{{name}}}` is neither `{{{word}}}` nor a column of the table of sections"),
+                };
+                let problem = Problem::error("unknown-placeholder", says);
+                let known = std::iter::once(sections.word).chain(sections.columns());
                 self.problems.push(problem.at(&written.span).suggest(name, known));
             }
         }

@@ -21,11 +21,13 @@ pub struct Sections {
     pub table: Option<(Spanned<String>, Arc<Table>)>,
     pub names: Vec<Cell>,
     pub span: Span,
+    /// What one of them is called: `section`, or `run` where whole runs are imported.
+    pub word: &'static str,
 }
 
 impl Sections {
     pub(super) fn none(source: &Arc<Source>) -> Self {
-        Self { table: None, names: Vec::new(), span: source.span(0..0) }
+        Self { table: None, names: Vec::new(), span: source.span(0..0), word: NAME }
     }
 
     pub fn columns(&self) -> impl Iterator<Item = &str> {
@@ -53,7 +55,7 @@ impl Sections {
         let row = table.row_named(section);
         row.and_then(|row| numbers.get(row).copied().flatten()).ok_or_else(|| {
             let place = self.cell(section, column).map_or(&self.span, |cell| &cell.span);
-            Problem::error("not-a-number", format!("section `{section}` has no `{column}`")).at(place)
+            Problem::error("not-a-number", format!("{} `{section}` has no `{column}`", self.word)).at(place)
         })
     }
 
@@ -62,7 +64,7 @@ impl Sections {
         Some((self.number(section, "start").ok()?, self.number(section, "end").ok()?))
     }
 
-    /// A text with `{section}` and `{column}` replaced.
+    /// A text with `{section}` (of runs `{run}`) and `{column}` replaced.
     pub fn fill(&self, pattern: &str, section: &str) -> String {
         let mut out = String::new();
         let mut rest = pattern;
@@ -73,7 +75,7 @@ impl Sections {
                 rest = after;
                 continue;
             };
-            out.push_str(if name == NAME { section } else { self.cell(section, name).map_or("", |cell| cell.value.as_str()) });
+            out.push_str(if name == self.word { section } else { self.cell(section, name).map_or("", |cell| cell.value.as_str()) });
             rest = after;
         }
         out + rest
@@ -97,7 +99,7 @@ pub(super) fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Optio
             }
         }
         check(reader.problems, &names);
-        return (reader.problems.errors() == before).then_some(Sections { table: None, names, span: node.span.clone() });
+        return (reader.problems.errors() == before).then_some(Sections { table: None, names, span: node.span.clone(), word: NAME });
     }
     let written = reader.text_of(node, "sections")?;
     let path = folder.join(&written.value);
@@ -110,11 +112,16 @@ pub(super) fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Optio
     let names: Vec<Cell> = table.names().cloned().collect();
     let before = reader.problems.errors();
     check(reader.problems, &names);
-    (reader.problems.errors() == before).then(|| Sections { span: written.span.clone(), table: Some((written, Arc::new(table))), names })
+    (reader.problems.errors() == before).then(|| Sections {
+        span: written.span.clone(),
+        table: Some((written, Arc::new(table))),
+        names,
+        word: NAME,
+    })
 }
 
 /// Names become names of files.
-fn check(problems: &mut Problems, names: &[Cell]) {
+pub(super) fn check(problems: &mut Problems, names: &[Cell]) {
     for name in names {
         let bad = name.value.contains(['/', '\\', ':']) || name.value.starts_with('.') || name.value.chars().any(char::is_control);
         if bad || name.value.is_empty() || name.value.len() > 200 {
@@ -127,7 +134,7 @@ fn check(problems: &mut Problems, names: &[Cell]) {
 /// A section that the mapping names must exist.
 pub(super) fn known(reader: &mut Reader<'_>, sections: &Sections, name: &str, span: &Span) {
     if !sections.names.is_empty() && !sections.names.iter().any(|known| known.value == name) {
-        let problem = Problem::error("unknown-section", format!("there is no section `{name}`")).at(span);
+        let problem = Problem::error("unknown-section", format!("there is no {} `{name}`", sections.word)).at(span);
         reader.problems.push(problem.suggest(name, sections.names.iter().map(|known| known.value.as_str())));
     }
 }

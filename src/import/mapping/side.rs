@@ -4,6 +4,7 @@ use super::channels::{self, Channels};
 use super::distance::{self, Distance, Match, Time};
 use super::format;
 use super::read::{Reader, hertz, metre};
+use super::runs::{self, Drift};
 use super::sections::{self, Sections};
 use super::stated::{self, Stated};
 use crate::data::RecordKind;
@@ -13,7 +14,7 @@ use crate::source::{Span, Spanned};
 use crate::units::Unit;
 use crate::yaml::{Key, Node, Value};
 
-const KEYS: [&str; 10] = ["files", "table", "format", "units", "time", "distance", "rate", "channels", "offsets", "turned"];
+const KEYS: [&str; 11] = ["files", "table", "format", "units", "time", "distance", "rate", "channels", "offsets", "turned", "drift"];
 
 #[derive(Debug)]
 pub struct Side {
@@ -36,6 +37,8 @@ pub struct Side {
     /// Added to the distance, by section.
     pub offsets: Option<Stated>,
     pub turned: Turned,
+    /// Of the measurement.
+    pub drift: Option<Drift>,
 }
 
 /// Sections that were run with the other end of the vehicle leading.
@@ -70,7 +73,7 @@ pub(super) fn read(reader: &mut Reader<'_>, kind: RecordKind, key: &Key, node: &
     if !reader.keys(node, &KEYS, &format!("`{}`", kind.key())) {
         return None;
     }
-    let files = reader.need_text(node, "files", "the path of the records, with `{section}`");
+    let files = reader.need_text(node, "files", &format!("the path of the records, with `{{{}}}`", sections.word));
     let table = reader.text(node, "table");
     for pattern in files.iter().chain(&table) {
         reader.pattern(pattern, sections);
@@ -79,11 +82,14 @@ pub(super) fn read(reader: &mut Reader<'_>, kind: RecordKind, key: &Key, node: &
         files.as_ref().filter(|files| !files.value.contains('{') && table.as_ref().is_none_or(|table| !table.value.contains('{')))
         && sections.names.len() > 1
     {
-        let problem = Problem::warning("one-file", format!("every section is read from `{}`, each as its own stretch of it", files.value));
+        let problem =
+            Problem::warning("one-file", format!("every {} is read from `{}`, each as its own stretch of it", sections.word, files.value));
         if node.get("distance").is_none() {
-            reader
-                .problems
-                .push(problem.at(&files.span).help("write `{section}` where the name of the section stands in the path or in `table`"));
+            reader.problems.push(
+                problem
+                    .at(&files.span)
+                    .help(format!("write `{{{0}}}` where the name of the {0} stands in the path or in `table`", sections.word)),
+            );
         }
     }
     let format = node.get("format").map_or_else(Options::default, |node| format::read(reader, node));
@@ -100,6 +106,14 @@ pub(super) fn read(reader: &mut Reader<'_>, kind: RecordKind, key: &Key, node: &
         reader.problems.push(problem.at(&stated::place(node.get("offsets"), &node.span)).help("remove one of them"));
     }
     let turned = turned(reader, node, sections);
+    let drift = runs::drift(reader, node, sections);
+    if let (Some(drift), RecordKind::Simulation) = (&drift, kind) {
+        let problem = Problem::error("contradiction", "`drift` stands with the measurement, whose distance is corrected").at(&drift.span);
+        reader.problems.push(problem.help("move it to `measurement`"));
+    }
+    if let Some(drift) = drift.as_ref().filter(|_| node.get("distance").is_none()) {
+        reader.fault("contradiction", "`drift` needs a distance, and none is stated: `distance`", &drift.span);
+    }
     let Some(channels) = node.get("channels") else {
         let problem = Problem::error("key-missing", "`channels` is missing: what each channel of the campaign is in the file");
         reader
@@ -129,6 +143,7 @@ pub(super) fn read(reader: &mut Reader<'_>, kind: RecordKind, key: &Key, node: &
         channels,
         offsets,
         turned,
+        drift,
     })
 }
 

@@ -70,11 +70,13 @@ impl Stated {
             }
             Self::Fact(name, unit) => {
                 let Some((_, text)) = facts.iter().find(|(known, _)| *known == name.value) else {
-                    let problem = Problem::error("unknown-fact", format!("section `{section}`: the file states no `{}`", name.value));
+                    let problem =
+                        Problem::error("unknown-fact", format!("{} `{section}`: the file states no `{}`", sections.word, name.value));
                     return Err(problem.at(&name.span).suggest(&name.value, facts.iter().map(|(known, _)| known.as_str())));
                 };
                 number::read(text, unit).map(|read| Some(read.si)).map_err(|refused| {
-                    Problem::error("wrong-number", format!("section `{section}`, `{}`: {}", name.value, refused.says)).at(&name.span)
+                    Problem::error("wrong-number", format!("{} `{section}`, `{}`: {}", sections.word, name.value, refused.says))
+                        .at(&name.span)
                 })
             }
         }

@@ -32,7 +32,7 @@ pub fn curve(
         let Some(start) = start else { return Ok((0.0, String::new())) };
         let value = start.of(of.section, &of.mapping.sections, facts)?;
         let Some(value) = value else {
-            return Err(Problem::error("start-missing", format!("no `start` is stated for section `{}`", of.section)).at(&of.side.span));
+            return Err(Problem::error("start-missing", format!("no `start` is stated for {}", of.called())).at(&of.side.span));
         };
         Ok((value, format!(" from {value} m ({})", start.from_where())))
     };
@@ -67,8 +67,8 @@ pub fn curve(
             let times = crossings(&clock.times, &signal, level);
             if times.len() < 2 {
                 let says = format!(
-                    "section `{}`: `{}` rises through {level} {} times; two pulses are needed at least",
-                    of.section,
+                    "{}: `{}` rises through {level} {} times; two pulses are needed at least",
+                    of.called(),
                     channel.terms[0].name.value,
                     times.len()
                 );
@@ -179,9 +179,9 @@ pub fn matched(
         step: wanted.within / STEPS,
     };
     let names = wanted.channels.iter().map(|map| map.name.value.as_str()).collect::<Vec<_>>().join(", ");
-    let none = |says: String| Err(vec![Problem::error("no-match", format!("section `{}`: {says}", of.section)).at(&wanted.span)]);
+    let none = |says: String| Err(vec![Problem::error("no-match", format!("{}: {says}", of.called())).at(&wanted.span)]);
     let opposite = |map: &ChannelMap| {
-        let says = format!("section `{}`: `{}` of the record has the sign opposite to the track file", of.section, map.name.value);
+        let says = format!("{}: `{}` of the record has the sign opposite to the track file", of.called(), map.name.value);
         let (name, term) = (&map.name.value, &map.terms[0].name);
         vec![Problem::error("no-match", says).at(&term.span).help(format!("reverse it: `{name}: -{}`", term.value))]
     };

@@ -27,6 +27,11 @@ pub struct Found<'a> {
 }
 
 impl<'a> Of<'a> {
+    /// The section or the run, for messages.
+    pub fn called(&self) -> String {
+        format!("{} `{}`", self.mapping.sections.word, self.section)
+    }
+
     /// The tables of the section: that with the name stated, or all.
     pub fn tables(&self) -> Result<Vec<&'a Table>, Problem> {
         let Some(pattern) = &self.side.table else { return Ok(self.file.tables.iter().collect()) };

@@ -90,8 +90,7 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     let span = span(&clocks, raw.iter().chain(&matched).map(|(table, ..)| *table), curve.as_ref().map(|curve| &curve.clock));
     let rate = of.side.rate.as_ref().map(|rate| rate.value);
     let Some(grid) = grid(base_clock, rate, span) else {
-        let says =
-            format!("section `{}`: the channels of `{}` have no time in common ({} s to {} s)", of.section, of.shown, span.0, span.1);
+        let says = format!("{}: the channels of `{}` have no time in common ({} s to {} s)", of.called(), of.shown, span.0, span.1);
         return Err(vec![Problem::error("no-common-time", says).at(&of.side.time.span)]);
     };
     told_times(of, base_clock, &grid, &mut steps);
@@ -99,9 +98,8 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     for (map, (table, values, _)) in maps.iter().zip(&raw) {
         match clocks[*table].as_ref().map(|clock| on_grid(values, clock, *table == base, &grid, false)) {
             Some(Ok((values, how))) => sampled.push((values, how, *table)),
-            Some(Err(why)) => faults.push(
-                Problem::error("uneven-time", format!("section `{}`: `{}` {why}", of.section, map.name.value)).at(&map.terms[0].name.span),
-            ),
+            Some(Err(why)) => faults
+                .push(Problem::error("uneven-time", format!("{}: `{}` {why}", of.called(), map.name.value)).at(&map.terms[0].name.span)),
             None => {}
         }
     }
@@ -120,9 +118,8 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     if let Some(curve) = curve {
         let as_recorded = curve.table == Some(base);
         let along = on_grid(&curve.values, &curve.clock, as_recorded, &grid, true);
-        let (mut values, how) = along.map_err(|why| {
-            vec![Problem::error("uneven-time", format!("section `{}`: the distance {why}", of.section)).at(&of.side.span)]
-        })?;
+        let (mut values, how) =
+            along.map_err(|why| vec![Problem::error("uneven-time", format!("{}: the distance {why}", of.called())).at(&of.side.span)])?;
         let linear = if how == How::Linear && curve.table.is_some() {
             format!(", interpolated linearly from {} Hz", short(curve.clock.rate))
         } else {
@@ -348,8 +345,8 @@ fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, 
         if let Some(row) = column.values.iter().position(|value| !value.is_finite()) {
             let missing = column.values.iter().filter(|value| !value.is_finite()).count();
             let says = format!(
-                "section `{}`: `{}` has no value in {missing} of {} rows, first at {} s",
-                of.section,
+                "{}: `{}` has no value in {missing} of {} rows, first at {} s",
+                of.called(),
                 column.name,
                 column.values.len(),
                 short(columns[0].values[row])
@@ -371,8 +368,8 @@ fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, 
         let values = &columns[1].values;
         if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
             let says = format!(
-                "section `{}`: the distance does not increase at {} s: {} m after {} m",
-                of.section,
+                "{}: the distance does not increase at {} s: {} m after {} m",
+                of.called(),
                 short(columns[0].values[row]),
                 short(values[row]),
                 short(values[row - 1])
@@ -401,8 +398,8 @@ fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, 
 fn outside(of: &Of<'_>, (start, end): (f64, f64), values: &[f64]) -> Problem {
     let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(*value), high.max(*value)));
     let says = format!(
-        "section `{}`, {} to {} m, is not inside its {}, {} to {} m",
-        of.section,
+        "{}, {} to {} m, is not inside its {}, {} to {} m",
+        of.called(),
         short(start),
         short(end),
         of.side.kind.key(),
@@ -423,7 +420,7 @@ fn few(mut faults: Vec<Problem>) -> Vec<Problem> {
 }
 
 /// Six digits, for sentences.
-fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     format!("{rounded}")
 }

@@ -79,7 +79,7 @@ pub fn chapters(found: &SelectionStudy, words: &VerdictWords) -> Vec<Chapter> {
 
 fn strata(found: &SelectionStudy) -> Item {
     let rows = found.strata.iter().map(|stratum| {
-        let not_used: Vec<String> = stratum.not_used.iter().map(|(section, why)| format!("{section}: {why}")).collect();
+        let not_used = by_reason(&stratum.not_used);
         vec![
             stratum.zone.clone(),
             stratum.title.clone(),
@@ -333,4 +333,16 @@ fn reduction(reduction: &Reduction) -> Chapter {
             },
         ],
     }
+}
+
+/// Sections that are not used for the same reason, with the reason once: `S01, S02: left out by the reduction`.
+fn by_reason(sections: &[(String, String)]) -> Vec<String> {
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for (section, why) in sections {
+        match reasons.iter_mut().find(|(reason, _)| *reason == why.as_str()) {
+            Some((_, names)) => names.push(section),
+            None => reasons.push((why, vec![section])),
+        }
+    }
+    reasons.into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
 }

@@ -120,6 +120,20 @@ pub(super) fn tables(found: &Certification) -> Vec<SectionTable> {
         .collect()
 }
 
+/// Section data that were found have more digits than they are worth: of a number as long as this, three decimals are printed.
+fn short(text: String) -> String {
+    /// Decimals from which on a number is not one that was written by hand.
+    const MANY: usize = 5;
+    let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    match text.parse::<f64>() {
+        // A small number, such as a curvature, keeps its digits.
+        Ok(value) if decimals >= MANY && value.abs() >= 1.0 => {
+            format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_string()
+        }
+        _ => text,
+    }
+}
+
 fn table(zone: Option<&str>, known: Option<&ZoneResult>, sections: &[&SectionResult]) -> SectionTable {
     let names: IndexSet<&str> = sections.iter().flat_map(|section| &section.columns).map(|column| column.name.as_str()).collect();
     let text = |section: &SectionResult, name: &str| {
@@ -168,7 +182,7 @@ fn table(zone: Option<&str>, known: Option<&ZoneResult>, sections: &[&SectionRes
                     .map(|name| {
                         text(section, name)
                             .filter(|text| !text.is_empty())
-                            .map_or_else(|| number::NONE.to_owned(), |text| number::in_text(&text))
+                            .map_or_else(|| number::NONE.to_owned(), |text| number::in_text(&short(text)))
                     })
                     .collect(),
                 used: Finding::new(Some(section.used), "used", "not used", ""),

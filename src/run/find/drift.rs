@@ -2,6 +2,7 @@
 //! apart: wheels wear, and a wheel sensor slips.
 
 use super::Place;
+use super::course::Course;
 use crate::check::plan::{Plan, Side};
 use crate::data::Campaign;
 use crate::data::campaign::Run;
@@ -10,7 +11,7 @@ use crate::result::found::{Drift, DriftPoint};
 use crate::run::{Offset, Shifts, evaluate};
 
 /// Largest shift that is looked for, in lengths of the shortest section: 21 m for 70 m. Twice as much and more is read beside a section.
-const FARTHEST: f64 = 0.3;
+pub const FARTHEST: f64 = 0.3;
 /// A shift whose 95 % interval is wider than this to one side, in largest shifts, is not used: 1 m of 21 m.
 const UNCERTAIN: f64 = 0.05;
 
@@ -34,9 +35,12 @@ pub fn shifts(plan: &Plan, graph: &Graph, campaign: &Campaign, places: &[(&Run, 
     all.into_iter().map(|offset| offset.filter(certain)).collect()
 }
 
-/// The shift of each place of one run: its own, or between those of its neighbours. Nothing where no place of the run has one.
-pub fn along(starts: &[f64], shifts: &[Option<f64>]) -> Option<Vec<f64>> {
-    let known: Vec<(f64, f64)> = starts.iter().zip(shifts).filter_map(|(start, shift)| Some((*start, (*shift)?))).collect();
+/// The shift of each place of one run: its own, or between those beside it, of other places or of the course of the drift. Nothing where
+/// none is known in the run.
+pub fn along(starts: &[f64], shifts: &[Option<f64>], course: &[(f64, f64)]) -> Option<Vec<f64>> {
+    let own = starts.iter().zip(shifts).filter_map(|(start, shift)| Some((*start, (*shift)?)));
+    let mut known: Vec<(f64, f64)> = own.chain(course.iter().copied()).collect();
+    known.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (first, last) = (known.first()?, known.last()?);
     let at = |start: f64| {
         let after = known.iter().position(|(x, _)| *x >= start);
@@ -52,8 +56,8 @@ pub fn along(starts: &[f64], shifts: &[Option<f64>]) -> Option<Vec<f64>> {
     Some(starts.iter().zip(shifts).map(|(start, shift)| shift.unwrap_or_else(|| at(*start))).collect())
 }
 
-/// What is told of a run: `shifts` and `places` are of this run, the names of its sections begin with number `first`.
-pub fn told(plan: &Plan, run: &Run, names: &[&str], starts: &[f64], shifts: &[Option<Offset>]) -> Option<Drift> {
+/// What is told of a run: all arguments are of this run.
+pub fn told(plan: &Plan, run: &Run, (names, starts): (&[&str], &[f64]), shifts: &[Option<Offset>], course: &Course) -> Option<Drift> {
     let shown = |x: f64| plan.axis.unit.from_si(x);
     let point = |((name, start), shift): ((&&str, &f64), &Option<Offset>)| {
         let shift = shift.as_ref()?;
@@ -67,7 +71,8 @@ pub fn told(plan: &Plan, run: &Run, names: &[&str], starts: &[f64], shifts: &[Op
         })
     };
     let points: Vec<DriftPoint> = names.iter().zip(starts).zip(shifts).filter_map(point).collect();
-    (!points.is_empty()).then_some(Drift { points, corrected: run.correct_drift })
+    let drift = Drift { points, along: course.told(plan), windows: course.looked, corrected: run.correct_drift };
+    (!drift.points.is_empty() || !drift.along.is_empty()).then_some(drift)
 }
 
 #[cfg(test)]
@@ -78,7 +83,9 @@ mod tests {
     #[test]
     fn a_place_without_a_shift_has_that_between_its_neighbours() {
         let starts = [-10.0, 0.0, 25.0, 100.0, 200.0];
-        assert_eq!(along(&starts, &[None, Some(1.0), None, Some(3.0), None]), Some(vec![1.0, 1.0, 1.5, 3.0, 3.0]));
-        assert_eq!(along(&starts, &[None; 5]), None);
+        assert_eq!(along(&starts, &[None, Some(1.0), None, Some(3.0), None], &[]), Some(vec![1.0, 1.0, 1.5, 3.0, 3.0]));
+        assert_eq!(along(&starts, &[None; 5], &[]), None);
+        // A window of the course at 20 m is nearer.
+        assert_eq!(along(&starts, &[None, Some(1.0), None, Some(3.0), None], &[(20.0, 5.0), (30.0, 6.0)]).map(|all| all[2]), Some(5.5));
     }
 }

@@ -2,6 +2,7 @@
 //! search. What is in memory does not grow with the length of a run.
 
 mod chosen;
+mod course;
 mod drift;
 mod place;
 mod signals;
@@ -22,7 +23,7 @@ use place::{Rules, Tried};
 use signals::{Signals, Source};
 use window::Window;
 
-pub use place::Place;
+pub use place::{Place, is_stated};
 
 /// How much of a run is looked at in one piece, in lengths of the longest section with all it needs on both sides: its filters run once
 /// for all places of the piece. Longer pieces take more memory, shorter ones filter their margins more often.
@@ -99,6 +100,7 @@ pub fn find(plan: &Plan, graph: &Graph, campaign: &Campaign, progress: Progress<
 /// Tells the shift of the measurement along each run, and gives what is added to the axis of each section where runs ask for it.
 fn drifts(plan: &Plan, graph: &Graph, found: &Campaign, places: &[(&Run, Place)], told: &mut FoundSections) -> Option<Vec<f64>> {
     let shifts = drift::shifts(plan, graph, found, places);
+    let shortest = places.iter().map(|(_, place)| place.end - place.start).fold(f64::INFINITY, f64::min);
     let mut offsets = vec![0.0; places.len()];
     let mut corrected = false;
     for in_run in &mut told.runs {
@@ -107,9 +109,12 @@ fn drifts(plan: &Plan, graph: &Graph, found: &Campaign, places: &[(&Run, Place)]
         let starts: Vec<f64> = own.iter().map(|&at| places[at].1.start).collect();
         let names: Vec<&str> = own.iter().filter_map(|&at| found.names.get(at)).map(|name| name.value.as_str()).collect();
         let of_run: Vec<_> = own.iter().map(|&at| shifts[at].clone()).collect();
-        in_run.drift = drift::told(plan, run, &names, &starts, &of_run);
+        let of_places: Vec<&Place> = own.iter().map(|&at| &places[at].1).collect();
+        let extent = (plan.axis.unit.to_si(in_run.start), plan.axis.unit.to_si(in_run.end));
+        let course = course::course(plan, graph, found, run, &of_places, extent, drift::FARTHEST * shortest);
+        in_run.drift = drift::told(plan, run, (&names, &starts), &of_run, &course);
         let shift: Vec<Option<f64>> = of_run.iter().map(|shift| shift.as_ref().map(|shift| shift.shift)).collect();
-        if let Some(along) = drift::along(&starts, &shift).filter(|_| run.correct_drift) {
+        if let Some(along) = drift::along(&starts, &shift, &course.knots()).filter(|_| run.correct_drift) {
             own.iter().zip(along).for_each(|(&at, shift)| offsets[at] = shift);
             corrected = true;
         }
@@ -163,7 +168,7 @@ impl Windows {
                 }
             }
             let place = campaign.run_place(run, kind).map_err(|problem| Problems(vec![problem]))?;
-            all.push((source, Window::open(&place, wanted)));
+            all.push((source, Window::open(&place, wanted, run.known(kind).clone())));
         }
         Ok(Self { all })
     }

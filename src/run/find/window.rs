@@ -2,7 +2,7 @@
 
 use crate::data::Place;
 use crate::data::blocks::Blocks;
-use crate::data::record::Wanted;
+use crate::data::record::{Known, Wanted};
 use crate::problem::Problem;
 
 /// A stretch of a record; its first column is the axis.
@@ -18,13 +18,13 @@ pub struct Window {
 }
 
 impl Window {
-    pub fn open(place: &Place, wanted: Vec<Wanted>) -> Self {
+    pub fn open(place: &Place, wanted: Vec<Wanted>, known: Known) -> Self {
         let names: Vec<String> = wanted.iter().map(|wanted| wanted.name.clone()).collect();
         Self {
             columns: vec![Vec::new(); names.len()],
             names,
             shown: place.inside.clone(),
-            blocks: Some(Blocks::open(place.path.clone(), place.inside.clone(), wanted)),
+            blocks: Some(Blocks::open(place.path.clone(), place.inside.clone(), wanted, known)),
             first_row: 2,
             first: None,
             last: f64::NEG_INFINITY,

@@ -8,7 +8,8 @@ use parquet::file::statistics::Statistics;
 use super::open::{Opened, Store};
 use super::{Column, no_rows};
 use crate::data::faults::Faults;
-use crate::data::hash::{Hasher, Known};
+use crate::data::hash::Hasher;
+use crate::data::record::known::{Known, KnownFile};
 use crate::data::record::runs::{Block, Run, Stretch, axis_of};
 use crate::data::record::{Record, Wanted};
 use crate::data::text::unreadable;
@@ -16,8 +17,14 @@ use crate::disk;
 use crate::problem::Problem;
 
 /// Calls `each` with the wanted columns, batch by batch in the order of the file.
-pub(crate) fn stream(path: &Path, shown: &str, wanted: &[Wanted], each: &mut dyn FnMut(&Block<'_>)) -> Result<Run, Vec<Problem>> {
-    let (mut opened, sha256) = open(path, shown, &Known::default())?;
+pub(crate) fn stream(
+    path: &Path,
+    shown: &str,
+    wanted: &[Wanted],
+    known: &Known,
+    each: &mut dyn FnMut(&Block<'_>),
+) -> Result<Run, Vec<Problem>> {
+    let (mut opened, sha256) = open(path, shown, known)?;
     let mut columns = opened.find(wanted)?;
     if opened.rows() == 0 {
         return Err(vec![no_rows(shown)]);
@@ -25,7 +32,7 @@ pub(crate) fn stream(path: &Path, shown: &str, wanted: &[Wanted], each: &mut dyn
     let mut faults = Faults::new(shown);
     for group in 0..opened.groups() {
         let done = opened.group(group, &mut columns, &mut faults, &mut |columns, first_row| {
-            each(&Block { first_row, rows: columns.first().map_or(0, |column| column.values.len()), columns });
+            each(&Block { first_row, rows: columns.first().map_or(0, |column| column.values.len()), columns, bytes: (0, 0) });
             columns.iter_mut().for_each(|column| column.values.clear());
         });
         done.map_err(|problem| vec![problem])?;
@@ -43,9 +50,9 @@ pub(crate) fn stretch(
     shown: &str,
     wanted: &[Wanted],
     (axis, range): (&str, &Range<f64>),
-    hash: &Known,
+    known: &Known,
 ) -> Result<Record, Vec<Problem>> {
-    let (mut opened, sha256) = open(path, shown, hash)?;
+    let (mut opened, sha256) = open(path, shown, known)?;
     let mut columns = opened.find(wanted)?;
     let at = axis_of(&columns, axis, shown)?;
     let mut faults = Faults::new(shown);
@@ -99,9 +106,9 @@ fn open<'a>(path: &Path, shown: &'a str, known: &Known) -> Result<(Opened<'a>, S
     let compute = || {
         let mut hash = Hasher::default();
         let mut file = disk::open(path)?;
-        hash.add_all(&mut file)?;
-        Ok(hash.finish())
+        let bytes = hash.add_all(&mut file)?;
+        Ok(KnownFile { sha256: hash.finish(), bytes, index: None })
     };
-    let hash = known.or(compute).map_err(|error: std::io::Error| one(unreadable(shown, &error)))?;
-    Ok((opened, hash))
+    let known = known.or(|_| true, compute).map_err(|error: std::io::Error| one(unreadable(shown, &error)))?;
+    Ok((opened, known.sha256.clone()))
 }

@@ -1,8 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::data::hash::Known;
-use crate::data::record::{Record, read_headings, read_record, read_stretch, stream};
+use crate::data::record::{Known, Record, read_headings, read_record, read_stretch, stream};
 use crate::data::write::{FileColumn, Values, parquet};
 use crate::units::Dimension;
 

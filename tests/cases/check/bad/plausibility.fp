@@ -52,6 +52,19 @@ plausibility no_such_treatment
   require    correlaton >= 0
   otherwise  refuse
 
+plausibility exchanged_in_words
+  of         Q
+  exchanged  mostly
+
+plausibility exchanged_above_one
+  of         Q
+  exchanged  from 0.5, by 3
+
+plausibility two_ways
+  of         Q
+  require    median >= 0 kN
+  exchanged  from 0.5, by 0.3
+
 plausibility window_before_metric
   of       Q
   filter   sliding mean 2 m every 0.5 m

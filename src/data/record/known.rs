@@ -1,0 +1,84 @@
+//! What is known of a file of which several stretches are read: its hash, and of a text where in it which part of the axis is.
+
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::Column;
+
+/// Known once for all that share it; computed by the first who asks while the others wait.
+#[derive(Clone, Debug, Default)]
+pub struct Known(Arc<Mutex<Option<Arc<KnownFile>>>>);
+
+#[derive(Debug)]
+pub struct KnownFile {
+    /// SHA-256 of the file.
+    pub sha256: String,
+    /// Size of the file.
+    pub bytes: u64,
+    /// Of a text.
+    pub index: Option<Index>,
+}
+
+/// Where the rows of a text are.
+#[derive(Debug)]
+pub struct Index {
+    /// Name of the column.
+    pub axis: String,
+    pub rows: usize,
+    pub marks: Vec<Mark>,
+}
+
+/// Consecutive rows of a text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark {
+    /// Number of rows before.
+    pub first_row: usize,
+    /// First and last byte in the file.
+    pub from: u64,
+    pub to: u64,
+    /// Least and largest value of the axis, SI.
+    pub low: f64,
+    pub high: f64,
+}
+
+impl Mark {
+    /// Of rows with this axis.
+    pub fn of(first_row: usize, (from, to): (u64, u64), axis: &Column) -> Self {
+        let (low, high) = axis.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(*at), high.max(*at)));
+        Self { first_row, from, to, low, high }
+    }
+
+    pub fn touches(&self, range: &Range<f64>) -> bool {
+        self.high >= range.start && self.low <= range.end
+    }
+}
+
+impl Known {
+    /// What is known, if it is enough; otherwise what is computed now.
+    ///
+    /// # Errors
+    /// Of the computation.
+    pub fn or<E>(
+        &self,
+        enough: impl FnOnce(&KnownFile) -> bool,
+        compute: impl FnOnce() -> Result<KnownFile, E>,
+    ) -> Result<Arc<KnownFile>, E> {
+        // Nothing is half-written under the lock, so a panic of another thread does no harm.
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*known {
+            Some(file) if enough(file) => Ok(Arc::clone(file)),
+            _ => compute().map(|file| Arc::clone(known.insert(Arc::new(file)))),
+        }
+    }
+
+    /// What is known, if no one else shares it.
+    pub fn taken(self) -> Option<KnownFile> {
+        let known = Arc::into_inner(self.0)?.into_inner().unwrap_or_else(PoisonError::into_inner)?;
+        Arc::into_inner(known)
+    }
+
+    /// Keeps what was found in passing.
+    pub fn keep(&self, file: KnownFile) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(file));
+    }
+}

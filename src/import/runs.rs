@@ -1,0 +1,88 @@
+//! Import of whole runs: both records of a run are made together, since a drift between them concerns both.
+
+use super::mapping::{self, Mapping};
+use super::process::{Made, Of, record};
+use super::write::{SourceFile, account, record_bytes};
+use super::{drift, read_as};
+use crate::data::RecordKind;
+use crate::data::origin::ImportedRecord;
+use crate::data::record::Format;
+use crate::data::write::Outputs;
+use crate::foreign;
+use crate::problem::{Problem, Problems};
+use crate::run::needs::Needs;
+
+/// What the import of all records gives.
+#[derive(Default)]
+pub struct Imported {
+    pub sources: Vec<SourceFile>,
+    /// Both sides one after the other, in the order of the runs.
+    pub accounts: Vec<ImportedRecord>,
+    pub faults: Problems,
+    pub warnings: Problems,
+}
+
+/// Makes the records of all runs, one run after the other: two files are in memory at a time.
+///
+/// # Errors
+/// `write-failed`. Faults of the records are in [`Imported::faults`]; after one, nothing more is written.
+pub fn import(
+    mapping: &Mapping,
+    needs: Option<&Needs>,
+    format: Format,
+    outputs: &mut Outputs,
+    progress: &(dyn Fn(&str) + Sync),
+) -> Result<Imported, Problem> {
+    let mut all = Imported::default();
+    for name in &mapping.sections.names {
+        let side = |kind: RecordKind| mapping.side(kind).map(|side| of_side(mapping, side, needs, &name.value));
+        let (measured, simulated) = rayon::join(|| side(RecordKind::Measurement), || side(RecordKind::Simulation));
+        let mut made: Vec<(Made, SourceFile)> = Vec::new();
+        for done in [measured, simulated].into_iter().flatten() {
+            match done {
+                Ok(one) => made.push(one),
+                Err(problems) => problems.into_iter().for_each(|problem| all.faults.push(problem)),
+            }
+            progress(&name.value);
+        }
+        if all.faults.any_error() {
+            continue;
+        }
+        let asked = mapping.side(RecordKind::Measurement).and_then(|side| side.drift.as_ref());
+        if let (Some(asked), [(measured, _), rest @ ..]) = (asked, &mut made[..]) {
+            let done = match rest {
+                [(simulated, _)] => drift::drift(asked, measured, simulated),
+                _ => {
+                    let problem = Problem::error("no-drift", "a drift is one against the simulation, which is not imported");
+                    Err(problem.at(&asked.span).help("import both sides, or remove `drift`"))
+                }
+            };
+            if let Err(problem) = done {
+                all.faults.push(problem);
+                continue;
+            }
+        }
+        for (made, source) in made {
+            match record_bytes(&made.columns, format) {
+                Ok(bytes) => outputs.add(&mapping::record_path(made.kind, &made.section, format.ending()), &bytes)?,
+                Err(problem) => all.faults.push(problem),
+            }
+            all.accounts.push(account(&made, &source));
+            made.warnings.into_iter().for_each(|problem| all.warnings.push(problem));
+            if !all.sources.contains(&source) {
+                all.sources.push(source);
+            }
+        }
+    }
+    all.accounts.sort_by_key(|account| account.side != RecordKind::Measurement.key());
+    Ok(all)
+}
+
+fn of_side(mapping: &Mapping, side: &mapping::Side, needs: Option<&Needs>, run: &str) -> Result<(Made, SourceFile), Vec<Problem>> {
+    let written = mapping.sections.fill(&side.files.value, run);
+    let (path, shown) = mapping.place(&written);
+    let at = |problem: Problem| if problem.at.is_some() { problem } else { problem.at(&side.files.span) };
+    let file = foreign::read(&path, &shown, &side.format).map_err(|problems| problems.into_iter().map(at).collect::<Vec<_>>())?;
+    let made = record(&Of { mapping, side, needs, section: run, file: &file, shown: &shown })?;
+    Ok((made, SourceFile { path: written, sha256: file.sha256.clone(), read_as: read_as(&file) }))
+}

@@ -1,0 +1,78 @@
+//! Exchanged channels: a measured channel that agrees with another simulated channel better than with its own.
+
+use super::plausibility::consequence;
+use super::record::Work;
+use super::sections::Unit;
+use super::sides::{RecordOfSide, Sides, samples_of};
+use crate::check::plan::{Exchanged, Plausibility};
+use crate::graph::NodeId;
+use crate::metrics::resample::interpolate;
+use crate::metrics::statistics::correlation;
+use crate::result::Finding;
+use crate::run::signal::Samples;
+
+/// Channels of one rule in a section: name, and the signal.
+pub type Channels<'a> = Vec<(&'a str, NodeId)>;
+
+/// A finding for each measured channel that another simulated channel of the rule explains better.
+pub fn find(
+    work: &Work<'_>,
+    rule: &Plausibility,
+    test: Exchanged,
+    channels: &Channels<'_>,
+    unit: &Unit,
+    sides: &Sides<'_>,
+) -> Vec<Finding> {
+    let (Some(simulated), false) = (sides.simulated.first(), channels.len() < 2) else { return Vec::new() };
+    sides.measured.iter().flat_map(|measured| in_record((rule, test), channels, (work, unit), simulated, measured)).collect()
+}
+
+fn in_record(
+    (rule, test): (&Plausibility, Exchanged),
+    channels: &Channels<'_>,
+    (work, unit): (&Work<'_>, &Unit),
+    simulated: &RecordOfSide,
+    measured: &RecordOfSide,
+) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for (at, (name, node)) in channels.iter().enumerate() {
+        let Ok(own) = samples_of(&measured.found, *node) else { continue };
+        let with = |node: NodeId| samples_of(&simulated.found, node).ok().and_then(|other| agreement(own, other));
+        let Some(with_own) = with(*node) else { continue };
+        // No correlation is above 1: most channels need no comparison with the others.
+        if with_own + test.more >= 1.0 {
+            continue;
+        }
+        let others = channels.iter().enumerate().filter(|(other, _)| *other != at);
+        let best = others.filter_map(|(_, (other, node))| Some((*other, with(*node)?))).max_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((other, with_other)) = best.filter(|(_, best)| *best >= test.least && *best > with_own + test.more) else { continue };
+        findings.push(Finding {
+            code: rule.name.clone(),
+            channel: Some((*name).to_string()),
+            section: Some(unit.name.clone()),
+            campaign: unit.campaign_name.clone(),
+            record: Some(work.campaign(unit).record_in_words(measured.which)),
+            value: Some(with_own),
+            expected: Some(with_other),
+            unit: Some("-".into()),
+            says: format!(
+                "{}: the measured {name} agrees with the simulated {other} (correlation {with_other:.2}) better than with its own \
+                 ({with_own:.2})",
+                rule.title
+            ),
+            cause: rule.cause.clone(),
+            consequence: consequence(rule.otherwise),
+        });
+    }
+    findings
+}
+
+/// Correlation at the points of the measurement that the simulation covers.
+fn agreement(measured: &Samples, simulated: &Samples) -> Option<f64> {
+    let (axis, along) = (&measured.along.axis, &simulated.along.axis);
+    let (first, last) = (*along.first()?, *along.last()?);
+    let from = axis.partition_point(|at| *at < first);
+    let to = axis.partition_point(|at| *at <= last);
+    let values = measured.values.get(from..to)?;
+    correlation(values, &interpolate(along, &simulated.values, &axis[from..to]).ok()?)
+}
