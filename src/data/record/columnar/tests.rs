@@ -5,7 +5,7 @@ use crate::data::record::{Known, Record, read_headings, read_record, read_stretc
 use crate::data::write::{FileColumn, Values, parquet};
 use crate::units::Dimension;
 
-const FORCE: Dimension = Dimension([1, 1, -2, 0, 0]);
+const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
 
 fn wanted() -> [Wanted; 2] {
     [Wanted::new("time", Dimension::TIME), Wanted::new("Y", FORCE)]
