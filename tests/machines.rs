@@ -15,7 +15,7 @@ use std::process::Command;
 use common::program::{Ran, program, ran};
 use serde_json::Value;
 
-/// A drive of 500 kg with friction that its simulation lacks.
+/// A drive of 20 kg with friction that its simulation lacks.
 const VISCOUS: f64 = 200.0;
 const COULOMB: f64 = 20.0;
 const RATE: f64 = 200.0;
@@ -52,8 +52,8 @@ fn pair(folder: &Path, run: usize, seconds: f64) -> [PathBuf; 2] {
             v += size * w * (w * t + phase).cos();
             a -= size * w * w * (w * t + phase).sin();
         }
-        let _ = writeln!(simulated, "{t},{:.4}", 500.0 * a);
-        let force = 500.0 * a + VISCOUS * v + COULOMB * f64::signum(v) + 2.0 * noise();
+        let _ = writeln!(simulated, "{t},{:.4}", 20.0 * a);
+        let force = 20.0 * a + VISCOUS * v + COULOMB * f64::signum(v) + 2.0 * noise();
         let _ = writeln!(measured, "{t},{force:.4},{x:.7},{v:.7},{a:.7}");
     }
     let paths = ["sim", "meas"].map(|side| folder.join(format!("{side}{run}.csv")));
@@ -66,8 +66,8 @@ fn pair(folder: &Path, run: usize, seconds: f64) -> [PathBuf; 2] {
 const FILLED: &str = "
     force = []
     for x, v, a in zip(inputs['x'], inputs['v'], inputs['a']):
-        sign = (v > 0) - (v < 0)
-        force.append((500.0 + parameters['mass']) * a + parameters['viscous'] * v + parameters['coulomb'] * sign
+        sign = 1.0 if v > 0 else -1.0
+        force.append((20.0 + parameters['mass']) * a + parameters['viscous'] * v + parameters['coulomb'] * sign
                      + parameters['stiffness'] * x)
     return {'force': force}
 ";
@@ -146,7 +146,7 @@ fn what_is_written_checks_and_certifies_at_once() {
     }
     let done = machine.run(&["certify", ".", "--only", "results", "--out", "report"]);
     assert_eq!(done.code, 1, "{}", done.stderr);
-    assert!(done.stdout.contains("Verdict: not validated"), "{}", done.stdout);
+    assert!(done.stdout.contains("Verdict: not validated") && !done.stdout.contains(" not used"), "{}", done.stdout);
     let table = machine.text("sections.csv");
     assert!(table.starts_with("section,record,start [s],end [s],mean speed [m/s],amplitude [m]\n"), "{table}");
     assert!(table.lines().any(|line| line.starts_with("S01,R1,")) && table.lines().any(|line| line.contains(",R2,")), "{table}");
@@ -269,8 +269,8 @@ fn bands_and_sections_that_the_records_do_not_have_are_told() {
     let (certified, diagnosed) = (machine.run(&["certify", ".", "--only", "results", "--out", "report"]), only(&["--preflight"]));
     assert!(told(&diagnosed).is_none(), "the first section alone is looked at");
     let diagnosed = only(&["--out", "out"]);
-    assert!(told(&certified).is_some(), "{}{}", certified.stdout, certified.stderr);
-    assert_eq!(told(&certified), told(&diagnosed), "{}{}\n{}", certified.stdout, certified.stderr, diagnosed.stderr);
+    let (certified, diagnosed) = (told(&certified).expect("told"), told(&diagnosed).expect("told"));
+    assert!(certified.starts_with(&diagnosed), "{certified}\n{diagnosed}");
 }
 
 #[test]

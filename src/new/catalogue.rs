@@ -89,7 +89,8 @@ pub fn entries(domain: &str, all: &[Scales], roles: &Roles, sizes: &[(Allowance,
                 }
                 let name = format!("{}{}", key.text, scales.suffix);
                 let title = if scales.suffix.is_empty() { entry.title.clone() } else { format!("{} of {}", entry.title, scales.channel) };
-                let entry = Entry { parameter: name.clone(), name, title, measured_in: text("means"), unit, ..entry.clone() };
+                let term = entry.term.replacen(&key.text, &name, 1);
+                let entry = Entry { parameter: name.clone(), name, title, term, measured_in: text("means"), unit, ..entry.clone() };
                 found.push(sized(entry, 0.0, scale));
             }
             continue;
@@ -100,7 +101,8 @@ pub fn entries(domain: &str, all: &[Scales], roles: &Roles, sizes: &[(Allowance,
             "" => found.push(sized(Entry { group: "all_channels".into(), measured_in: "factor".into(), ..entry }, neutral, 1.0)),
             "axis" => {
                 let unit = if cut.over_distance { "m" } else { "s" };
-                let entry = Entry { unit: unit.into(), measured_in: "recorded minus true position".into(), ..entry };
+                let (group, measured_in) = ("all_channels".to_string(), "recorded minus true position".to_string());
+                let entry = Entry { unit: unit.into(), group, measured_in, ..entry };
                 found.push(sized(entry, neutral, cut.furthest));
             }
             _ => {

@@ -158,12 +158,13 @@ pub fn files(folder: &str, domain: &str, pairs: &[Pair]) -> Result<Made, Problem
     };
     let fill = |template: &str| filled(template, &parts).map_err(|problem| *problem);
     let own = |template: &str| Ok::<_, Problem>(fill(template)?.replace("\n\n\n", "\n\n"));
+    // The stub keeps the two blank lines that Python has before a function.
     let mut files = vec![
         ("campaign.yaml".to_string(), own(CAMPAIGN)?),
         (PROTOCOL_FILE.to_string(), canonical(&own(PROTOCOL)?)),
         (CATALOGUE_FILE.to_string(), own(CATALOGUE)?),
         ("sim.yaml".to_string(), own(SIM)?),
-        ("simulator.py".to_string(), own(STUB)?),
+        ("simulator.py".to_string(), fill(STUB)?),
         ("vehicle.yaml".to_string(), own(VEHICLE)?),
         ("sections.csv".to_string(), table),
     ];

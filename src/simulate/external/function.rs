@@ -67,7 +67,11 @@ impl External<'_> {
                 None => return Err(self.no_parameter(workers, name)),
             }
         }
-        let made = workers.call(section.name(), &parameters, &given).map_err(|failed| self.told(&failed, Some(section)))?;
+        let made = workers.call(section.name(), &parameters, &given).map_err(|failed| {
+            let problem = self.told(&failed, Some(section));
+            let set: Vec<String> = task.settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+            if set.is_empty() { problem } else { problem.help(format!("it was called with {}", set.join(", "))) }
+        })?;
         let called = |problem: Problem| Problem { says: format!("section `{}`: {}", section.name(), problem.says), ..problem };
         self.signals(section, &inputs, made).map_err(|problem| called(problem).at(&section.cell.span))
     }

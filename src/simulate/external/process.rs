@@ -9,6 +9,9 @@ use std::time::{Duration, Instant};
 use super::started::{self, Mark};
 use crate::disk;
 
+/// The file that takes what a program prints. It has no name, and is made by `disk`.
+pub(super) type Printed = File;
+
 /// A call of a program.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'a> {

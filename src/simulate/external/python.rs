@@ -1,7 +1,6 @@
 //! A Python function as a simulator: processes that stay, one for each worker, and JSON lines over their pipes.
 
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -11,7 +10,7 @@ use std::time::Duration;
 
 use serde_json::{Map, Value, json};
 
-use super::process::{end, last_lines};
+use super::process::{Printed, end, last_lines};
 use super::started::{self, Mark};
 use crate::disk;
 
@@ -56,7 +55,7 @@ struct Worker {
     child: Child,
     input: Option<ChildStdin>,
     lines: Receiver<String>,
-    errors: File,
+    errors: Printed,
     mark: Mark,
     /// Sections whose inputs it has.
     known: BTreeSet<String>,
