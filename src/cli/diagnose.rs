@@ -8,22 +8,23 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::convert_records::Records;
 use super::inputs::{Prepared, prepare, start_jobs};
-use super::output::{Console, Exit, reports};
+use super::output::{Console, Exit};
 use super::places::{CAMPAIGN, REPORT, check_folder, same};
-use super::simulate::load_catalogue;
 use super::simulator::{Chosen, SimulatorChoice};
 use crate::data::hash::sha256;
 use crate::data::write::Outputs;
 use crate::data::{Campaign, RecordKind};
+pub use crate::deliver::diagnosis_json as json;
+use crate::deliver::{self, Reports};
 use crate::diagnose::inputs::{Inputs, Reference};
 use crate::diagnose::settings::Settings;
 use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
 use crate::disk::SetKind;
 use crate::library;
+use crate::prepare::for_diagnosis;
 use crate::problem::{Problem, Problems, Severity};
-use crate::report::diagnosis as report;
 use crate::result::diagnosis::Diagnosis;
-use crate::simulate::{Builtin, sections};
+use crate::simulate::Builtin;
 
 #[derive(Debug, Args)]
 pub struct Diagnose {
@@ -117,8 +118,8 @@ impl Diagnose {
     }
 
     fn write(&self, campaign: &Campaign, outcome: &Outcome, console: &Console) -> Result<(), Problem> {
-        let files =
-            files(outcome).map_err(|problems| problems.0.into_iter().next().unwrap_or_else(|| Problem::error("report", "no report")))?;
+        let files = deliver::diagnosis(outcome, Reports::ALL)
+            .map_err(|problems| problems.0.into_iter().next().unwrap_or_else(|| Problem::error("report", "no report")))?;
         let mut outputs = Outputs::new(&self.out);
         files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes))?;
         // Both are written to disk before either is moved to its place.
@@ -144,17 +145,6 @@ impl Diagnose {
     }
 }
 
-/// All files of a diagnosis.
-fn files(outcome: &Outcome) -> Result<Vec<(String, Vec<u8>)>, Problems> {
-    let (data, figures) = (report::document(&outcome.diagnosis, &outcome.before), report::figures(&outcome.diagnosis));
-    reports(("diagnosis.json", "Every number of this diagnosis"), json(&outcome.diagnosis), &data, &figures)
-}
-
-/// The text of `diagnosis.json`.
-pub fn json(diagnosis: &Diagnosis) -> String {
-    serde_json::to_string_pretty(diagnosis).unwrap_or_default() + "\n"
-}
-
 /// 0 if the gap is explained, or if there is no significant gap.
 pub fn exit(diagnosis: &Diagnosis) -> Exit {
     match diagnosis.verdict {
@@ -174,12 +164,8 @@ pub fn diagnosed(
     problems: &mut Problems,
 ) -> Option<(Campaign, Outcome)> {
     let Prepared { compiled, campaign } = prepare(asked.folder, asked.protocol, &[], problems)?;
-    campaign.file_for_each_section().map_err(|problem| problems.push(problem)).ok()?;
     places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
-    let catalogue = load_catalogue(asked.catalogue, problems)?;
-    let settings = Settings::read(&catalogue, problems)?;
-    let sections = sections(&campaign, problems)?;
-    campaign.one_of_each().and_then(|()| campaign.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
+    let (catalogue, settings, sections) = for_diagnosis(&campaign, asked.catalogue, problems)?;
     let references: Vec<Campaign> = asked.references.iter().map(|folder| Campaign::open(folder, problems)).collect::<Option<_>>()?;
     for reference in &references {
         reference.one_of_each().and_then(|()| reference.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;

@@ -47,6 +47,11 @@ impl Hasher {
 pub struct Known(Arc<OnceLock<String>>);
 
 impl Known {
+    /// A hash that was computed before.
+    pub fn of(hash: String) -> Self {
+        Self(Arc::new(OnceLock::from(hash)))
+    }
+
     /// # Errors
     /// Of the computation.
     pub fn or<E>(&self, compute: impl FnOnce() -> Result<String, E>) -> Result<String, E> {

@@ -6,7 +6,6 @@ use super::facts::Facts;
 use super::record::needed;
 use super::sections::Unit;
 use crate::check::plan::{Plan, Side};
-use crate::data::record::read_headings;
 use crate::data::{Campaign, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
 
@@ -22,7 +21,7 @@ pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[&Unit]) -> Seen {
         let mut columns = BTreeSet::new();
         for unit in units {
             // A record that cannot be read is a fault of its section and is reported when it is opened.
-            let headings = campaign.place_of(which, &unit.cell).ok().and_then(|place| read_headings(&place.path, &place.shown).ok());
+            let headings = campaign.source_of(which, &unit.cell).ok().and_then(|source| source.headings().ok());
             columns.extend(headings.into_iter().flatten().map(|heading| heading.name));
         }
         seen.push((which, columns));

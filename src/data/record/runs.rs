@@ -4,7 +4,7 @@ use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
-use super::{Column, Format, Record, Wanted, columnar, find_columns, header, rows};
+use super::{Column, Format, Origin, Record, Wanted, columnar, find_columns, header, rows};
 use crate::data::hash::{Hasher, Known};
 use crate::data::text::{LONGEST_LINE, decode_from, long_line, open_text, read_line_of, unreadable};
 use crate::problem::Problem;
@@ -72,7 +72,7 @@ pub fn read_stretch(
         stretch.get_or_insert_with(|| Stretch::new(range.clone(), at, block.columns)).add(block.columns, block.first_row);
     })?;
     let at = axis_of(&run.columns, axis, shown)?;
-    stretch.unwrap_or_else(|| Stretch::new(range, at, &run.columns)).record(run, path, shown)
+    stretch.unwrap_or_else(|| Stretch::new(range, at, &run.columns)).record(run, Origin::File(path.to_path_buf()), shown)
 }
 
 /// Index of the axis among the columns.
@@ -122,10 +122,10 @@ impl Stretch {
     }
 
     /// The record of these rows.
-    pub fn record(self, run: Run, path: &Path, shown: &str) -> Result<Record, Vec<Problem>> {
+    pub fn record(self, run: Run, from: Origin, shown: &str) -> Result<Record, Vec<Problem>> {
         let axis = &self.columns[self.axis];
         let number = |value: f64| format!("{}{}", axis.unit.from_si(value), axis.unit.suffix());
-        let (from, to) = (number(self.range.start), number(self.range.end));
+        let (start, end) = (number(self.range.start), number(self.range.end));
         let record = Record {
             shown: shown.to_string(),
             rows: axis.values.len(),
@@ -134,16 +134,15 @@ impl Stretch {
             first_row: self.first_row,
             sha256: run.sha256,
             bytes: usize::try_from(run.bytes).unwrap_or(usize::MAX),
-            format: Format::of(path),
-            path: path.to_path_buf(),
+            from,
         };
         if let Some(row) = self.again {
             let row = record.row_shown(row - self.first_row);
-            let says = format!("`{}` enters the range from {from} to {to} again at row {row} of `{shown}`; it must increase", axis.name);
+            let says = format!("`{}` enters the range from {start} to {end} again at row {row} of `{shown}`; it must increase", axis.name);
             return Err(vec![Problem::error("axis-not-increasing", says)]);
         }
         if record.rows == 0 {
-            let says = format!("no sample of `{shown}` has a `{}` from {from} to {to}", axis.name);
+            let says = format!("no sample of `{shown}` has a `{}` from {start} to {end}", axis.name);
             return Err(vec![Problem::error("outside-record", says)]);
         }
         Ok(record)
