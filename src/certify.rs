@@ -1,5 +1,7 @@
 //! Certification: from a protocol and a campaign to the results of a report.
 
+mod about;
+mod again;
 mod pool;
 
 use indexmap::IndexMap;
@@ -7,20 +9,18 @@ use sha2::{Digest, Sha256};
 
 use crate::check::plan::{DatumKind, Parameter, Plan, Scalar, SetBy};
 use crate::check::{self, Overrides, diff, family::Family};
-use crate::data::campaign::Fact;
+use crate::data::Campaigns;
 use crate::data::hash::{hexadecimal, sha256};
-use crate::data::identification::Stated;
-use crate::data::origin::{ImportedRecord, Origin};
-use crate::data::{Campaign, Campaigns, qualified};
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
 use crate::result::{
-    CampaignInfo, CampaignMember, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, FittedTo, ImportedOne, ImportedSide,
-    OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, ReportItem,
+    CampaignInfo, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo,
 };
-use crate::run::{self, Progress, Settings};
+use crate::run::{self, Outcome, Progress, Settings};
 use crate::syntax::document::Block;
-use crate::yaml::{Node, Value};
+
+pub use about::About;
+pub use again::{Rules, Setting, again};
 
 /// A checked and compiled protocol.
 #[derive(Debug)]
@@ -72,10 +72,16 @@ pub fn certify<'a>(
 ) -> Result<Certification, Problems> {
     let campaigns = campaigns.into();
     let outcome = run::run(&compiled.plan, &compiled.graph, campaigns, settings, progress)?;
-    let campaign = campaign_info(&compiled.plan, campaigns, outcome.files, outcome.vehicle);
+    let about = About::of(&compiled.plan, campaigns, outcome.vehicle.clone());
+    Ok(certification(compiled, &about, outcome))
+}
+
+/// The result of a run with the descriptions of protocol and campaign.
+pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Certification {
+    let campaign = about.info(outcome.files);
     let mut notes = outcome.notes;
     notes.extend(campaign.origin.as_ref().map(|origin| format!("{}.", origin.says)));
-    Ok(Certification {
+    Certification {
         protocol: protocol_info(compiled),
         verdict: outcome.verdict,
         own_word: outcome.own_word,
@@ -93,109 +99,12 @@ pub fn certify<'a>(
         traces: outcome.traces,
         findings: outcome.findings,
         notes: parameters_set(&compiled.plan).into_iter().chain(unconfirmed(&compiled.plan)).chain(notes).collect(),
-    })
+    }
 }
 
-/// The campaign as printed in a report: all files read, with the records last, and the vehicle data, with those used by the protocol first.
+/// The campaign as printed in a report; `vehicle` are the data that the protocol reads.
 pub fn campaign_info<'a>(plan: &Plan, campaigns: impl Into<Campaigns<'a>>, records: Vec<FileHash>, vehicle: Vec<DataItem>) -> CampaignInfo {
-    let campaigns = campaigns.into();
-    let mut files = Vec::new();
-    for (number, campaign) in campaigns.iter().enumerate() {
-        let path = |path: &str| qualified(campaigns.name_of(number), path);
-        files.extend(campaign.files.iter().map(|file| FileHash {
-            path: path(&file.path),
-            sha256: file.sha256.clone(),
-            bytes: file.bytes,
-            record: None,
-        }));
-    }
-    files.extend(records);
-    if !campaigns.pooled() {
-        let campaign = campaigns.get(0);
-        return CampaignInfo {
-            name: campaign.name.clone(),
-            members: Vec::new(),
-            origin: campaign.origin.as_ref().map(|origin| origin_info(origin, &files)),
-            files,
-            vehicle: vehicles(plan, campaigns, &vehicle),
-            facts: campaign.facts.iter().map(fact_item).collect(),
-            report: campaign.report.iter().map(report_item).collect(),
-        };
-    }
-    let member = |campaign: &Campaign| CampaignMember {
-        short_name: campaign.short_name.value.clone(),
-        name: campaign.name.clone(),
-        sections: campaign.names.len(),
-        origin: campaign.origin.as_ref().map(|origin| origin_info(origin, &files)),
-        report: campaign.report.iter().map(report_item).collect(),
-    };
-    let members: Vec<CampaignMember> = campaigns.iter().map(member).collect();
-    CampaignInfo {
-        name: pool::name(&members),
-        origin: pool::origin(&members),
-        files,
-        vehicle: vehicles(plan, campaigns, &vehicle),
-        facts: pool::facts(
-            campaigns
-                .iter()
-                .map(|campaign| (campaign.short_name.value.as_str(), &campaign.facts))
-                .map(|(of, facts)| facts.iter().map(|fact| DataItem { of: Some(of.to_string()), ..fact_item(fact) }).collect()),
-        ),
-        report: pool::report(&members),
-        members,
-    }
-}
-
-/// The origin of the simulated records, compared with the files of this run.
-fn origin_info(origin: &Origin, files: &[FileHash]) -> OriginInfo {
-    let these = origin.fitted_to.iter().filter(|fitted| files.iter().any(|file| file.sha256 == fitted.sha256)).count();
-    let parts = [origin.program.as_str(), origin.command.as_str()];
-    let made_by = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
-    let effects = match origin.effects.len() {
-        0 => "without effects added".to_string(),
-        1 => format!("with the effect {}", origin.effects_in_words(" = ")),
-        _ => format!("with the effects {}", origin.effects_in_words(" = ")),
-    };
-    let fitted = match (origin.fitted_to.len(), these) {
-        (0, _) => String::new(),
-        (all, 0) => format!(", fitted to {all} measured records of another campaign"),
-        (all, these) if these == all => format!(", fitted to the same {all} measured records"),
-        (all, these) => format!(", fitted to {all} measured records, {these} of which are the same"),
-    };
-    let imported = imported(origin);
-    let only_imported = !imported.is_empty() && origin.effects.is_empty() && origin.fitted_to.is_empty();
-    let says = if only_imported {
-        let files = origin.sources.len();
-        format!("The records were imported from {files} files of other systems by {}; see How the records were made", origin.program)
-    } else {
-        format!("The simulated records were written by {made_by}, {effects}{fitted} (origin of the campaign)")
-    };
-    OriginInfo {
-        says,
-        imported,
-        made_by,
-        effects: origin.effects.iter().map(|effect| effect.in_words(" = ")).collect(),
-        fitted_to: origin.fitted_to.iter().map(|file| FittedTo { path: file.path.clone(), sha256: file.sha256.clone() }).collect(),
-        fitted_to_these: these,
-    }
-}
-
-/// How imported records were made, by side.
-fn imported(origin: &Origin) -> Vec<ImportedSide> {
-    let Some(imported) = &origin.imported else { return Vec::new() };
-    let record = |record: &ImportedRecord| ImportedOne {
-        section: record.section.clone(),
-        file: record.file.clone(),
-        sha256: origin.sources.iter().find(|source| source.path == record.file).map_or_else(String::new, |source| source.sha256.clone()),
-        read_as: record.read_as.clone(),
-        steps: record.steps.clone(),
-    };
-    let side = |(side, channels): &(String, Vec<String>)| ImportedSide {
-        side: side.clone(),
-        channels: channels.clone(),
-        records: imported.records.iter().filter(|one| one.side == *side).map(record).collect(),
-    };
-    imported.channels.iter().map(side).collect()
+    About::of(plan, campaigns, vehicle).info(records)
 }
 
 /// The protocol as printed in a report.
@@ -298,76 +207,5 @@ fn parameter_info(parameter: &Parameter) -> ParameterInfo {
         default: parameter.default.clone(),
         set_by: set_by.into(),
         unconfirmed: parameter.unconfirmed.clone(),
-    }
-}
-
-fn report_item((field, value): &Stated) -> ReportItem {
-    ReportItem {
-        path: field.group.into_iter().chain([field.key]).map(str::to_string).collect(),
-        title: field.title.into(),
-        clause: field.clause.map(str::to_string),
-        value: value.clone(),
-    }
-}
-
-fn fact_item(fact: &Fact) -> DataItem {
-    let plain = fact.name.replace('_', " ");
-    let name = if fact.group.is_empty() { plain } else { format!("{}: {plain}", fact.group.replace('_', " ")) };
-    DataItem {
-        name,
-        value: fact.text.clone(),
-        unit: fact.unit.clone().filter(|unit| unit != "-"),
-        used: false,
-        unit_assumed: false,
-        of: None,
-    }
-}
-
-/// The data of every vehicle: of each campaign and each state.
-fn vehicles(plan: &Plan, campaigns: Campaigns<'_>, used: &[DataItem]) -> Vec<DataItem> {
-    let mut all = Vec::new();
-    for (number, campaign) in campaigns.iter().enumerate() {
-        for vehicle in &campaign.vehicles {
-            let of = campaigns.vehicle_name(number, vehicle);
-            let own = used.iter().filter(|item| item.of == of).cloned().collect();
-            all.extend(vehicle_items(plan, &vehicle.data, own, of));
-        }
-    }
-    all
-}
-
-/// Values used by the protocol with their units, then all others of the file.
-fn vehicle_items(plan: &Plan, vehicle: &Node, used: Vec<DataItem>, of: Option<String>) -> Vec<DataItem> {
-    let mut rest = Vec::new();
-    flatten("", vehicle, &mut rest);
-    rest.iter_mut().for_each(|item| item.of.clone_from(&of));
-    let unused = rest.into_iter().filter(|item| !plan.vehicle.iter().any(|datum| datum.key == item.name));
-    used.into_iter().chain(unused).collect()
-}
-
-fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {
-    match &node.value {
-        Value::Map(entries) => {
-            for (key, value) in entries {
-                let name = if prefix.is_empty() { key.text.clone() } else { format!("{prefix}.{}", key.text) };
-                flatten(&name, value, items);
-            }
-        }
-        Value::List(list) => {
-            let value = list.iter().map(|item| item.raw.as_str()).collect::<Vec<_>>().join(", ");
-            items.push(DataItem { name: prefix.to_string(), value, unit: None, used: false, unit_assumed: false, of: None });
-        }
-        _ => {
-            let (value, unit) = number_and_unit(&node.raw);
-            items.push(DataItem { name: prefix.to_string(), value, unit, used: false, unit_assumed: false, of: None });
-        }
-    }
-}
-
-/// `9.5 m` in its parts; any other text is a value as it is.
-fn number_and_unit(text: &str) -> (String, Option<String>) {
-    match text.split_once(' ') {
-        Some((number, unit)) if number.parse::<f64>().is_ok_and(f64::is_finite) => (number.to_string(), Some(unit.trim().to_string())),
-        _ => (text.to_string(), None),
     }
 }

@@ -41,4 +41,5 @@ pub mod source;
 pub mod study;
 pub mod syntax;
 pub mod units;
+pub mod values;
 pub mod yaml;

@@ -1,23 +1,27 @@
 //! Problems of an input: code, place, message, help; collected, and printed in one format.
 
-use std::sync::Arc;
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::source::{Member, Span};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Severity {
     Error,
     Warning,
 }
 
 /// One problem in a protocol or a data file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Problem {
     pub severity: Severity,
     /// Stable code such as `unit-mismatch`, for tests and scripts.
-    pub code: &'static str,
+    #[serde(deserialize_with = "code")]
+    pub code: Code,
     /// The message.
     pub says: String,
     /// The span to underline.
@@ -33,6 +37,29 @@ pub struct Problem {
     /// For a family of blocks: the other members with the same problem, each with its message.
     pub members: Vec<(String, String)>,
 }
+
+/// A name for the type, since a plain `&str` would be taken for a part of the text that is read.
+type Code = &'static str;
+
+/// A code that was read. There are few different ones; each is kept once, for as long as the program runs.
+fn code<'de, D: Deserializer<'de>>(from: D) -> Result<Code, D::Error> {
+    static KNOWN: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let text = String::deserialize(from)?;
+    let Ok(mut known) = KNOWN.lock() else { return Err(D::Error::custom("the codes are not accessible")) };
+    if let Some(code) = known.get(text.as_str()) {
+        return Ok(code);
+    }
+    if text.len() > LONGEST_CODE || known.len() >= MOST_CODES {
+        return Err(D::Error::custom(format!("`{text}` is no code of a problem")));
+    }
+    let code: &'static str = Box::leak(text.into_boxed_str());
+    known.insert(code);
+    Ok(code)
+}
+
+/// Bounds of the codes that are read from a file, in characters and in number; the program itself has some hundred of at most 30.
+const LONGEST_CODE: usize = 64;
+const MOST_CODES: usize = 4096;
 
 /// A list of members longer than this is cut off.
 const MOST_LISTED: usize = 8;

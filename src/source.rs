@@ -6,6 +6,9 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 /// One input text: a protocol, a YAML or CSV file, or an excerpt of one.
 #[derive(PartialEq, Eq)]
 pub struct Source {
@@ -126,6 +129,45 @@ impl Span {
     }
 }
 
+/// A span as it is stored: with the lines that it is in, so that a problem is rendered as before.
+#[derive(Serialize, Deserialize)]
+struct Stored {
+    name: String,
+    first_line: usize,
+    text: String,
+    start: usize,
+    end: usize,
+}
+
+impl Serialize for Span {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let text = &self.source.text;
+        let boundary = |mut at: usize| {
+            at = at.min(text.len());
+            while !text.is_char_boundary(at) {
+                at -= 1;
+            }
+            at
+        };
+        let (start, end) = (boundary(self.start), boundary(self.end.max(self.start)));
+        let from = text[..start].rfind('\n').map_or(0, |at| at + 1);
+        let to_line = text[end..].find('\n').map_or(text.len(), |at| end + at);
+        let first_line = self.source.line_column(start).0;
+        let (name, text) = (self.source.name.clone(), text[from..to_line].to_string());
+        Stored { name, first_line, text, start: start - from, end: end - from }.serialize(to)
+    }
+}
+
+impl<'de> Deserialize<'de> for Span {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let Stored { name, first_line, text, start, end } = Stored::deserialize(from)?;
+        if start > end || end > text.len() || !text.is_char_boundary(start) || !text.is_char_boundary(end) {
+            return Err(D::Error::custom(format!("a place in `{name}` that is not in its text")));
+        }
+        Ok(Source::excerpt(name, text, first_line).span(start..end))
+    }
+}
+
 /// `file:line:column`
 impl fmt::Display for Span {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -200,7 +242,7 @@ impl Filled {
 }
 
 /// A value and the place where it was written.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spanned<T> {
     pub value: T,
     pub span: Span,
@@ -222,6 +264,21 @@ mod tests {
         assert_eq!(source.line_column(3), (10, 3));
         assert_eq!(source.line_column(5), (11, 1));
         assert_eq!(source.span(5..6).to_string(), "a.csv:11:1");
+    }
+
+    #[test]
+    fn a_stored_place_is_the_same_place() {
+        let source = Source::excerpt("a.csv", "ä,b\nc,ö,e\nf", 10);
+        for range in [0..2, 5..6, 7..9, 12..12, 5..13] {
+            let span = source.span(range);
+            let stored = serde_json::to_string(&span).expect("JSON");
+            let read: Span = serde_json::from_str(&stored).expect("a span");
+            assert_eq!((read.to_string(), read.text()), (span.to_string(), span.text()), "{stored}");
+            assert!(read.source.text.lines().count() <= 2);
+        }
+        for wrong in ["{\"name\":\"a\",\"first_line\":1,\"text\":\"ä\",\"start\":0,\"end\":1}", "{\"name\":\"a\"}"] {
+            assert!(serde_json::from_str::<Span>(wrong).is_err());
+        }
     }
 
     /// In `each {part}_limit` with `phase` inserted, places in the text refer to the source.

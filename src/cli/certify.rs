@@ -3,26 +3,16 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::inputs::{Pool, prepare_all, progress_bar, start_jobs};
 use super::output::{Console, Exit};
 use super::places::{REPORT, check_folder};
-use super::sign;
+use super::report::Report;
 use crate::certify::certify;
 use crate::data::Campaigns;
-use crate::deliver::{self, Reports};
-use crate::disk::{SIGNATURE, SetKind};
 use crate::problem::{Problems, plain};
-use crate::provenance::carried::REPORT_PDF;
-use crate::provenance::signature::{self, SecretKey, secret_key};
-use crate::provenance::statement;
-use crate::report::{estimates, findings, number};
-use crate::result::{Certification, StatisticResult, Verdict};
-use crate::run::Settings;
-
-/// Default number of distance plots of a report.
-pub const PLOTS: usize = 8;
+use crate::result::Certification;
 
 #[derive(Debug, Args)]
 pub struct Certify {
@@ -32,36 +22,14 @@ pub struct Certify {
     /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
     #[arg(long, short)]
     protocol: Option<String>,
-    /// Output folder; created if missing.
-    #[arg(long, short)]
-    out: PathBuf,
     /// Set a parameter of the protocol.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// Outputs in addition to results.json and the tables.
-    #[arg(long, value_enum, default_value_t = Only::All)]
-    only: Only,
-    /// Number of distance plots.
-    #[arg(long, default_value_t = PLOTS)]
-    plots: usize,
-    /// Sign report.pdf and statement.json with this secret key; see `fishplate sign`.
-    #[arg(long, value_name = "KEY")]
-    sign: Option<PathBuf>,
+    #[command(flatten)]
+    report: Report,
     /// Number of records processed in parallel [default: one per core]
     #[arg(long, short)]
     jobs: Option<NonZeroUsize>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-enum Only {
-    /// results.json, tables, report.pdf, report.html.
-    All,
-    /// results.json and tables.
-    Results,
-    /// results.json, tables, report.html.
-    Html,
-    /// results.json, tables, report.pdf.
-    Pdf,
 }
 
 impl Certify {
@@ -72,7 +40,7 @@ impl Certify {
         let mut problems = Problems::default();
         let prepared = prepare_all(&self.campaigns, self.protocol.as_deref(), &self.set, &mut problems);
         for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
-            if let Err(problem) = check_folder(&self.out, REPORT, campaign) {
+            if let Err(problem) = check_folder(&self.report.out, REPORT, campaign) {
                 problems.push(problem);
             }
         }
@@ -80,187 +48,22 @@ impl Certify {
         let Some(Pool { compiled, campaigns, found: searched, .. }) = prepared.filter(|_| !problems.any_error()) else {
             return Exit::Wrong;
         };
-        // The password is read before the computation, so that a wrong one is reported at once.
-        let key = match self.sign.as_deref().map(|path| secret_key(path, sign::password())).transpose() {
+        let key = match self.report.key(console) {
             Ok(key) => key,
-            Err(problem) => return console.fail(problem, Exit::Wrong),
+            Err(exit) => return exit,
         };
         let bar = progress_bar(console, Campaigns::from(&campaigns).sections());
-        let settings = Settings { traces: if self.only == Only::Results { 0 } else { self.plots } };
-        let found = certify(&compiled, &campaigns, settings, &|section| {
+        let found = certify(&compiled, &campaigns, self.report.settings(), &|section| {
             bar.set_message(plain(section));
             bar.inc(1);
         });
         bar.finish_and_clear();
-        let found = match found {
-            Ok(found) => Certification { found: searched, ..found },
+        match found {
+            Ok(found) => self.report.write(&Certification { found: searched, ..found }, key.as_ref(), console),
             Err(problems) => {
                 console.problems(&problems);
-                return Exit::Wrong;
+                Exit::Wrong
             }
-        };
-        let files = match self.files(&found, key.as_ref()) {
-            Ok(files) => files,
-            Err(problems) => {
-                console.problems(&problems);
-                return Exit::Unfinished;
-            }
-        };
-        if let Err(exit) = console.write_all(SetKind::Report, &self.out, &files) {
-            return exit;
-        }
-        if !console.quiet {
-            console.print(&summary(&found, console));
-            console.say(&format!("written: {}", self.out.display()));
-        }
-        if found.verdict == Verdict::Validated { Exit::Done } else { Exit::DoesNotHold }
-    }
-
-    /// All files of the report, by path relative to the output folder.
-    fn files(&self, found: &Certification, key: Option<&SecretKey>) -> Result<Vec<(String, Vec<u8>)>, Problems> {
-        let pdf = matches!(self.only, Only::All | Only::Pdf);
-        let html = matches!(self.only, Only::All | Only::Html);
-        let mut files = deliver::certification(found, Reports { pdf, html })?;
-        if let Some(key) = key {
-            let signed = files.iter().filter(|(name, _)| [REPORT_PDF, statement::FILE].contains(&name.as_str()));
-            let signed = signed.map(|(name, bytes)| Ok((format!("{name}{SIGNATURE}"), signature::sign(key, name, bytes)?.into_bytes())));
-            let signed = signed.collect::<Result<Vec<_>, _>>().map_err(|problem| Problems(vec![problem]))?;
-            files.extend(signed);
-        }
-        Ok(files)
-    }
-}
-
-/// The table of verdicts for the terminal.
-fn summary(found: &Certification, console: &Console) -> String {
-    let paint = |text: String, holds: Option<bool>| holds.map_or(text.clone(), |holds| console.paint(&text, holds));
-    let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
-    out += &statistics(found, console);
-    out += &estimated(found, console);
-    out.push('\n');
-    let used = found.sections.iter().filter(|section| section.used).count();
-    out += &format!("{used} of {} sections used\n", found.sections.len());
-    for section in found.sections.iter().filter(|section| !section.used) {
-        out += &format!("  {} not used: {}\n", section.section, section.reason.clone().unwrap_or_default());
-    }
-    for row in findings::rows(&found.findings) {
-        out += &format!("finding: {}\n", findings::line(&row));
-    }
-    for note in &found.notes {
-        out += &format!("note: {note}\n");
-    }
-    let holds = found.verdict == Verdict::Validated;
-    let title = found.verdicts.iter().find(|verdict| verdict.overall).map_or(String::new(), |verdict| format!(", {}", verdict.title));
-    out += &format!("\n{}\n", paint(format!("Verdict{title}: {}", found.verdict_in_words()), Some(holds)));
-    for reason in &found.reasons {
-        out += &format!("  {reason}\n");
-    }
-    for verdict in found.verdicts.iter().filter(|verdict| !verdict.overall) {
-        out += &format!("{}: {}\n", verdict.title, paint(verdict.word.clone(), verdict.outcome.holds()));
-        for reason in &verdict.reasons {
-            out += &format!("  {reason}\n");
         }
     }
-    out
-}
-
-fn verdict(holds: Option<bool>, marginal: bool, console: &Console) -> String {
-    let word = match holds {
-        Some(true) => "met",
-        Some(false) => "NOT MET",
-        None => "not assessable",
-    };
-    let word = format!("{word}{}", if marginal { ", marginal" } else { "" });
-    holds.map_or(word.clone(), |holds| console.paint(&word, holds))
-}
-
-fn shown(value: Option<f64>) -> String {
-    value.map_or("-".to_string(), |value| number::significant(value, 4))
-}
-
-fn ratio(statistic: &StatisticResult) -> String {
-    statistic.normalised.map_or("-".to_string(), |share| format!("{share:.3}"))
-}
-
-/// Statistics that are told one by one: those of comparisons.
-fn statistics(found: &Certification, console: &Console) -> String {
-    let told: Vec<_> = found.quantities.iter().filter(|quantity| quantity.from.is_none() || quantity.statistics.is_empty()).collect();
-    if told.is_empty() && !found.quantities.is_empty() {
-        return String::new();
-    }
-    let width = told.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);
-    let mut out = format!(
-        "{:width$}  {:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}\n",
-        "quantity", "unit", "statistic", "pairs", "n", "value", "limit", "|v|/limit"
-    );
-    for quantity in told {
-        for (index, statistic) in estimates::single(quantity).into_iter().enumerate() {
-            let name = if index == 0 { quantity.id.as_str() } else { "" };
-            let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
-            let unit = if index == 0 { quantity.unit.as_str() } else { "" };
-            out += &format!(
-                "{name:width$}  {unit:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}  {}\n",
-                format!("{}{scope}", statistic.title),
-                statistic.count,
-                statistic.n,
-                shown(statistic.value),
-                shown(statistic.limit),
-                ratio(statistic),
-                verdict(statistic.holds, statistic.marginal, console)
-            );
-        }
-        if let (Some(reason), true) = (&quantity.reason, quantity.statistics.is_empty()) {
-            out += &format!("{:width$}  {reason}\n", quantity.id);
-        }
-    }
-    out
-}
-
-/// One line for each limit of assessed quantities and each limit by group: how many groups hold, and the largest ratio with its place.
-fn estimated(found: &Certification, console: &Console) -> String {
-    let limits: Vec<_> = found
-        .quantities
-        .iter()
-        .flat_map(|quantity| estimates::condensed(quantity).into_iter().map(move |limit| (quantity, limit)))
-        .collect();
-    if limits.is_empty() {
-        return String::new();
-    }
-    let longest = |texts: &mut dyn Iterator<Item = usize>, least: usize| texts.max().unwrap_or(0).max(least);
-    let ids = longest(&mut limits.iter().map(|(quantity, _)| quantity.id.chars().count()), 8);
-    let titles = longest(&mut limits.iter().map(|(_, limit)| limit.results[0].title.chars().count()), 8);
-    let places = longest(&mut limits.iter().map(|(_, limit)| limit.decisive().scope.chars().count()), 10);
-    let compared = found.quantities.iter().any(|quantity| quantity.from.is_none());
-    let mut out = format!(
-        "{}{:ids$}  {:>8}  {:titles$}  {:>12}  {:>12}  {:>9}  {:places$}  groups met\n",
-        if compared { "\n" } else { "" },
-        "quantity",
-        "unit",
-        "estimate",
-        "largest",
-        "limit",
-        "|v|/limit",
-        "where"
-    );
-    let mut before = "";
-    for (quantity, limit) in &limits {
-        let decisive = limit.decisive();
-        out += &format!(
-            "{:ids$}  {:>8}  {:titles$}  {:>12}  {:>12}  {:>9}  {:places$}  {}, {}\n",
-            if before == quantity.id { "" } else { &quantity.id },
-            decisive.unit,
-            decisive.title,
-            shown(decisive.value),
-            shown(decisive.limit),
-            ratio(decisive),
-            if decisive.value.is_some() { decisive.scope.as_str() } else { "-" },
-            limit.holding(),
-            verdict(limit.holds(), limit.results.iter().any(|one| one.marginal), console)
-        );
-        before = &quantity.id;
-    }
-    if limits.iter().any(|(_, limit)| limit.by_group()) {
-        out += "all groups: report, results.json\n";
-    }
-    out
 }

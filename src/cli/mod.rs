@@ -14,6 +14,8 @@ mod needs;
 mod output;
 mod places;
 mod protocols;
+mod reduce;
+mod report;
 mod sections;
 mod sign;
 mod simulate;
@@ -59,6 +61,14 @@ enum Command {
         after_help = "Examples:\n  fishplate certify examples/coach --out target/coach-report\n  fishplate certify examples/coach-good examples/coach --out target/coach-pool"
     )]
     Certify(certify::Certify),
+    /// Evaluate a part of the sections of a campaign to a file of values, to be judged together with the other parts.
+    #[command(
+        after_help = "Example:\n  fishplate reduce examples/coach --shard 0/2 --out target/values-0.parquet\n  fishplate reduce examples/coach --shard 1/2 --out target/values-1.parquet\n  fishplate judge target/values-0.parquet target/values-1.parquet --out target/judged"
+    )]
+    Reduce(reduce::Reduce),
+    /// Write the report of a campaign from the values of all its parts: the same bytes as those of `certify`.
+    #[command(after_help = "Example:\n  fishplate judge target/values-0.parquet target/values-1.parquet --out target/judged")]
+    Judge(reduce::Judge),
     /// Check that a report is consistent and, with its campaign, that the same files still give the same numbers and pages.
     #[command(
         after_help = "Example:\n  fishplate verify target/coach-report/report.pdf examples/coach\n\nExit code: 0 everything agrees, 1 something differs, 2 an input is wrong, 3 the check could not be completed"
@@ -207,6 +217,8 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
     let console = Console::new(arguments.quiet, arguments.color);
     match arguments.command {
         Command::Certify(certify) => certify.run(&console),
+        Command::Reduce(reduce) => reduce.run(&console),
+        Command::Judge(judge) => judge.run(&console),
         Command::Verify(verify) => verify.run(&console),
         Command::Trace(trace) => trace.run(&console),
         Command::Keygen(keygen) => keygen.run(&console),

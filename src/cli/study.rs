@@ -8,6 +8,7 @@ use clap::{Args, Subcommand};
 use super::inputs::{prepare_all, progress_bar, start_jobs};
 use super::output::{Console, Exit};
 use super::places::{REPORT, check_folder};
+use super::reduce::joined;
 use super::values::{numbers, values};
 use crate::data::Campaigns;
 use crate::deliver::{self, Reports};
@@ -15,8 +16,10 @@ use crate::disk::SetKind;
 use crate::problem::{Problem, Problems, plain};
 use crate::report::study as report;
 use crate::result::study as found;
-use crate::robustness::{Asked, Settings, Synchronisation, Vary};
+use crate::robustness::{self, Asked, Settings, Synchronisation, Vary};
+use crate::run::Row;
 use crate::study;
+use crate::values::Joined;
 
 #[derive(Debug, Subcommand)]
 pub enum Study {
@@ -58,7 +61,7 @@ pub enum Study {
 
 #[derive(Debug, Args)]
 pub struct Common {
-    /// Folder of the campaign; several are evaluated as one.
+    /// Folder of the campaign; several are evaluated as one. `study sections` also takes files of values, of all parts.
     #[arg(required = true, value_name = "CAMPAIGN")]
     campaigns: Vec<PathBuf>,
     /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
@@ -99,6 +102,9 @@ impl Study {
             return exit;
         }
         let mut problems = common.wrong();
+        if common.campaigns.iter().all(|path| path.extension().is_some_and(|ending| ending == "parquet")) {
+            return self.of_values(common, problems, console);
+        }
         let asked = self.asked(&mut problems);
         let prepared = prepare_all(&common.campaigns, common.protocol.as_deref(), &common.set, &mut problems);
         for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
@@ -121,6 +127,42 @@ impl Study {
             bar.inc(1);
         });
         bar.finish_and_clear();
+        match found {
+            Ok(study) => write(common, &study, console),
+            Err(problems) => {
+                console.problems(&problems);
+                Exit::Wrong
+            }
+        }
+    }
+
+    /// The study of sections that `reduce` evaluated.
+    fn of_values(&self, common: &Common, mut problems: Problems, console: &Console) -> Exit {
+        if !matches!(self, Self::Sections { .. }) {
+            let says = "this study evaluates records again, and files of values contain none";
+            problems.push(Problem::error("values-unsuitable", says).help("give the campaign, or use `study sections`"));
+        }
+        if common.protocol.is_some() || !common.set.is_empty() {
+            let says = "values are of a protocol and its parameters already: `--protocol` and `--set` have no effect on them";
+            problems.push(Problem::error("values-unsuitable", says).help("give them to `fishplate reduce`"));
+        }
+        let joined = if problems.any_error() { None } else { joined(&common.campaigns, &mut problems) };
+        let several = |joined: &Joined| joined.sections().iter().flat_map(|(_, values)| values.rows.iter().flatten()).any(is_of_record);
+        if joined.as_ref().is_some_and(several) {
+            let says = "a selection takes one value of each section and signal, and the values are of several records";
+            problems.push(Problem::error("several-records", says));
+        }
+        console.problems(&problems);
+        let Some(joined) = joined.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let found = robustness::countable(&joined.compiled).and_then(|()| {
+            let evaluated = joined.evaluated()?;
+            if let Some(says) = evaluated.missing() {
+                let problem = Problem::error("values-missing", says).help("give the files of all parts");
+                return Err(Problems(vec![problem]));
+            }
+            let campaign = joined.head.about.info(evaluated.files.clone());
+            robustness::sections_of(&joined.compiled, &evaluated, campaign, &common.settings())
+        });
         match found {
             Ok(study) => write(common, &study, console),
             Err(problems) => {
@@ -163,6 +205,11 @@ impl Study {
             }
         }
     }
+}
+
+/// Whether a row names its record, as it does where there are several of a side.
+fn is_of_record(row: &Row) -> bool {
+    row.record.is_some()
 }
 
 impl Common {

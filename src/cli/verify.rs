@@ -38,7 +38,7 @@ pub struct Verify {
     #[arg(long)]
     all: bool,
     /// Number of distance plots of the report.
-    #[arg(long, default_value_t = super::certify::PLOTS)]
+    #[arg(long, default_value_t = super::report::PLOTS)]
     plots: usize,
     /// Number of records processed in parallel [default: one per core]
     #[arg(long, short)]

@@ -1,10 +1,12 @@
 //! What an import did, in `origin.yaml`: the mapping, and for each record its source and the steps with their numbers.
 
+use serde::{Deserialize, Serialize};
+
 use super::write::yaml_text;
 use crate::problem::{Problem, Problems};
 use crate::yaml::{Node, Value};
 
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Imported {
     /// The text of the mapping.
     pub mapping: String,
@@ -14,7 +16,7 @@ pub struct Imported {
 }
 
 /// How one record was made.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ImportedRecord {
     /// `measurement` or `simulation`.
     pub side: String,

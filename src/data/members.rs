@@ -2,6 +2,8 @@
 
 use std::sync::{Arc, OnceLock};
 
+use serde::{Deserialize, Serialize};
+
 use super::campaign::RecordKind;
 use super::folder::Folder;
 use crate::problem::{Problem, Problems};
@@ -22,7 +24,7 @@ pub(super) struct RecordFolder {
 }
 
 /// One of the records of a section: its kind, and which of several of that kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct WhichRecord {
     pub kind: RecordKind,
     pub number: usize,

@@ -2,6 +2,8 @@
 
 pub use super::imported::{Imported, ImportedRecord};
 
+use serde::{Deserialize, Serialize};
+
 use super::write::yaml_text;
 use crate::problem::{Problem, Problems};
 use crate::yaml::{Node, Value};
@@ -12,7 +14,7 @@ pub const ORIGIN_FILE: &str = "origin.yaml";
 pub const ORIGIN_KEY: &str = "origin";
 
 /// Origin of the simulated records of a campaign.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Origin {
     /// Program and version.
     pub program: String,
@@ -32,7 +34,7 @@ pub struct Origin {
 }
 
 /// An effect with its size.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OriginEffect {
     pub effect: String,
     /// Name, value, unit.
@@ -44,7 +46,7 @@ pub struct OriginEffect {
 }
 
 /// A file by its path in its campaign.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OriginFile {
     pub path: String,
     pub sha256: String,

@@ -74,6 +74,16 @@ pub(super) fn read_plain(path: &Path, shown: &str, buffer: &mut Vec<u8>) -> Resu
     read_whole(path, shown, LARGEST_RECORD, None, buffer)
 }
 
+/// Reads all bytes of a plain file of any format, not larger than a limit.
+///
+/// # Errors
+/// As [`read_bytes`], without a look at the ending.
+pub fn read_file(path: &Path, shown: &str, limit: u64) -> Result<Vec<u8>, Problem> {
+    let mut bytes = Vec::new();
+    read_whole(path, shown, limit, None, &mut bytes)?;
+    Ok(bytes)
+}
+
 /// The size of a record of any length that is not a text.
 pub(super) fn plain_size(path: &Path, shown: &str) -> Result<u64, Problem> {
     size(path, shown, u64::MAX)

@@ -7,17 +7,15 @@ use serde_json::Value;
 
 use super::pdf::Attachments;
 use super::results::Results;
-use crate::certify::{Compiled, compile};
-use crate::check::family::{self, Family};
-use crate::check::{Override, Overrides, plan::SetBy};
+use crate::certify::{Compiled, again};
+use crate::check::family::Family;
 use crate::data::hash::sha256;
 use crate::data::text::{decode, read_bytes};
 use crate::disk;
 use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::report::attached;
-use crate::source::{Source, Spanned};
-use crate::syntax::document::Text;
+use crate::source::Source;
 
 /// Maximum size of a report in bytes; a report with 13 sections has two million.
 const REPORT: u64 = 512 << 20;
@@ -181,33 +179,6 @@ impl Carried {
 
     /// Compiles the protocol with the parameters in the results.
     pub fn compiled(&self, sources: &[Arc<Source>], problems: &mut Problems) -> Option<Compiled> {
-        let next = |_: &str, from: &Source| {
-            let at = sources.iter().position(|source| source.name == from.name).map_or(0, |at| at + 1);
-            sources
-                .get(at)
-                .cloned()
-                .ok_or_else(|| Box::new(Problem::error("protocol-missing", "the protocol extends one that the report does not contain")))
-        };
-        let family = family::read(sources.first()?, &next, problems);
-        if problems.any_error() {
-            return None;
-        }
-        compile(family, &self.overrides(), problems)
-    }
-
-    fn overrides(&self) -> Overrides {
-        let mut overrides = Overrides::new();
-        for parameter in &self.results.protocol.parameters {
-            let set_by = match parameter.set_by.as_str() {
-                "campaign" => SetBy::Campaign,
-                "command line" => SetBy::CommandLine,
-                _ => continue,
-            };
-            let source = Source::new(format!("parameter {}", parameter.name), parameter.value.clone());
-            let text = Spanned::new(parameter.value.clone(), source.whole());
-            let text = Text { text: text.value, span: text.span, exact: true };
-            overrides.insert(parameter.name.clone(), Override { text, set_by });
-        }
-        overrides
+        again(sources, &self.results.protocol.parameters, problems)
     }
 }

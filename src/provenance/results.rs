@@ -3,6 +3,7 @@
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
+use crate::certify::Setting;
 use crate::check::plan::Plan;
 use crate::result::{DomainResult, Finding};
 use crate::run::replay::{Recorded, RecordedSection, RecordedValue};
@@ -30,7 +31,7 @@ pub struct Protocol {
     pub name: String,
     pub title: String,
     pub sha256: String,
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<Setting>,
     pub files: Vec<ProtocolFile>,
 }
 
@@ -38,13 +39,6 @@ pub struct Protocol {
 pub struct ProtocolFile {
     pub name: String,
     pub sha256: String,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-pub struct Parameter {
-    pub name: String,
-    pub value: String,
-    pub set_by: String,
 }
 
 #[derive(Clone, Debug, Deserialize)]

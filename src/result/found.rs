@@ -1,9 +1,9 @@
 //! Sections that were found in runs, and what was rejected.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What the search for sections gave.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FoundSections {
     /// Which of several campaigns.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -17,7 +17,7 @@ pub struct FoundSections {
 }
 
 /// The search in one run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FoundInRun {
     pub run: String,
     /// The part of the run that all its records cover.
@@ -36,7 +36,7 @@ pub struct FoundInRun {
 }
 
 /// What would have to be added to the distance of the measurement, along a run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Drift {
     pub points: Vec<DriftPoint>,
     /// Whether it was added.
@@ -44,7 +44,7 @@ pub struct Drift {
 }
 
 /// The shift at a section, in `axis_unit`, with its 95 % interval.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DriftPoint {
     pub section: String,
     pub start: f64,
@@ -55,14 +55,14 @@ pub struct DriftPoint {
     pub correlation: f64,
 }
 
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Rejected {
     pub reason: String,
     pub places: usize,
 }
 
 /// Places next to each other where no section begins, for the same reason.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stretch {
     pub from: f64,
     pub to: f64,

@@ -16,7 +16,7 @@ mod spread;
 pub mod study;
 pub mod verdict;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 pub use domain::{CoordinateRange, DomainResult, DomainSection, WantedPoint};
 pub use finding::{Consequence, Finding};
@@ -179,7 +179,7 @@ fn as_tree<S: serde::Serializer>(items: &[ReportItem], to: S) -> Result<S::Ok, S
     report::tree(items).serialize(to)
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FileHash {
     pub path: String,
     pub sha256: String,
@@ -189,7 +189,7 @@ pub struct FileHash {
 }
 
 /// Identification of a record.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RecordOf {
     /// `measurement`, `simulation` or `track`.
     pub kind: String,
@@ -218,7 +218,7 @@ pub struct RulePlace {
 }
 
 /// A named value of the campaign or the vehicle, as text.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DataItem {
     pub name: String,
     pub value: String,
@@ -257,7 +257,7 @@ pub struct SectionResult {
 }
 
 /// One requirement on a section.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CheckResult {
     pub name: String,
     pub title: String,
@@ -314,7 +314,7 @@ pub struct DomainRange {
 }
 
 /// Simulated and measured signal of one section, filtered as specified for the quantity, thinned for plotting.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Trace {
     pub quantity: String,
     pub section: String,
@@ -325,8 +325,10 @@ pub struct Trace {
     pub unit: String,
     pub axis: String,
     pub axis_unit: String,
-    /// The evaluated section on the axis.
+    /// The evaluated section on the axis; of a loop the range of the measurement, without bounds where there is none.
+    #[serde(deserialize_with = "unbounded_below")]
     pub start: f64,
+    #[serde(deserialize_with = "unbounded_above")]
     pub end: f64,
     pub measured: Curve,
     pub simulated: Curve,
@@ -335,7 +337,16 @@ pub struct Trace {
     pub others: Vec<(String, Curve)>,
 }
 
-#[derive(Clone, Debug, Default, Serialize)]
+/// JSON has no infinity: an empty range reaches from the one to the other.
+fn unbounded_below<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
+}
+
+fn unbounded_above<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::NEG_INFINITY))
+}
+
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Curve {
     pub x: Vec<f64>,
     pub y: Vec<f64>,

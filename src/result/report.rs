@@ -1,9 +1,11 @@
 //! Identification of a report, as stated by the campaign.
 
+use serde::{Deserialize, Serialize};
+
 use serde_json::{Map, Value};
 
 /// An item that an assessor expects in a report.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ReportItem {
     /// Path in the block `report` of the campaign: its key, preceded by the key of the enclosing map, if any.
     pub path: Vec<String>,

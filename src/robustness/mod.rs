@@ -12,6 +12,7 @@ use crate::certify::{Compiled, campaign_info, protocol_info};
 use crate::check::plan::{Decision, Plan};
 use crate::data::Campaigns;
 use crate::problem::{Problem, Problems};
+use crate::result::CampaignInfo;
 use crate::result::study::{Found, Reduction, SelectionStudy, Study};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::study::case::Case;
@@ -43,9 +44,18 @@ pub fn sections<'a>(
 ) -> Result<Study, Problems> {
     let campaigns = campaigns.into();
     let evaluated = evaluate(&compiled.plan, &compiled.graph, campaigns, &Shifts::NONE, progress)?.swap_remove(0);
-    let (case, reduction) = case_of(&evaluated, &compiled.plan, settings).map_err(too_few)?;
-    let found = SelectionStudy { reduction, ..selections(&case, &settings.selections) };
-    Ok(joined(compiled, campaigns, &evaluated, Found::Sections(found)))
+    let vehicle = evaluated.vehicle(&compiled.plan);
+    sections_of(compiled, &evaluated, campaign_info(&compiled.plan, campaigns, evaluated.files.clone(), vehicle), settings)
+}
+
+/// The same of sections that were evaluated before.
+///
+/// # Errors
+/// `too-few-sections`.
+pub fn sections_of(compiled: &Compiled, evaluated: &Evaluated, campaign: CampaignInfo, settings: &Settings) -> Result<Study, Problems> {
+    let (case, reduction) = case_of(evaluated, &compiled.plan, settings).map_err(too_few)?;
+    let found = Found::Sections(SelectionStudy { reduction, ..selections(&case, &settings.selections) });
+    Ok(Study { protocol: protocol_info(compiled), campaign, notes: evaluated.notes().to_vec(), found })
 }
 
 /// A study counts limits of selections: the overall verdict must rest on limits alone.

@@ -18,10 +18,15 @@ pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[&Unit]) -> Seen {
     let sides = Side::ALL.into_iter().filter(|side| plan.reads(*side)).map(Side::kind);
     let kinds = sides.chain(Some(RecordKind::Track).filter(|kind| campaign.has(*kind)));
     for which in kinds.flat_map(|kind| campaign.records(kind)) {
-        let mut columns = BTreeSet::new();
+        let (mut columns, mut read) = (BTreeSet::new(), BTreeSet::new());
         for unit in units {
             // A record that cannot be read is a fault of its section and is reported when it is opened.
-            let headings = campaign.source_of(which, &unit.cell).ok().and_then(|source| source.headings().ok());
+            let Ok(source) = campaign.source_of(which, &unit.cell) else { continue };
+            // Sections of a run are in one file.
+            if !read.insert(source.inside().to_string()) {
+                continue;
+            }
+            let headings = source.headings().ok();
             columns.extend(headings.into_iter().flatten().map(|heading| heading.name));
         }
         seen.push((which, columns));

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use rayon::slice::ParallelSliceMut;
+use serde::{Deserialize, Serialize};
 
 use super::plausibility::consequence;
 use super::section::SectionValues;
 use super::sections::Unit;
 use crate::check::plan::{Distinct, Plan, Plausibility, Test};
-use crate::data::{Campaigns, RecordKind, WhichRecord};
+use crate::data::{RecordKind, WhichRecord};
 use crate::result::Finding;
 
 /// Number of consecutive samples of a mark. Two independent signals with a resolution of a thousandth of their range agree in eight
@@ -25,21 +26,24 @@ const LEAST: usize = 6;
 const NAMED: usize = 4;
 
 /// Marks of one signal in one section.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Print {
     rule: String,
     channel: String,
     which: WhichRecord,
-    /// Sorted, without duplicates.
-    marks: Vec<u64>,
+    /// The record in words: `measurement run1`.
+    record: String,
+    /// Sorted, without duplicates. A file of values has them in binary form.
+    #[serde(skip)]
+    pub marks: Vec<u64>,
 }
 
 impl Print {
-    pub fn of(rule: &str, channel: &str, which: WhichRecord, samples: &[f64]) -> Self {
+    pub fn of(rule: &str, channel: &str, (which, record): (WhichRecord, String), samples: &[f64]) -> Self {
         let mut marks = marks(samples);
         marks.sort_unstable();
         marks.dedup();
-        Self { rule: rule.to_string(), channel: channel.to_string(), which, marks }
+        Self { rule: rule.to_string(), channel: channel.to_string(), which, record, marks }
     }
 }
 
@@ -79,10 +83,18 @@ fn mixed(mut bits: u64) -> u64 {
 type Place = (usize, usize);
 
 /// Two records that share signals: the later and the earlier one, with the channels of both.
-type Shared<'a> = BTreeMap<(usize, WhichRecord, usize, WhichRecord), Vec<(&'a str, &'a str)>>;
+type Shared<'a> = BTreeMap<(usize, WhichRecord, usize, WhichRecord), Found<'a>>;
+
+/// Channels of the later and of the earlier record, and both records in words.
+#[derive(Debug, Default, PartialEq)]
+struct Found<'a> {
+    channels: Vec<(&'a str, &'a str)>,
+    later: &'a str,
+    earlier: &'a str,
+}
 
 /// Copies among the signals of every rule with `distinct`.
-pub fn find(plan: &Plan, campaigns: Campaigns<'_>, units: &[Unit], values: &[SectionValues]) -> Vec<Finding> {
+pub fn find(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut done: Vec<&str> = Vec::new();
     for rule in &plan.plausibility {
@@ -91,15 +103,14 @@ pub fn find(plan: &Plan, campaigns: Campaigns<'_>, units: &[Unit], values: &[Sec
             continue;
         }
         done.push(&rule.name);
-        for ((later, which, earlier, of), channels) in shared(&rule.name, distinct, values) {
+        for ((later, which, earlier, of), found) in shared(&rule.name, distinct, values) {
             // A repeated section may be compared with the same simulation.
             let again = later != earlier && units[later].site == units[earlier].site;
             if again && (which.kind, of.kind) == (RecordKind::Simulation, RecordKind::Simulation) {
                 continue;
             }
-            let words = |unit: &Unit, which| campaigns.get(unit.campaign).record_in_words(which);
             let (later, earlier) = (&units[later], &units[earlier]);
-            let found = finding(rule, (&later.name, words(later, which)), (&earlier.name, words(earlier, of)), &channels);
+            let found = finding(rule, (&later.name, found.later), (&earlier.name, found.earlier), &found.channels);
             findings.push(Finding { campaign: later.campaign_name.clone(), ..found });
         }
     }
@@ -140,7 +151,9 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
             (false, ..) => distinct.sections && (distinct.channels || distinct.sides),
         };
         if asked {
-            found.entry((later.0, b.which, earlier.0, a.which)).or_default().push((&b.channel, &a.channel));
+            let found = found.entry((later.0, b.which, earlier.0, a.which)).or_default();
+            found.channels.push((&b.channel, &a.channel));
+            (found.later, found.earlier) = (&b.record, &a.record);
         }
     }
     found
@@ -148,8 +161,8 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
 
 fn finding(
     rule: &Plausibility,
-    (section, record): (&str, String),
-    (of_section, of_record): (&str, String),
+    (section, record): (&str, &str),
+    (of_section, of_record): (&str, &str),
     channels: &[(&str, &str)],
 ) -> Finding {
     let (own, other): (Vec<&str>, Vec<&str>) = channels.iter().copied().unzip();
@@ -163,7 +176,7 @@ fn finding(
     Finding {
         channel: Some(named(&own)),
         section: Some(section.to_string()),
-        record: Some(record),
+        record: Some(record.to_string()),
         cause: rule.cause.clone(),
         consequence: consequence(rule.otherwise),
         ..Finding::note(&rule.name, format!("{}: {} repeats the samples of {what}{place}", rule.title, named(&own)))
@@ -205,7 +218,8 @@ mod tests {
 
     #[test]
     fn copies_are_found_where_they_stand_and_live_signals_are_not() {
-        let print = |channel: &str, kind: RecordKind, samples: &[f64]| Print::of("copies", channel, kind.into(), samples);
+        let print =
+            |channel: &str, kind: RecordKind, samples: &[f64]| Print::of("copies", channel, (kind.into(), kind.key().into()), samples);
         let (a, b, c) = (signal(1, 1500), signal(2, 1500), signal(3, 1500));
         let first = values(vec![
             print("Y", RecordKind::Simulation, &a),
@@ -226,7 +240,7 @@ mod tests {
         let found = shared("copies", ALL, &sections);
         let simulated: WhichRecord = RecordKind::Simulation.into();
         assert_eq!(
-            found.into_iter().collect::<Vec<_>>(),
+            found.into_iter().map(|(place, found)| (place, found.channels)).collect::<Vec<_>>(),
             [((1, simulated, 0, simulated), vec![("Y", "Y")]), ((1, simulated, 1, simulated), vec![("Z", "Q")])]
         );
     }
@@ -234,7 +248,7 @@ mod tests {
     #[test]
     fn only_what_was_asked_for_is_told() {
         let a = signal(1, 900);
-        let print = |channel: &str, kind: RecordKind| Print::of("copies", channel, kind.into(), &a);
+        let print = |channel: &str, kind: RecordKind| Print::of("copies", channel, (kind.into(), kind.key().into()), &a);
         let sections =
             [values(vec![print("Y", RecordKind::Simulation), print("Y", RecordKind::Measurement), print("Z", RecordKind::Simulation)])];
         let sides = Distinct { channels: false, sections: false, sides: true };

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use serde::{Deserialize, Serialize};
+
 use super::sections::Unit;
 use super::table::Member;
 use super::told::is_dimensioned;
@@ -15,7 +17,7 @@ use crate::units::{self, number::Refused};
 use crate::yaml::Value;
 
 /// Values of one vehicle, one for each [`Plan::vehicle`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Vehicle {
     /// Which one it is, where there are several: the campaign, its state.
     pub of: Option<String>,
@@ -26,7 +28,7 @@ pub struct Vehicle {
 }
 
 /// The vehicles of a run, to which `Unit::vehicle` refers; at least one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Facts {
     pub vehicles: Vec<Vehicle>,
     /// Whether campaigns tell vehicles apart, and not only states.

@@ -1,5 +1,6 @@
 //! Executes a graph over a campaign: records in parallel, one at a time per worker, to plain results.
 
+mod basis;
 mod causes;
 mod checks;
 mod columns;
@@ -21,6 +22,7 @@ mod not_asked;
 mod plausibility;
 pub mod pool;
 mod record;
+mod reduce;
 pub mod replay;
 mod requirements;
 mod section;
@@ -41,7 +43,6 @@ mod verdicts;
 mod wanted;
 
 use indexmap::IndexMap;
-use rayon::prelude::*;
 
 use crate::check::plan::{OnFault, Plan, Side};
 use crate::data::Campaigns;
@@ -49,18 +50,22 @@ use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::study::Reduction;
 use crate::result::{
-    Consequence, DataItem, DomainRange, DomainResult, FileHash, Finding, QuantityResult, SectionResult, Trace, Verdict, VerdictResult,
-    ZoneResult,
+    DataItem, DomainRange, DomainResult, FileHash, Finding, QuantityResult, SectionResult, Trace, Verdict, VerdictResult, ZoneResult,
 };
 
+pub use basis::Basis;
+pub use copies::Print;
 pub use facts::{Facts, scalar};
 pub use judge::Judged;
 use pool::Pool;
 use record::Found;
-use section::SectionValues;
-use sections::Unit;
+pub use reduce::{Numbered, Reduced, Shard, reduce};
+pub use section::SectionValues;
+pub use sections::Unit;
 pub use shared::Counts;
 pub use synchronisation::{Offset, Shifts};
+pub use table::Row;
+pub use traces::{Kept, Signals};
 
 /// The results of a run. The report adds the descriptions of protocol and campaign.
 #[derive(Debug)]
@@ -108,11 +113,13 @@ pub struct Evaluated {
     application: Vec<DomainResult>,
     notes: Vec<String>,
     reduction: Option<Reduction>,
+    /// Sections whose values are missing, in words.
+    missing: Option<String>,
     /// Records in the order of the sections.
     pub files: Vec<FileHash>,
 }
 
-/// Executes the whole protocol.
+/// Executes the whole protocol: reduces every section to its values, then judges them.
 ///
 /// # Errors
 /// Reasons why the campaign cannot be used as a whole: missing vehicle data, no usable section, or a fault for which the protocol
@@ -125,7 +132,21 @@ pub fn run<'a>(
     progress: Progress<'_>,
 ) -> Result<Outcome, Problems> {
     let prepared = Prepared::new(plan, graph, campaigns.into())?;
-    let evaluated = prepared.evaluate(&Shifts::NONE, progress)?.swap_remove(0);
+    let sections = prepared.sections(Shard::WHOLE, progress);
+    judge(plan, graph, (&prepared.basis, sections), (settings, &Signals::Of(&prepared.work())))
+}
+
+/// Judges the values of sections. Sections without values are missing, and the verdict is then not assessable.
+///
+/// # Errors
+/// As [`run`].
+pub fn judge(
+    plan: &Plan,
+    graph: &Graph,
+    (basis, sections): (&Basis, Vec<Numbered>),
+    (settings, signals): (Settings, &Signals<'_>),
+) -> Result<Outcome, Problems> {
+    let evaluated = evaluated(plan, basis, sections)?;
     let Evaluated { units, findings, notes, files, .. } = &evaluated;
     let judged = evaluated.judge(plan, graph);
     let mut findings = findings.clone();
@@ -134,7 +155,7 @@ pub fn run<'a>(
     findings.extend(told::findings(plan, &evaluated.facts, &judged.quantities));
     findings.extend(extrapolation::findings(&judged.quantities));
     let (mut traces, mut notes) = (Vec::new(), notes.clone());
-    for trace in traces::traces(&prepared.work(), units, &judged.quantities, settings.traces) {
+    for trace in traces::traces((plan, graph), units, &judged.quantities, settings.traces, signals) {
         match trace {
             Ok(trace) => traces.push(trace),
             Err(note) => notes.push(note),
@@ -158,6 +179,20 @@ pub fn run<'a>(
         reduction: evaluated.reduction.clone(),
         sections: sections::results(plan, &evaluated.facts, evaluated.units),
     })
+}
+
+/// The values of some sections as those of a campaign.
+///
+/// # Errors
+/// As [`run`].
+pub fn evaluated(plan: &Plan, basis: &Basis, sections: Vec<Numbered>) -> Result<Evaluated, Problems> {
+    let mut values: Vec<Option<SectionValues>> = vec![None; basis.units.len()];
+    for (number, of_section) in sections {
+        if let Some(place) = values.get_mut(number) {
+            *place = Some(of_section);
+        }
+    }
+    basis.evaluated(plan, values, true, None)
 }
 
 /// Evaluates every section with the measurement at each of several shifts (SI of the axis). Filters run once.
@@ -190,7 +225,7 @@ pub fn evaluate<'a>(
 impl Evaluated {
     /// Results of quantities and verdicts over all usable sections.
     pub fn judge(&self, plan: &Plan, graph: &Graph) -> Judged {
-        let barred = domain::barred(&self.application);
+        let barred = self.missing.iter().cloned().chain(domain::barred(&self.application)).collect();
         judge::judge(plan, graph, &self.facts, &self.units, &self.values, &judge::Told { findings: &self.findings, barred })
     }
 
@@ -202,6 +237,11 @@ impl Evaluated {
     /// Vehicle data that the protocol reads.
     pub fn vehicle(&self, plan: &Plan) -> Vec<DataItem> {
         self.facts.items(plan)
+    }
+
+    /// Sections whose values are missing, in words.
+    pub fn missing(&self) -> Option<&str> {
+        self.missing.as_deref()
     }
 
     /// Remarks that do not change the verdict.
@@ -220,11 +260,7 @@ struct Prepared<'a> {
     plan: &'a Plan,
     graph: &'a Graph,
     campaigns: Campaigns<'a>,
-    facts: Facts,
-    units: Vec<Unit>,
-    /// Wanted operation, for each domain.
-    wanted: Vec<Vec<wanted::Point>>,
-    notes: Vec<String>,
+    basis: Basis,
     present: Vec<Vec<Vec<bool>>>,
     recorded: Vec<Vec<Vec<bool>>>,
 }
@@ -262,7 +298,7 @@ impl<'a> Prepared<'a> {
         }
         requirements::check_data(plan, &facts, &mut units);
         stop_on_fault(plan, &units, &[])?;
-        Ok(Self { plan, graph, campaigns, facts, units, wanted, notes, present, recorded })
+        Ok(Self { plan, graph, campaigns, basis: Basis { facts, units, wanted, notes }, present, recorded })
     }
 
     fn work(&self) -> record::Work<'_> {
@@ -270,8 +306,8 @@ impl<'a> Prepared<'a> {
             plan: self.plan,
             graph: self.graph,
             campaigns: self.campaigns,
-            facts: &self.facts,
-            units: &self.units,
+            facts: &self.basis.facts,
+            units: &self.basis.units,
             present: &self.present,
             recorded: &self.recorded,
             shared: None,
@@ -279,22 +315,10 @@ impl<'a> Prepared<'a> {
     }
 
     fn evaluate(&self, shifts: &Shifts<'_>, progress: Progress<'_>) -> Result<Vec<Evaluated>, Problems> {
-        let work = self.work();
-        let mut values: Vec<Vec<SectionValues>> = self
-            .units
-            .par_iter()
-            // Sections differ in length. Distributed one by one, they keep all workers busy.
-            .with_max_len(1)
-            .map(|unit| {
-                let faulty = || vec![SectionValues::default(); shifts.offsets.len()];
-                let values = if unit.fault.is_some() { faulty() } else { section::of_section(&work, unit, shifts) };
-                progress(&unit.name);
-                values
-            })
-            .collect();
+        let mut values = self.shifted(Shard::WHOLE, shifts, progress);
         let mut at = |at: usize, reduction: Option<&Reduction>| {
-            let values = values.iter_mut().map(|all| std::mem::take(&mut all[at])).collect();
-            self.at(values, shifts.offsets[at] == 0.0, reduction)
+            let values = values.iter_mut().map(|(_, all)| Some(std::mem::take(&mut all[at]))).collect();
+            self.basis.evaluated(self.plan, values, shifts.offsets[at] == 0.0, reduction)
         };
         // The same sections at every shift: a reduction looks at the records as they are.
         let unmoved = shifts.offsets.iter().position(|offset| *offset == 0.0).unwrap_or(0);
@@ -305,36 +329,6 @@ impl<'a> Prepared<'a> {
         }
         all.insert(unmoved, first);
         Ok(all)
-    }
-
-    /// A repeat whose original is not used cannot be compared: quantities of repeats have no rows in it.
-    fn without_unused_originals(&self, units: &[Unit], mut values: Vec<SectionValues>) -> Vec<SectionValues> {
-        let unused = |unit: &Unit| unit.original.is_some_and(|original| units[original].fault.is_some());
-        for (_, values) in units.iter().zip(&mut values).filter(|(unit, _)| unused(unit)) {
-            let of_quantities = self.plan.quantities.iter().zip(&mut values.rows);
-            of_quantities.filter(|(quantity, _)| quantity.evaluation.of_repeats()).for_each(|(_, rows)| rows.clear());
-        }
-        values
-    }
-
-    /// All sections at one shift. If `needed`, at least one section must be usable. `reduction`: that of the records as they are.
-    fn at(&self, values: Vec<SectionValues>, needed: bool, reduction: Option<&Reduction>) -> Result<Evaluated, Problems> {
-        let (mut units, mut notes) = (self.units.clone(), self.notes.clone());
-        let copies = copies::find(self.plan, self.campaigns, &units, &values);
-        requirements::take_over(self.plan, &self.facts, &mut units, &values, &copies, &mut notes)?;
-        stop_on_fault(self.plan, &units, &values)?;
-        let reduction = keep::keep(self.plan, &self.facts, &mut units, &values, reduction);
-        let values = self.without_unused_originals(&units, values);
-        let findings: Vec<Finding> = values.iter().flat_map(|values| values.findings.iter().cloned()).chain(copies).collect();
-        // Sections excluded by a plausibility rule state the reason in the findings of a report.
-        let refused_by_finding = findings.iter().any(|finding| finding.consequence == Consequence::NotUsed);
-        if needed && !refused_by_finding && units.iter().all(|unit| unit.fault.is_some()) {
-            return Err(nothing_usable(&units, values));
-        }
-        let application = domain::compared(self.plan, &self.facts, &units, &self.wanted);
-        let findings = findings.into_iter().chain(domain::findings(&application)).collect();
-        let files = values.iter().flat_map(|values| values.files.iter().cloned()).collect();
-        Ok(Evaluated { facts: self.facts.clone(), units, values, findings, application, notes, reduction, files })
     }
 }
 

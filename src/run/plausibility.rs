@@ -65,7 +65,8 @@ pub fn look(work: &Work<'_>, unit: &Unit, sides: &Sides<'_>, track: &Evaluated, 
             Test::Distinct(_) => {
                 for record in sides.simulated.iter().chain(sides.measured) {
                     if let Some(samples) = nodes.own.and_then(|own| samples_of(&record.found, own).ok()) {
-                        values.prints.push(Print::of(&rule.name, name, record.which, &samples.values));
+                        let words = work.campaign(unit).record_in_words(record.which);
+                        values.prints.push(Print::of(&rule.name, name, (record.which, words), &samples.values));
                     }
                 }
             }

@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::checks::{record_checks, track_checks};
 use super::copies::Print;
 use super::facts::Known;
@@ -22,9 +24,11 @@ use crate::problem::Problem;
 use crate::result::{CheckResult, FileHash, Finding};
 
 /// Results of one section.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SectionValues {
     /// The rows of the section for each quantity; empty where the position was not recorded or the quantity excludes the section.
+    /// A file of values has them as its rows.
+    #[serde(skip)]
     pub rows: Vec<Vec<Row>>,
     /// Quantities that cannot be evaluated in this section, with the signal and the reason.
     pub impossible: Vec<(usize, String)>,

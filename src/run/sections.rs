@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::facts::{Facts, Known, item, scalar};
 use super::signal::Extent;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
@@ -15,7 +17,7 @@ use crate::source::Span;
 use crate::units::Unit as OfMeasure;
 
 /// A section, or a whole record where there are no sections.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Unit {
     /// Of its own; in a pool with the campaign's: `series 2/S01`.
     pub name: String,

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::basis::without_unused_originals;
 use super::facts::{Known, Vehicle};
 use super::groups::{Part, parts};
 use super::judge::{Rows, members, rows};
@@ -99,17 +100,17 @@ impl Together<'_> {
     fn section(&self, at: usize, progress: Progress<'_>) -> OfSection {
         let cell = &self.campaign.names[at];
         let place = self.prepared.iter().flatten().find_map(|prepared| {
-            let extent = prepared.units.get(at).and_then(|unit| unit.extent)?;
+            let extent = prepared.basis.units.get(at).and_then(|unit| unit.extent)?;
             Some((prepared.plan.axis.column.clone(), extent))
         });
         let store = Store::new(self.campaign, cell, self.columns, place);
         let mut numbers = Numbers::default();
-        let mut keys = |prepared: &Prepared<'_>| numbers.keys(&prepared.work(), &prepared.units[at]);
+        let mut keys = |prepared: &Prepared<'_>| numbers.keys(&prepared.work(), &prepared.basis.units[at]);
         let as_recorded: Vec<Option<Keys>> = self.prepared.iter().map(|prepared| prepared.as_ref().ok().map(&mut keys)).collect();
         let bare: Vec<Option<Keys>> = self.tried.iter().map(|prepared| prepared.as_ref().map(&mut keys)).collect();
         let one = |store: &Store<'_>, prepared: Option<&Prepared<'_>>, keys: &Option<Keys>| {
             let (prepared, keys) = prepared.zip(keys.as_ref())?;
-            let unit = &prepared.units[at];
+            let unit = &prepared.basis.units[at];
             if unit.fault.is_some() {
                 return Some(SectionValues::default());
             }
@@ -145,8 +146,13 @@ fn collected(
         }
         counts.push(count);
     }
-    let as_recorded: Vec<Result<Evaluated, Problems>> =
-        prepared.into_iter().zip(by_protocol).map(|(prepared, values)| prepared?.at(values, true, None)).collect();
+    let as_recorded: Vec<Result<Evaluated, Problems>> = prepared
+        .into_iter()
+        .zip(by_protocol)
+        .map(|(prepared, values)| {
+            prepared.and_then(|prepared| prepared.basis.evaluated(prepared.plan, values.into_iter().map(Some).collect(), true, None))
+        })
+        .collect();
     let in_trial = |(at, values): (usize, Vec<SectionValues>)| {
         let (prepared, base) = (tried[at].as_ref()?, as_recorded[at].as_ref().ok()?);
         // The sections that are used are those of the records as they are, as far as the trial gives values.
@@ -156,11 +162,12 @@ fn collected(
                 unit.refuse(fault.clone(), true);
             }
         }
-        let values = prepared.without_unused_originals(&units, values);
+        let values = without_unused_originals(prepared.plan, &units, values);
         let (findings, notes, files) = (Vec::new(), Vec::new(), Vec::new());
         let application = Vec::new();
         let reduction = base.reduction.clone();
-        Some(Evaluated { facts: base.facts.clone(), units, values, findings, application, notes, reduction, files })
+        let facts = base.facts.clone();
+        Some(Evaluated { facts, units, values, findings, application, notes, reduction, missing: None, files })
     };
     let trials = by_trial.into_iter().map(|values| values.into_iter().enumerate().map(in_trial).collect()).collect();
     Several { as_recorded, trials, counts: counts.into_iter().sum() }
@@ -206,7 +213,8 @@ impl Evaluated {
         let (findings, notes, files) = (self.findings.clone(), Vec::new(), Vec::new());
         let application = self.application.clone();
         let reduction = self.reduction.clone();
-        Self { facts: self.facts.clone(), units, values, findings, application, notes, reduction, files }
+        let (facts, missing) = (self.facts.clone(), self.missing.clone());
+        Self { facts, units, values, findings, application, notes, reduction, missing, files }
     }
 
     /// Each limit's ratios of single sections: what is pooled is taken against the limit of the pool.

@@ -47,9 +47,9 @@ pub fn single<'a>(
     (section, record): (&str, Option<&str>),
 ) -> Result<Single, Problems> {
     let prepared = Prepared::new(plan, graph, campaigns.into())?;
-    let unit = prepared.units.iter().find(|unit| unit.name == section).ok_or_else(|| {
+    let unit = prepared.basis.units.iter().find(|unit| unit.name == section).ok_or_else(|| {
         let problem = Problem::error("no-such-section", format!("the campaign has no section `{section}`"));
-        one(problem.suggest(section, prepared.units.iter().map(|unit| unit.name.as_str())))
+        one(problem.suggest(section, prepared.basis.units.iter().map(|unit| unit.name.as_str())))
     })?;
     if let Some(fault) = &unit.fault {
         return Err(one(Problem::error("not-evaluated", format!("section {section} is not used: {fault}"))));

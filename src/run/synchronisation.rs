@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use serde::{Deserialize, Serialize};
+
 use super::record::{Found, Held, Work};
 use super::sections::Unit;
 use super::sides::Evaluated;
@@ -29,7 +31,7 @@ impl Shifts<'_> {
 }
 
 /// The shift that aligns a section's measurement with its simulation, in SI of the axis.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Offset {
     pub shift: f64,
     /// 95 % interval.

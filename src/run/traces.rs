@@ -1,24 +1,68 @@
 //! Signals of the most important sections, reduced for plotting.
 
-use std::collections::BTreeSet;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::record::{Found, Work, needed, open};
+use super::reduce::Numbered;
+use super::requirements;
+use super::section::SectionValues;
 use super::sections::Unit as Section;
-use super::signal::Samples;
-use crate::check::plan::{Evaluation, Records, Side};
+use super::signal::{Extent, Samples};
+use super::table::Row;
+use crate::check::plan::{Evaluation, Plan, Records, Side};
 use crate::data::WhichRecord;
-use crate::graph::NodeId;
+use crate::graph::{Graph, NodeId};
 use crate::result::{Curve, QuantityResult, Trace, took_part};
 use crate::units::Unit;
 
 /// Number of stretches of a plotted curve. Each keeps its smallest and largest sample, so that no peak is lost.
 const STRETCHES: usize = 700;
 
+/// Sections of each quantity whose signals a part keeps, the worst first. Sections that the part itself uses may be left out when all
+/// parts are together: copies of other parts, and a reduction. A plot for which nothing was kept is told.
+const KEPT: usize = 3;
+
+/// Where the signals of plots come from.
+#[derive(Debug)]
+pub enum Signals<'a> {
+    /// The records.
+    Of(&'a Work<'a>),
+    /// What parts of the campaign kept.
+    Kept(&'a [Kept]),
+}
+
+/// The signals of one pair, or why there is no plot of it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Kept {
+    quantity: usize,
+    unit: usize,
+    signal: usize,
+    record: Option<String>,
+    pub found: Result<Trace, String>,
+}
+
+impl Kept {
+    /// Whether each curve has as many values as places, as a file may claim.
+    pub fn is_sound(&self) -> bool {
+        let sound = |curve: &Curve| curve.x.len() == curve.y.len();
+        let Ok(trace) = &self.found else { return true };
+        [&trace.measured, &trace.simulated].into_iter().chain(trace.others.iter().map(|(_, curve)| curve)).all(sound)
+    }
+}
+
 /// The pair with the largest difference of each quantity, relative to its limits. The worst is first, each signal of a section
 /// once. If a plot cannot be made, a note states the reason.
-pub fn traces(work: &Work<'_>, units: &[Section], quantities: &[QuantityResult], most: usize) -> Vec<Result<Trace, String>> {
+pub fn traces(
+    (plan, graph): (&Plan, &Graph),
+    units: &[Section],
+    quantities: &[QuantityResult],
+    most: usize,
+    signals: &Signals<'_>,
+) -> Vec<Result<Trace, String>> {
     let mut picks: Vec<(f64, Pick<'_>)> = Vec::new();
     for (index, quantity) in quantities.iter().enumerate() {
         let limit = quantity.statistics.iter().filter_map(|statistic| statistic.limit).fold(f64::NAN, f64::max);
@@ -26,7 +70,7 @@ pub fn traces(work: &Work<'_>, units: &[Section], quantities: &[QuantityResult],
         let worst = quantity.values.iter().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs()));
         let Some(worst) = worst else { continue };
         let unit = units.iter().position(|unit| unit.name == worst.section);
-        let signal = work.plan.quantities[index].positions.iter().position(|position| position.name == worst.signal);
+        let signal = plan.quantities[index].positions.iter().position(|position| position.name == worst.signal);
         if let (Some(unit), Some(signal)) = (unit, signal) {
             let pick = Pick { quantity: index, unit, signal, record: worst.record.as_deref() };
             picks.push((worst.difference.abs() / scale, pick));
@@ -34,16 +78,54 @@ pub fn traces(work: &Work<'_>, units: &[Section], quantities: &[QuantityResult],
     }
     picks.sort_by(|(a, first), (b, second)| b.total_cmp(a).then(first.quantity.cmp(&second.quantity)));
     let mut shown = BTreeSet::new();
-    picks.retain(|(_, pick)| shown.insert((work.graph.quantities[pick.quantity].signals[pick.signal].filtered, pick.unit, pick.record)));
+    picks.retain(|(_, pick)| shown.insert((graph.quantities[pick.quantity].signals[pick.signal].filtered, pick.unit, pick.record)));
     picks.truncate(most);
     let one = |(_, pick): &(f64, Pick<'_>)| {
-        let unit = &units[pick.unit];
-        trace(work, unit, *pick).map_err(|why| {
-            let id = &quantities[pick.quantity].id;
-            format!("there is no plot of {id} in section {}: {why}", unit.name)
-        })
+        let found = match signals {
+            Signals::Of(work) => trace(work, *pick, &|unit, which, wanted| evaluated(work, unit, which, wanted)),
+            Signals::Kept(kept) => kept
+                .iter()
+                .find(|kept| (kept.quantity, kept.unit, kept.signal, kept.record.as_deref()) == pick.key())
+                .map_or_else(|| Err("its signals are not in the values".into()), |kept| kept.found.clone()),
+        };
+        found.map_err(|why| format!("there is no plot of {} in section {}: {why}", quantities[pick.quantity].id, units[pick.unit].name))
     };
     picks.par_iter().map(one).collect()
+}
+
+/// The signals that plots of the whole campaign may need from these sections: of each quantity the worst ones.
+pub fn kept(work: &Work<'_>, sections: &[Numbered]) -> Vec<Kept> {
+    let mut units: Vec<Section> = sections.iter().filter_map(|(number, _)| work.units.get(*number).cloned()).collect();
+    let values: Vec<SectionValues> = sections.iter().map(|(_, values)| values.clone()).collect();
+    // What stops a run stops it when the sections are judged.
+    let _ = requirements::take_over(work.plan, work.facts, &mut units, &values, &[], &mut Vec::new());
+    let mut picks: BTreeMap<usize, Vec<Pick<'_>>> = BTreeMap::new();
+    for (index, quantity) in work.plan.quantities.iter().enumerate() {
+        let mut worst: Vec<(f64, Pick<'_>)> = Vec::new();
+        for (_, (number, values)) in units.iter().zip(sections).filter(|(unit, _)| unit.fault.is_none()) {
+            let size = |row: &Row| quantity.unit.from_si(row.value).abs();
+            let rows = values.rows.get(index).map_or(&[][..], Vec::as_slice);
+            let Some(row) = rows.iter().max_by(|a, b| size(a).total_cmp(&size(b))) else { continue };
+            worst.push((size(row), Pick { quantity: index, unit: *number, signal: row.position, record: row.record.as_deref() }));
+        }
+        // Of equal ones the last, as in the whole campaign.
+        worst.reverse();
+        worst.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        worst.truncate(KEPT);
+        worst.into_iter().for_each(|(_, pick)| picks.entry(pick.unit).or_default().push(pick));
+    }
+    let of_section = |picks: &Vec<Pick<'_>>| {
+        let together = Together::of(work, picks);
+        let one = |pick: &Pick<'_>| Kept {
+            quantity: pick.quantity,
+            unit: pick.unit,
+            signal: pick.signal,
+            record: pick.record.map(str::to_string),
+            found: trace(work, *pick, &|unit, which, wanted| together.evaluated(unit, which, wanted)),
+        };
+        picks.iter().map(one).collect::<Vec<_>>()
+    };
+    picks.par_iter().flat_map_iter(|(_, picks)| of_section(picks)).collect()
 }
 
 /// What is plotted.
@@ -56,6 +138,59 @@ struct Pick<'a> {
     record: Option<&'a str>,
 }
 
+impl<'a> Pick<'a> {
+    fn key(&self) -> (usize, usize, usize, Option<&'a str>) {
+        (self.quantity, self.unit, self.signal, self.record)
+    }
+}
+
+/// Values of nodes of a record, and the range that is shown.
+type Nodes = (Vec<(NodeId, Found)>, Extent);
+type Signal = Result<Nodes, String>;
+/// Evaluates nodes of a record.
+type Evaluate<'a> = &'a dyn Fn(&Section, WhichRecord, &BTreeSet<NodeId>) -> Signal;
+
+fn evaluated(work: &Work<'_>, unit: &Section, which: WhichRecord, wanted: &BTreeSet<NodeId>) -> Signal {
+    let known = unit.known(work.facts);
+    let needed = needed(work.graph, wanted, &known)?;
+    let opened = open(work, unit, which, &needed).map_err(|fault| fault.says)?;
+    Ok((opened.evaluate(work.graph, &needed, wanted, &known, work.plan.sections.percentiles, None)?, opened.extent))
+}
+
+/// The signals of several plots of a section: each record is read once.
+struct Together<'a> {
+    work: &'a Work<'a>,
+    all: BTreeSet<NodeId>,
+    found: RefCell<BTreeMap<(String, WhichRecord), Option<Nodes>>>,
+}
+
+impl<'a> Together<'a> {
+    fn of(work: &'a Work<'a>, picks: &[Pick<'_>]) -> Self {
+        let all = picks.iter().flat_map(|pick| wanted(work, pick)).collect();
+        Self { work, all, found: RefCell::default() }
+    }
+
+    fn evaluated(&self, unit: &Section, which: WhichRecord, wanted: &BTreeSet<NodeId>) -> Signal {
+        let mut found = self.found.borrow_mut();
+        let of_all = || evaluated(self.work, unit, which, &self.all).ok();
+        match found.entry((unit.name.clone(), which)).or_insert_with(of_all) {
+            Some((found, extent)) => Ok((found.iter().filter(|(node, _)| wanted.contains(node)).cloned().collect(), *extent)),
+            // One of them cannot be evaluated: each by itself.
+            None => evaluated(self.work, unit, which, wanted),
+        }
+    }
+}
+
+/// The signals of a plot: what is plotted, and the signal that a metric uses in place of the axis. A loop is plotted from the signals that
+/// were compared; other signals from the record around the section as well.
+fn wanted(work: &Work<'_>, pick: &Pick<'_>) -> Vec<NodeId> {
+    let nodes = &work.graph.quantities[pick.quantity].signals[pick.signal];
+    match (work.plan.quantities[pick.quantity].evaluation.as_ref(), nodes.over) {
+        (Evaluation::Metric { over_axis: Some(_), .. }, Some(over)) => vec![nodes.processed, over],
+        _ => vec![nodes.filtered],
+    }
+}
+
 /// The horizontal axis of a plot: the axis of the records, or the signal that the metric uses in its place.
 struct Over {
     node: Option<NodeId>,
@@ -63,7 +198,9 @@ struct Over {
     unit: Unit,
 }
 
-fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record, .. }: Pick<'_>) -> Result<Trace, String> {
+fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trace, String> {
+    let Pick { quantity: index, signal, record, .. } = pick;
+    let unit = &work.units[pick.unit];
     let quantity = &work.plan.quantities[index];
     let nodes = &work.graph.quantities[index].signals[signal];
     let axis = &work.plan.axis;
@@ -73,14 +210,10 @@ fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record
         }
         _ => Over { node: None, name: axis.column.clone(), unit: axis.unit.clone() },
     };
-    // A loop is plotted from the signals that were compared; other signals from the record around the section as well.
-    let node = if over.node.is_some() { nodes.processed } else { nodes.filtered };
-    let wanted: BTreeSet<NodeId> = [node].into_iter().chain(over.node).collect();
+    let all = wanted(work, &pick);
+    let (node, wanted) = (all[0], BTreeSet::from_iter(all));
     let curve_of = |unit: &Section, which: WhichRecord| {
-        let known = unit.known(work.facts);
-        let needed = needed(work.graph, &wanted, &known)?;
-        let opened = open(work, unit, which, &needed).map_err(|fault| fault.says)?;
-        let found = opened.evaluate(work.graph, &needed, &wanted, &known, work.plan.sections.percentiles, None)?;
+        let (found, extent) = evaluate(unit, which, &wanted)?;
         let of = |node: NodeId| {
             found
                 .iter()
@@ -92,7 +225,7 @@ fn trace(work: &Work<'_>, unit: &Section, Pick { quantity: index, signal, record
             Some(node) => &of(node).ok_or_else(none)?.values,
             None => &samples.along.axis,
         };
-        Ok::<_, String>((thinned(samples, x, &quantity.signal_unit, &over.unit), opened.extent))
+        Ok::<_, String>((thinned(samples, x, &quantity.signal_unit, &over.unit), extent))
     };
     let name = |which| work.campaign(unit).record_name(which).map(|name| name.as_ref());
     let curve = |unit: &Section, side: Side| {

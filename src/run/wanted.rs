@@ -1,5 +1,7 @@
 //! Wanted operation: the application table of the campaign, with section data in place of sections.
 
+use serde::{Deserialize, Serialize};
+
 use super::facts::{Facts, Known, Vehicle};
 use super::sections::{Row, column_missing};
 use crate::check::evaluate::number;
@@ -9,7 +11,7 @@ use crate::data::{Campaign, Campaigns};
 use crate::problem::{Problem, Problems};
 
 /// A point of wanted operation in one domain.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     pub name: String,
     /// SI, in the order of the coordinates.

@@ -9,6 +9,8 @@ mod section;
 mod signal;
 mod verdict;
 
+use serde::{Deserialize, Serialize};
+
 use crate::result;
 use crate::source::{Span, Spanned};
 use crate::units::Unit;
@@ -152,7 +154,7 @@ pub enum DatumKind {
 }
 
 /// A value of an expression.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Scalar {
     /// In SI.
     Number(f64),

@@ -4,6 +4,8 @@ use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Campaign, Part, ReadFile};
 use crate::data::folder::{Place, check_file_name};
 use crate::data::members::{self, RecordFolder, WhichRecord};
@@ -16,7 +18,7 @@ use crate::source::{Span, Spanned};
 use crate::units::Dimension;
 
 /// The kinds of records that a campaign has, each in a folder of its own with a file per section.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum RecordKind {
     Measurement,
     Simulation,

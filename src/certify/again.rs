@@ -1,0 +1,83 @@
+//! A protocol compiled again from its text and the values of its parameters, as a report or a file of values carries them.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Compiled, compile};
+use crate::check::plan::SetBy;
+use crate::check::{Override, Overrides, family};
+use crate::problem::{Problem, Problems};
+use crate::result::ParameterInfo;
+use crate::source::Source;
+use crate::syntax::document::Text;
+
+/// Compiles a protocol from its files, the protocol first, then its parent, and so on. No two may have the same name.
+pub fn again(sources: &[Arc<Source>], parameters: &[Setting], problems: &mut Problems) -> Option<Compiled> {
+    let next = |_: &str, from: &Source| {
+        let at = sources.iter().position(|source| source.name == from.name).map_or(0, |at| at + 1);
+        let lacks = || Box::new(Problem::error("protocol-missing", "the protocol extends one that is not carried with it"));
+        sources.get(at).cloned().ok_or_else(lacks)
+    };
+    let family = family::read(sources.first()?, &next, problems);
+    if problems.any_error() {
+        return None;
+    }
+    compile(family, &overrides(parameters), problems)
+}
+
+fn overrides(parameters: &[Setting]) -> Overrides {
+    let mut overrides = Overrides::new();
+    for parameter in parameters {
+        let set_by = match parameter.set_by.as_str() {
+            "campaign" => SetBy::Campaign,
+            "command line" => SetBy::CommandLine,
+            _ => continue,
+        };
+        let source = Source::new(format!("parameter {}", parameter.name), parameter.value.clone());
+        let text = Text { text: parameter.value.clone(), span: source.whole(), exact: true };
+        overrides.insert(parameter.name.clone(), Override { text, set_by });
+    }
+    overrides
+}
+
+/// The value of a parameter, and what set it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Setting {
+    pub name: String,
+    /// With its unit.
+    pub value: String,
+    /// As in [`ParameterInfo`].
+    pub set_by: String,
+}
+
+impl Setting {
+    fn of(ParameterInfo { name, value, set_by, .. }: ParameterInfo) -> Self {
+        Self { name, value, set_by }
+    }
+}
+
+/// The text of a protocol with the values of its parameters: all that it needs to be compiled again.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rules {
+    /// Name and text of each file; the protocol first.
+    pub files: Vec<(String, String)>,
+    pub parameters: Vec<Setting>,
+}
+
+impl Rules {
+    pub fn of(compiled: &Compiled) -> Self {
+        let file = |source: &Arc<Source>| (source.file_name(), source.text.clone());
+        Self {
+            files: compiled.family.sources.iter().map(file).collect(),
+            parameters: compiled.plan.parameters.iter().map(super::parameter_info).map(Setting::of).collect(),
+        }
+    }
+
+    pub fn compiled(&self, problems: &mut Problems) -> Option<Compiled> {
+        // The number tells files of the same name apart.
+        let source = |(at, (name, text)): (usize, &(String, String))| Source::new(format!("{}/{name}", at + 1), text.clone());
+        let sources: Vec<Arc<Source>> = self.files.iter().enumerate().map(source).collect();
+        again(&sources, &self.parameters, problems)
+    }
+}

@@ -1,0 +1,144 @@
+//! `reduce`: evaluates a part of the sections of a campaign to a file of values; `judge`: the report from such files.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::inputs::{Pool, prepare_all, progress_bar, start_jobs};
+use super::output::{Console, Exit};
+use super::places::{check_file, check_folder};
+use super::report::Report;
+use crate::data::Campaigns;
+use crate::problem::{Problem, Problems, plain};
+use crate::run::Shard;
+use crate::values::{self, File, Joined, Part, Values};
+
+#[derive(Debug, Args)]
+pub struct Reduce {
+    /// Folder of the campaign; several are evaluated as one.
+    #[arg(required = true, value_name = "CAMPAIGN")]
+    campaigns: Vec<PathBuf>,
+    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
+    #[arg(long, short)]
+    protocol: Option<String>,
+    /// File of values, such as values.parquet.
+    #[arg(long, short)]
+    out: PathBuf,
+    /// Part of the sections, as `NUMBER/ALL`, counted from 0 [default: all sections]
+    #[arg(long, value_name = "NUMBER/ALL", value_parser = Shard::parse)]
+    shard: Option<Shard>,
+    /// Set a parameter of the protocol.
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Keep no signals for the plots of the report. The records of the worst sections are then not read again.
+    #[arg(long)]
+    no_plots: bool,
+    /// Number of records processed in parallel [default: one per core]
+    #[arg(long, short)]
+    jobs: Option<NonZeroUsize>,
+}
+
+impl Reduce {
+    pub fn run(self, console: &Console) -> Exit {
+        if let Err(exit) = start_jobs(self.jobs, console) {
+            return exit;
+        }
+        let mut problems = Problems::default();
+        let prepared = prepare_all(&self.campaigns, self.protocol.as_deref(), &self.set, &mut problems);
+        let name = self.out.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        let folder = self.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
+            if let Err(problem) = check_folder(folder, &[name], campaign) {
+                problems.push(problem);
+            }
+        }
+        console.problems(&problems);
+        let Some(Pool { compiled, campaigns, found, .. }) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let part = Part { shard: self.shard.unwrap_or(Shard::WHOLE), plots: !self.no_plots };
+        let bar = progress_bar(console, part.shard.range(Campaigns::from(&campaigns).sections()).len());
+        let values = values::reduce(&compiled, (&campaigns, found), part, &|section| {
+            bar.set_message(plain(section));
+            bar.inc(1);
+        });
+        bar.finish_and_clear();
+        let values = match values {
+            Ok(values) => values,
+            Err(problems) => {
+                console.problems(&problems);
+                return Exit::Wrong;
+            }
+        };
+        let bytes = match values::write(&compiled.plan, &values) {
+            Ok(bytes) => bytes,
+            Err(problem) => return console.fail(problem, Exit::Unfinished),
+        };
+        let written = console.write(&self.out, &bytes);
+        if written == Exit::Done && !console.quiet {
+            console.print(&told(&values));
+            console.say(&format!("written: {}", self.out.display()));
+        }
+        written
+    }
+}
+
+/// How many values of how many sections there are, and the sections that cannot be evaluated.
+fn told(values: &Values) -> String {
+    let rows: usize = values.sections.iter().flat_map(|(_, values)| &values.rows).map(Vec::len).sum();
+    let mut out = format!("{rows} values of {} of {} sections\n", values.sections.len(), values.head.basis.units().len());
+    for (number, of_section) in &values.sections {
+        let Some(unit) = values.head.basis.units().get(*number) else { continue };
+        if let Some(fault) = unit.fault.as_ref().or(of_section.fault.as_ref()) {
+            out += &format!("  {} not used: {fault}\n", unit.name);
+        }
+    }
+    out
+}
+
+#[derive(Debug, Args)]
+pub struct Judge {
+    /// Files of values of all parts of a campaign, in any order.
+    #[arg(required = true, value_name = "VALUES")]
+    values: Vec<PathBuf>,
+    #[command(flatten)]
+    report: Report,
+}
+
+impl Judge {
+    pub fn run(self, console: &Console) -> Exit {
+        let mut problems = Problems::default();
+        let inputs: Vec<&Path> = self.values.iter().map(PathBuf::as_path).collect();
+        for name in super::places::REPORT {
+            if let Err(problem) = check_file(&self.report.out.join(name), &inputs) {
+                problems.push(problem);
+            }
+        }
+        let joined = joined(&self.values, &mut problems);
+        console.problems(&problems);
+        let Some(joined) = joined.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let key = match self.report.key(console) {
+            Ok(key) => key,
+            Err(exit) => return exit,
+        };
+        match joined.certification(self.report.settings()) {
+            Ok(found) => self.report.write(&found, key.as_ref(), console),
+            Err(problems) => {
+                console.problems(&problems);
+                Exit::Wrong
+            }
+        }
+    }
+}
+
+/// Opens files of values and puts them together.
+pub fn joined(paths: &[PathBuf], problems: &mut Problems) -> Option<Joined> {
+    let opened: Vec<Result<File, Problem>> = paths.iter().map(|path| values::open(path)).collect();
+    let mut files = Vec::new();
+    for file in opened {
+        match file {
+            Ok(file) => files.push(file),
+            Err(problem) => problems.push(problem),
+        }
+    }
+    if problems.any_error() { None } else { values::join(files, problems) }
+}

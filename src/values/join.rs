@@ -1,0 +1,150 @@
+//! Files of values of one campaign together: each section once, whatever the order and number of the files.
+
+use super::rows::into_sections;
+use super::{File, Head};
+use crate::certify::{Compiled, certification};
+use crate::problem::{Problem, Problems};
+use crate::result::{Certification, FileHash};
+use crate::run::{self, Evaluated, Kept, Numbered, SectionValues, Settings, Signals};
+
+/// The values of a campaign, or of the sections of it that are there.
+#[derive(Debug)]
+pub struct Joined {
+    pub compiled: Compiled,
+    pub head: Head,
+    sections: Vec<Numbered>,
+    traces: Vec<Kept>,
+}
+
+/// Puts files together. A file that is given twice is told and left out.
+///
+/// Problems: `values-differ`, `values-twice`, `values-unreadable`, and those of the protocol.
+pub fn join(files: Vec<File>, problems: &mut Problems) -> Option<Joined> {
+    let mut files = files.into_iter();
+    let first = files.next()?;
+    let compiled = first.head.rules.compiled(problems)?;
+    if problems.any_error() {
+        return None;
+    }
+    if let Err(why) = first.head.basis.check(&compiled.plan) {
+        problems.push(unreadable(&first.shown, &why));
+        return None;
+    }
+    let head = first.head.clone();
+    let mut known: Vec<(String, String)> = Vec::new();
+    let mut owners: Vec<Option<usize>> = vec![None; head.basis.units().len()];
+    let mut all: Vec<Numbered> = Vec::new();
+    let mut traces = Vec::new();
+    for mut file in std::iter::once(first).chain(files) {
+        if let Some((_, shown)) = known.iter().find(|(hash, _)| *hash == file.hash) {
+            let says = format!("`{}` has the same values as `{shown}`, and is left out", file.shown);
+            problems.push(Problem::warning("values-twice", says));
+            continue;
+        }
+        let shown = known.first().map(|(_, shown)| shown.clone());
+        if let Some(problem) = shown.and_then(|shown| differs((&head, &shown), &file)) {
+            problems.push(problem);
+            continue;
+        }
+        if let Err(why) = into_sections(&compiled.plan, head.basis.units(), &file.columns, &mut file.sections) {
+            problems.push(unreadable(&file.shown, &why));
+            continue;
+        }
+        known.push((file.hash, file.shown.clone()));
+        traces.extend(file.traces);
+        for (number, values) in file.sections {
+            match owners[number] {
+                None => {
+                    owners[number] = Some(all.len());
+                    all.push((number, values));
+                }
+                Some(other) if same(&all[other].1, &values) => {}
+                Some(_) => {
+                    let unit = &head.basis.units()[number];
+                    let says = format!("`{}` has other values of section {} than a file before it", file.shown, unit.name);
+                    let problem = Problem::error("values-differ", says);
+                    problems.push(problem.help("a record was changed between two runs of `reduce`: make the values again"));
+                }
+            }
+        }
+    }
+    (!problems.any_error()).then_some(Joined { compiled, head, sections: all, traces })
+}
+
+impl Joined {
+    /// The same result as `certify` of the whole campaign.
+    ///
+    /// # Errors
+    /// As [`run::run`].
+    pub fn certification(self, settings: Settings) -> Result<Certification, Problems> {
+        let Self { compiled, head, sections, traces } = self;
+        let signals = Signals::Kept(&traces);
+        let outcome = run::judge(&compiled.plan, &compiled.graph, (&head.basis, sections), (settings, &signals))?;
+        Ok(Certification { found: head.found, ..certification(&compiled, &head.about, outcome) })
+    }
+
+    /// The sections that are there, by number.
+    pub fn sections(&self) -> &[Numbered] {
+        &self.sections
+    }
+
+    /// The values as those of an evaluated campaign.
+    ///
+    /// # Errors
+    /// As [`run::run`].
+    pub fn evaluated(&self) -> Result<Evaluated, Problems> {
+        run::evaluated(&self.compiled.plan, &self.head.basis, self.sections.clone())
+    }
+}
+
+fn unreadable(shown: &str, why: &str) -> Problem {
+    Problem::error("values-unreadable", format!("`{shown}` does not fit its protocol: {why}"))
+}
+
+fn same(a: &SectionValues, b: &SectionValues) -> bool {
+    let rest = |of: &SectionValues| serde_json::to_string(of).ok();
+    let marks = |of: &SectionValues| of.prints.iter().map(|print| print.marks.clone()).collect::<Vec<_>>();
+    a.rows == b.rows && rest(a) == rest(b) && marks(a) == marks(b)
+}
+
+/// Why a file is not of the same campaign and protocol as the first one.
+fn differs((head, shown): (&Head, &str), file: &File) -> Option<Problem> {
+    let (own, other) = (&file.head, &file.shown);
+    let name = |head: &Head| head.rules.files.first().map_or_else(String::new, |(name, _)| name.clone());
+    let says = if own.rules.files != head.rules.files {
+        match (name(head), name(own)) {
+            (a, b) if a == b => format!("`{shown}` and `{other}` are of different texts of the protocol {a}"),
+            (a, b) => format!("`{shown}` is of the protocol {a}, `{other}` of {b}"),
+        }
+    } else if own.rules.parameters != head.rules.parameters {
+        let changed = head.rules.parameters.iter().zip(&own.rules.parameters).find(|(a, b)| a != b);
+        changed.map_or_else(
+            || format!("`{shown}` and `{other}` are of different parameters"),
+            |(a, b)| {
+                let set = |by: &crate::certify::Setting| format!("{} ({})", by.value, by.set_by);
+                format!("the parameter `{}` is {} in `{shown}`, {} in `{other}`", a.name, set(a), set(b))
+            },
+        )
+    } else if !head.about.names().eq(own.about.names()) {
+        let names = |head: &Head| head.about.names().collect::<Vec<_>>().join(" + ");
+        format!("`{shown}` is of the campaign {}, `{other}` of {}", names(head), names(own))
+    } else if let Some(path) = changed_file(head, own) {
+        format!("the campaign was changed between `{shown}` and `{other}`: {path} differs")
+    } else if json(&head.basis) != json(&own.basis) || json(&head.about) != json(&own.about) || json(&head.found) != json(&own.found) {
+        format!("the records of the campaign were changed between `{shown}` and `{other}`: their sections or columns differ")
+    } else {
+        return None;
+    };
+    let help = "all files must be of one campaign, protocol and set of parameters; make the values again";
+    Some(Problem::error("values-differ", says).help(help))
+}
+
+fn json<T: serde::Serialize>(part: &T) -> Option<String> {
+    serde_json::to_string(part).ok()
+}
+
+fn changed_file(head: &Head, own: &Head) -> Option<String> {
+    let hash = |head: &Head, path: &str| head.about.files().find(|file: &&FileHash| file.path == path).map(|file| file.sha256.clone());
+    let all = head.about.files().chain(own.about.files());
+    all.map(|file| file.path.clone()).find(|path| hash(head, path) != hash(own, path))
+}

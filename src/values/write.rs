@@ -1,0 +1,91 @@
+//! The bytes of a file of values: a Parquet table, with all else in the metadata of the file.
+
+use std::sync::Arc;
+
+use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray, UInt64Array};
+use arrow_schema::{DataType, Field, Schema};
+use parquet::arrow::ArrowWriter;
+use parquet::basic::{Compression, ZstdLevel};
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use serde_json::json;
+
+use super::rows::{Cells, Column, columns};
+use super::{FORM, Values, seal};
+use crate::check::plan::Plan;
+use crate::problem::Problem;
+
+/// Keys of the metadata. What the file is, as JSON; the other contents are packed.
+pub const ABOUT: &str = "fishplate.values";
+pub const HEAD: &str = "fishplate.head";
+pub const SECTIONS: &str = "fishplate.sections";
+pub const MARKS: &str = "fishplate.marks";
+pub const TRACES: &str = "fishplate.traces";
+const SEAL: &str = "fishplate.seal";
+
+/// Level of compression of the table, as of records.
+const LEVEL: i32 = 3;
+
+/// The bytes of a file. The same values give the same bytes.
+///
+/// # Errors
+/// `write-failed`.
+pub fn write(plan: &Plan, values: &Values) -> Result<Vec<u8>, Problem> {
+    let failed = |error: &dyn std::fmt::Display| Problem::error("write-failed", format!("values cannot be written as Parquet: {error}"));
+    let mut fields = Vec::new();
+    let mut arrays: Vec<ArrayRef> = Vec::new();
+    for Column { name, cells } in columns(plan, values) {
+        let (kind, array): (_, ArrayRef) = match cells {
+            Cells::Texts(texts) => (DataType::Utf8, Arc::new(StringArray::from(texts))),
+            Cells::Numbers(numbers) => (DataType::Float64, Arc::new(Float64Array::from(numbers))),
+            Cells::Counts(counts) => (DataType::UInt64, Arc::new(UInt64Array::from(counts))),
+        };
+        fields.push(Field::new(name, kind, true));
+        arrays.push(array);
+    }
+    let schema = Arc::new(Schema::new(fields));
+    let batch = RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(|error| failed(&error))?;
+    let properties = WriterProperties::builder()
+        // Without a version, so that a new one of the library does not change the bytes.
+        .set_created_by("fishplate".to_string())
+        .set_compression(Compression::ZSTD(ZstdLevel::try_new(LEVEL).map_err(|error| failed(&error))?))
+        .set_statistics_enabled(EnabledStatistics::Chunk)
+        .build();
+    let mut bytes = Vec::new();
+    let mut writer = ArrowWriter::try_new(&mut bytes, schema, Some(properties)).map_err(|error| failed(&error))?;
+    writer.write(&batch).map_err(|error| failed(&error))?;
+    for (key, value) in metadata(values).map_err(|error| failed(&error))? {
+        writer.append_key_value_metadata(KeyValue::new(key.to_string(), value));
+    }
+    writer.close().map_err(|error| failed(&error))?;
+    seal::close(&mut bytes);
+    Ok(bytes)
+}
+
+/// The seal is the last.
+fn metadata(values: &Values) -> serde_json::Result<[(&'static str, String); 6]> {
+    let first = values.head.rules.files.first();
+    let names: Vec<&str> = values.head.about.names().collect();
+    let about = json!({
+        "form": FORM,
+        "program": values.program,
+        "protocol": first.map(|(name, _)| name),
+        "campaigns": names,
+        "shard": format!("{}/{}", values.shard.number, values.shard.of),
+        "sections": values.sections.len(),
+        "of": values.head.basis.units().len(),
+    });
+    let mut marks: Vec<u8> = Vec::new();
+    for print in values.sections.iter().flat_map(|(_, of_section)| &of_section.prints) {
+        marks.extend((print.marks.len() as u64).to_le_bytes());
+        print.marks.iter().for_each(|mark| marks.extend(mark.to_le_bytes()));
+    }
+    Ok([
+        (ABOUT, about.to_string()),
+        (HEAD, seal::packed(&serde_json::to_vec(&values.head)?)),
+        (SECTIONS, seal::packed(&serde_json::to_vec(&values.sections)?)),
+        (MARKS, seal::packed(&marks)),
+        (TRACES, seal::packed(&serde_json::to_vec(&values.traces)?)),
+        (SEAL, seal::blank()),
+    ])
+}
