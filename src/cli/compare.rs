@@ -6,12 +6,13 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::inputs::{progress_bar, start_jobs};
-use super::output::{Console, Exit, reports};
+use super::output::{Console, Exit};
 use super::places::{REPORT, check_folder};
 use super::protocols::load;
 use super::values::numbers;
 use crate::compare::{Prepared, SIZES, Settings};
 use crate::data::Campaign;
+use crate::deliver::{self, Reports};
 use crate::disk::SetKind;
 use crate::problem::{Problem, Problems, plain};
 use crate::report::comparison as report;
@@ -103,7 +104,7 @@ impl Compare {
 
     /// Writes all files or none.
     fn write(&self, found: &Comparison, console: &Console) -> Exit {
-        let files = match self.files(found) {
+        let files = match deliver::comparison(found, if self.no_report { Reports::NONE } else { Reports::ALL }) {
             Ok(files) => files,
             Err(problems) => {
                 console.problems(&problems);
@@ -127,18 +128,5 @@ impl Compare {
             console.say(&format!("written: {}", self.out.display()));
         }
         Exit::Done
-    }
-
-    fn files(&self, found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, Problems> {
-        let tables = report::tables::tables(found).map_err(|error| Problems(vec![Problem::error("table", error.to_string())]))?;
-        let mut files: Vec<(String, Vec<u8>)> = tables.into_iter().map(|(name, bytes)| (format!("tables/{name}"), bytes)).collect();
-        let json = report::json(found);
-        if self.no_report {
-            files.push(("comparison.json".into(), json.into_bytes()));
-            return Ok(files);
-        }
-        let (data, figures) = (report::document(found), report::figures(found));
-        files.extend(reports(("comparison.json", "Every number of this comparison"), json, &data, &figures)?);
-        Ok(files)
     }
 }

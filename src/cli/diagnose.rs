@@ -8,9 +8,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::convert_records::Records;
 use super::inputs::{Prepared, prepare, start_jobs};
-use super::output::{Console, Exit, reports};
+use super::output::{Console, Exit};
 use super::places::{CAMPAIGN, REPORT, check_folder, same};
-use super::simulate::load_catalogue;
 use super::simulator::{Chosen, SimulatorChoice};
 use crate::certify::Compiled;
 use crate::data::cut::cut;
@@ -18,6 +17,8 @@ use crate::data::hash::sha256;
 use crate::data::record::Format;
 use crate::data::write::Outputs;
 use crate::data::{Campaign, RecordKind};
+pub use crate::deliver::diagnosis_json as json;
+use crate::deliver::{self, Reports};
 use crate::diagnose::inputs::{Inputs, Reference};
 use crate::diagnose::preflight::{Preflight, preflight};
 use crate::diagnose::settings::Settings;
@@ -25,10 +26,10 @@ use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
 use crate::disk::{self, Scratch, SetKind};
 use crate::effects::Catalogue;
 use crate::library;
+use crate::prepare::for_diagnosis;
 use crate::problem::{Problem, Problems, Severity};
-use crate::report::diagnosis as report;
 use crate::result::diagnosis::Diagnosis;
-use crate::simulate::{Builtin, Section, Simulator, Strict, sections};
+use crate::simulate::{Builtin, Section, Simulator, Strict};
 
 #[derive(Debug, Args)]
 pub struct Diagnose {
@@ -134,8 +135,8 @@ impl Diagnose {
     }
 
     fn write(&self, out: &Path, campaign: &Campaign, outcome: &Outcome, console: &Console) -> Result<(), Problem> {
-        let files =
-            files(outcome).map_err(|problems| problems.0.into_iter().next().unwrap_or_else(|| Problem::error("report", "no report")))?;
+        let files = deliver::diagnosis(outcome, Reports::ALL)
+            .map_err(|problems| problems.0.into_iter().next().unwrap_or_else(|| Problem::error("report", "no report")))?;
         let mut outputs = Outputs::new(out);
         files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes))?;
         // Both are written to disk before either is moved to its place.
@@ -184,17 +185,6 @@ impl Diagnose {
     }
 }
 
-/// All files of a diagnosis.
-fn files(outcome: &Outcome) -> Result<Vec<(String, Vec<u8>)>, Problems> {
-    let (data, figures) = (report::document(&outcome.diagnosis, &outcome.before), report::figures(&outcome.diagnosis));
-    reports(("diagnosis.json", "Every number of this diagnosis"), json(&outcome.diagnosis), &data, &figures)
-}
-
-/// The text of `diagnosis.json`.
-pub fn json(diagnosis: &Diagnosis) -> String {
-    serde_json::to_string_pretty(diagnosis).unwrap_or_default() + "\n"
-}
-
 /// 0 if the gap is explained, or if there is no significant gap.
 pub fn exit(diagnosis: &Diagnosis) -> Exit {
     match diagnosis.verdict {
@@ -224,12 +214,8 @@ struct Opened {
 
 fn opened(asked: &Asked<'_>, places: &dyn Fn(&Campaign) -> Result<(), Problem>, problems: &mut Problems) -> Option<Opened> {
     let Prepared { compiled, campaign } = prepare(asked.folder, asked.protocol, &[], problems)?;
-    campaign.file_for_each_section().map_err(|problem| problems.push(problem)).ok()?;
     places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
-    let catalogue = load_catalogue(asked.catalogue, problems)?;
-    let settings = Settings::read(&catalogue, problems)?;
-    let sections = sections(&campaign, problems)?;
-    campaign.one_of_each().and_then(|()| campaign.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
+    let (catalogue, settings, sections) = for_diagnosis(&campaign, asked.catalogue, problems)?;
     Some(Opened { compiled, campaign, catalogue, settings, sections })
 }
 

@@ -7,9 +7,6 @@ use super::Color;
 use crate::data::write::Outputs;
 use crate::disk::SetKind;
 use crate::problem::{Problem, Problems, acts, plain};
-use crate::report::pdf::Attachment;
-use crate::report::study::Document;
-use crate::report::{html, typst};
 
 /// Exit codes, as documented.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,22 +145,6 @@ fn readable(text: &str) -> String {
 fn escaped(json: &str) -> String {
     let escape = |c: char| if acts(c) && c != '\n' { format!("\\u{:04x}", u32::from(c)) } else { c.to_string() };
     json.chars().map(escape).collect()
-}
-
-/// A document as report.pdf with its numbers attached, as report.html, and the numbers as `name`.
-///
-/// # Errors
-/// A template or a text cannot be typeset.
-pub fn reports(
-    (name, description): (&'static str, &'static str),
-    numbers: String,
-    data: &Document,
-    figures: &[(String, String)],
-) -> Result<Vec<(String, Vec<u8>)>, Problems> {
-    let attachment = Attachment { name, mime: "application/json", bytes: numbers.as_bytes(), description };
-    let pdf = typst::typeset_study(data, figures, &[attachment])?.bytes;
-    let html = html::study_html(data, figures)?.into_bytes();
-    Ok(vec![("report.pdf".into(), pdf), ("report.html".into(), html), (name.into(), numbers.into_bytes())])
 }
 
 #[cfg(test)]

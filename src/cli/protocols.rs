@@ -4,24 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::output::{Console, Exit};
-use crate::check::family::{self, Family};
 use crate::check::{self, Overrides};
 use crate::disk::SetKind;
 use crate::library;
+pub use crate::prepare::load;
 use crate::problem::{Problem, Problems};
 use crate::source::Source;
 use crate::syntax;
-
-/// A protocol and its ancestors, by name or path.
-pub fn load(name: &str, problems: &mut Problems) -> Option<Family> {
-    match library::find(name, None) {
-        Ok(source) => Some(family::read(&source, &library::parent, problems)),
-        Err(problem) => {
-            problems.push(*problem);
-            None
-        }
-    }
-}
 
 pub fn check(names: &[String], console: &Console) -> Exit {
     let mut exit = Exit::Done;

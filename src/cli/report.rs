@@ -6,12 +6,13 @@ use clap::{Args, ValueEnum};
 
 use super::output::{Console, Exit};
 use super::sign;
+use crate::deliver::{self, Reports};
 use crate::disk::{SIGNATURE, SetKind};
-use crate::problem::{Problem, Problems};
+use crate::problem::Problems;
 use crate::provenance::carried::REPORT_PDF;
 use crate::provenance::signature::{self, SecretKey, secret_key};
 use crate::provenance::statement;
-use crate::report::{attached, estimates, figure, findings, html, json, number, tables, typst, view};
+use crate::report::{estimates, findings, number};
 use crate::result::{Certification, StatisticResult, Verdict};
 use crate::run::Settings;
 
@@ -81,26 +82,9 @@ impl Report {
 
     /// All files of the report, by path relative to the output folder.
     fn files(&self, found: &Certification, key: Option<&SecretKey>) -> Result<Vec<(String, Vec<u8>)>, Problems> {
-        let results = json::results(found);
-        let mut files = Vec::new();
-        let tables = tables::tables(found).map_err(|error| Problems(vec![Problem::error("table", error.to_string())]))?;
-        for (name, bytes) in tables {
-            files.push((format!("tables/{name}"), bytes));
-        }
-        if self.only != Only::Results {
-            let data = view::view(found);
-            let figures = figure::figures(found);
-            if self.only != Only::Html {
-                let names = attached::protocol_names(found);
-                let attachments = attached::attachments(found, &results, &names);
-                files.push((REPORT_PDF.into(), typst::typeset(&data, &figures, &attachments)?.bytes));
-            }
-            if self.only != Only::Pdf {
-                files.push(("report.html".into(), html::html(&data, &figures)?.into_bytes()));
-            }
-        }
-        files.push((attached::RESULTS.into(), results.into_bytes()));
-        files.push((statement::FILE.into(), statement::statement(found, &files).into_bytes()));
+        let pdf = matches!(self.only, Only::All | Only::Pdf);
+        let html = matches!(self.only, Only::All | Only::Html);
+        let mut files = deliver::certification(found, Reports { pdf, html })?;
         if let Some(key) = key {
             let signed = files.iter().filter(|(name, _)| [REPORT_PDF, statement::FILE].contains(&name.as_str()));
             let signed = signed.map(|(name, bytes)| Ok((format!("{name}{SIGNATURE}"), signature::sign(key, name, bytes)?.into_bytes())));

@@ -20,10 +20,10 @@ use crate::effects::{self, Applied, Catalogue};
 use crate::library;
 use crate::model::CHANNELS;
 use crate::model::integrate::{MOST_STEPS, Method, SAMPLE, Steps};
+pub use crate::prepare::load_catalogue;
 use crate::problem::{Problem, Problems, plain};
 use crate::simulate::{
-    Deviation, Made, Plan, Section, check_confined, effects_of_origin, model_parameters, record_file, sections, simulate, single,
-    write_campaign,
+    Deviation, Made, Plan, Section, check_confined, effects_of_origin, record_file, sections, simulate, single, write_campaign,
 };
 use crate::units::{Dimension, Unit, number};
 use crate::yaml;
@@ -85,13 +85,6 @@ pub enum Integrator {
     /// The midpoint method of second order, for comparisons.
     Midpoint,
 }
-
-/// Loads a catalogue by name or path.
-pub fn load_catalogue(name: &str, problems: &mut Problems) -> Option<Catalogue> {
-    let source = library::find_catalogue(name, None).map_err(|problem| problems.push(*problem)).ok()?;
-    effects::read(&source, &library::parent_catalogue, &model_parameters(), problems)
-}
-
 impl Simulate {
     pub fn run(self, console: &Console) -> Exit {
         if let Err(exit) = start_jobs(self.jobs, console) {

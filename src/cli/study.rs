@@ -5,17 +5,18 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::inputs::{Pool, prepare_all, progress_bar, start_jobs};
-use super::output::{Console, Exit, reports};
+use super::inputs::{prepare_all, progress_bar, start_jobs};
+use super::output::{Console, Exit};
 use super::places::{REPORT, check_folder};
 use super::reduce::joined;
 use super::values::{numbers, values};
 use crate::data::Campaigns;
+use crate::deliver::{self, Reports};
 use crate::disk::SetKind;
 use crate::problem::{Problem, Problems, plain};
 use crate::report::study as report;
 use crate::result::study as found;
-use crate::robustness::{self, Settings, Synchronisation, Vary};
+use crate::robustness::{self, Asked, Settings, Synchronisation, Vary};
 use crate::run::Row;
 use crate::study;
 use crate::values::Joined;
@@ -113,7 +114,20 @@ impl Study {
         }
         console.problems(&problems);
         let Some((asked, prepared)) = asked.zip(prepared).filter(|_| !problems.any_error()) else { return Exit::Wrong };
-        match asked.found(common, &prepared, console) {
+        let steps = match asked.ready(&prepared.compiled, Campaigns::from(&prepared.campaigns)) {
+            Ok(steps) => steps,
+            Err(problems) => {
+                console.problems(&problems);
+                return Exit::Wrong;
+            }
+        };
+        let bar = progress_bar(console, steps);
+        let found = asked.run(&prepared.compiled, Campaigns::from(&prepared.campaigns), &prepared.overrides, &common.settings(), &|step| {
+            bar.set_message(plain(step));
+            bar.inc(1);
+        });
+        bar.finish_and_clear();
+        match found {
             Ok(study) => write(common, &study, console),
             Err(problems) => {
                 console.problems(&problems);
@@ -198,46 +212,6 @@ fn is_of_record(row: &Row) -> bool {
     row.record.is_some()
 }
 
-enum Asked {
-    Sections,
-    Sync(Synchronisation),
-    Parameters(Vec<Vary>),
-}
-
-impl Asked {
-    fn found(self, common: &Common, prepared: &Pool, console: &Console) -> Result<found::Study, Problems> {
-        let Pool { compiled, campaigns, overrides, .. } = prepared;
-        let campaigns = Campaigns::from(campaigns);
-        robustness::countable(compiled)?;
-        // A selection takes one value of each section and signal.
-        if let (Self::Sections | Self::Sync(_), Err(problem)) = (&self, campaigns.one_of_each()) {
-            return Err(Problems(vec![problem]));
-        }
-        let settings = common.settings();
-        let vary = match &self {
-            Self::Parameters(vary) if vary.is_empty() => robustness::all_choices(&compiled.plan),
-            Self::Parameters(vary) => vary.clone(),
-            _ => Vec::new(),
-        };
-        let steps = match &self {
-            Self::Parameters(_) => 1 + vary.iter().map(|vary| vary.values.len()).sum::<usize>(),
-            _ => campaigns.sections(),
-        };
-        let bar = progress_bar(console, steps);
-        let progress = |step: &str| {
-            bar.set_message(plain(step));
-            bar.inc(1);
-        };
-        let found = match &self {
-            Self::Sections => robustness::sections(compiled, campaigns, &settings, &progress),
-            Self::Sync(asked) => robustness::synchronisation(compiled, campaigns, &settings, asked, &progress),
-            Self::Parameters(_) => robustness::parameters(compiled, campaigns, overrides, &settings, &vary, &progress),
-        };
-        bar.finish_and_clear();
-        found
-    }
-}
-
 impl Common {
     fn settings(&self) -> Settings {
         Settings {
@@ -261,7 +235,7 @@ impl Common {
 
 /// Writes all files or none.
 fn write(common: &Common, study: &found::Study, console: &Console) -> Exit {
-    let files = match files(study) {
+    let files = match deliver::study(study, Reports::ALL) {
         Ok(files) => files,
         Err(problems) => {
             console.problems(&problems);
@@ -278,13 +252,4 @@ fn write(common: &Common, study: &found::Study, console: &Console) -> Exit {
         console.say(&format!("written: {}", common.out.display()));
     }
     Exit::Done
-}
-
-fn files(study: &found::Study) -> Result<Vec<(String, Vec<u8>)>, Problems> {
-    let json = report::json::study(study);
-    let tables = report::tables::tables(study).map_err(|error| Problems(vec![Problem::error("table", error.to_string())]))?;
-    let mut files: Vec<(String, Vec<u8>)> = tables.into_iter().map(|(name, bytes)| (format!("tables/{name}"), bytes)).collect();
-    let (data, figures) = (report::document(study), report::figures(study));
-    files.extend(reports(("study.json", "Every number of this study"), json, &data, &figures)?);
-    Ok(files)
 }

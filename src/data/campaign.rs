@@ -17,6 +17,7 @@ pub use opening::POINT_KEY;
 pub use records::{OFFSET, RecordKind};
 pub use runs::{CORRECT, Part, RUN_COLUMN, RUNS, Run, RunFact, TELL};
 
+pub use super::folder::Memory;
 use super::folder::{Folder, Place, check_file_name};
 use super::identification::{self, Stated};
 use super::members::{self, RecordFolder};
@@ -86,19 +87,35 @@ impl Campaign {
     /// Problems: those of `read_text`, `yaml::load` and [`Table::read`]; `folder-missing`, `path-outside`, `path-invalid`,
     /// `key-missing`, `wrong-kind`, `no-records`.
     pub fn open(path: &Path, problems: &mut Problems) -> Option<Self> {
-        let before = problems.errors();
         let named = path.file_name().is_some_and(|name| name == CAMPAIGN_FILE) && !disk::is_folder(path).unwrap_or(false);
         let folder = Folder::open(if named { parent(path) } else { path }).map_err(|problem| problems.push(problem)).ok()?;
+        Self::in_folder(folder, path, problems)
+    }
+
+    /// Opens a campaign that is in memory, or in a folder with some of its files and records replaced by those in memory.
+    ///
+    /// Problems: as [`Campaign::open`].
+    pub fn with_memory(folder: Option<&Path>, memory: Memory, problems: &mut Problems) -> Option<Self> {
+        let at = match folder {
+            Some(folder) => Folder::open(folder).map_err(|problem| problems.push(problem)).ok()?,
+            None => Folder::nowhere(),
+        };
+        Self::in_folder(at.with(memory), folder.unwrap_or(Path::new("the campaign")), problems)
+    }
+
+    fn in_folder(folder: Folder, path: &Path, problems: &mut Problems) -> Option<Self> {
+        let before = problems.errors();
         let nowhere = Source::new(path.display().to_string(), "").whole();
         let place = folder.place(CAMPAIGN_FILE, &nowhere).map_err(|problem| problems.push(problem)).ok()?;
         let mut opening = Opening { folder, files: Vec::new(), problems };
-        if disk::is_folder(&opening.folder.real().join(disk::UNFINISHED)).unwrap_or(false) {
+        let on_disk = !opening.folder.memory().texts.contains_key(CAMPAIGN_FILE);
+        if on_disk && disk::is_folder(&opening.folder.real().join(disk::UNFINISHED)).unwrap_or(false) {
             let says = format!("`{}` is incomplete: the run that wrote this campaign was interrupted", path.display());
             opening.problems.push(Problem::error("unfinished-set", says).help("repeat that run, with the same `--out`"));
             return None;
         }
         // Disk errors are reported when the file is read.
-        if matches!(disk::is_file(&place.path), Ok(false)) {
+        if on_disk && matches!(disk::is_file(&place.path), Ok(false)) {
             let says = format!("there is no file `{}`", place.shown);
             opening.problems.push(Problem::error("file-missing", says).help("a campaign is a folder with a file `campaign.yaml`"));
             return None;
@@ -196,6 +213,19 @@ impl Campaign {
     /// The folder of the campaign, without symbolic links.
     pub fn folder(&self) -> &Path {
         self.folder.real()
+    }
+
+    /// Whether the campaign has a folder.
+    pub fn on_disk(&self) -> bool {
+        self.folder.on_disk()
+    }
+
+    /// A small text file of the campaign, and the SHA-256 of its bytes.
+    ///
+    /// # Errors
+    /// As [`read_text`](super::text::read_text).
+    pub fn read_text(&self, place: &Place) -> Result<Arc<Source>, Problem> {
+        self.folder.read_text(place).map(|(source, ..)| source)
     }
 
     /// The path inside the campaign of a file that a message names by the folder as it was given.

@@ -80,7 +80,7 @@ impl<'a> Campaigns<'a> {
                 problems.push(Problem::error("name-invalid", says).at(&name.span).help(HELP));
             }
             let before = &self.0[..at];
-            if before.iter().any(|other| other.folder() == campaign.folder()) {
+            if campaign.on_disk() && before.iter().any(|other| other.folder() == campaign.folder()) {
                 let says = format!("the campaign `{}` is given twice", name.value);
                 problems.push(Problem::error("campaign-twice", says).at(&name.span).help("name each folder once"));
             } else if let Some(other) = before.iter().find(|other| other.short_name.value == name.value) {

@@ -234,15 +234,15 @@ mod tests {
     use crate::data::record::{Wanted, read_record};
     use crate::units::Dimension;
 
-    fn record(rows: impl IntoIterator<Item = (String, f64)>) -> Record {
+    fn record(rows: impl IntoIterator<Item = (String, f64)>) -> (Record, std::path::PathBuf) {
         let file = tempfile::NamedTempFile::new().expect("a temporary file");
         let text: String = rows.into_iter().map(|(time, distance)| format!("{time},{distance}\n")).collect();
         std::fs::write(file.path(), format!("time [s],distance [m]\n{text}")).expect("writable");
         let wanted = [Wanted::new("time", Dimension::TIME), Wanted::new("distance", Dimension::LENGTH)];
         let record = read_record(file.path(), "r.csv", &wanted).expect("well formed");
         // The file is kept, since messages read the line again.
-        file.keep().expect("kept");
-        record
+        let (_, path) = file.keep().expect("kept");
+        (record, path)
     }
 
     fn even(n: u32, rate: f64, decimals: usize) -> Vec<(String, f64)> {
@@ -250,10 +250,10 @@ mod tests {
     }
 
     fn check(rows: Vec<(String, f64)>, section: Option<(f64, f64)>) -> Result<Axis, Vec<(&'static str, String)>> {
-        let record = record(rows);
+        let (record, path) = record(rows);
         let section = section.map(|(start, end)| Section { start, end, at: None });
         let checked = check_axis(&record, "time", "distance", section.as_ref());
-        std::fs::remove_file(record.path()).expect("removable");
+        std::fs::remove_file(path).expect("removable");
         checked.map_err(|problems| problems.into_iter().map(|problem| (problem.code, problem.says)).collect())
     }
 

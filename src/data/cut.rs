@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::campaign::{CAMPAIGN_FILE, RUN_COLUMN, RUNS, Run};
 use super::hash::sha256;
 use super::origin::{ORIGIN_FILE, ORIGIN_KEY};
-use super::record::{Format, Record, Wanted, read_headings, read_stretch};
+use super::record::{Format, Record, Wanted};
 use super::table::{Cell, Table};
 use super::text::read_any;
 use super::write::{Entry, FileColumn, Outputs, Values, campaign_yaml, csv, parquet, table_csv};
@@ -67,19 +67,19 @@ pub fn cut(campaign: &Campaign, format: Format, outputs: &mut Outputs) -> Result
 /// All channels of a section with what is beside it, and the file that they are from.
 fn stretch(campaign: &Campaign, table: &Table, run: &Run, kind: RecordKind, name: &Cell) -> Result<(Record, String), Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
-    let place = campaign.run_place(run, kind).map_err(one)?;
+    let source = campaign.run_source(run, kind).map_err(one)?;
     let (axis, start, end) = extent(table, name)?;
     let moved = match kind {
         RecordKind::Measurement => campaign.offset(name).map_err(one)?.map_or(0.0, |(_, offset)| offset),
         RecordKind::Simulation | RecordKind::Track => 0.0,
     };
     let beside = BESIDE * (end - start);
-    let headings = read_headings(&place.path, &place.inside)?;
+    let headings = source.headings()?;
     let of = |name: String| Wanted { name, dimension: None, required: true };
     let wanted: Vec<Wanted> = headings.into_iter().map(|heading| of(heading.name)).collect();
     let range = start - beside - moved..end + beside - moved;
-    let record = read_stretch(&place.path, &place.inside, &wanted, axis, range, run.known(kind))?;
-    Ok((record, place.inside))
+    let record = source.stretch(&wanted, axis, range, run.known(kind))?;
+    Ok((record, source.inside().to_string()))
 }
 
 /// The axis of a section, its start and its end.

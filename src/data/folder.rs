@@ -1,10 +1,24 @@
 //! The folder of a campaign; no path in the campaign may lead out of it.
 
+use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
+use super::record::Frame;
+use super::text::{read_any, read_text, text_of};
 use crate::disk;
 use crate::problem::Problem;
-use crate::source::Span;
+use crate::source::{Source, Span};
+
+/// Small files and records of a campaign that are in memory, by their paths inside it. A record has no ending: `measurement/S01`.
+#[derive(Clone, Debug, Default)]
+pub struct Memory {
+    pub texts: BTreeMap<String, Vec<u8>>,
+    pub records: BTreeMap<String, Arc<Frame>>,
+}
+
+/// The folder of a campaign that is wholly in memory: a path that no system accepts, so that no file is found by accident.
+const NOWHERE: &str = "\0";
 
 #[derive(Clone, Debug)]
 pub(super) struct Folder {
@@ -12,6 +26,8 @@ pub(super) struct Folder {
     shown: PathBuf,
     /// Without symbolic links, for comparison.
     real: PathBuf,
+    /// What is not on the disk, or used in place of it.
+    memory: Arc<Memory>,
 }
 
 /// A file or folder of the campaign.
@@ -31,9 +47,65 @@ impl Folder {
             |error: std::io::Error| Problem::error("folder-unreadable", format!("`{}` cannot be read: {error}", folder.display()));
         let there = disk::is_folder(folder).map_err(unreadable)?;
         match disk::real(folder).map_err(unreadable)?.filter(|_| there) {
-            Some(real) => Ok(Self { shown: folder.to_path_buf(), real }),
+            Some(real) => Ok(Self { shown: folder.to_path_buf(), real, memory: Arc::default() }),
             None => Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.display()))),
         }
+    }
+
+    /// A folder without a place on the disk.
+    pub fn nowhere() -> Self {
+        Self { shown: PathBuf::new(), real: PathBuf::from(NOWHERE), memory: Arc::default() }
+    }
+
+    /// The same folder with files and records that are in memory.
+    pub fn with(self, memory: Memory) -> Self {
+        Self { memory: Arc::new(memory), ..self }
+    }
+
+    pub fn on_disk(&self) -> bool {
+        self.real != Path::new(NOWHERE)
+    }
+
+    pub fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    /// A small text file without its byte order mark, the SHA-256 of its bytes, and their number.
+    ///
+    /// # Errors
+    /// As [`read_text`].
+    pub fn read_text(&self, place: &Place) -> Result<(Arc<Source>, String, u64), Problem> {
+        if let Some(bytes) = self.memory.texts.get(&place.inside) {
+            let (source, hash) = text_of(bytes, &place.shown)?;
+            return Ok((source, hash, bytes.len() as u64));
+        }
+        self.missing(place)?;
+        let (source, hash) = read_text(&place.path, &place.shown)?;
+        match disk::kind(&place.path) {
+            Ok(Some(disk::Kind::File(size))) => Ok((source, hash, size)),
+            Ok(_) => Err(Problem::error("file-missing", format!("`{}` went away while it was read", place.shown))),
+            Err(error) => Err(Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.shown))),
+        }
+    }
+
+    /// All bytes of a file.
+    ///
+    /// # Errors
+    /// As [`read_any`].
+    pub fn read_any(&self, place: &Place) -> Result<Vec<u8>, Problem> {
+        if let Some(bytes) = self.memory.texts.get(&place.inside) {
+            return Ok(bytes.clone());
+        }
+        self.missing(place)?;
+        read_any(&place.path, &place.shown)
+    }
+
+    fn missing(&self, place: &Place) -> Result<(), Problem> {
+        if self.on_disk() {
+            return Ok(());
+        }
+        let problem = Problem::error("file-missing", format!("there is no `{}` in memory", place.inside));
+        Err(problem.suggest(&place.inside, self.memory.texts.keys().map(String::as_str)))
     }
 
     /// The folder itself, without symbolic links.
@@ -72,6 +144,9 @@ impl Folder {
         let inside = inside.join("/");
         let path = self.real.join(&inside);
         // A path that does not exist is accepted; the error is reported when it is opened.
+        if !self.on_disk() {
+            return Ok(Place { path, shown: inside.clone(), inside });
+        }
         let real =
             disk::real(&path).map_err(|error| Problem::error("file-unreadable", format!("`{written}` cannot be read: {error}")).at(at))?;
         if real.is_some_and(|real| !real.starts_with(&self.real)) {
@@ -102,7 +177,6 @@ pub(super) fn check_file_name(name: &str, at: &Span) -> Result<(), Problem> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::Source;
 
     #[test]
     fn only_paths_inside_are_taken() {

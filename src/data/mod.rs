@@ -7,7 +7,8 @@
 //! | `campaigns` | several campaigns evaluated as one |
 //! | `identification` | identification of the report |
 //! | `members` | the folders of records, one or several of a kind |
-//! | `record` | one sampled record, as text or as Parquet; optimised for speed |
+//! | `record` | one sampled record, as text, as Parquet or in memory; optimised for speed |
+//! | `record/source` | where a record is: the one place from which campaigns read records |
 //! | `conversion` | a copy of a campaign with its records in another format |
 //! | `cut` | a copy of a campaign in which each section of a run has its own records |
 //! | `blocks` | a long record, block by block |

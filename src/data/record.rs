@@ -9,18 +9,23 @@ mod header_fault;
 mod indexed;
 mod known;
 mod marks;
+mod memory;
 mod number;
 mod raw;
 mod rows;
 mod runs;
+mod source;
 
 pub(crate) use columnar::{guard, guarded};
 pub use known::Known;
+pub use memory::{Frame, ReadFrom};
 pub use raw::read_raw;
 pub use runs::{Block, Run, read_stretch, stream, stream_known};
+pub use source::RecordSource;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::cells::{self, Heading};
 use super::faults::Faults;
@@ -70,8 +75,14 @@ pub struct Record {
     pub sha256: String,
     /// Size of the file.
     pub bytes: usize,
-    format: Format,
-    path: PathBuf,
+    from: Origin,
+}
+
+/// Where a record was read from.
+#[derive(Clone, Debug)]
+enum Origin {
+    File(PathBuf),
+    Memory(Arc<Frame>),
 }
 
 /// Format of a record, which is told by the ending of its name.
@@ -121,16 +132,11 @@ impl Record {
         self.columns.iter().find(|column| column.name == name)
     }
 
-    /// The file it was read from.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The number of sample `row` (from 0) in messages: the line of a text, whose header is line 1; the row of a Parquet file, from 1.
+    /// The number of sample `row` (from 0) in messages: the line of a text, whose header is line 1; else the row, from 1.
     pub fn row_shown(&self, row: usize) -> usize {
-        let before = match self.format {
-            Format::Csv => 2,
-            Format::Parquet => 1,
+        let before = match &self.from {
+            Origin::File(path) if Format::of(path) == Format::Csv => 2,
+            Origin::File(_) | Origin::Memory(_) => 1,
         };
         self.first_row + row + before
     }
@@ -138,11 +144,13 @@ impl Record {
     /// The place in the file of sample `row` (from 0), or of its cell in a column. The file is read again.
     pub fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
         let row = self.first_row + row;
-        if self.format == Format::Parquet {
-            return columnar::place(&self.path, &self.shown, row, column);
-        }
+        let path = match &self.from {
+            Origin::Memory(frame) => return frame.place(row, column),
+            Origin::File(path) if Format::of(path) == Format::Parquet => return columnar::place(path, &self.shown, row, column),
+            Origin::File(path) => path,
+        };
         let mut bytes = Vec::new();
-        read_large(&self.path, &self.shown, &mut bytes).ok()?;
+        read_large(path, &self.shown, &mut bytes).ok()?;
         let text = decode(&bytes, &self.shown).ok()?;
         // There are no blank lines between rows, so sample 0 is in line 2.
         let line = text.split('\n').nth(row + 1)?.trim_end_matches('\r');
@@ -207,8 +215,7 @@ fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -
         first_row: 0,
         sha256: sha256(bytes),
         bytes: bytes.len(),
-        format: Format::Csv,
-        path: path.to_path_buf(),
+        from: Origin::File(path.to_path_buf()),
     })
 }
 

@@ -31,12 +31,23 @@ const SHOWN: usize = 80;
 pub fn read_text(path: &Path, shown: &str) -> Result<(Arc<Source>, String), Problem> {
     let mut bytes = Vec::new();
     read_bounded(path, shown, SMALL, None, &mut bytes)?;
-    let text = decode(&bytes, shown)?;
+    text_of(&bytes, shown)
+}
+
+/// As [`read_text`], of bytes in memory.
+///
+/// # Errors
+/// `file-empty`, `file-too-large`, `encoding`, `line-too-long`.
+pub fn text_of(bytes: &[u8], shown: &str) -> Result<(Arc<Source>, String), Problem> {
+    if bytes.len() as u64 > SMALL {
+        return Err(Problem::error("file-too-large", format!("`{shown}` has more than {} MB", SMALL >> 20)));
+    }
+    let text = decode(bytes, shown)?;
     if text.trim().is_empty() {
         return Err(empty(shown));
     }
     check_lines(text, shown)?;
-    Ok((Source::new(shown, text), sha256(&bytes)))
+    Ok((Source::new(shown, text), sha256(bytes)))
 }
 
 /// Refuses a text with an excessively long line, which would be printed with every problem in it.

@@ -2,6 +2,7 @@
 //!
 //! Joins the stages as `certify` does: `run` evaluates records, `study` evaluates selections.
 
+mod asked;
 mod parameters;
 mod rule;
 mod scale;
@@ -17,6 +18,7 @@ use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::study::case::Case;
 use crate::study::{self, reduced, selections};
 
+pub use asked::Asked;
 pub use parameters::{Vary, all_choices, parameters};
 pub use synchronisation::{Synchronisation, synchronisation};
 

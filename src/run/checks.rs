@@ -22,7 +22,7 @@ pub fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mu
         work.graph.checks.iter().flatten().map(|input| input.node).filter(|&node| work.graph.nodes[node].track).collect();
     wanted.extend(plausibility::wanted(work, unit, known, true));
     let campaign = work.campaign(unit);
-    let there = || match campaign.record_place(RecordKind::Track, &unit.cell) {
+    let there = || match campaign.record_source(RecordKind::Track, &unit.cell) {
         Ok(_) => Ok(true),
         // A missing track record is stated for each check; a track record that cannot be read is a fault.
         Err(problem) if problem.code == "file-unreadable" => Err(Fault::new(problem.says)),

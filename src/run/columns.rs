@@ -6,7 +6,6 @@ use super::facts::Facts;
 use super::record::needed;
 use super::sections::Unit;
 use crate::check::plan::{Plan, Side};
-use crate::data::record::read_headings;
 use crate::data::{Campaign, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
 
@@ -22,12 +21,12 @@ pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[&Unit]) -> Seen {
         let (mut columns, mut read) = (BTreeSet::new(), BTreeSet::new());
         for unit in units {
             // A record that cannot be read is a fault of its section and is reported when it is opened.
-            let Ok(place) = campaign.place_of(which, &unit.cell) else { continue };
+            let Ok(source) = campaign.source_of(which, &unit.cell) else { continue };
             // Sections of a run are in one file.
-            if !read.insert(place.path.clone()) {
+            if !read.insert(source.inside().to_string()) {
                 continue;
             }
-            let headings = read_headings(&place.path, &place.shown).ok();
+            let headings = source.headings().ok();
             columns.extend(headings.into_iter().flatten().map(|heading| heading.name));
         }
         seen.push((which, columns));

@@ -264,7 +264,7 @@ pub fn single(
     let (new, worn) = (beside("profile.file", "profile.csv"), beside("profile.worn_file", "profile_worn.csv"));
     let new = profile(&new, &new.display().to_string(), &mut problems);
     let worn = disk::may_be_file(&worn).then(|| profile(&worn, &worn.display().to_string(), &mut problems)).flatten();
-    let track = read_track(track_file, &track_file.display().to_string());
+    let track = read_track(|wanted| read_record(track_file, &track_file.display().to_string(), wanted));
     let (Some(mut vehicle), Some(new), Ok(track)) = (vehicle, new, track.map_err(|problem| problems.push(problem))) else {
         return Err(problems);
     };
@@ -287,12 +287,12 @@ pub fn single(
 }
 
 fn track_of(campaign: &Campaign, section: &Cell) -> Result<TrackTable, Problem> {
-    let place = campaign.record_place(RecordKind::Track, section)?;
-    read_track(&place.path, &place.inside)
+    let source = campaign.record_source(RecordKind::Track, section)?;
+    read_track(|wanted| source.read(wanted))
 }
 
 /// Reads a track file. Irregularities in mm, the unit of the model.
-fn read_track(path: &Path, shown: &str) -> Result<TrackTable, Problem> {
+fn read_track(read: impl FnOnce(&[Wanted]) -> Result<Record, Vec<Problem>>) -> Result<TrackTable, Problem> {
     let length = Dimension::LENGTH;
     let wanted = [
         Wanted::new("distance", length),
@@ -303,7 +303,7 @@ fn read_track(path: &Path, shown: &str) -> Result<TrackTable, Problem> {
         Wanted::new("cross level", length),
         Wanted::new("gauge", length),
     ];
-    let record = read_record(path, shown, &wanted).map_err(first)?;
+    let record = read(&wanted).map_err(first)?;
     let column = |name: &str, factor: f64| numbers(&record, name, factor);
     let distance = column("distance", 1.0);
     increasing(&record, "distance", &distance)?;

@@ -3,7 +3,7 @@
 use super::section::Section;
 use crate::data::campaign::ReadFile;
 use crate::data::checks;
-use crate::data::record::{Format, Record, Wanted};
+use crate::data::record::{Format, Record, RecordSource, Wanted};
 use crate::data::write::{OutColumn, record};
 use crate::data::{Campaign, RecordKind};
 use crate::effects::{Channel, Signals};
@@ -45,22 +45,21 @@ pub fn recorded_inside(campaign: &Campaign, kind: RecordKind, section: &Section)
 
 fn whole(campaign: &Campaign, kind: RecordKind, section: &Section) -> Result<(Record, ReadFile), Vec<Problem>> {
     campaign.file_for_each_section().map_err(|problem| vec![problem])?;
-    let place = campaign.record_place(kind, &section.cell).map_err(|problem| vec![problem])?;
-    let headings = crate::data::record::read_headings(&place.path, &place.inside)?;
+    let headings = campaign.record_source(kind, &section.cell).map_err(|problem| vec![problem])?.headings()?;
     let wanted: Vec<Wanted> =
         headings.iter().map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true }).collect();
     campaign.read(kind.into(), &section.cell, &wanted, None)
 }
 
-/// As [`recorded`], for a file outside a campaign.
+/// As [`recorded`], of a record that need not be in a campaign.
 ///
 /// # Errors
 /// Of reading; the record has no `time`.
-pub fn read_signals(path: &std::path::Path, shown: &str) -> Result<(Signals, Units), Vec<Problem>> {
-    let headings = crate::data::record::read_headings(path, shown)?;
+pub fn signals_of(source: &RecordSource) -> Result<(Signals, Units), Vec<Problem>> {
+    let headings = source.headings()?;
     let wanted: Vec<Wanted> =
         headings.iter().map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true }).collect();
-    signals(&crate::data::record::read_record(path, shown, &wanted)?)
+    signals(&source.read(&wanted)?)
 }
 
 fn signals(record: &Record) -> Result<(Signals, Units), Vec<Problem>> {

@@ -19,8 +19,10 @@ mod steps;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use fishplate::data::Place as FilePlace;
+use fishplate::data::record::RecordSource;
 use fishplate::effects::Signals;
-use fishplate::simulate::read_signals;
+use fishplate::simulate::signals_of;
 use program::{Ran, program, ran};
 use tempfile::TempDir;
 
@@ -104,7 +106,8 @@ impl Place {
 
 #[track_caller]
 fn signals(path: &Path) -> Signals {
-    read_signals(path, "record").unwrap_or_else(|problems| panic!("{}: {problems:?}", path.display())).0
+    let place = FilePlace { path: path.to_path_buf(), shown: "record".into(), inside: "record".into() };
+    signals_of(&RecordSource::File(place)).unwrap_or_else(|problems| panic!("{}: {problems:?}", path.display())).0
 }
 
 #[track_caller]

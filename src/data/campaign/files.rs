@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use super::{CAMPAIGN_FILE, Campaign, RecordKind, Run};
 use crate::data::folder::Place;
-use crate::data::text::read_any;
 use crate::disk;
 use crate::problem::Problem;
 
@@ -34,7 +33,10 @@ impl Campaign {
         let all = RecordKind::ALL.into_iter().flat_map(|kind| self.records(kind));
         let folders = all.filter_map(|which| Some(real(&self.record_folder(which).ok()?.0)));
         let named = self.files.iter().filter_map(|file| self.folder.place(&file.path, &self.tree.span.part(0..0)).ok());
-        let of_run = |run: &Run| RecordKind::ALL.map(|kind| self.run_place(run, kind).ok()).into_iter().flatten().collect::<Vec<_>>();
+        let of_run = |run: &Run| {
+            let files = RecordKind::ALL.map(|kind| self.run_source(run, kind)?.file(&run.name.span));
+            files.into_iter().filter_map(Result::ok).collect::<Vec<_>>()
+        };
         let files = named.chain(self.vehicle_files().unwrap_or_default()).chain(self.runs.iter().flat_map(of_run));
         Inputs { folder: self.folder.real().to_path_buf(), folders: folders.collect(), files: files.map(|place| real(&place)).collect() }
     }
@@ -77,7 +79,8 @@ impl Campaign {
         }
         let read = |inside: String| {
             let place = self.folder.place(&inside, &self.tree.span.part(0..0))?;
-            Ok((inside, read_any(&place.path, &place.shown)?))
+            let bytes = self.folder.read_any(&place)?;
+            Ok((inside, bytes))
         };
         inside.into_iter().map(read).collect()
     }
@@ -87,6 +90,9 @@ impl Campaign {
     /// # Errors
     /// A name leads outside.
     pub fn vehicle_files(&self) -> Result<Vec<Place>, Problem> {
+        if !self.folder.on_disk() {
+            return Ok(Vec::new());
+        }
         let mut named = vec!["profile.csv".to_string(), "profile_worn.csv".to_string()];
         let maps = self.vehicles.iter().flat_map(|vehicle| vehicle.data.entries()).flat_map(|(_, node)| node.entries());
         named.extend(maps.filter_map(|(_, node)| Some(node.scalar_text()?.to_string())).filter(|text| text.ends_with(".csv")));

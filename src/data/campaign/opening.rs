@@ -7,8 +7,6 @@ use super::{Parameter, ReadFile, RecordKind, VehicleState};
 use crate::data::folder::{Folder, Place};
 use crate::data::origin::{ORIGIN_KEY, Origin};
 use crate::data::table::Table;
-use crate::data::text::read_text;
-use crate::disk;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span, Spanned};
 use crate::yaml::{self, Node, Value};
@@ -34,8 +32,8 @@ impl Opening<'_> {
     }
 
     pub(super) fn yaml(&mut self, place: &Place, named: Option<&Span>) -> Option<(Arc<Source>, Node)> {
-        let (source, sha256) = self.keep(read_text(&place.path, &place.shown).map_err(|problem| named_at(problem, named)))?;
-        let bytes = self.keep(size(place))?;
+        let read = self.folder.read_text(place);
+        let (source, sha256, bytes) = self.keep(read.map_err(|problem| named_at(problem, named)))?;
         self.files.push(ReadFile { path: place.inside.clone(), sha256, bytes });
         let tree = yaml::load(&source, self.problems)?;
         Some((source, tree))
@@ -117,12 +115,12 @@ impl Opening<'_> {
         let place = self.folder.place(&written.value, &written.span);
         let place = self.keep(place)?;
         let mut found = Problems::default();
-        let table = Table::read(&place.path, &place.shown, names, &mut found);
+        let read = self.folder.read_text(&place).map_err(|problem| found.push(problem)).ok();
+        let table = read.and_then(|(source, sha256, bytes)| Some((Table::parse(source, sha256, names, &mut found)?, bytes)));
         for problem in found.0 {
             self.problems.push(named_at(problem, Some(&written.span)));
         }
-        let table = table?;
-        let bytes = self.keep(size(&place))?;
+        let (table, bytes) = table?;
         self.files.push(ReadFile { path: place.inside, sha256: table.sha256.clone(), bytes });
         Some(table)
     }
@@ -169,14 +167,5 @@ fn named_at(problem: Problem, span: Option<&Span>) -> Problem {
     match span {
         Some(span) if problem.at.is_none() => problem.at(span),
         _ => problem,
-    }
-}
-
-/// Size of a file that was just read.
-fn size(place: &Place) -> Result<u64, Problem> {
-    match disk::kind(&place.path) {
-        Ok(Some(disk::Kind::File(size))) => Ok(size),
-        Ok(_) => Err(Problem::error("file-missing", format!("`{}` went away while it was read", place.shown))),
-        Err(error) => Err(Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.shown))),
     }
 }

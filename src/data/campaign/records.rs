@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{Campaign, Part, ReadFile};
 use crate::data::folder::{Place, check_file_name};
 use crate::data::members::{self, RecordFolder, WhichRecord};
-use crate::data::record::{Format, Record, Wanted, read_record, read_stretch};
+use crate::data::record::{Format, Record, RecordSource, Wanted};
 use crate::data::table::Cell;
 use crate::data::text::other_format;
 use crate::disk;
@@ -45,6 +45,13 @@ impl Campaign {
     /// The names of the measured records.
     pub(super) fn measured(&self) -> Result<Vec<Cell>, Problem> {
         let (place, span) = self.record_folder(RecordKind::Measurement.into())?;
+        let inside = format!("{}/", place.inside);
+        let kept = self.folder.memory().records.keys().filter_map(|name| name.strip_prefix(&inside));
+        let names: Vec<Cell> = kept.map(|name| Spanned::new(name.to_string(), span.clone())).collect();
+        if !names.is_empty() {
+            return Ok(names);
+        }
+        self.none_in_memory(&inside, span)?;
         let entries = disk::names(&place.path).map_err(|error| no_folder(&error, &place.shown).at(span))?;
         let mut names: Vec<String> = entries
             .iter()
@@ -124,22 +131,43 @@ impl Campaign {
     /// Where the record of a section is, the only one of its kind, which must exist.
     ///
     /// # Errors
-    /// `several-records`; as [`Campaign::place_of`].
-    pub fn record_place(&self, kind: RecordKind, section: &Cell) -> Result<Place, Problem> {
+    /// `several-records`; as [`Campaign::source_of`].
+    pub fn record_source(&self, kind: RecordKind, section: &Cell) -> Result<RecordSource, Problem> {
         self.only_one(kind)?;
-        self.place_of(kind.into(), section)
+        self.source_of(kind.into(), section)
+    }
+
+    /// As [`Campaign::record_source`], of a record that must be a file.
+    ///
+    /// # Errors
+    /// `record-in-memory`; as [`Campaign::record_source`].
+    pub fn record_place(&self, kind: RecordKind, section: &Cell) -> Result<Place, Problem> {
+        self.record_source(kind, section)?.file(&section.span)
+    }
+
+    /// As [`Campaign::source_of`], of a record that must be a file.
+    ///
+    /// # Errors
+    /// `record-in-memory`; as [`Campaign::source_of`].
+    pub fn place_of(&self, which: WhichRecord, section: &Cell) -> Result<Place, Problem> {
+        self.source_of(which, section)?.file(&section.span)
     }
 
     /// Where a record of a section is, which must exist.
     ///
     /// # Errors
     /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in that folder), `two-formats`.
-    pub fn place_of(&self, which: WhichRecord, section: &Cell) -> Result<Place, Problem> {
+    pub fn source_of(&self, which: WhichRecord, section: &Cell) -> Result<RecordSource, Problem> {
         check_file_name(&section.value, &section.span)?;
         if let Some(run) = self.run_of(section) {
-            return self.run_place(run, which.kind);
+            return self.run_source(run, which.kind);
         }
         let (folder, span) = self.record_folder(which)?;
+        let name = format!("{}/{}", folder.inside, section.value);
+        if let Some(frame) = self.folder.memory().records.get(&name) {
+            return Ok(RecordSource::Memory(Arc::clone(frame)));
+        }
+        self.none_in_memory(&name, &section.span)?;
         let unreadable =
             |inside: &str, error| Problem::error("file-unreadable", format!("`{inside}` cannot be read: {error}")).at(&section.span);
         let [csv, parquet] = Format::ALL.map(|format| {
@@ -148,7 +176,7 @@ impl Campaign {
             Ok((place, there))
         });
         let place = match (csv?, parquet?) {
-            ((place, true), (_, false)) | ((_, false), (place, true)) => return Ok(place),
+            ((place, true), (_, false)) | ((_, false), (place, true)) => return Ok(RecordSource::File(place)),
             ((place, false), (_, false)) => place,
             ((csv, true), (parquet, true)) => {
                 let says = format!("`{}` and `{}` are both the record of section {}", csv.inside, parquet.inside, section.value);
@@ -185,6 +213,16 @@ impl Campaign {
         }
     }
 
+    /// # Errors
+    /// `file-missing`: the campaign has no folder in which a record could be looked for.
+    pub(super) fn none_in_memory(&self, name: &str, at: &Span) -> Result<(), Problem> {
+        if self.folder.on_disk() {
+            return Ok(());
+        }
+        let problem = Problem::error("file-missing", format!("there is no record `{name}` in memory")).at(at);
+        Err(problem.suggest(name, self.folder.memory().records.keys().map(String::as_str)))
+    }
+
     /// Files of a folder but the records of sections: the record of another section is not what was meant.
     fn strangers(&self, folder: &Path) -> Vec<String> {
         let sections: HashSet<&str> = self.names.iter().map(|name| name.value.as_str()).collect();
@@ -196,7 +234,7 @@ impl Campaign {
     /// results, which must be the same wherever the campaign lies: they name the record by its path inside the campaign.
     ///
     /// # Errors
-    /// As [`Campaign::place_of`] and [`read_record`].
+    /// As [`Campaign::source_of`] and [`RecordSource::read`].
     pub fn read(
         &self,
         which: WhichRecord,
@@ -204,7 +242,7 @@ impl Campaign {
         wanted: &[Wanted],
         part: Option<&Part>,
     ) -> Result<(Record, ReadFile), Vec<Problem>> {
-        let place = self.place_of(which, section).map_err(|problem| vec![problem])?;
+        let source = self.source_of(which, section).map_err(|problem| vec![problem])?;
         let offset = match which.kind {
             RecordKind::Measurement => self.offset(section).map_err(|problem| vec![problem])?,
             RecordKind::Simulation | RecordKind::Track => None,
@@ -213,15 +251,15 @@ impl Campaign {
         let mut record = match part.zip(self.run_of(section)) {
             Some((part, run)) => {
                 let range = part.from - moved..part.to - moved;
-                read_stretch(&place.path, &place.inside, wanted, &part.axis, range, run.known(which.kind))?
+                source.stretch(wanted, &part.axis, range, run.known(which.kind))?
             }
-            None => read_record(&place.path, &place.inside, wanted)?,
+            None => source.read(wanted)?,
         };
         if let Some((axis, offset)) = offset {
             let along = record.columns.iter_mut().find(|column| column.name == axis);
             along.into_iter().flat_map(|column| &mut column.values).for_each(|value| *value += offset);
         }
-        let file = ReadFile { path: place.inside, sha256: record.sha256.clone(), bytes: record.bytes as u64 };
+        let file = ReadFile { path: source.inside().to_string(), sha256: record.sha256.clone(), bytes: record.bytes as u64 };
         Ok((record, file))
     }
 }

@@ -1,9 +1,11 @@
 //! Runs of a campaign: one record of each kind over a long stretch, of which sections are parts.
 
+use std::sync::Arc;
+
 use super::{Campaign, RecordKind};
 use crate::data::cells::name_and_unit;
-use crate::data::folder::{Folder, Place};
-use crate::data::record::Known;
+use crate::data::folder::Folder;
+use crate::data::record::{Known, RecordSource};
 use crate::data::table::{Cell, Table};
 use crate::disk;
 use crate::problem::{Problem, Problems};
@@ -175,19 +177,23 @@ impl Campaign {
         self.runs.iter().find(|run| run.name.value == name)
     }
 
-    /// The file of a run, which must exist.
+    /// The record of a run, which must exist.
     ///
     /// # Errors
     /// `key-missing`, `path-outside`, `file-missing`.
-    pub fn run_place(&self, run: &Run, kind: RecordKind) -> Result<Place, Problem> {
+    pub fn run_source(&self, run: &Run, kind: RecordKind) -> Result<RecordSource, Problem> {
         let Some(file) = run.file(kind) else {
             let says = format!("the run `{}` has no `{}`", run.name.value, kind.key());
             return Err(Problem::error("key-missing", says).at(&run.name.span));
         };
         let place = self.folder.place(&file.value, &file.span)?;
+        if let Some(frame) = self.folder.memory().records.get(&place.inside) {
+            return Ok(RecordSource::Memory(Arc::clone(frame)));
+        }
+        self.none_in_memory(&place.inside, &file.span)?;
         let unreadable = |error| Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.inside)).at(&file.span);
         if disk::is_file(&place.path).map_err(unreadable)? {
-            return Ok(place);
+            return Ok(RecordSource::File(place));
         }
         let problem = Problem::error("file-missing", format!("there is no file `{}`", place.inside)).at(&file.span);
         let others = place.path.parent().and_then(|folder| disk::names(folder).ok()).unwrap_or_default();

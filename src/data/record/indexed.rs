@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::known::{Index, Known, KnownFile, Mark};
 use super::runs::{Block, Run, Stretch, axis_of, text};
-use super::{Record, Wanted, find_columns, header, rows};
+use super::{Origin, Record, Wanted, find_columns, header, rows};
 use crate::data::text::{decode_from, open_text, read_line_of, unreadable};
 use crate::problem::Problem;
 
@@ -66,7 +66,11 @@ pub fn stretch(
     }
     columns.iter_mut().for_each(|column| column.values = Vec::new());
     let channels = headings.into_iter().map(|heading| heading.name).collect();
-    stretch.record(Run { channels, rows: index.rows, columns, sha256: known.sha256.clone(), bytes: known.bytes }, path, shown)
+    stretch.record(
+        Run { channels, rows: index.rows, columns, sha256: known.sha256.clone(), bytes: known.bytes },
+        Origin::File(path.to_path_buf()),
+        shown,
+    )
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
-use super::{Column, Format, Known, Record, Wanted, columnar, find_columns, header, indexed, rows};
+use super::{Column, Format, Known, Origin, Record, Wanted, columnar, find_columns, header, indexed, rows};
 use crate::data::hash::Hasher;
 use crate::data::text::{LONGEST_LINE, decode_from, long_line, open_text, read_line_of, unreadable};
 use crate::problem::Problem;
@@ -137,10 +137,10 @@ impl Stretch {
     }
 
     /// The record of these rows.
-    pub fn record(self, run: Run, path: &Path, shown: &str) -> Result<Record, Vec<Problem>> {
+    pub fn record(self, run: Run, from: Origin, shown: &str) -> Result<Record, Vec<Problem>> {
         let axis = &self.columns[self.axis];
         let number = |value: f64| format!("{}{}", axis.unit.from_si(value), axis.unit.suffix());
-        let (from, to) = (number(self.range.start), number(self.range.end));
+        let (start, end) = (number(self.range.start), number(self.range.end));
         let record = Record {
             shown: shown.to_string(),
             rows: axis.values.len(),
@@ -149,16 +149,15 @@ impl Stretch {
             first_row: self.first_row,
             sha256: run.sha256,
             bytes: usize::try_from(run.bytes).unwrap_or(usize::MAX),
-            format: Format::of(path),
-            path: path.to_path_buf(),
+            from,
         };
         if let Some(row) = self.again {
             let row = record.row_shown(row - self.first_row);
-            let says = format!("`{}` enters the range from {from} to {to} again at row {row} of `{shown}`; it must increase", axis.name);
+            let says = format!("`{}` enters the range from {start} to {end} again at row {row} of `{shown}`; it must increase", axis.name);
             return Err(vec![Problem::error("axis-not-increasing", says)]);
         }
         if record.rows == 0 {
-            let says = format!("no sample of `{shown}` has a `{}` from {from} to {to}", axis.name);
+            let says = format!("no sample of `{shown}` has a `{}` from {start} to {end}", axis.name);
             return Err(vec![Problem::error("outside-record", says)]);
         }
         Ok(record)

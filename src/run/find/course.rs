@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::Place;
 use crate::check::plan::{Plan, Side};
 use crate::data::campaign::Run;
-use crate::data::record::{Record, Wanted, read_stretch};
+use crate::data::record::{Record, Wanted};
 use crate::data::{Campaign, RecordKind};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::drift::{Point, Signals, Tracker, Windows};
@@ -65,8 +65,8 @@ pub fn course(
     let mut tracker = Tracker::new(Windows { length, every: EVERY * length, farthest, step: farthest / STEPS });
     let wanted = wanted(plan, graph);
     let read = |kind: RecordKind, (from, to): (f64, f64)| -> Option<Record> {
-        let place = campaign.run_place(run, kind).ok()?;
-        read_stretch(&place.path, &place.inside, &wanted, &plan.axis.column, from..to, run.known(kind)).ok()
+        let source = campaign.run_source(run, kind).ok()?;
+        source.stretch(&wanted, &plan.axis.column, from..to, run.known(kind)).ok()
     };
     let mut at = start;
     while at + length <= end {

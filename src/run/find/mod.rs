@@ -167,7 +167,8 @@ impl Windows {
                     wanted.push(Wanted::new(column.as_str(), node.dimension));
                 }
             }
-            let place = campaign.run_place(run, kind).map_err(|problem| Problems(vec![problem]))?;
+            let place =
+                campaign.run_source(run, kind).and_then(|source| source.file(&run.name.span)).map_err(|problem| Problems(vec![problem]))?;
             all.push((source, Window::open(&place, wanted, run.known(kind).clone())));
         }
         Ok(Self { all })

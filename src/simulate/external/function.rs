@@ -4,9 +4,10 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
+use super::super::made::{first, lacks, unit_in};
+use super::External;
 use super::cache::Key;
 use super::python::{Columns, Failed, Workers};
-use super::{External, first, lacks, unit_in};
 use crate::data::RecordKind;
 use crate::data::record::{Wanted, listed_headings, read_headings, read_record};
 use crate::effects::{Action, Catalogue, Channel, Signals};

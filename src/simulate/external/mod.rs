@@ -17,12 +17,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub use cache::Cache;
 pub use read::{Program, read_program};
 
-use super::campaign::{Units, in_units, read_signals, recorded};
+use super::campaign::{Units, recorded};
 use super::compare::{Deviation, deviations};
+use super::made::{first, read_made, unit_in};
 use super::{Section, Simulator, Task};
-use crate::data::record::read_headings;
+use crate::data::record::RecordSource;
 use crate::data::text::LARGEST_RECORD;
-use crate::data::{Campaign, Heading, RecordKind};
+use crate::data::{Campaign, Heading, Place, RecordKind};
 use crate::disk;
 use crate::effects::Signals;
 use crate::problem::Problem;
@@ -111,8 +112,8 @@ impl<'a> External<'a> {
 
     /// Headings of the campaign's simulation of a section; empty if there is none.
     fn headings(&self, section: &Section) -> Vec<Heading> {
-        let place = self.campaign.record_place(RecordKind::Simulation, &section.cell);
-        place.ok().and_then(|place| read_headings(&place.path, &place.inside).ok()).unwrap_or_default()
+        let source = self.campaign.record_source(RecordKind::Simulation, &section.cell);
+        source.ok().and_then(|source| source.headings().ok()).unwrap_or_default()
     }
 
     /// The words of a call with all placeholders replaced.
@@ -185,20 +186,8 @@ impl<'a> External<'a> {
     fn read(&self, path: &Path, section: &Section) -> Result<Signals, Problem> {
         let shown = format!("{}.csv of {}", section.name(), self.program.name);
         let known = self.headings(section);
-        let made = read_headings(path, &shown).map_err(first)?;
-        let channels = self.program.channels.iter().map(String::as_str);
-        let wanted: Vec<&str> =
-            if self.program.channels.is_empty() { known.iter().map(|one| one.name.as_str()).collect() } else { channels.collect() };
-        for &name in &wanted {
-            let names: Vec<&str> = made.iter().map(|one| one.name.as_str()).collect();
-            let Some(heading) = made.iter().find(|one| one.name == name) else { return Err(lacks(&shown, name, &names, &wanted)) };
-            heading.unit(unit_in(&known, name).map(|unit| unit.dimension))?;
-        }
-        let (mut signals, units) = read_signals(path, &shown).map_err(first)?;
-        if let Some(at) = signals.axis.windows(2).position(|pair| pair[1] <= pair[0]) {
-            return Err(Problem::error("not-increasing", format!("{shown}: the position does not increase in line {}", at + 3)));
-        }
-        in_units(&mut signals, &units, &|name| unit_in(&known, name))?;
+        let made = RecordSource::File(Place { path: path.to_path_buf(), shown: shown.clone(), inside: shown });
+        let (signals, units) = read_made(&made, &known, &self.program.channels)?;
         if let Ok(mut all) = self.units.lock() {
             all.retain(|(name, _)| name != section.name());
             all.push((section.name().to_string(), units));
@@ -310,18 +299,4 @@ impl Simulator for External<'_> {
             }
         }
     }
-}
-
-/// A record without a column that is wanted, with the nearest of the columns that nobody wants.
-fn lacks(shown: &str, name: &str, made: &[&str], wanted: &[&str]) -> Problem {
-    let strangers = made.iter().copied().filter(|one| !wanted.contains(one));
-    Problem::error("unknown-channel", format!("{shown} has no column `{name}`")).suggest(name, strangers)
-}
-
-fn unit_in(headings: &[Heading], name: &str) -> Option<Unit> {
-    headings.iter().find(|heading| heading.name == name)?.unit(None).ok()
-}
-
-fn first(problems: Vec<Problem>) -> Problem {
-    problems.into_iter().next().unwrap_or_else(|| Problem::error("unreadable", "the file cannot be read"))
 }

@@ -16,7 +16,7 @@ use parquet::arrow::push_decoder::{ParquetPushDecoderBuilder, PushBuffers};
 use parquet::basic::Type;
 
 use super::open::{Opened, damaged, guarded};
-use super::{Column, guard, value_at};
+use super::{Column, Heading, guard, value_at};
 use crate::data::faults::Faults;
 use crate::problem::Problem;
 
@@ -50,7 +50,10 @@ impl Opened<'_> {
         }
         let chunks = self.chunks(group, columns)?;
         let mut next = rows.start;
-        let mut fault = |row: usize, column: &Column, value: Option<f64>| faults.push(|| self.wrong(group, row, column, value));
+        let mut fault = |row: usize, column: &Column, value: Option<f64>| {
+            let place = format!("row {}, in row group {}", row + 1, group + 1);
+            faults.push(|| wrong(self.shown, &self.headings()[column.position], row, value).label(place));
+        };
         let decoded = self.decode(group, &rows, &chunks, columns, &mut |batch, columns, order| {
             for (array, at) in batch.columns().iter().zip(order) {
                 append(array.as_ref(), &mut columns[*at], next, &mut fault)?;
@@ -175,26 +178,21 @@ impl Opened<'_> {
         }
         damaged(self.shown, &format!("row group {}: {why}", group + 1))
     }
-
-    /// A value that is missing or not finite.
-    fn wrong(&self, group: usize, row: usize, column: &Column, value: Option<f64>) -> Problem {
-        let heading = &self.headings()[column.position];
-        let (code, says, text) = match value {
-            None => ("not-a-number", "the value is missing (null); expected a number".to_string(), "null".to_string()),
-            Some(value) => ("not-finite", format!("`{value}` is not a finite number"), value.to_string()),
-        };
-        Problem::error(code, format!("`{}`: {says}", column.name)).at(&value_at(self.shown, heading, row, &text)).label(format!(
-            "row {}, in row group {}",
-            row + 1,
-            group + 1
-        ))
-    }
 }
 
-type Fault<'f> = &'f mut dyn FnMut(usize, &Column, Option<f64>);
+/// A value that is missing or not finite.
+pub(in crate::data::record) fn wrong(shown: &str, heading: &Heading, row: usize, value: Option<f64>) -> Problem {
+    let (code, says, text) = match value {
+        None => ("not-a-number", "the value is missing (null); expected a number".to_string(), "null".to_string()),
+        Some(value) => ("not-finite", format!("`{value}` is not a finite number"), value.to_string()),
+    };
+    Problem::error(code, format!("`{}`: {says}", heading.name)).at(&value_at(shown, heading, row, &text))
+}
+
+pub(in crate::data::record) type Fault<'f> = &'f mut dyn FnMut(usize, &Column, Option<f64>);
 
 /// Appends the numbers of an array; `first` is the row of its first one.
-fn append(array: &dyn Array, column: &mut Column, first: usize, fault: Fault<'_>) -> Result<(), String> {
+pub(in crate::data::record) fn append(array: &dyn Array, column: &mut Column, first: usize, fault: Fault<'_>) -> Result<(), String> {
     macro_rules! numbers {
         ($kind:ty, $convert:expr) => {
             extend::<$kind>(array, column, first, fault, $convert)

@@ -15,11 +15,13 @@ mod runs;
 
 use std::path::Path;
 
+pub(super) use groups::{append, wrong};
 pub(crate) use open::guarded;
 use open::{Opened, Store};
+pub(super) use open::{headings_of, not_numbers};
 pub(super) use runs::{stream, stretch};
 
-use super::{Column, Format, Record, Wanted, find_columns};
+use super::{Column, Record, Wanted, find_columns};
 use crate::data::cells::Heading;
 use crate::data::faults::Faults;
 use crate::data::hash::sha256;
@@ -61,12 +63,11 @@ pub(super) fn read(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record
         first_row: 0,
         sha256: hash,
         bytes: size,
-        format: Format::Parquet,
-        path: path.to_path_buf(),
+        from: super::Origin::File(path.to_path_buf()),
     })
 }
 
-fn no_rows(shown: &str) -> Problem {
+pub(super) fn no_rows(shown: &str) -> Problem {
     Problem::error("no-rows", format!("`{shown}` has columns and no samples"))
 }
 
@@ -126,7 +127,7 @@ pub(super) fn place(path: &Path, shown: &str, row: usize, column: Option<&Column
 }
 
 /// A Parquet file has no text: the place shows `name [unit] = value`, in the line with the number of the row, from 1.
-fn value_at(shown: &str, heading: &Heading, row: usize, value: &str) -> Span {
+pub(super) fn value_at(shown: &str, heading: &Heading, row: usize, value: &str) -> Span {
     let name = format!("{} = ", heading.span.text());
     let from = name.len();
     let text = name + value;

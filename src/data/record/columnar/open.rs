@@ -20,7 +20,7 @@ use crate::data::text::{LARGEST_RECORD, plain_size, unreadable};
 use crate::data::write::Digits;
 use crate::disk;
 use crate::problem::Problem;
-use crate::source::Source;
+use crate::source::{Source, Span};
 use crate::units::Unit;
 
 /// Maximum size of a footer in bytes: a hundred channels in a thousand row groups take 10 MB.
@@ -187,7 +187,7 @@ impl<'a> Opened<'a> {
         });
         let (metadata, described) = parsed.map_err(|why| damaged(shown, &why))?;
         let starts = starts(metadata.metadata(), shown)?;
-        let headings = headings(metadata.schema(), &described, shown)?;
+        let headings = headings_of(metadata.schema(), &described, shown)?;
         let fields = fields(&metadata);
         let kept = |field: &Arc<arrow_schema::Field>| Digits::read(|key| field.metadata().get(key).map(String::as_str));
         let digits = described.fields().iter().map(kept).collect();
@@ -252,25 +252,10 @@ impl<'a> Opened<'a> {
 
     /// A problem for a column that does not hold numbers.
     pub(super) fn not_numbers(&self, column: &Column) -> Option<Problem> {
-        let kind = &self.fields.get(column.position)?.kind;
-        let what = match kind {
-            DataType::Float16 | DataType::Float32 | DataType::Float64 => return None,
-            kind if kind.is_integer() => return None,
-            DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => "text",
-            DataType::Binary | DataType::LargeBinary | DataType::BinaryView | DataType::FixedSizeBinary(_) => "bytes",
-            DataType::Boolean => "truth values",
-            DataType::Timestamp(..) | DataType::Date32 | DataType::Date64 | DataType::Time32(_) | DataType::Time64(_) => {
-                "dates or times of day"
-            }
-            kind if kind.is_nested() => "lists or structures",
-            kind if kind.is_decimal() => "decimal numbers of fixed point",
-            _ => "no numbers",
-        };
-        let says = format!("the column `{}` holds {what} (row 1); floating-point numbers or integers are needed", column.name);
-        let at = &self.headings.get(column.position)?.span;
-        Some(Problem::error("not-a-number", says).at(at).help("convert the column to float64 where the file is written"))
+        let (field, heading) = (self.fields.get(column.position)?, self.headings.get(column.position)?);
+        let problem = not_numbers(&field.kind, &column.name, &heading.span)?;
+        Some(problem.help("convert the column to float64 where the file is written"))
     }
-
     /// A problem for a column with a compression that is not read.
     pub(super) fn other_codec(&self, column: &Column) -> Option<Problem> {
         let leaf = self.leaf(column.position)?;
@@ -282,6 +267,25 @@ impl<'a> Opened<'a> {
         let problem = Problem::error("format-not-read", says).at(&self.headings.get(column.position)?.span);
         Some(problem.help("write the file with `zstd` or `snappy`, or without compression"))
     }
+}
+
+/// A problem for a column that does not hold numbers.
+pub(in crate::data::record) fn not_numbers(kind: &DataType, name: &str, at: &Span) -> Option<Problem> {
+    let what = match kind {
+        DataType::Float16 | DataType::Float32 | DataType::Float64 => return None,
+        kind if kind.is_integer() => return None,
+        DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => "text",
+        DataType::Binary | DataType::LargeBinary | DataType::BinaryView | DataType::FixedSizeBinary(_) => "bytes",
+        DataType::Boolean => "truth values",
+        DataType::Timestamp(..) | DataType::Date32 | DataType::Date64 | DataType::Time32(_) | DataType::Time64(_) => {
+            "dates or times of day"
+        }
+        kind if kind.is_nested() => "lists or structures",
+        kind if kind.is_decimal() => "decimal numbers of fixed point",
+        _ => "no numbers",
+    };
+    let says = format!("the column `{}` holds {what} (row 1); floating-point numbers or integers are needed", name);
+    Some(Problem::error("not-a-number", says).at(at))
 }
 
 /// The bytes of the footer.
@@ -358,7 +362,7 @@ fn fields(metadata: &ArrowReaderMetadata) -> Vec<Field> {
 }
 
 /// The headings, as if they were the header line of a text.
-fn headings(schema: &Schema, described: &Schema, shown: &str) -> Result<Vec<Heading>, Problem> {
+pub(in crate::data::record) fn headings_of(schema: &Schema, described: &Schema, shown: &str) -> Result<Vec<Heading>, Problem> {
     struct Part {
         from: usize,
         to: usize,

@@ -82,7 +82,7 @@ pub(crate) fn stretch(
     }
     let channels = opened.headings().iter().map(|heading| heading.name.clone()).collect();
     let run = Run { channels, rows: opened.rows(), columns, sha256, bytes: opened.store.size() };
-    stretch.record(run, path, shown)
+    stretch.record(run, super::super::Origin::File(path.to_path_buf()), shown)
 }
 
 impl Opened<'_> {

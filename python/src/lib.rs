@@ -1,0 +1,83 @@
+//! The Python package `fishplate`: thin classes over the library. Signatures, defaults and documentation are in `package/fishplate`.
+
+mod diagnose;
+mod document;
+mod error;
+mod html;
+mod inputs;
+mod result;
+mod table;
+mod work;
+
+use pyo3::prelude::*;
+
+use fishplate::check::{self, Overrides};
+use fishplate::library;
+use fishplate::prepare::Protocol;
+use fishplate::problem::Problems;
+
+/// Whether the wheel has the typesetter: without it there is no PDF.
+const TYPESETS: bool = cfg!(feature = "typeset");
+
+/// Every problem of a protocol, given by name or path, or as a text.
+#[pyfunction]
+fn check_protocol<'py>(py: Python<'py>, protocol: Asked) -> PyResult<Bound<'py, PyAny>> {
+    let problems = py.detach(|| {
+        let mut problems = Problems::default();
+        if let Some(family) = protocol.of().load(&mut problems) {
+            check::check(&family, &Overrides::new(), &mut problems);
+        }
+        problems
+    });
+    error::listed(py, &problems)
+}
+
+/// Names and titles of the shipped protocols.
+#[pyfunction]
+fn shipped() -> Vec<&'static str> {
+    library::names().collect()
+}
+
+/// The protocol that is asked for: a name or path, or a text.
+#[derive(Clone, Debug, FromPyObject)]
+pub struct Asked {
+    #[pyo3(item)]
+    name: Option<String>,
+    #[pyo3(item)]
+    text: Option<String>,
+}
+
+impl Asked {
+    pub fn of(&self) -> Protocol<'_> {
+        match (&self.text, &self.name) {
+            (Some(text), _) => Protocol::Text(text),
+            (None, name) => Protocol::Named(name.as_deref().unwrap_or_default()),
+        }
+    }
+}
+
+#[pymodule(gil_used = false)]
+mod _fishplate {
+    #[pymodule_export]
+    use super::check_protocol;
+    #[pymodule_export]
+    use super::diagnose::{Task, diagnose};
+    #[pymodule_export]
+    use super::document::{Report, compare, study};
+    #[pymodule_export]
+    use super::inputs::Campaign;
+    #[pymodule_export]
+    use super::result::{Result, certify};
+    #[pymodule_export]
+    use super::shipped;
+    #[pymodule_export]
+    use super::table::{Table, csv, from_arrays, read_record};
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+        module.add("TYPESETS", super::TYPESETS)
+    }
+}

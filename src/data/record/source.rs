@@ -1,0 +1,71 @@
+//! Where a record is: in a file, or in memory. All readers of records of a campaign go through here.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::memory::Frame;
+use super::{Known, Record, Wanted, read_headings, read_record, read_stretch};
+use crate::data::cells::Heading;
+use crate::data::folder::Place;
+use crate::problem::Problem;
+use crate::source::Span;
+
+/// A record that can be read.
+#[derive(Clone, Debug)]
+pub enum RecordSource {
+    File(Place),
+    Memory(Arc<Frame>),
+}
+
+impl RecordSource {
+    /// The name in messages and results: the path inside the campaign.
+    pub fn inside(&self) -> &str {
+        match self {
+            Self::File(place) => &place.inside,
+            Self::Memory(frame) => frame.name(),
+        }
+    }
+
+    /// # Errors
+    /// As [`read_headings`].
+    pub fn headings(&self) -> Result<Vec<Heading>, Vec<Problem>> {
+        match self {
+            Self::File(place) => read_headings(&place.path, &place.inside),
+            Self::Memory(frame) => Ok(frame.headings()),
+        }
+    }
+
+    /// # Errors
+    /// As [`read_record`]; of a record in memory those of its columns and values.
+    pub fn read(&self, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
+        match self {
+            Self::File(place) => read_record(&place.path, &place.inside, wanted),
+            Self::Memory(frame) => frame.read(wanted),
+        }
+    }
+
+    /// The rows whose axis lies in a range; `known` is what is known of the file.
+    ///
+    /// # Errors
+    /// As [`read_stretch`].
+    pub fn stretch(&self, wanted: &[Wanted], axis: &str, range: Range<f64>, known: &Known) -> Result<Record, Vec<Problem>> {
+        match self {
+            Self::File(place) => read_stretch(&place.path, &place.inside, wanted, axis, range, known),
+            Self::Memory(frame) => frame.stretch(wanted, axis, range),
+        }
+    }
+
+    /// The file, for who copies it or hands it to another program.
+    ///
+    /// # Errors
+    /// `record-in-memory`.
+    pub fn file(self, at: &Span) -> Result<Place, Problem> {
+        match self {
+            Self::File(place) => Ok(place),
+            Self::Memory(frame) => {
+                let says = format!("the record `{}` is in memory, and a file is needed here", frame.name());
+                Err(Problem::error("record-in-memory", says).at(at).help("write the records to a campaign folder"))
+            }
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! The files that a result is delivered as: numbers, tables, and the report as PDF and HTML. Each has its path inside the output folder.
+
+use crate::diagnose::Outcome;
+use crate::problem::{Problem, Problems};
+use crate::provenance::carried::REPORT_PDF;
+use crate::provenance::statement;
+use crate::report::pdf::Attachment;
+use crate::report::study::Document;
+use crate::report::{self, attached, figure, html, json, tables, typst, view};
+use crate::result::Certification;
+use crate::result::comparison::Comparison;
+use crate::result::diagnosis::Diagnosis;
+use crate::result::study::Study;
+
+/// Paths and contents.
+pub type Files = Vec<(String, Vec<u8>)>;
+
+/// The forms of a report that are wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct Reports {
+    pub pdf: bool,
+    pub html: bool,
+}
+
+impl Reports {
+    pub const ALL: Self = Self { pdf: true, html: true };
+    pub const NONE: Self = Self { pdf: false, html: false };
+}
+
+const REPORT_HTML: &str = "report.html";
+
+/// # Errors
+/// A table, a template or a text cannot be written.
+pub fn certification(found: &Certification, reports: Reports) -> Result<Files, Problems> {
+    let results = json::results(found);
+    let mut files = in_folder(tables::tables(found).map_err(|error| error.to_string()))?;
+    if reports.pdf || reports.html {
+        let data = view::view(found);
+        let figures = figure::figures(found);
+        if reports.pdf {
+            let names = attached::protocol_names(found);
+            let attachments = attached::attachments(found, &results, &names);
+            files.push((REPORT_PDF.into(), typst::typeset(&data, &figures, &attachments)?.bytes));
+        }
+        if reports.html {
+            files.push((REPORT_HTML.into(), html::html(&data, &figures)?.into_bytes()));
+        }
+    }
+    files.push((attached::RESULTS.into(), results.into_bytes()));
+    files.push((statement::FILE.into(), statement::statement(found, &files).into_bytes()));
+    Ok(files)
+}
+
+/// # Errors
+/// As [`certification`].
+pub fn study(found: &Study, reports: Reports) -> Result<Files, Problems> {
+    let mut files = in_folder(report::study::tables::tables(found).map_err(|error| error.to_string()))?;
+    let (data, figures) = (report::study::document(found), report::study::figures(found));
+    let numbers = report::study::json::study(found);
+    files.extend(document(("study.json", "Every number of this study"), numbers, &data, &figures, reports)?);
+    Ok(files)
+}
+
+/// # Errors
+/// As [`certification`].
+pub fn comparison(found: &Comparison, reports: Reports) -> Result<Files, Problems> {
+    let mut files = in_folder(report::comparison::tables::tables(found).map_err(|error| error.to_string()))?;
+    let numbers = report::comparison::json(found);
+    if !reports.pdf && !reports.html {
+        files.push((COMPARISON.0.into(), numbers.into_bytes()));
+        return Ok(files);
+    }
+    let (data, figures) = (report::comparison::document(found), report::comparison::figures(found));
+    files.extend(document(COMPARISON, numbers, &data, &figures, reports)?);
+    Ok(files)
+}
+
+const COMPARISON: (&str, &str) = ("comparison.json", "Every number of this comparison");
+
+/// # Errors
+/// As [`certification`].
+pub fn diagnosis(outcome: &Outcome, reports: Reports) -> Result<Files, Problems> {
+    let found = &outcome.diagnosis;
+    let (data, figures) = (report::diagnosis::document(found, &outcome.before), report::diagnosis::figures(found));
+    document(("diagnosis.json", "Every number of this diagnosis"), diagnosis_json(found), &data, &figures, reports)
+}
+
+/// The text of `diagnosis.json`.
+pub fn diagnosis_json(diagnosis: &Diagnosis) -> String {
+    serde_json::to_string_pretty(diagnosis).unwrap_or_default() + "\n"
+}
+
+/// A document as report.pdf with its numbers attached, as report.html, and the numbers as `name`.
+///
+/// # Errors
+/// A template or a text cannot be typeset.
+pub fn document(
+    (name, description): (&'static str, &'static str),
+    numbers: String,
+    data: &Document,
+    figures: &[(String, String)],
+    reports: Reports,
+) -> Result<Files, Problems> {
+    let mut files = Files::new();
+    if reports.pdf {
+        let attachment = Attachment { name, mime: "application/json", bytes: numbers.as_bytes(), description };
+        files.push((REPORT_PDF.into(), typst::typeset_study(data, figures, &[attachment])?.bytes));
+    }
+    if reports.html {
+        files.push((REPORT_HTML.into(), html::study_html(data, figures)?.into_bytes()));
+    }
+    files.push((name.into(), numbers.into_bytes()));
+    Ok(files)
+}
+
+/// Tables in the folder `tables`.
+fn in_folder<T: Into<Vec<u8>>>(tables: Result<Vec<(String, T)>, String>) -> Result<Files, Problems> {
+    let tables = tables.map_err(|says| Problems(vec![Problem::error("table", says)]))?;
+    Ok(tables.into_iter().map(|(name, bytes)| (format!("tables/{name}"), bytes.into())).collect())
+}

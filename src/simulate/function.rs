@@ -1,0 +1,54 @@
+//! A function of the calling program as a simulator: one call makes one record, in memory.
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::made::read_made;
+use super::{Simulator, Task};
+use crate::data::record::{Frame, RecordSource};
+use crate::data::{Campaign, RecordKind};
+use crate::effects::Signals;
+use crate::problem::Problem;
+
+/// Makes a record; it is called from several threads.
+pub type Call<'a> = &'a (dyn Fn(&Task<'_>) -> Result<Frame, Problem> + Sync);
+
+pub struct Function<'a> {
+    campaign: &'a Campaign,
+    /// Name in reports, and in catalogues that list its parameters.
+    name: String,
+    call: Call<'a>,
+}
+
+impl fmt::Debug for Function<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Function").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Function<'a> {
+    #[must_use]
+    pub fn new(campaign: &'a Campaign, name: impl Into<String>, call: Call<'a>) -> Self {
+        Self { campaign, name: name.into(), call }
+    }
+}
+
+impl Simulator for Function<'_> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn catalogue_name(&self) -> Option<&str> {
+        Some(&self.name)
+    }
+
+    fn run(&self, task: &Task<'_>) -> Result<Signals, Problem> {
+        let made = RecordSource::Memory(Arc::new((self.call)(task)?));
+        let source = self.campaign.record_source(RecordKind::Simulation, &task.section.cell);
+        let known = source.ok().and_then(|source| source.headings().ok()).unwrap_or_default();
+        read_made(&made, &known, &[]).map(|(signals, _)| signals).map_err(|problem| {
+            let says = format!("section `{}`: the record of {}: {}", task.section.name(), self.name, problem.says);
+            Problem { says, ..problem }
+        })
+    }
+}
