@@ -28,6 +28,7 @@ pub mod init;
 pub mod library;
 pub mod metrics;
 pub mod model;
+pub mod new;
 pub mod problem;
 pub mod provenance;
 pub mod report;

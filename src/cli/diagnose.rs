@@ -12,18 +12,21 @@ use super::output::{Console, Exit, reports};
 use super::places::{CAMPAIGN, REPORT, check_folder, same};
 use super::simulate::load_catalogue;
 use super::simulator::{Chosen, SimulatorChoice};
+use crate::certify::Compiled;
 use crate::data::hash::sha256;
 use crate::data::write::Outputs;
 use crate::data::{Campaign, RecordKind};
 use crate::diagnose::inputs::{Inputs, Reference};
+use crate::diagnose::preflight::{Preflight, preflight};
 use crate::diagnose::settings::Settings;
 use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
 use crate::disk::SetKind;
+use crate::effects::Catalogue;
 use crate::library;
 use crate::problem::{Problem, Problems, Severity};
 use crate::report::diagnosis as report;
 use crate::result::diagnosis::Diagnosis;
-use crate::simulate::{Builtin, sections};
+use crate::simulate::{Builtin, Section, Simulator, Strict, sections};
 
 #[derive(Debug, Args)]
 pub struct Diagnose {
@@ -36,8 +39,11 @@ pub struct Diagnose {
     #[arg(long = "effects", value_name = "CATALOGUE", default_value = library::CATALOGUES[0].name)]
     catalogue: String,
     /// Output folder; created if missing.
-    #[arg(long, short)]
-    out: PathBuf,
+    #[arg(long, short, required_unless_present = "preflight")]
+    out: Option<PathBuf>,
+    /// Run each effect once on one section, print which features it changes, and stop.
+    #[arg(long, conflicts_with_all = ["out", "write_improved"])]
+    preflight: bool,
     /// Campaign of the same vehicle in a known state, from which the standing discrepancy of the simulation is estimated; may be repeated.
     #[arg(long = "reference", value_name = "CAMPAIGN")]
     references: Vec<PathBuf>,
@@ -101,25 +107,31 @@ impl Diagnose {
             bar.tick();
         };
         let mut problems = Problems::default();
-        let outcome = diagnosed(&self.asked(), &|campaign| self.check_folders(campaign), &trying, &mut problems);
+        let Some(out) = self.out.clone() else {
+            let found = preflighted(&self.asked(), &trying, &mut problems);
+            bar.finish_and_clear();
+            console.problems(&problems);
+            return found.map_or_else(|| stopped(&problems), |found| console.print(&found.in_words()));
+        };
+        let outcome = diagnosed(&self.asked(), &|campaign| self.check_folders(&out, campaign), &trying, &mut problems);
         bar.finish_and_clear();
         console.problems(&problems);
-        let Some((campaign, outcome)) = outcome else { return Exit::Wrong };
-        match self.write(&campaign, &outcome, console) {
+        let Some((campaign, outcome)) = outcome else { return stopped(&problems) };
+        match self.write(&out, &campaign, &outcome, console) {
             Ok(()) => {}
             Err(problem) => return console.fail(problem, Exit::Unfinished),
         }
         if !console.quiet {
             console.print(&summary(&outcome.diagnosis));
-            console.say(&format!("written: {}", self.out.display()));
+            console.say(&format!("written: {}", out.display()));
         }
         exit(&outcome.diagnosis)
     }
 
-    fn write(&self, campaign: &Campaign, outcome: &Outcome, console: &Console) -> Result<(), Problem> {
+    fn write(&self, out: &Path, campaign: &Campaign, outcome: &Outcome, console: &Console) -> Result<(), Problem> {
         let files =
             files(outcome).map_err(|problems| problems.0.into_iter().next().unwrap_or_else(|| Problem::error("report", "no report")))?;
-        let mut outputs = Outputs::new(&self.out);
+        let mut outputs = Outputs::new(out);
         files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes))?;
         // Both are written to disk before either is moved to its place.
         let mut all = vec![outputs];
@@ -133,10 +145,10 @@ impl Diagnose {
     }
 
     /// Refuses output folders that are inputs, or that are the same.
-    fn check_folders(&self, campaign: &Campaign) -> Result<(), Problem> {
-        check_folder(&self.out, REPORT, campaign)?;
+    fn check_folders(&self, out: &Path, campaign: &Campaign) -> Result<(), Problem> {
+        check_folder(out, REPORT, campaign)?;
         let Some(improved) = &self.write_improved else { return Ok(()) };
-        if same(improved, &self.out) {
+        if same(improved, out) {
             let says = format!("the report and the improved simulation cannot both go to `{}`", improved.display());
             return Err(Problem::error("output-is-input", says).help("give different folders"));
         }
@@ -166,13 +178,23 @@ pub fn exit(diagnosis: &Diagnosis) -> Exit {
 /// Problems of a number that is present in the vehicle file.
 const WRONG: [&str; 2] = ["wrong-kind", "range"];
 
-/// Reads all inputs and diagnoses; `places` checks the output folders before the computation.
-pub fn diagnosed(
-    asked: &Asked<'_>,
-    places: &dyn Fn(&Campaign) -> Result<(), Problem>,
-    trying: &(dyn Fn(&str) + Sync),
-    problems: &mut Problems,
-) -> Option<(Campaign, Outcome)> {
+/// The exit code of a diagnosis that was not finished: a simulator that fails is no fault of the inputs.
+fn stopped(problems: &Problems) -> Exit {
+    const OF_SIMULATORS: [&str; 3] = ["simulator-failed", "simulator-timeout", "simulator-output"];
+    let failed = problems.0.iter().any(|problem| OF_SIMULATORS.contains(&problem.code));
+    if failed { Exit::Unfinished } else { Exit::Wrong }
+}
+
+/// What is read before anything is simulated.
+struct Opened {
+    compiled: Compiled,
+    campaign: Campaign,
+    catalogue: Catalogue,
+    settings: Settings,
+    sections: Vec<Section>,
+}
+
+fn opened(asked: &Asked<'_>, places: &dyn Fn(&Campaign) -> Result<(), Problem>, problems: &mut Problems) -> Option<Opened> {
     let Prepared { compiled, campaign } = prepare(asked.folder, asked.protocol, &[], problems)?;
     campaign.file_for_each_section().map_err(|problem| problems.push(problem)).ok()?;
     places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
@@ -180,6 +202,26 @@ pub fn diagnosed(
     let settings = Settings::read(&catalogue, problems)?;
     let sections = sections(&campaign, problems)?;
     campaign.one_of_each().and_then(|()| campaign.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
+    Some(Opened { compiled, campaign, catalogue, settings, sections })
+}
+
+/// Each effect once on one section.
+fn preflighted(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &mut Problems) -> Option<Preflight> {
+    let Opened { campaign, catalogue, settings, sections, .. } = opened(asked, &|_| Ok(()), problems)?;
+    let chosen = simulating(asked.simulator, &campaign, &catalogue, problems)?;
+    trying("each effect once");
+    let simulator = chosen.as_ref().map(Chosen::simulator);
+    preflight(&campaign, &sections, &catalogue, &settings, simulator).map_err(|found| problems.0.extend(found.0)).ok()
+}
+
+/// Reads all inputs and diagnoses; `places` checks the output folders before the computation.
+pub fn diagnosed(
+    asked: &Asked<'_>,
+    places: &dyn Fn(&Campaign) -> Result<(), Problem>,
+    trying: &(dyn Fn(&str) + Sync),
+    problems: &mut Problems,
+) -> Option<(Campaign, Outcome)> {
+    let Opened { compiled, campaign, catalogue, settings, sections } = opened(asked, places, problems)?;
     let references: Vec<Campaign> = asked.references.iter().map(|folder| Campaign::open(folder, problems)).collect::<Option<_>>()?;
     for reference in &references {
         reference.one_of_each().and_then(|()| reference.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
@@ -192,12 +234,20 @@ pub fn diagnosed(
     }
     // A campaign, its simulator, and the cache of its simulations.
     let mut with_all = |campaign| {
-        let chosen = simulating(asked.simulator, campaign, problems)?;
+        let chosen = simulating(asked.simulator, campaign, &catalogue, problems)?;
         let cache = asked.resume.map(|folder| kept(folder, campaign, &settings)).transpose();
         Some((chosen, cache.map_err(|problem| problems.push(problem)).ok()?))
     };
     let (chosen, cache) = with_all(&campaign)?;
     let of_references: Vec<_> = references.iter().map(&mut with_all).collect::<Option<_>>()?;
+    // Another simulator runs each effect once on one section first: what is misspelt is told within seconds.
+    let strict = chosen.as_ref().filter(|chosen| chosen.is_external()).map(|chosen| Strict::new(chosen.simulator()));
+    if let Some(strict) = &strict {
+        trying("each effect once");
+        let found = preflight(&campaign, &sections, &catalogue, &settings, Some(strict));
+        found.map_err(|found| problems.0.extend(found.0)).ok()?;
+    }
+    let own = || Some(strict.as_ref()? as &dyn Simulator);
     let references: Vec<Reference<'_>> = std::iter::zip(&references, &of_references)
         .map(|(campaign, (chosen, cache))| Reference { campaign, simulator: chosen.as_ref().map(Chosen::simulator), cache: cache.clone() })
         .collect();
@@ -206,7 +256,7 @@ pub fn diagnosed(
         campaign: &campaign,
         catalogue: &catalogue,
         settings: &settings,
-        simulator: chosen.as_ref().map(Chosen::simulator),
+        simulator: own().or_else(|| chosen.as_ref().map(Chosen::simulator)),
         cache,
         seed: asked.seed,
         trying,
@@ -215,6 +265,10 @@ pub fn diagnosed(
     let kept = of_references.iter().map(|(chosen, _)| chosen).chain([&chosen]).flatten().filter_map(Chosen::warning);
     let resumed = inputs.references.iter().map(|reference| &reference.cache).chain([&inputs.cache]).flatten();
     kept.chain(resumed.filter_map(Cache::warning)).for_each(|problem| problems.push(problem));
+    if let Some(problem) = strict.as_ref().and_then(Strict::failed) {
+        problems.push(problem);
+        return None;
+    }
     match found {
         Ok(outcome) => {
             problems.0.extend(outcome.warnings.0.iter().cloned());
@@ -229,10 +283,25 @@ pub fn diagnosed(
 
 /// The simulator of a campaign. `Some(None)` if there is no model that can run: only effects of the measuring chain are then tested.
 /// `None` if the inputs are wrong.
-fn simulating<'a>(choice: Option<&SimulatorChoice>, campaign: &'a Campaign, problems: &mut Problems) -> Option<Option<Chosen<'a>>> {
+fn simulating<'a>(
+    choice: Option<&SimulatorChoice>,
+    campaign: &'a Campaign,
+    catalogue: &Catalogue,
+    problems: &mut Problems,
+) -> Option<Option<Chosen<'a>>> {
     let mut lacking = Problems::default();
     let chosen = match choice {
-        Some(choice) if choice.external() => Some(choice.open(campaign, problems)?),
+        Some(choice) if choice.external() => {
+            let chosen = choice.open(campaign, problems)?;
+            chosen.check(catalogue).map_err(|found| problems.0.extend(found)).ok()?;
+            Some(chosen)
+        }
+        _ if !Builtin::is_for(campaign) => {
+            let says = "no simulator is given, and the vehicle file has no parameter of the built-in model of a rail vehicle";
+            let problem = Problem::warning("no-simulator", format!("{says}: only effects of the measuring chain are tested"));
+            problems.push(problem.help("name the simulator of the machine with `--simulator`"));
+            None
+        }
         _ => Builtin::new(campaign, &mut lacking).map(|model| Chosen::Builtin(Box::new(model))),
     };
     for problem in lacking.0 {

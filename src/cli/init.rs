@@ -39,7 +39,7 @@ pub struct Init {
 impl Init {
     pub fn run(self, console: &Console) -> Exit {
         let mut problems = Problems::default();
-        if let Err(problem) = self.check_folder() {
+        if let Err(problem) = check_folder(&self.folder) {
             problems.push(problem);
         }
         let files = self.files(&mut problems);
@@ -51,23 +51,6 @@ impl Init {
         console.say(&format!("written: {}", self.folder.display()));
         files.iter().for_each(|(path, _)| console.say(&format!("  {path}")));
         Exit::Done
-    }
-
-    /// Nothing that is there is changed.
-    fn check_folder(&self) -> Result<(), Problem> {
-        let shown = self.folder.display();
-        if !disk::may_exist(&self.folder) {
-            return Ok(());
-        }
-        let names = disk::names(&self.folder).map_err(|error| {
-            Problem::error("folder-not-empty", format!("`{shown}` is there and is no folder that can be read: {error}"))
-                .help("give another folder")
-        })?;
-        match names.iter().map(|name| name.to_string_lossy().into_owned()).min() {
-            None => Ok(()),
-            Some(first) => Err(Problem::error("folder-not-empty", format!("the folder `{shown}` is not empty: it has `{first}`"))
-                .help("give a folder that does not exist; nothing is overwritten")),
-        }
     }
 
     fn listed(&self, problems: &mut Problems) -> Option<Listed> {
@@ -191,8 +174,25 @@ fn without_known(family: &Family, listed: &mut Listed, problems: &mut Problems) 
     Some(())
 }
 
+/// Nothing that is there is changed.
+pub fn check_folder(folder: &Path) -> Result<(), Problem> {
+    let shown = folder.display();
+    if !disk::may_exist(folder) {
+        return Ok(());
+    }
+    let names = disk::names(folder).map_err(|error| {
+        Problem::error("folder-not-empty", format!("`{shown}` is there and is no folder that can be read: {error}"))
+            .help("give another folder")
+    })?;
+    match names.iter().map(|name| name.to_string_lossy().into_owned()).min() {
+        None => Ok(()),
+        Some(first) => Err(Problem::error("folder-not-empty", format!("the folder `{shown}` is not empty: it has `{first}`"))
+            .help("give a folder that does not exist; nothing is overwritten")),
+    }
+}
+
 /// Writes all files, or none.
-fn write(folder: &Path, files: &[File]) -> Result<(), Problem> {
+pub fn write(folder: &Path, files: &[File]) -> Result<(), Problem> {
     let failed =
         |path: &Path, error: &std::io::Error| Problem::error("write-failed", format!("`{}` cannot be written: {error}", path.display()));
     let mut written: Vec<PathBuf> = Vec::new();

@@ -86,6 +86,12 @@ pub fn compiled_for(folders: &[PathBuf], protocol: Option<&str>, set: &[String],
     }?;
     let overrides = overrides(set, &campaigns, problems)?;
     let compiled = compile(family, &overrides, problems)?;
+    if protocol.is_none()
+        && let Some(problem) = campaigns.iter().find_map(|campaign| of_another_kind(&compiled, campaign))
+    {
+        problems.push(problem);
+        return None;
+    }
     campaigns.iter().for_each(|campaign| facts_like_parameters(&compiled, campaign, problems));
     Some(Pool { compiled, campaigns, overrides, found: Vec::new() })
 }
@@ -112,6 +118,22 @@ fn own_protocol(campaigns: &[Campaign], problems: &mut Problems) -> Option<Famil
         Some(named) => campaign_protocol(first, named, problems),
         None => load(library::SHIPPED[0].name, problems),
     }
+}
+
+/// A campaign that names no protocol, and whose vehicle file has none of the data that the default one needs, is of another kind of machine.
+fn of_another_kind(compiled: &Compiled, campaign: &Campaign) -> Option<Problem> {
+    let needed = || compiled.plan.vehicle.iter().filter(|datum| datum.default.is_none() && !datum.may_be_absent);
+    let described = !campaign.vehicle.entries().is_empty();
+    if campaign.protocol.is_some()
+        || !described
+        || needed().next().is_none()
+        || needed().any(|one| campaign.vehicle.lookup(&one.key).is_some())
+    {
+        return None;
+    }
+    let says = format!("the campaign names no protocol, and its vehicle file has nothing that the default `{}` needs", compiled.plan.name);
+    let problem = Problem::error("no-protocol", says).at(&campaign.tree.span.part(0..0));
+    Some(problem.help("name one: `protocol: protocol.fp` in this file, or `--protocol`"))
 }
 
 /// A fact of the campaign sets nothing; one with the name of a parameter was most likely meant to.

@@ -11,6 +11,7 @@ mod import;
 mod init;
 mod inputs;
 mod needs;
+mod new;
 mod output;
 mod places;
 mod protocols;
@@ -111,6 +112,9 @@ enum Command {
         after_help = "Examples:\n  fishplate init target/new --channels \"Y_1R [kN], Y_1L [kN], ay_I [m/s^2]\"\n  fishplate init target/new --channels-from examples/coach/measurement/S01.csv\n  fishplate init target/new --extends en14363-2016-annex-t"
     )]
     Init(init::Init),
+    /// Make a campaign, a protocol, a catalogue of effects and the stub of a simulator for any machine, from simulated and measured records.
+    #[command(after_help = "Example:\n  fishplate new target/axis --domain drive --from sim.csv meas.csv --from sim2.csv meas2.csv")]
+    New(new::New),
     /// Check protocols, and show every problem with its place.
     #[command(after_help = "Example:\n  fishplate check protocols/en14363-2016-annex-t.fp my-variant.yaml")]
     Check {
@@ -220,6 +224,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Blind(blinded) => blinded.run(&console),
         Command::Effects(effects) => effects.run(&console),
         Command::Init(init) => init.run(&console),
+        Command::New(new) => new.run(&console),
         Command::Check { protocols } => protocols::check(&protocols, &console),
         Command::Fmt { protocols, check } => protocols::fmt(&protocols, check, &console),
         Command::Convert { protocol, to, output } => protocols::convert(&protocol, matches!(to, Form::Yaml), output.as_deref(), &console),

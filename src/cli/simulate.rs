@@ -135,6 +135,10 @@ impl Simulate {
             campaign.file_for_each_section().and_then(|()| campaign.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
             let sections = sections(campaign, &mut problems)?;
             let chosen = self.simulator.open(campaign, &mut problems)?.integrated(steps);
+            if let Err(found) = chosen.check(catalogue) {
+                found.into_iter().for_each(|problem| problems.push(problem));
+                return None;
+            }
             for problem in unusable(catalogue, effects, &sections, &chosen) {
                 problems.push(problem);
             }

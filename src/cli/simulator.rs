@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::data::text::read_text;
 use crate::data::{Campaign, RecordKind};
-use crate::effects::Signals;
+use crate::effects::{Catalogue, Signals};
 use crate::model::integrate::Steps;
 use crate::problem::{Problem, Problems};
 use crate::simulate::{
@@ -74,6 +74,10 @@ impl Chosen<'_> {
         }
     }
 
+    pub fn is_external(&self) -> bool {
+        matches!(self, Self::External(_))
+    }
+
     pub fn simulator(&self) -> &dyn Simulator {
         match self {
             Self::Builtin(model) => &**model,
@@ -119,6 +123,11 @@ impl Chosen<'_> {
         let tolerance = if let Self::External(program) = self { program.program().tolerance } else { TOLERANCE };
         let warning = baseline_warning(self.simulator(), tolerance, &all);
         Ok((all, warning))
+    }
+
+    /// Checks that the parameters of a Python function and those of a catalogue agree.
+    pub fn check(&self, catalogue: &Catalogue) -> Result<(), Vec<Problem>> {
+        if let Self::External(program) = self { program.check(catalogue) } else { Ok(()) }
     }
 
     /// A warning of damaged records in the cache of a program.

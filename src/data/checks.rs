@@ -177,7 +177,10 @@ fn median(values: &[f64]) -> f64 {
 }
 
 /// The samples of the section.
-fn check_section(record: &Record, axis: &Column, section: &Section) -> Result<Range<usize>, Problem> {
+///
+/// # Errors
+/// `section-reversed`, `outside-record`, `section-empty`.
+pub fn check_section(record: &Record, axis: &Column, section: &Section) -> Result<Range<usize>, Problem> {
     let at = |problem: Problem| match &section.at {
         Some(span) => problem.at(span),
         None => problem,

@@ -8,6 +8,7 @@ mod campaign;
 pub mod gap;
 pub mod inputs;
 pub mod observe;
+pub mod preflight;
 pub mod run;
 pub mod score;
 pub mod search;

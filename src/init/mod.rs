@@ -14,7 +14,7 @@ use crate::problem::Problem;
 pub type File = (String, String);
 
 /// Fills a template with texts, as they are.
-fn filled(template: &str, data: &impl Serialize) -> Result<String, Box<Problem>> {
+pub(crate) fn filled(template: &str, data: &impl Serialize) -> Result<String, Box<Problem>> {
     let failed = |error: String| Box::new(Problem::error("internal", format!("a template cannot be filled: {error}")));
     let data = serde_json::to_value(data).map_err(|error| failed(error.to_string()))?;
     let mut engine = Environment::new();

@@ -131,11 +131,12 @@ fn block(group: &Group, place: Option<String>, names: &mut Names) -> Block {
 }
 
 /// Names that are in use.
-struct Names(BTreeSet<String>);
+#[derive(Default)]
+pub(crate) struct Names(BTreeSet<String>);
 
 impl Names {
     /// The name, or with a number behind it the first one that is free.
-    fn free(&mut self, name: &str) -> String {
+    pub(crate) fn free(&mut self, name: &str) -> String {
         let usable = |name: &String| {
             !self.0.contains(name)
                 && TAKEN.split_whitespace().all(|word| word != name)
@@ -151,7 +152,7 @@ impl Names {
 }
 
 /// A name of letters, digits and `_` that begins with a letter.
-fn identifier(text: &str) -> String {
+pub(crate) fn identifier(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let plain = plain.trim_matches('_');
     match plain.chars().next() {
@@ -162,17 +163,17 @@ fn identifier(text: &str) -> String {
 }
 
 /// ` kN`; after a number, a product in a unit has its sign.
-fn after_number(unit: &Unit) -> String {
+pub(crate) fn after_number(unit: &Unit) -> String {
     let factors: Vec<&str> = unit.text.split_whitespace().filter(|text| *text != "-").collect();
     if factors.is_empty() { String::new() } else { format!(" {}", factors.join("*")) }
 }
 
 /// `Coach C44` -> `coach-c44`
-fn block_name(text: &str) -> String {
+pub(crate) fn block_name(text: &str) -> String {
     let name = identifier(text).to_lowercase().replace('_', "-");
     name.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
 }
 
-fn plain_text(text: &str) -> String {
+pub(crate) fn plain_text(text: &str) -> String {
     text.chars().filter(|c| !matches!(c, '"' | '\\') && !crate::problem::acts(*c)).collect()
 }

@@ -42,6 +42,12 @@ pub struct Builtin<'a> {
 const MODEL: &str = "reference vehicle model";
 
 impl<'a> Builtin<'a> {
+    /// Whether a campaign is of a vehicle that the model can describe: its vehicle file has a parameter of the model.
+    #[must_use]
+    pub fn is_for(campaign: &Campaign) -> bool {
+        PARAMETERS.iter().any(|parameter| campaign.vehicle.lookup(parameter.key).is_some())
+    }
+
     /// The model for a campaign; `None`, with problems, if the campaign lacks an input.
     pub fn new(campaign: &'a Campaign, problems: &mut Problems) -> Option<Self> {
         let vehicle = vehicle(&campaign.vehicle, problems)?;

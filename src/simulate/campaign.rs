@@ -2,6 +2,7 @@
 
 use super::section::Section;
 use crate::data::campaign::ReadFile;
+use crate::data::checks;
 use crate::data::record::{Format, Record, Wanted};
 use crate::data::write::{OutColumn, record};
 use crate::data::{Campaign, RecordKind};
@@ -22,14 +23,33 @@ const AXIS: &str = "distance";
 /// # Errors
 /// As [`Campaign::read`]; the record has no `time`.
 pub fn recorded(campaign: &Campaign, kind: RecordKind, section: &Section) -> Result<(Signals, Units, ReadFile), Vec<Problem>> {
+    let (record, file) = whole(campaign, kind, section)?;
+    let (signals, units) = signals(&record)?;
+    Ok((signals, units, file))
+}
+
+/// As [`recorded`], of a record that has the whole section.
+///
+/// # Errors
+/// As [`recorded`]; `section-reversed`, `outside-record`, `section-empty`.
+pub fn recorded_inside(campaign: &Campaign, kind: RecordKind, section: &Section) -> Result<(Signals, Units), Vec<Problem>> {
+    let (record, _) = whole(campaign, kind, section)?;
+    let found = signals(&record)?;
+    let axis = record.column(AXIS).or_else(|| record.column(TIME)).filter(|_| section.start.is_finite() && section.end.is_finite());
+    if let Some(axis) = axis {
+        let wanted = checks::Section { start: section.start, end: section.end, at: Some(section.cell.span.clone()) };
+        checks::check_section(&record, axis, &wanted).map_err(|problem| vec![problem])?;
+    }
+    Ok(found)
+}
+
+fn whole(campaign: &Campaign, kind: RecordKind, section: &Section) -> Result<(Record, ReadFile), Vec<Problem>> {
     campaign.file_for_each_section().map_err(|problem| vec![problem])?;
     let place = campaign.record_place(kind, &section.cell).map_err(|problem| vec![problem])?;
     let headings = crate::data::record::read_headings(&place.path, &place.inside)?;
     let wanted: Vec<Wanted> =
         headings.iter().map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true }).collect();
-    let (record, file) = campaign.read(kind.into(), &section.cell, &wanted, None)?;
-    let (signals, units) = signals(&record)?;
-    Ok((signals, units, file))
+    campaign.read(kind.into(), &section.cell, &wanted, None)
 }
 
 /// As [`recorded`], for a file outside a campaign.

@@ -9,15 +9,17 @@ mod compare;
 mod external;
 mod origin;
 mod section;
+mod strict;
 mod write;
 
 pub use add::{Plan, Simulated, check_confined, incremented, simulate};
 pub use builtin::{Builtin, model_parameters, number_of, single};
-pub use campaign::{Units, in_units, read_signals, record_file, recorded};
+pub use campaign::{Units, in_units, read_signals, record_file, recorded, recorded_inside};
 pub use compare::{Deviation, baseline_warning, deviations};
 pub use external::{Cache, External, Program, read_program};
 pub use origin::{Made, effects_of_origin};
 pub use section::{Fact, Section, sections};
+pub use strict::Strict;
 pub use write::write_campaign;
 
 use crate::effects::Signals;

@@ -5,12 +5,13 @@ use rayon::prelude::*;
 use super::faults::faults;
 use super::features::{ChannelFeatures, Feature, Kind, Layout, Piece, Spectrum, of_channel};
 use super::scatter::{Scatter, scatter};
+use crate::data::checks::whole;
 use crate::data::{Campaign, RecordKind};
 use crate::diagnose::settings::{GroupFeatures, Settings};
 use crate::effects::{Catalogue, Signals};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, Severity};
 use crate::result::diagnosis::Fault;
-use crate::simulate::{Section, in_units, recorded};
+use crate::simulate::{Section, in_units, recorded_inside};
 use crate::units::Unit;
 
 /// One section with its records.
@@ -56,7 +57,7 @@ impl Observations {
         unit: &(dyn Fn(&str) -> Option<Unit> + Sync),
         problems: &mut Problems,
     ) -> Option<Self> {
-        type Both = (Section, Result<(Signals, Signals), String>);
+        type Both = (Section, Result<(Signals, Signals), Problem>);
         let read: Vec<Both> = sections
             .into_par_iter()
             .map(|section| {
@@ -69,7 +70,10 @@ impl Observations {
         for (section, both) in read {
             match both {
                 Ok((simulated, measured)) => good.push((section, simulated, measured)),
-                Err(reason) => left_out.push((section.name().to_string(), reason)),
+                Err(problem) => {
+                    left_out.push((section.name().to_string(), problem.says.clone()));
+                    problems.push(Problem { severity: Severity::Warning, ..problem });
+                }
             }
         }
         if good.is_empty() {
@@ -109,6 +113,10 @@ impl Observations {
             let known: Vec<String> = catalogue.groups.iter().flat_map(|group| group.channels.clone()).collect();
             let says = format!("no channel of the catalogue `{}` is in both records of every section", catalogue.name);
             problems.push(Problem::error("no-channels", says).help(format!("the catalogue lists {}", known.join(", "))));
+            return None;
+        }
+        if let Some(problem) = above_nyquist(catalogue, &layout, &sections) {
+            problems.push(problem);
             return None;
         }
         let features = layout.features();
@@ -208,17 +216,43 @@ pub fn piece(signals: &Signals, name: &str, section: &Section) -> Option<Piece> 
 }
 
 /// Simulated and measured signals in the same units: those of `unit`, else of the simulation.
-fn both_sides(campaign: &Campaign, section: &Section, unit: &dyn Fn(&str) -> Option<Unit>) -> Result<(Signals, Signals), String> {
-    let side = |kind| recorded(campaign, kind, section).map(|(signals, units, _)| (signals, units)).map_err(|problems| first(&problems));
+fn both_sides(campaign: &Campaign, section: &Section, unit: &dyn Fn(&str) -> Option<Unit>) -> Result<(Signals, Signals), Problem> {
+    let side = |kind| recorded_inside(campaign, kind, section).map_err(first);
     let (mut simulated, units) = side(RecordKind::Simulation)?;
     let (mut measured, others) = side(RecordKind::Measurement)?;
     let to = |name: &str| unit(name).or_else(|| units.iter().find(|(known, _)| known == name).map(|(_, unit)| unit.clone()));
-    let says = |problem: Problem| problem.says;
-    in_units(&mut simulated, &units, &to).map_err(says)?;
-    in_units(&mut measured, &others, &to).map_err(says)?;
+    in_units(&mut simulated, &units, &to)?;
+    in_units(&mut measured, &others, &to)?;
     Ok((simulated, measured))
 }
 
-fn first(problems: &[Problem]) -> String {
-    problems.first().map_or(String::new(), |problem| problem.says.clone())
+fn first(problems: Vec<Problem>) -> Problem {
+    problems.into_iter().next().unwrap_or_else(|| Problem::error("unreadable", "the record cannot be read"))
 }
+
+/// A band that is a feature, or the band of gain and lag, that ends above half the lowest sampling rate: its power would be that of the
+/// band's lower part, or of nothing.
+fn above_nyquist(catalogue: &Catalogue, layout: &Layout, sections: &[Observed]) -> Option<Problem> {
+    let rates = |observed: &Observed| [observed.measured.rate, observed.simulated.rate];
+    let slowest = |observed: &&Observed| rates(observed)[0].min(rates(observed)[1]);
+    let observed = sections.iter().min_by(|a, b| slowest(a).total_cmp(&slowest(b)))?;
+    let [measured, simulated] = rates(observed);
+    let (rate, side) = if simulated < measured { (simulated, "simulation") } else { (measured, "measurement") };
+    let bands = layout.channels.iter().map(|channel| channel.bands).max().unwrap_or(0);
+    let used = layout.edges.iter().enumerate().take(if bands > 0 { bands + 1 } else { 0 });
+    let written = |key: &str, at: usize| Some(catalogue.diagnosis.as_ref()?.get(key)?.items().get(at)?.span.clone());
+    let alike = layout.channels.iter().any(|channel| channel.alike).then_some(layout.alike.1);
+    let all = used.map(|(at, edge)| (*edge, written("bands", at))).chain(alike.map(|edge| (edge, written("alike", 1))));
+    let (edge, at) = all.into_iter().find(|(edge, at)| *edge > 0.5 * rate * (1.0 + ROUNDED) && at.is_some())?;
+    let says = format!(
+        "a band ends at {edge} Hz, but the {side} of section `{}` has {} samples a second: above {} Hz it has no content",
+        observed.section.name(),
+        whole(rate),
+        0.5 * whole(rate)
+    );
+    let problem = Problem::error("band-above-nyquist", says).help("end the bands below half the sampling rate");
+    Some(at.map_or(problem.clone(), |at| problem.at(&at)))
+}
+
+/// Sampling rates follow from rounded time stamps; a band that ends at half the rate is then allowed.
+const ROUNDED: f64 = 1e-3;

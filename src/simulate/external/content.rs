@@ -26,6 +26,9 @@ pub(super) fn basis(campaign: &Campaign, program: &Program, vehicle: Option<&Pat
     {
         key.add_file("program", &file)?;
     }
+    if let Some(python) = &program.python {
+        key.add_file("function", &python.file)?;
+    }
     for file in &program.inputs {
         key.add_file("input", file)?;
     }

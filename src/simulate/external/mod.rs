@@ -2,7 +2,9 @@
 
 mod cache;
 mod content;
+mod function;
 mod process;
+mod python;
 mod read;
 mod started;
 mod words;
@@ -29,6 +31,7 @@ use crate::units::Unit;
 use cache::Key;
 use content::{absolute, basis, vehicle_file};
 use process::{Call, Fault};
+use python::Workers;
 use words::{Hole, fill};
 
 /// A program with the vehicle and the tracks of a campaign.
@@ -39,6 +42,8 @@ pub struct External<'a> {
     cache: Cache,
     /// Path of the vehicle file, if the campaign names one.
     vehicle: Option<PathBuf>,
+    /// The processes of a Python function.
+    workers: Option<Workers>,
     /// Common inputs of all its records.
     basis: Key,
     /// Units of channels that are not in the campaign, by section.
@@ -67,7 +72,9 @@ impl<'a> External<'a> {
         }
         let basis = basis(campaign, &program, vehicle.as_deref())?;
         let (calls, found, units) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::default());
-        Ok(Self { campaign, program, cache, vehicle, basis, units, calls, found })
+        let workers = |python| Workers::new(python, &program.environment, &program.folder, program.timeout);
+        let workers = program.python.clone().map(workers);
+        Ok(Self { campaign, program, cache, vehicle, workers, basis, units, calls, found })
     }
 
     /// Description of the program.
@@ -116,7 +123,7 @@ impl<'a> External<'a> {
             let says = format!("section `{}` has no {what}, which the command of `{}` needs", section.name(), self.program.name);
             Problem::error("section", says).at(&section.cell.span)
         };
-        if !task.settings.is_empty() && !asks(Hole::Set) {
+        if self.workers.is_none() && !task.settings.is_empty() && !asks(Hole::Set) {
             let says = format!("`{}` accepts no parameters: its command has no `{{set}}`", self.program.name);
             return Err(Problem::error("not-simulated", says).at(&self.program.span));
         }
@@ -164,6 +171,9 @@ impl<'a> External<'a> {
             key.add("start", &(task.section.start - task.shift).to_string());
             key.add("end", &(task.section.end - task.shift).to_string());
         }
+        if self.workers.is_some() {
+            self.add_inputs(&mut key, task.section)?;
+        }
         for (name, value) in task.settings {
             key.add("name", name);
             key.add("value", &value.to_string());
@@ -180,11 +190,8 @@ impl<'a> External<'a> {
         let wanted: Vec<&str> =
             if self.program.channels.is_empty() { known.iter().map(|one| one.name.as_str()).collect() } else { channels.collect() };
         for &name in &wanted {
-            let Some(heading) = made.iter().find(|one| one.name == name) else {
-                let problem = Problem::error("unknown-channel", format!("{shown} has no column `{name}`"));
-                let strangers = made.iter().map(|one| one.name.as_str()).filter(|one| !wanted.contains(one));
-                return Err(problem.suggest(name, strangers));
-            };
+            let names: Vec<&str> = made.iter().map(|one| one.name.as_str()).collect();
+            let Some(heading) = made.iter().find(|one| one.name == name) else { return Err(lacks(&shown, name, &names, &wanted)) };
             heading.unit(unit_in(&known, name).map(|unit| unit.dimension))?;
         }
         let (mut signals, units) = read_signals(path, &shown).map_err(first)?;
@@ -216,6 +223,10 @@ impl<'a> External<'a> {
 
     /// Calls the program once; returns the record and its text.
     fn call(&self, task: &Task<'_>) -> Result<(Signals, Vec<u8>), Problem> {
+        if let Some(workers) = &self.workers {
+            self.calls.fetch_add(1, Ordering::Relaxed);
+            return self.ask(workers, task);
+        }
         let section = task.section;
         let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be created: {error}"));
         let folder = disk::scratch().map_err(failed)?;
@@ -299,6 +310,12 @@ impl Simulator for External<'_> {
             }
         }
     }
+}
+
+/// A record without a column that is wanted, with the nearest of the columns that nobody wants.
+fn lacks(shown: &str, name: &str, made: &[&str], wanted: &[&str]) -> Problem {
+    let strangers = made.iter().copied().filter(|one| !wanted.contains(one));
+    Problem::error("unknown-channel", format!("{shown} has no column `{name}`")).suggest(name, strangers)
 }
 
 fn unit_in(headings: &[Heading], name: &str) -> Option<Unit> {

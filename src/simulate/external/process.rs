@@ -9,6 +9,9 @@ use std::time::{Duration, Instant};
 use super::started::{self, Mark};
 use crate::disk;
 
+/// The file that takes what a program prints. It has no name, and is made by `disk`.
+pub(super) type Printed = File;
+
 /// A call of a program.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'a> {
@@ -91,7 +94,7 @@ fn wait(child: &mut Child, timeout: Duration, mark: &Mark) -> std::io::Result<Op
 }
 
 /// Terminates a child, its group and processes that left the group, and waits for the child.
-fn end(child: &mut Child, mark: &Mark) {
+pub(super) fn end(child: &mut Child, mark: &Mark) {
     #[cfg(unix)]
     if let Some(group) = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw) {
         let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
@@ -101,7 +104,7 @@ fn end(child: &mut Child, mark: &Mark) {
     let _ = child.wait();
 }
 
-fn last_lines(file: &mut File) -> String {
+pub(super) fn last_lines(file: &mut File) -> String {
     let length = file.metadata().map_or(0, |meta| meta.len());
     let mut bytes = Vec::new();
     let read = file.seek(SeekFrom::Start(length.saturating_sub(BYTES))).and_then(|_| file.take(BYTES).read_to_end(&mut bytes));

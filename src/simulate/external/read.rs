@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::python::Python;
 use super::words::{Hole, Word};
 use crate::disk;
 use crate::problem::{Problem, Problems};
@@ -20,7 +21,10 @@ pub struct Program {
     pub source: Arc<Source>,
     /// Working folder: the folder of its file.
     pub folder: PathBuf,
+    /// Empty for a Python function.
     pub command: Vec<Word>,
+    /// The function that is called in place of a command.
+    pub python: Option<Python>,
     /// Words that replace `{set}` for each parameter; empty: `name=value`.
     pub set: Vec<Word>,
     pub speed_unit: Unit,
@@ -34,12 +38,30 @@ pub struct Program {
     pub inputs: Vec<PathBuf>,
     /// Largest deviation from the campaign's simulation: rms of the difference / rms of the channel.
     pub tolerance: f64,
-    /// The place of the command.
+    /// The place of the command or of the function's file.
     pub span: Span,
 }
 
-const KEYS: [&str; 11] =
-    ["simulator", "title", "command", "set", "speed unit", "timeout", "retries", "environment", "channels", "inputs", "tolerance"];
+const KEYS: [&str; 13] = [
+    "simulator",
+    "title",
+    "command",
+    "python",
+    "interpreter",
+    "set",
+    "speed unit",
+    "timeout",
+    "retries",
+    "environment",
+    "channels",
+    "inputs",
+    "tolerance",
+];
+/// Keys that a command has and a Python function has not, and the reverse.
+const OF_COMMAND: [&str; 2] = ["set", "speed unit"];
+const OF_PYTHON: [&str; 1] = ["interpreter"];
+/// The interpreter of a Python function where none is named.
+const INTERPRETER: &str = if cfg!(windows) { "python" } else { "python3" };
 const TIMEOUT: Duration = Duration::from_secs(600);
 const MOST_RETRIES: f64 = 10.0;
 const TOLERANCE: f64 = 0.05;
@@ -59,9 +81,11 @@ pub fn read_program(source: &Arc<Source>, folder: &Path, problems: &mut Problems
     }
     reader.keys(&tree);
     let name = reader.text(&tree, "simulator");
-    for key in ["simulator", "command"].into_iter().filter(|key| tree.get(key).is_none()) {
-        reader.fault("key-missing", format!("`{key}` is missing"), &tree.span.part(0..0));
+    if tree.get("simulator").is_none() {
+        reader.fault("key-missing", "`simulator` is missing", &tree.span.part(0..0));
     }
+    reader.one_way(&tree);
+    let python = tree.get("python").and_then(|node| reader.python(node, tree.get("interpreter")));
     let command = tree.get("command").map(|node| reader.words(node, &Hole::OF_COMMAND)).unwrap_or_default();
     let set = tree.get("set").map(|node| reader.words(node, &Hole::OF_SET)).unwrap_or_default();
     let speed_unit = tree.get("speed unit").and_then(|node| reader.unit(node, Dimension::LENGTH / Dimension::TIME));
@@ -84,6 +108,7 @@ pub fn read_program(source: &Arc<Source>, folder: &Path, problems: &mut Problems
         source: Arc::clone(source),
         folder,
         command,
+        python,
         set,
         speed_unit: speed_unit.or_else(|| Unit::parse("m/s").ok())?,
         timeout: timeout.unwrap_or(TIMEOUT),
@@ -93,7 +118,7 @@ pub fn read_program(source: &Arc<Source>, folder: &Path, problems: &mut Problems
         channels,
         inputs,
         tolerance: tolerance.unwrap_or(TOLERANCE),
-        span: tree.get("command").map_or_else(|| tree.span.clone(), |node| node.span.clone()),
+        span: tree.get("command").or_else(|| tree.get("python")).map_or_else(|| tree.span.clone(), |node| node.span.clone()),
     })
 }
 
@@ -121,6 +146,42 @@ impl Reader<'_> {
             let problem = Problem::error("unknown-key", format!("a simulator has no key `{}`", key.text)).at(&key.span);
             self.problems.push(problem.suggest(&key.text, KEYS));
         }
+    }
+
+    /// A command or a Python function, with the keys that belong to it.
+    fn one_way(&mut self, tree: &Node) {
+        let others = match (tree.get("command"), tree.get("python")) {
+            (None, None) => {
+                let problem = Problem::error("key-missing", "`command` is missing").at(&tree.span.part(0..0));
+                return self.problems.push(problem.help("a simulator is a `command`, or a function in a `python` file"));
+            }
+            (Some(_), Some(both)) => {
+                let says = "a simulator is either a `command` or a `python` function, not both";
+                return self.fault("contradiction", says, &both.span);
+            }
+            (Some(_), None) => &OF_PYTHON[..],
+            (None, Some(_)) => &OF_COMMAND[..],
+        };
+        for (key, _) in tree.entries().iter().filter(|(key, _)| others.contains(&key.text.as_str())) {
+            let with = if others == OF_PYTHON { "python" } else { "command" };
+            self.fault("contradiction", format!("`{}` belongs to a `{with}`, which is not given", key.text), &key.span);
+        }
+    }
+
+    fn python(&mut self, node: &Node, interpreter: Option<&Node>) -> Option<Python> {
+        let Some(text) = node.scalar_text().filter(|text| !text.trim().is_empty()) else {
+            self.fault("wrong-kind", format!("`python` must be the path of a file, not {}", node.kind_in_words()), &node.span);
+            return None;
+        };
+        let file = self.folder.join(text);
+        if !disk::may_be_file(&file) {
+            self.fault("file-missing", format!("there is no file `{text}` in the folder of this file"), &node.span);
+        }
+        let name = interpreter.map_or(Some(INTERPRETER), Node::scalar_text).unwrap_or_default();
+        let span = interpreter.map_or(&node.span, |node| &node.span);
+        self.program(name, span);
+        let interpreter = if name.contains(['/', '\\']) { self.folder.join(name) } else { PathBuf::from(name) };
+        Some(Python { interpreter, file })
     }
 
     fn text(&mut self, tree: &Node, key: &str) -> Option<String> {
@@ -260,12 +321,17 @@ impl Reader<'_> {
         let Some(name) = first.plain() else {
             return self.fault("wrong-kind", "the first word must be the program, without placeholders", &place.span);
         };
+        self.program(name, &place.span);
+    }
+
+    /// Checks that a program is there, or that the system finds it.
+    fn program(&mut self, name: &str, at: &Span) {
         if name.contains(['/', '\\']) {
             if !disk::may_be_file(&self.folder.join(name)) {
-                self.fault("no-such-program", format!("there is no program `{name}` relative to the folder of this file"), &place.span);
+                self.fault("no-such-program", format!("there is no program `{name}` relative to the folder of this file"), at);
             }
         } else if !on_path(name) {
-            let problem = Problem::error("no-such-program", format!("the system finds no program `{name}`")).at(&place.span);
+            let problem = Problem::error("no-such-program", format!("the system finds no program `{name}`")).at(at);
             self.problems.push(problem.help(format!("write `./{name}` for a program in the folder of this file")));
         }
     }

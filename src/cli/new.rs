@@ -1,0 +1,80 @@
+//! `new`: a campaign of any machine from simulated and measured records.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::init::{check_folder, write};
+use super::output::{Console, Exit};
+use crate::check::{self, Overrides, family};
+use crate::library;
+use crate::new::records::Pair;
+use crate::new::{DOMAINS, Made, PROTOCOL_FILE, files};
+use crate::problem::Problems;
+use crate::source::Source;
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Domain {
+    Rail,
+    Drive,
+    Oscillator,
+    Arm,
+    Generic,
+}
+
+#[derive(Debug, Args)]
+pub struct New {
+    /// Folder to create; it must not exist, or be empty.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Kind of machine: which effects the catalogue offers.
+    #[arg(long, value_enum, default_value = "generic")]
+    domain: Domain,
+    /// A simulated and a measured record of the same run, with units in their headers; may be repeated.
+    #[arg(long, num_args = 2, value_names = ["SIM.csv", "MEAS.csv"], required = true)]
+    from: Vec<PathBuf>,
+}
+
+impl New {
+    pub fn run(self, console: &Console) -> Exit {
+        let mut problems = Problems::default();
+        if let Err(problem) = check_folder(&self.folder) {
+            problems.push(problem);
+        }
+        let made = self.made(&mut problems);
+        console.problems(&problems);
+        let Some(made) = made.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        if let Err(problem) = write(&self.folder, &made.files) {
+            return console.fail(problem, Exit::Unfinished);
+        }
+        made.told.iter().for_each(|line| console.say(line));
+        let folder = self.folder.display();
+        console.say(&format!("written: {folder}"));
+        console.say(&format!("next: fishplate certify {folder} --out {folder}/report"));
+        console.say(&format!("      fill in {folder}/simulator.py, then"));
+        let with = format!("--effects {folder}/effects.yaml --simulator {folder}/sim.yaml");
+        console.say(&format!("      fishplate diagnose {folder} {with} --preflight"));
+        console.say(&format!("      fishplate diagnose {folder} {with} --out {folder}/diagnosis"));
+        Exit::Done
+    }
+
+    fn made(&self, problems: &mut Problems) -> Option<Made> {
+        let mut told = Vec::new();
+        let pairs: Vec<Option<Pair>> = self
+            .from
+            .chunks_exact(2)
+            .enumerate()
+            .map(|(at, pair)| Pair::read(format!("R{}", at + 1), &pair[0], &pair[1], &mut told, problems))
+            .collect();
+        let pairs: Vec<Pair> = pairs.into_iter().collect::<Option<_>>()?;
+        let name = self.folder.file_name().map(|name| name.to_string_lossy().into_owned()).filter(|name| !name.is_empty());
+        let name = name.unwrap_or_else(|| "campaign".into());
+        let made = files(&name, DOMAINS[self.domain as usize], &pairs).map_err(|problem| problems.push(problem)).ok()?;
+        // What is written must be sound, whatever the columns are called.
+        let text = made.files.iter().find(|(path, _)| path == PROTOCOL_FILE).map(|(_, text)| text.clone())?;
+        let family = family::read(&Source::new(PROTOCOL_FILE, text), &library::parent, problems);
+        check::check(&family, &Overrides::new(), problems)?;
+        problems.0.retain(|problem| problem.severity == crate::problem::Severity::Error);
+        Some(Made { told: [told, made.told].concat(), ..made })
+    }
+}

@@ -1,0 +1,246 @@
+//! Pairs of a simulated and a measured record, on even time steps.
+
+use std::path::Path;
+
+use crate::data::record::{Wanted, read_headings, read_record};
+use crate::metrics::resample::interpolate;
+use crate::problem::{Problem, Problems};
+use crate::units::{Dimension, Unit};
+
+pub const TIME: &str = "time";
+pub const DISTANCE: &str = "distance";
+/// Deviation of a time step from the median step, as a share, from which a record is resampled. `certify` refuses records beyond it.
+const JITTER: f64 = 0.01;
+/// Time stamps may be rounded to this, in s.
+const ROUNDING: f64 = 1e-6;
+/// Difference of the steps of two records, as a share, from which the simulation is resampled.
+const SAME_STEP: f64 = 1e-3;
+/// Fewest samples of a record.
+const FEWEST: usize = 64;
+/// Relative rms difference below which the simulation repeats a measured column: it is an input, not a result.
+const REPEATED: f64 = 1e-3;
+
+/// A column in its own unit.
+#[derive(Clone, Debug)]
+pub struct Channel {
+    pub name: String,
+    pub unit: Unit,
+    pub values: Vec<f64>,
+}
+
+/// One record.
+#[derive(Clone, Debug)]
+pub struct Series {
+    pub shown: String,
+    /// In s, in even steps.
+    pub time: Vec<f64>,
+    /// In m.
+    pub distance: Option<Vec<f64>>,
+    pub channels: Vec<Channel>,
+}
+
+/// The records of one run.
+#[derive(Clone, Debug)]
+pub struct Pair {
+    pub name: String,
+    pub simulated: Series,
+    pub measured: Series,
+}
+
+/// What columns are for.
+#[derive(Clone, Debug, Default)]
+pub struct Roles {
+    /// Columns of both records, which are compared.
+    pub outputs: Vec<String>,
+    /// Columns that only the measurement has, or that the simulation repeats.
+    pub inputs: Vec<String>,
+}
+
+impl Series {
+    #[must_use]
+    pub fn channel(&self, name: &str) -> Option<&Channel> {
+        self.channels.iter().find(|channel| channel.name == name)
+    }
+
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        let steps = self.time.len().saturating_sub(1).max(1) as f64;
+        self.time.last().zip(self.time.first()).map_or(1.0, |(last, first)| (last - first) / steps)
+    }
+
+    /// The axis of sections: the distance where `over_distance`, otherwise the time.
+    #[must_use]
+    pub fn axis(&self, over_distance: bool) -> &[f64] {
+        self.distance.as_deref().filter(|_| over_distance).unwrap_or(&self.time)
+    }
+
+    /// The same with other times, by linear interpolation.
+    fn at(&self, time: Vec<f64>) -> Self {
+        let of = |values: &[f64]| interpolate(&self.time, values, &time).unwrap_or_default().into_iter().map(nine_digits).collect();
+        let channels = self.channels.iter().map(|channel| Channel { values: of(&channel.values), ..channel.clone() }).collect();
+        Self { shown: self.shown.clone(), distance: self.distance.as_ref().map(|values| of(values)), channels, time }
+    }
+
+    /// The same with steps of `step` from its first time on.
+    fn every(&self, step: f64) -> Self {
+        let (first, last) = (self.time[0], self.time[self.time.len() - 1]);
+        let count = ((last - first) / step * (1.0 + 1e-12)).floor() as usize;
+        self.at((0..=count).map(|n| (first + n as f64 * step).min(last)).collect())
+    }
+}
+
+/// Interpolated values have no more digits than a measurement can have.
+fn nine_digits(value: f64) -> f64 {
+    format!("{value:.8e}").parse().unwrap_or(value)
+}
+
+impl Pair {
+    /// Reads both records; `told` takes what was changed.
+    ///
+    /// Problems: of reading; `no-time`, `time-not-increasing`, `too-short`.
+    pub fn read(name: String, simulated: &Path, measured: &Path, told: &mut Vec<String>, problems: &mut Problems) -> Option<Self> {
+        let mut one = |path: &Path| {
+            let read = series(path, told);
+            read.map_err(|found| found.into_iter().for_each(|problem| problems.push(problem))).ok()
+        };
+        let (simulated, measured) = (one(simulated), one(measured));
+        let (mut simulated, measured) = (simulated?, measured?);
+        let (step, wanted) = (simulated.step(), measured.step());
+        if (step / wanted - 1.0).abs() > SAME_STEP {
+            told.push(format!(
+                "{}: resampled from {:.4} to {:.4} Hz, the rate of the measurement",
+                simulated.shown,
+                1.0 / step,
+                1.0 / wanted
+            ));
+            simulated = simulated.every(wanted);
+        }
+        Some(Self { name, simulated, measured })
+    }
+
+    /// Whether both records have a distance.
+    #[must_use]
+    pub fn over_distance(&self) -> bool {
+        self.simulated.distance.is_some() && self.measured.distance.is_some()
+    }
+
+    /// The range of the axis that both records have.
+    #[must_use]
+    pub fn common(&self, over_distance: bool) -> (f64, f64) {
+        let ends = |series: &Series| {
+            let axis = series.axis(over_distance);
+            (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0))
+        };
+        let ((a, b), (c, d)) = (ends(&self.simulated), ends(&self.measured));
+        (a.max(c), b.min(d))
+    }
+
+    /// Relative rms difference of a column of both records.
+    fn differs(&self, name: &str, over_distance: bool) -> Option<f64> {
+        let (simulated, measured) = (self.simulated.channel(name)?, self.measured.channel(name)?);
+        let (from, to) = self.common(over_distance);
+        let axis = self.measured.axis(over_distance);
+        let inside: Vec<usize> = (0..axis.len()).filter(|at| (from..=to).contains(&axis[*at])).collect();
+        let points: Vec<f64> = inside.iter().map(|at| axis[*at]).collect();
+        let there = interpolate(self.simulated.axis(over_distance), &simulated.values, &points).ok()?;
+        let measured: Vec<f64> = inside.iter().map(|at| measured.unit.to_si(measured.values[*at])).collect();
+        let mean = measured.iter().sum::<f64>() / measured.len().max(1) as f64;
+        let (mut off, mut all) = (0.0, 0.0);
+        for (simulated_value, value) in there.iter().zip(&measured) {
+            off += (simulated.unit.to_si(*simulated_value) - value).powi(2);
+            all += (value - mean).powi(2);
+        }
+        Some((off / all.max(f64::MIN_POSITIVE)).sqrt())
+    }
+}
+
+/// Which columns are compared and which are inputs: those of the first pair, which all pairs must have.
+///
+/// # Errors
+/// `no-common-channel`, `unit-mismatch`, `unknown-channel`.
+pub fn roles(pairs: &[Pair]) -> Result<Roles, Problem> {
+    let first = &pairs[0];
+    let over_distance = pairs.iter().all(Pair::over_distance);
+    let names = |series: &Series| series.channels.iter().map(|channel| channel.name.clone()).collect::<Vec<_>>();
+    let common: Vec<String> = names(&first.measured).into_iter().filter(|name| first.simulated.channel(name).is_some()).collect();
+    for name in &common {
+        for pair in pairs {
+            for series in [&pair.simulated, &pair.measured] {
+                let Some(channel) = series.channel(name) else {
+                    let problem =
+                        Problem::error("unknown-channel", format!("`{}` has no column `{name}`, which the first pair has", series.shown));
+                    return Err(problem.suggest(name, series.channels.iter().map(|channel| channel.name.as_str())));
+                };
+                let unit = &first.measured.channel(name).map_or_else(Unit::one, |channel| channel.unit.clone());
+                if channel.unit.dimension != unit.dimension {
+                    let says = format!(
+                        "the column `{name}` is in {} in `{}`, and in {unit} in `{}`",
+                        channel.unit, series.shown, first.measured.shown
+                    );
+                    return Err(Problem::error("unit-mismatch", says));
+                }
+            }
+        }
+    }
+    let repeated = |name: &String| pairs.iter().all(|pair| pair.differs(name, over_distance).is_some_and(|share| share < REPEATED));
+    let mut inputs: Vec<String> = common.iter().filter(|name| repeated(name)).cloned().collect();
+    // Records that agree in everything are compared in everything.
+    if inputs.len() == common.len() {
+        inputs.clear();
+    }
+    let outputs: Vec<String> = common.iter().filter(|name| !inputs.contains(name)).cloned().collect();
+    if outputs.is_empty() {
+        let (a, b) = (names(&first.simulated).join(", "), names(&first.measured).join(", "));
+        let problem =
+            Problem::error("no-common-channel", "the simulated and the measured record have no column in common that could be compared");
+        return Err(problem.help(format!("the simulation has {a}; the measurement has {b}: give what is compared the same name")));
+    }
+    let everywhere = |name: &String| pairs.iter().all(|pair| pair.measured.channel(name).is_some());
+    inputs.extend(names(&first.measured).into_iter().filter(|name| !common.contains(name) && everywhere(name)));
+    Ok(Roles { outputs, inputs })
+}
+
+fn series(path: &Path, told: &mut Vec<String>) -> Result<Series, Vec<Problem>> {
+    let shown = path.display().to_string();
+    let headings = read_headings(path, &shown)?;
+    let faults: Vec<Problem> = headings.iter().filter_map(|heading| heading.unit(None).err()).collect();
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let wanted: Vec<Wanted> =
+        headings.iter().map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true }).collect();
+    let record = read_record(path, &shown, &wanted)?;
+    let axis =
+        |name: &str, dimension: Dimension| record.columns.iter().find(|column| column.name == name && column.unit.dimension == dimension);
+    let Some(time) = axis(TIME, Dimension::TIME) else {
+        let problem = Problem::error("no-time", format!("`{shown}` has no column `{TIME}` with a unit of time"));
+        let problem = headings.first().map_or(problem.clone(), |first| problem.at(&first.span));
+        return Err(vec![problem.help("call the column with the time so: `time [s]`")]);
+    };
+    if record.rows < FEWEST {
+        let says = format!("`{shown}` has {} samples; at least {FEWEST} are needed", record.rows);
+        return Err(vec![Problem::error("too-short", says)]);
+    }
+    let distance = axis(DISTANCE, Dimension::LENGTH).filter(|distance| distance.values.windows(2).all(|pair| pair[1] > pair[0]));
+    if let Some(row) = time.values.windows(2).position(|pair| pair[1] <= pair[0]) {
+        let problem = Problem::error("time-not-increasing", format!("`{shown}`: the time does not increase"));
+        let place = record.place(row + 1, Some(time));
+        return Err(vec![place.map_or(problem.clone(), |place| problem.at(&place)).help("delete the row, or export the record again")]);
+    }
+    let own = |name: &str| name == TIME || name == DISTANCE;
+    let channels = record.columns.iter().filter(|column| !own(&column.name)).map(|column| Channel {
+        name: column.name.clone(),
+        unit: column.unit.clone(),
+        values: column.values.iter().map(|value| column.unit.from_si(*value)).collect(),
+    });
+    let channels = channels.collect();
+    let found = Series { shown, time: time.values.clone(), distance: distance.map(|column| column.values.clone()), channels };
+    let mut steps: Vec<f64> = found.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    if steps.iter().all(|step| (step - median).abs() <= JITTER * median + 2.0 * ROUNDING) {
+        return Ok(found);
+    }
+    told.push(format!("{}: uneven time steps, resampled to {:.4} Hz by linear interpolation", found.shown, 1.0 / median));
+    Ok(found.every(median))
+}
