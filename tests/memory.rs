@@ -43,8 +43,10 @@ fn table(path: &Path) -> (Schema, RecordBatch) {
 /// All parts of a campaign in memory; `named` says whether the records name their files.
 fn memory(folder: &Path, named: bool) -> Memory {
     let mut memory = Memory::default();
-    for name in ["campaign.yaml", "vehicle.yaml", "sections.csv"] {
-        memory.texts.insert(name.into(), std::fs::read(folder.join(name)).unwrap());
+    for name in ["campaign.yaml", "vehicle.yaml", "sections.csv", "application.csv"] {
+        if let Ok(text) = std::fs::read(folder.join(name)) {
+            memory.texts.insert(name.into(), text);
+        }
     }
     for kind in RecordKind::ALL.map(RecordKind::key) {
         for entry in std::fs::read_dir(folder.join(kind)).unwrap() {
