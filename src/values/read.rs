@@ -1,6 +1,7 @@
 //! Reads a file of values: first its seal, then which program wrote it, then its contents.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
@@ -114,7 +115,9 @@ fn contents(bytes: Vec<u8>) -> Result<Contents, Why> {
         return Err("the signals of a plot differ in length".to_string().into());
     }
     marks(&seal::unpacked(text(write::MARKS)?)?, &mut sections)?;
+    // A part without any section has no rows, but its columns.
     let mut columns: Vec<Column> = Vec::new();
+    add(&mut columns, &RecordBatch::new_empty(Arc::clone(builder.schema())))?;
     for batch in builder.build().map_err(|error| error.to_string())? {
         add(&mut columns, &batch.map_err(|error| error.to_string())?)?;
     }
