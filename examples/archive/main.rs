@@ -1,5 +1,5 @@
 //! An archive of continuous runs of two vehicles, to measure how the evaluation grows with its length:
-//! `cargo run --release --example archive -- --km 500 --out target/archive`.
+//! `cargo run --release --example archive -- --km 500 --out target/archive` makes 40 runs of 12.5 km; `--runs` gives another number.
 //!
 //! Both sides are made by the vehicle model. The measurement has another friction and noise; all else is the same. A run has one speed and
 //! curves that suit it, so that the sections of each zone of Annex T are found in the runs of one speed.
@@ -23,8 +23,10 @@ use fishplate::units::Unit;
 use fishplate::yaml;
 use rayon::prelude::*;
 
-/// Runs of an archive, half of each vehicle.
+/// Default number of runs, half of each vehicle.
 const RUNS: usize = 40;
+/// Length of the shortest run in m: straight track, a curve, and the margins of the model.
+const SHORTEST: f64 = 1200.0;
 /// Friction of the measurement; that of the simulation is in the vehicle file.
 const FRICTION: f64 = 0.38;
 /// Noise of the measurement: forces in N, accelerations in m/s^2, one standard deviation.
@@ -38,12 +40,14 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let after = |key: &str| arguments.iter().position(|one| one == key).and_then(|at| arguments.get(at + 1));
     let km = after("--km").and_then(|km| km.parse::<f64>().ok()).filter(|km| *km > 0.0);
-    let (Some(km), Some(out)) = (km, after("--out")) else {
-        eprintln!("arguments: --km LENGTH --out FOLDER");
+    let runs = after("--runs").and_then(|runs| runs.parse::<usize>().ok()).unwrap_or(RUNS).max(VEHICLES.len());
+    let enough = |km: &f64| 1000.0 * km / runs as f64 >= SHORTEST;
+    let (Some(km), Some(out)) = (km.filter(enough), after("--out")) else {
+        eprintln!("arguments: --km LENGTH --out FOLDER [--runs NUMBER], with at least {SHORTEST} m for each run");
         std::process::exit(2);
     };
-    match VEHICLES.iter().enumerate().try_for_each(|(at, vehicle)| campaign(&PathBuf::from(out), at, *vehicle, km)) {
-        Ok(()) => println!("{km} km in {RUNS} runs: {out}"),
+    match VEHICLES.iter().enumerate().try_for_each(|(at, vehicle)| campaign(&PathBuf::from(out), at, *vehicle, (km, runs))) {
+        Ok(()) => println!("{km} km in {runs} runs: {out}"),
         Err(why) => {
             eprintln!("{why}");
             std::process::exit(3);
@@ -52,7 +56,7 @@ fn main() {
 }
 
 /// Writes the runs of one vehicle.
-fn campaign(out: &Path, at: usize, (name, differs): (&str, &[(&str, f64)]), km: f64) -> Result<(), String> {
+fn campaign(out: &Path, at: usize, (name, differs): (&str, &[(&str, f64)]), (km, runs): (f64, usize)) -> Result<(), String> {
     let folder = out.join(name);
     let (vehicle, text) = vehicle(name, differs)?;
     let profile = Profile::new(&profile()?, None, &vehicle).ok_or("no profile")?;
@@ -61,15 +65,15 @@ fn campaign(out: &Path, at: usize, (name, differs): (&str, &[(&str, f64)]), km: 
         wet.set("friction", FRICTION).map_err(|_| "the friction is not admissible")?;
         wet
     };
-    let length = 1000.0 * km / RUNS as f64;
-    let numbers: Vec<usize> = (0..RUNS / VEHICLES.len()).collect();
+    let length = 1000.0 * km / runs as f64;
+    let numbers: Vec<usize> = (0..runs / VEHICLES.len()).collect();
     let write = |inside: &str, bytes: &[u8]| {
         let path = folder.join(inside);
         disk::make_folder(path.parent().unwrap_or(&folder)).map_err(|error| format!("{}: {error}", path.display()))?;
         disk::keep(&path, bytes).map_err(|error| format!("{}: {error}", path.display()))
     };
     numbers.par_iter().try_for_each(|number| {
-        let mut random = Gauss::new((1 + RUNS * at + number) as u64);
+        let mut random = Gauss::new((1 + runs * at + number) as u64);
         let kind = line::KINDS[number % line::KINDS.len()];
         let track = line::track(&kind, length, &mut random);
         let window = Window { from: line::STRAIGHT, to: length };
@@ -81,18 +85,18 @@ fn campaign(out: &Path, at: usize, (name, differs): (&str, &[(&str, f64)]), km: 
         }
         write(&format!("runs/{number:02}-track.parquet"), &track_file(track)?)
     })?;
-    let mut runs = String::new();
+    let mut listed = String::new();
     for number in numbers {
         let file = |side: &str| format!("runs/{number:02}-{side}.parquet");
         let files = (file("measurement"), file("simulation"), file("track"));
         let country = COUNTRIES[number / line::KINDS.len() % COUNTRIES.len()];
         let (measurement, simulation, track) = files;
         let files = format!("measurement: {measurement}, simulation: {simulation}, track: {track}");
-        let _ = writeln!(runs, "  run{number:02}: {{{files}, country: {country}}}");
+        let _ = writeln!(listed, "  run{number:02}: {{{files}, country: {country}}}");
     }
     write("vehicle.yaml", text.as_bytes())?;
     let head = format!("name: Archive of the {name}\nprotocol: en14363-2016-annex-t-found-sections\nvehicle: vehicle.yaml\n");
-    write("campaign.yaml", format!("{head}sampling_rate [Hz]: {SAMPLING_RATE}\nruns:\n{runs}").as_bytes())
+    write("campaign.yaml", format!("{head}sampling_rate [Hz]: {SAMPLING_RATE}\nruns:\n{listed}").as_bytes())
 }
 
 /// The record as a file, with the speed in km/h.
