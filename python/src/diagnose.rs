@@ -100,6 +100,7 @@ pub struct Simulates {
 }
 
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub fn diagnose(
     py: Python<'_>,
     campaign: PyRef<'_, Campaign>,

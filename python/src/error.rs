@@ -48,7 +48,7 @@ pub fn listed<'py>(py: Python<'py>, problems: &Problems) -> PyResult<Bound<'py, 
 
 /// The exception with all problems.
 pub fn raised(py: Python<'_>, problems: &Problems) -> PyErr {
-    let made = || PyResult::Ok(classes(py)?.getattr("Error")?.call1((listed(py, problems)?,))?);
+    let made = || classes(py)?.getattr("Error")?.call1((listed(py, problems)?,));
     match made() {
         Ok(error) => PyErr::from_value(error),
         Err(error) => error,

@@ -5,6 +5,7 @@ mod document;
 mod error;
 mod html;
 mod inputs;
+mod parts;
 mod result;
 mod table;
 mod work;
@@ -66,6 +67,8 @@ mod _fishplate {
     use super::document::{Report, compare, study};
     #[pymodule_export]
     use super::inputs::Campaign;
+    #[pymodule_export]
+    use super::parts::{judge, reduce};
     #[pymodule_export]
     use super::result::{Result, certify};
     #[pymodule_export]

@@ -35,8 +35,10 @@ __all__ = [
     "check",
     "compare",
     "diagnose",
+    "judge",
     "protocols",
     "read",
+    "reduce",
     "study",
     "__version__",
 ]
@@ -197,6 +199,33 @@ def certify(
     parameters: `sections_per_zone=5`, `lowpass_frequency="15 Hz"`.
     """
     return _fishplate.certify(_campaigns(campaign), _asked(protocol), _set(parameters), plots, jobs)
+
+
+def reduce(
+    campaign: Any,
+    protocol: str | _os.PathLike[str] | None = None,
+    *,
+    shard: tuple[int, int] = (0, 1),
+    plots: bool = True,
+    jobs: int | None = None,
+    **parameters: Any,
+) -> bytes:
+    """The values of a part of the sections: part `shard[0]`, counted from 0, of `shard[1]`. The bytes are those of a Parquet file."""
+    return _fishplate.reduce(_campaigns(campaign), _asked(protocol), _set(parameters), shard, plots, jobs)
+
+
+def judge(parts: Iterable[bytes | str | _os.PathLike[str]], *, plots: int = 8) -> Result:
+    """The result of all parts, in any order: bytes that `reduce` returned, or files of them. The same as `certify` of the whole."""
+    given = []
+    for number, part in enumerate(parts):
+        if isinstance(part, bytes):
+            given.append((f"part {number + 1}", part))
+        else:
+            with open(part, "rb") as file:
+                given.append((_os.fspath(part), file.read()))
+    if not given:
+        raise _wrong("no-values", "no part is given")
+    return _fishplate.judge(given, plots)
 
 
 def study(
