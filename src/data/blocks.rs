@@ -39,7 +39,7 @@ impl Blocks {
     /// The next block; `None` at the end of the record.
     ///
     /// # Errors
-    /// Those of [`stream`].
+    /// Those of `stream_known`.
     pub fn following(&mut self) -> Result<Option<Columns>, Vec<Problem>> {
         self.blocks.recv().map_or(Ok(None), |block| block.map(Some))
     }

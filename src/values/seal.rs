@@ -63,7 +63,7 @@ pub fn packed(bytes: &[u8]) -> String {
 }
 
 /// # Errors
-/// It is not packed, or larger than [`LARGEST`].
+/// It is not packed, or larger than `LARGEST`.
 pub fn unpacked(text: &str) -> Result<Vec<u8>, String> {
     let compressed = STANDARD.decode(text).map_err(|error| error.to_string())?;
     let mut bytes = Vec::new();
