@@ -5,12 +5,13 @@ use std::sync::Arc;
 use super::allowed::covariance::strata;
 use super::allowed::declared::Declared;
 use super::allowed::whiten::{Covariance, Whitener, dot};
+use super::inference::sets::Sets;
 use super::inputs::{Inputs, value_of};
 use super::observe::bench::Runs;
 use super::observe::observations::Observations;
 use super::search::beside::alone_again;
 use super::search::candidates::Candidate;
-use super::search::choose::{Bars, Chosen, Refused, chi_squared, contradicting, nearest, refit, rivals};
+use super::search::choose::{Bars, Chosen, Refused, chi_squared, contradicting, nearest, refit};
 use super::search::converge::{Converged, Converging};
 use super::search::fit::{Fitted, Fitter, Known, Mask};
 use super::search::ground::Ground;
@@ -156,7 +157,7 @@ impl Found {
 
     /// Fits the answer again with the tolerances simulated together with it, and updates residuals and alternatives. `gone` says that a
     /// member was refused, so that another candidate may replace one that was chosen together with it.
-    fn settle(&mut self, inputs: &Inputs<'_>, gone: bool, mut known: Known) {
+    fn settle(&mut self, inputs: &Inputs<'_>, gone: bool, known: Known) {
         let far = |candidate: &Candidate, size: f64| deviations(candidate, size, inputs.settings, &self.declared, false);
         // An effect between the threshold without `besides` and the one with it is fitted but not named, so that no other effect explains
         // it.
@@ -172,13 +173,13 @@ impl Found {
             let again = Settled { tolerances, far: &further };
             let first = |chosen: Chosen| Weighed { place: alone.clone(), chosen };
             let mut chosen = self.chosen.clone();
-            if gone && converging.exchange((candidates, masks), &mut chosen, bars, refused, &mut known) {
+            if gone && converging.again((candidates, masks), &mut chosen, bars, refused) {
                 alone_again(candidates, &chosen.members);
             }
             let before = refused.len();
             let (mut beside, mut now) = again.answer((candidates, masks), first(chosen), &self.lack_before, bars, refused, runs);
             let mut left = now.chosen.clone();
-            if refused.len() > before && converging.exchange((candidates, masks), &mut left, bars, refused, &mut known) {
+            if refused.len() > before && converging.again((candidates, masks), &mut left, bars, refused) {
                 alone_again(candidates, &left.members);
                 (beside, now) = again.answer((candidates, masks), first(left), &self.lack_before, bars, refused, runs);
             }
@@ -223,7 +224,7 @@ impl Found {
                 self.contradicting = contradicting(fitter, here, &self.refused);
                 break;
             };
-            found.extend(rivals(fitter, &place.z, here, at));
+            found.extend(Sets::new(fitter, &place.z).rivals(here, at, &self.bars));
             stable.push(stability(
                 (fitter, &place.z, here),
                 (&sizes, &self.settled.z, &self.chosen),

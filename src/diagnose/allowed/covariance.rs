@@ -2,6 +2,7 @@
 
 use super::standing::Standing;
 use super::whiten::Covariance;
+use crate::diagnose::allowed::response::ResponseError;
 use crate::diagnose::observe::features::Kind;
 use crate::diagnose::observe::observations::Observations;
 use crate::diagnose::settings::{Discrepancy, FeatureKind, Moves, Over, Settings, Times};
@@ -47,7 +48,8 @@ pub fn covariance(
     standing: Option<&Standing>,
 ) -> Covariance {
     let size = seen.features.len();
-    let mut covariance = Covariance { diagonal: diagonal(seen, settings), inside: Vec::new(), shared: Vec::new(), size };
+    let response = ResponseError::new(seen, settings);
+    let mut covariance = Covariance { diagonal: diagonal(seen, settings), inside: Vec::new(), shared: Vec::new(), size, response };
     for sensitivity in sensitivities {
         if sensitivity.shared > 0.0 {
             covariance.shared.push(sensitivity.column.iter().map(|x| sensitivity.shared * x).collect());

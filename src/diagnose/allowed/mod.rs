@@ -3,6 +3,7 @@
 pub mod covariance;
 pub mod declared;
 pub mod recorded;
+pub mod response;
 pub mod sensitivity;
 pub mod standing;
 pub mod whiten;
