@@ -7,14 +7,7 @@
 use crate::diagnose::allowed::covariance::strata;
 use crate::diagnose::observe::features::Kind;
 use crate::diagnose::observe::observations::Observations;
-use crate::diagnose::settings::Settings;
-
-/// Standard deviation of the relative error that all levels have in common. Levels follow from equilibrium (judgement).
-pub const LEVELS: f64 = 0.05;
-/// The same for all other features: band levels, gains and lags (judgement).
-pub const OTHERS: f64 = 0.2;
-/// Standard deviation of the further relative error of a group of channels, and of a group in one stratum (judgement).
-pub const GROUP: f64 = 0.1;
+use crate::diagnose::settings::{Response, Settings};
 
 /// Features with a common relative error.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +22,8 @@ struct Part {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ResponseError {
     parts: Vec<Part>,
+    /// A further relative error of each feature by itself, for the test of what is left.
+    pub each: f64,
 }
 
 impl ResponseError {
@@ -40,8 +35,9 @@ impl ResponseError {
         let mut groups: Vec<usize> = seen.layout.channels.iter().map(|channel| channel.group).collect();
         groups.sort_unstable();
         groups.dedup();
+        let Response { levels, others, groups: further } = settings.response;
         let mut parts = Vec::new();
-        for (level, common) in [(true, LEVELS), (false, OTHERS)] {
+        for (level, common) in [(true, levels), (false, others)] {
             let features = |group: Option<usize>| -> Vec<usize> {
                 let inside = |channel: usize| group.is_none_or(|group| seen.layout.channels[channel].group == group);
                 let kept = seen.features.iter().enumerate();
@@ -50,12 +46,12 @@ impl ResponseError {
             parts.push(Part { features: features(None), sections: all.clone(), sd: common });
             for group in &groups {
                 let features = features(Some(*group));
-                parts.push(Part { features: features.clone(), sections: all.clone(), sd: GROUP });
-                parts.extend(strata.iter().map(|of| Part { features: features.clone(), sections: of.clone(), sd: GROUP }));
+                parts.push(Part { features: features.clone(), sections: all.clone(), sd: further });
+                parts.extend(strata.iter().map(|of| Part { features: features.clone(), sections: of.clone(), sd: further }));
             }
         }
         parts.retain(|part| !part.features.is_empty() && !part.sections.is_empty());
-        Self { parts }
+        Self { parts, each: others }
     }
 
     /// One error common to the features in each list, for tests.
@@ -63,7 +59,7 @@ impl ResponseError {
     #[must_use]
     pub fn of(parts: &[(&[usize], f64)], sections: usize) -> Self {
         let part = |(features, sd): &(&[usize], f64)| Part { features: features.to_vec(), sections: (0..sections).collect(), sd: *sd };
-        Self { parts: parts.iter().map(part).collect() }
+        Self { parts: parts.iter().map(part).collect(), each: 0.0 }
     }
 
     /// Columns of the covariance for the change of all features, `size` of them per section.
@@ -89,7 +85,7 @@ impl ResponseError {
             |part: &Part| Part { features: places(&part.features, features), sections: places(&part.sections, sections), sd: part.sd };
         let mut parts: Vec<Part> = self.parts.iter().map(part).collect();
         parts.retain(|part| !part.features.is_empty() && !part.sections.is_empty());
-        Self { parts }
+        Self { parts, each: self.each }
     }
 }
 

@@ -49,6 +49,7 @@ impl Cell {
             Kind::Band(band) => format!("{} to {} Hz", edges[band], edges[band + 1]),
             Kind::Gain => "alike".into(),
             Kind::Lag => "lag".into(),
+            Kind::Increment(_) => "sample by sample".into(),
         }
     }
 }

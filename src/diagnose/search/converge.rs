@@ -324,7 +324,9 @@ mod tests {
     fn what_a_member_is_wrong_by_contradicts_no_other() {
         let mut candidates = [path("first", &[0.0, 100.0]), path("further", &[10.0, 10.0])];
         let masks = everywhere();
-        let place = Place::new(of_unit_variance(2), per_section(&[6.0, 60.0]));
+        let mut response = ResponseError::default();
+        response.each = 0.2;
+        let place = Place::new(Covariance { response, ..of_unit_variance(2) }, per_section(&[6.0, 60.0]));
         let view = |feature: usize| View { says: format!("view {feature}"), sections: (0..SECTIONS).collect(), features: vec![feature] };
         let families = [vec![view(0), view(1)]];
         let mut judged = |exact: bool| {

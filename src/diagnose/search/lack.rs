@@ -17,16 +17,13 @@ const WORSE: f64 = 1.1;
 /// Increase of the excess that is negligible against some thousand features.
 const LITTLE: f64 = 10.0;
 
-/// Model error of a simulated change, as a share of the change, independent between features.
-const WRONG: f64 = 0.2;
-
 /// The covariance with an answer, plus the model error of the simulated members, independent between features.
 #[must_use]
 pub fn with_room(beside: &Covariance, candidates: &[Candidate], masks: &[Mask], chosen: &Chosen) -> Covariance {
     let mut wider = beside.clone();
     for member in chosen.members.iter().filter(|member| !candidates[member.candidate].exact) {
         let change = member.change(candidates, masks);
-        wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| *variance += (WRONG * change).powi(2));
+        wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| *variance += (beside.response.each * change).powi(2));
     }
     wider
 }
@@ -181,8 +178,9 @@ mod tests {
     /// A simulated change of 10 has a model error of 2; an operation on the signals has none.
     #[test]
     fn only_what_is_simulated_may_be_wrong() {
-        let covariance =
-            Covariance { diagonal: vec![1.0; 2], inside: Vec::new(), shared: Vec::new(), size: 1, response: ResponseError::default() };
+        let mut response = ResponseError::default();
+        response.each = 0.2;
+        let covariance = Covariance { diagonal: vec![1.0; 2], inside: Vec::new(), shared: Vec::new(), size: 1, response };
         let whitener = covariance.whitener();
         let nodes = vec![Node { size: 0.0, change: Vec::new() }, Node { size: 1.0, change: vec![10.0; 2] }];
         for (exact, variance) in [(false, 1.0 + 4.0), (true, 1.0)] {
