@@ -6,7 +6,6 @@ pub mod allowed;
 pub mod answer;
 mod campaign;
 pub mod gap;
-pub mod inference;
 pub mod inputs;
 pub mod observe;
 pub mod preflight;

@@ -2,6 +2,7 @@
 
 pub mod covariance;
 pub mod declared;
+pub mod metric;
 pub mod recorded;
 pub mod response;
 pub mod sensitivity;

@@ -69,7 +69,7 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     let fitter = Fitter::new(&whitener, &candidates, masks.collect());
     let z = whitener.apply(&part(&found.beside.difference));
     let set: Vec<(usize, usize)> = found.chosen.members.iter().enumerate().map(|(at, member)| (at, member.mask)).collect();
-    let chosen = crate::diagnose::inference::sets::Sets::new(&fitter, &z).chosen(&set);
+    let chosen = crate::diagnose::search::sets::Sets::new(&fitter, &z).chosen(&set);
     if chosen.members.len() != set.len() {
         return found.chosen.members.clone();
     }

@@ -4,12 +4,12 @@
 use std::sync::Arc;
 
 use super::candidates::{Candidate, Node, Workshop, applied};
-use super::choose::{Chosen, Refused, plausible, refit};
+use super::choose::{Chosen, Refused, plausible};
 use super::converge::{Converged, Converging, WORTH};
 use super::fit::{Fitted, Fitter, Mask};
 use super::place::Place;
+use super::sets::{Conditions, Sets, refit};
 use super::settle::refined;
-use crate::diagnose::inference::sets::{Conditions, Sets};
 use crate::diagnose::observe::bench::{Bench, Runs, Set};
 use crate::effects::{Action, Applied};
 use crate::simulate::Plan;

@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use super::candidates::Candidate;
-use super::fit::{Fitted, Fitter};
+use super::fit::{Fitted, Fitter, Member};
+use crate::diagnose::allowed::metric::Metric;
 use crate::diagnose::allowed::whiten::{dot, less};
-use crate::diagnose::inference::joint::{Member, Metric};
-use crate::diagnose::inference::sets::Sets;
 
 /// Declared standard deviations from which an effect on a tolerated parameter is named: the declared value is itself an estimate.
 pub const TOLERANCE_SD: f64 = 3.5;
@@ -154,13 +153,6 @@ pub fn taken(fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> bool {
     })
 }
 
-/// Fits all members together.
-pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen) {
-    let doubtful: Vec<bool> = chosen.members.iter().map(|member| member.doubtful).collect();
-    *chosen = Sets::new(fitter, z).chosen(&chosen.set());
-    chosen.members.iter_mut().zip(doubtful).for_each(|(member, doubtful)| member.doubtful = doubtful);
-}
-
 /// Number of unnamed candidates that are reported, and their least evidence.
 const TOLD: usize = 3;
 const TELLING: f64 = 10.0;
@@ -202,6 +194,7 @@ pub fn chi_squared(z: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::sets::Sets;
     use super::*;
     use crate::diagnose::allowed::response::ResponseError;
     use crate::diagnose::allowed::whiten::Covariance;

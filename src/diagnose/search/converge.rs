@@ -2,14 +2,14 @@
 
 use super::beside::alone_again;
 use super::candidates::{Candidate, Workshop};
-use super::choose::{Bars, Chosen, Judged, Refused, TOLERANCE_SD, plausible, refit, unconfine};
+use super::choose::{Bars, Chosen, Judged, Refused, TOLERANCE_SD, plausible, unconfine};
 use super::fit::{Fitted, Fitter, Known, Mask};
 use super::guards::{View, carried, contradiction};
 use super::lack::{left, with_room};
 use super::masks::section_masks;
 use super::place::{Place, Tolerances};
+use super::sets::{Conditions, Sets, refit};
 use super::settle::{ROUNDS, polish};
-use crate::diagnose::inference::sets::{Conditions, Sets};
 use crate::diagnose::observe::bench::Runs;
 use crate::effects::Gauss;
 

@@ -8,8 +8,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::beside::Placed;
 use super::candidates::Candidate;
+use crate::diagnose::allowed::metric::reduced;
 use crate::diagnose::allowed::whiten::{Whitener, dot};
-use crate::diagnose::inference::joint::{Member, reduced};
 
 /// Sections to which an effect is confined; mask 0 is all sections.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +20,9 @@ pub struct Mask {
     /// The candidate whose fit selected the sections, if they were selected from the data: the selection has a penalty.
     pub asked_by: Option<usize>,
 }
+
+/// A candidate and a mask, by number.
+pub type Member = (usize, usize);
 
 /// A fitted candidate.
 #[derive(Clone, Debug)]

@@ -1,10 +1,11 @@
 //! Lack of fit: the residual of a set of causes beyond the allowed difference.
 
 use super::candidates::Candidate;
-use super::choose::{Chosen, Refused, refit};
+use super::choose::{Chosen, Refused};
 use super::fit::{Fitter, Mask};
 use super::guards::{View, part};
 use super::place::Place;
+use super::sets::refit;
 use crate::diagnose::allowed::whiten::{Covariance, less};
 use crate::diagnose::observe::features::Kind;
 use crate::diagnose::observe::observations::Observations;

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use super::beside::alone_again;
 use super::candidates::{Candidate, Workshop};
-use super::choose::{Bars, Chosen, Refused, refit};
+use super::choose::{Bars, Chosen, Refused};
 use super::fit::{Fitted, Fitter, Mask};
 use super::lack::{Lack, lack_after, unexplained};
 use super::place::{Place, Tolerances};
+use super::sets::refit;
 use crate::diagnose::allowed::covariance::NOTHING;
 use crate::diagnose::observe::bench::Runs;
 use crate::diagnose::observe::features::Kind;

@@ -3,11 +3,12 @@
 //! discriminate.
 
 use super::candidates::{Candidate, Node, Workshop};
-use super::choose::{Chosen, refit};
+use super::choose::Chosen;
 use super::fit::{Fitted, Fitter, Mask};
+use super::joint::fit;
 use super::place::Place as Weighing;
+use super::sets::refit;
 use crate::diagnose::allowed::whiten::{dot, less};
-use crate::diagnose::inference::joint::fit;
 use crate::diagnose::observe::bench::Runs;
 use crate::diagnose::settings::Settings;
 use crate::units::Unit;

@@ -5,10 +5,10 @@ use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
 
-use super::joint::{Joint, Member, fit};
-use crate::diagnose::search::candidates::Candidate;
-use crate::diagnose::search::choose::{Bars, Chosen, Guard, Judged, Refused, plausible, taken, unconfine, undone};
-use crate::diagnose::search::fit::{Fitted, Fitter};
+use super::candidates::Candidate;
+use super::choose::{Bars, Chosen, Guard, Judged, Refused, plausible, taken, unconfine, undone};
+use super::fit::{Fitted, Fitter, Member};
+use super::joint::{Joint, fit};
 
 /// Number of candidates whose joint evidence is computed, of those with the most evidence for what a set leaves; and their least one.
 /// With the members fixed, an effect similar to a member has little evidence left.
@@ -36,6 +36,11 @@ pub struct Conditions<'a> {
     /// Distance of a size from neutral in declared standard deviations.
     pub far: &'a (dyn Fn(&Candidate, f64) -> f64 + Sync),
     pub guard: Guard<'a>,
+}
+
+/// Fits all members together.
+pub fn refit(fitter: &Fitter<'_>, z: &[f64], chosen: &mut Chosen) {
+    Sets::new(fitter, z).fit(chosen);
 }
 
 impl<'a> Sets<'a> {
