@@ -170,9 +170,16 @@ fn a_filled_stub_is_diagnosed() {
     let done = machine.diagnose(&["--out", "out"]);
     assert!(matches!(done.code, 0 | 1), "{}{}", done.stdout, done.stderr);
     let found: Value = serde_json::from_str(&machine.text("out/diagnosis.json")).expect("JSON");
-    let causes = found["causes"].as_array().expect("causes").iter().flat_map(|cause| cause["effects"].as_array().into_iter().flatten());
-    let names: Vec<&str> = causes.filter_map(|effect| effect["name"].as_str()).collect();
-    assert!(names.iter().any(|name| ["viscous", "coulomb"].contains(name)), "{names:?}\n{}", done.stdout);
+    // The truth, in the answer: both frictions, each within 5 %.
+    let effects = found["causes"][0]["effects"].as_array().expect("effects");
+    let size = |name: &str| {
+        let effect = effects.iter().find(|effect| effect["name"] == name).unwrap_or_else(|| panic!("no {name}: {}", done.stdout));
+        effect["parameters"][name]["value"].as_f64().expect("a number")
+    };
+    for (name, truth) in [("viscous", VISCOUS), ("coulomb", COULOMB)] {
+        assert!((size(name) / truth - 1.0).abs() < 0.05, "{name} {}\n{}", size(name), done.stdout);
+    }
+    assert_eq!(effects.len(), 2, "{}", done.stdout);
 }
 
 #[test]

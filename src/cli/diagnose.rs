@@ -330,7 +330,8 @@ fn kept(folder: &Path, campaign: &Campaign, settings: &Settings) -> Result<Cache
     let files: Vec<String> =
         campaign.other_files(RecordKind::Measurement)?.iter().map(|(path, bytes)| format!("{path} {}", sha256(bytes))).collect();
     let Settings { edges, alike, groups, furthest, .. } = settings;
-    let groups: Vec<_> = groups.iter().map(|group| (&group.name, group.level, group.bands, group.alike, &group.noise)).collect();
+    let groups: Vec<_> =
+        groups.iter().map(|group| (&group.name, group.level, group.bands, group.alike, group.samples, &group.noise)).collect();
     // To be changed whenever the definition of the features changes.
     const FEATURES: &str = "levels are means";
     let of = format!("{} {FEATURES} {} {edges:?} {alike:?} {groups:?} {furthest}", env!("CARGO_PKG_VERSION"), files.join(" "));

@@ -145,6 +145,8 @@ fn moved(seen: &Observations, settings: &Settings, before: &[f64], after: &[f64]
             Kind::Band(band) => (group.band_sd, format!("{} to {} Hz", edges[band], edges[band + 1])),
             Kind::Gain => (group.gain_sd, "gain".to_string()),
             Kind::Lag if !scatter.has_lag => continue,
+            // The preflight has no changes of all effects to compare with.
+            Kind::Increment(_) => continue,
             Kind::Lag => (group.lag_sd, "lag".to_string()),
         };
         let change = (after[at] - before[at]) / sd.max(f64::MIN_POSITIVE);

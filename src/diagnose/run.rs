@@ -2,15 +2,17 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::allowed::covariance::strata;
 use super::allowed::declared::Declared;
 use super::allowed::whiten::{Covariance, Whitener, dot};
 use super::inputs::{Inputs, value_of};
 use super::observe::bench::Runs;
-use super::observe::observations::Observations;
+use super::observe::observations::{Observations, Observed};
 use super::search::beside::alone_again;
 use super::search::candidates::Candidate;
-use super::search::choose::{Bars, Chosen, Refused, chi_squared, contradicting, nearest, refit, rivals};
+use super::search::choose::{Bars, Chosen, Refused, chi_squared, contradicting, nearest};
 use super::search::converge::{Converged, Converging};
 use super::search::fit::{Fitted, Fitter, Known, Mask};
 use super::search::ground::Ground;
@@ -18,13 +20,15 @@ use super::search::guards::families;
 use super::search::lack::{Lack, drop_what_harms, lack_of_fit, left};
 use super::search::masks::masks;
 use super::search::place::{Place, Places};
+use super::search::sets::{Sets, refit};
 use super::search::settle::{Settled, Weighed};
 use super::search::stability::{Stability, stability};
 use super::search::suspects::{Suspect, suspect};
 use super::settings::Settings;
+use crate::effects::{Action, Applied, Signals};
 use crate::model::parameter;
 use crate::problem::{Problem, Problems};
-use crate::simulate::Section;
+use crate::simulate::{Plan, Section, Task, incremented};
 
 /// Numerical results of a diagnosis.
 #[derive(Debug)]
@@ -82,6 +86,49 @@ fn check_tolerated(inputs: &Inputs<'_>, problems: &mut Problems) {
     }
 }
 
+/// Adds the comparison sample by sample, where the catalogue asks for it: each simulated effect is run at the ends of its trials.
+fn compare_samples(inputs: &Inputs<'_>, seen: &mut Observations, runs: &mut Runs) -> Result<(), Problem> {
+    let groups: Vec<bool> = inputs.settings.groups.iter().map(|group| group.samples).collect();
+    let Some(simulator) = inputs.simulator.filter(|_| groups.contains(&true)) else { return Ok(()) };
+    (inputs.trying)("changes sample by sample");
+    let effects = inputs.catalogue.effects.iter().filter(|effect| effect.candidate && effect.action == Action::Simulator);
+    let mut trials: Vec<Applied> = Vec::new();
+    for (effect, fit) in effects.flat_map(|effect| effect.fits.iter().map(move |fit| (effect, fit))) {
+        let Some(((_, sizes), _)) = fit.axes.split_first() else { continue };
+        let mut ends: Vec<f64> = sizes.first().into_iter().chain(sizes.last()).copied().collect();
+        ends.dedup();
+        for size in ends {
+            let first = |(at, values): (usize, &(usize, Vec<f64>))| {
+                let value = if at == 0 { Some(size) } else { values.1.first().copied() };
+                Some((effect.parameters[values.0].name.clone(), value?))
+            };
+            let values = fit.axes.iter().enumerate().filter_map(first).collect();
+            trials.push(Applied { effect: effect.name.clone(), values, channels: Vec::new(), confined: None });
+        }
+    }
+    let run = |settings: &[(String, f64)], observed: &Observed| {
+        simulator.run(&Task { section: &observed.section, settings, shift: 0.0, inside_only: true })
+    };
+    let without: Vec<Signals> = seen.sections.par_iter().map(|observed| run(&[], observed)).collect::<Result<_, _>>()?;
+    let each = |applied: &Applied| -> Result<Vec<Signals>, Problem> {
+        let one = |(observed, without): (&Observed, &Signals)| {
+            let effects = std::slice::from_ref(applied);
+            let plan = Plan::new(inputs.catalogue, effects, &observed.section, simulator.catalogue_name())?;
+            Ok(incremented(&observed.simulated, &run(&plan.settings, observed)?, without))
+        };
+        seen.sections.par_iter().zip(&without).map(one).collect()
+    };
+    // An effect that this simulator does not know has no change to compare.
+    let known = |applied: &&Applied| {
+        let effects = std::slice::from_ref(*applied);
+        Plan::new(inputs.catalogue, effects, &seen.sections[0].section, simulator.catalogue_name()).is_ok()
+    };
+    let with: Vec<Vec<Signals>> = trials.iter().filter(known).map(each).collect::<Result<_, _>>()?;
+    runs.made += (1 + with.len()) * seen.sections.len();
+    seen.compare_samples(&groups, &with);
+    Ok(())
+}
+
 /// Finds the effects that explain the difference of measurement and simulation.
 ///
 /// Problems: records that cannot be read; no section or channel to compare.
@@ -95,8 +142,12 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let settings = inputs.settings;
     (inputs.trying)("reading records");
     let unit = |channel: &str| inputs.simulator?.unit(channel);
-    let seen = Observations::read(inputs.campaign, sections, inputs.catalogue, settings, &declared, &unit, problems)?;
+    let mut seen = Observations::read(inputs.campaign, sections, inputs.catalogue, settings, &declared, &unit, problems)?;
     let mut runs = Runs::default();
+    if let Err(problem) = compare_samples(inputs, &mut seen, &mut runs) {
+        problems.push(problem);
+        return None;
+    }
     let ground = Ground::find(inputs, &seen, &admitted, &mut runs, problems)?;
     let (alone, tolerated) = ground.alone(inputs, &seen, &admitted);
     let strata = strata(&seen, settings);
@@ -156,7 +207,7 @@ impl Found {
 
     /// Fits the answer again with the tolerances simulated together with it, and updates residuals and alternatives. `gone` says that a
     /// member was refused, so that another candidate may replace one that was chosen together with it.
-    fn settle(&mut self, inputs: &Inputs<'_>, gone: bool, mut known: Known) {
+    fn settle(&mut self, inputs: &Inputs<'_>, gone: bool, known: Known) {
         let far = |candidate: &Candidate, size: f64| deviations(candidate, size, inputs.settings, &self.declared, false);
         // An effect between the threshold without `besides` and the one with it is fitted but not named, so that no other effect explains
         // it.
@@ -172,13 +223,13 @@ impl Found {
             let again = Settled { tolerances, far: &further };
             let first = |chosen: Chosen| Weighed { place: alone.clone(), chosen };
             let mut chosen = self.chosen.clone();
-            if gone && converging.exchange((candidates, masks), &mut chosen, bars, refused, &mut known) {
+            if gone && converging.again((candidates, masks), &mut chosen, bars, refused) {
                 alone_again(candidates, &chosen.members);
             }
             let before = refused.len();
             let (mut beside, mut now) = again.answer((candidates, masks), first(chosen), &self.lack_before, bars, refused, runs);
             let mut left = now.chosen.clone();
-            if refused.len() > before && converging.exchange((candidates, masks), &mut left, bars, refused, &mut known) {
+            if refused.len() > before && converging.again((candidates, masks), &mut left, bars, refused) {
                 alone_again(candidates, &left.members);
                 (beside, now) = again.answer((candidates, masks), first(left), &self.lack_before, bars, refused, runs);
             }
@@ -223,7 +274,7 @@ impl Found {
                 self.contradicting = contradicting(fitter, here, &self.refused);
                 break;
             };
-            found.extend(rivals(fitter, &place.z, here, at));
+            found.extend(Sets::new(fitter, &place.z).rivals(here, at, &self.bars));
             stable.push(stability(
                 (fitter, &place.z, here),
                 (&sizes, &self.settled.z, &self.chosen),

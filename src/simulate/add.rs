@@ -175,7 +175,8 @@ pub fn incremented(recorded: &Signals, with: &Signals, without: &Signals) -> Sig
 }
 
 /// Linear interpolation, constant beyond the ends; `at` is the interval of the last call.
-pub(super) fn interpolated(axis: &[f64], values: &[f64], x: f64, at: &mut usize) -> f64 {
+#[must_use]
+pub fn interpolated(axis: &[f64], values: &[f64], x: f64, at: &mut usize) -> f64 {
     let last = axis.len().min(values.len()).saturating_sub(1);
     while *at + 1 < last && axis[*at + 1] <= x {
         *at += 1;

@@ -2,7 +2,9 @@
 
 use super::standing::Standing;
 use super::whiten::Covariance;
+use crate::diagnose::allowed::response::ResponseError;
 use crate::diagnose::observe::features::Kind;
+use crate::diagnose::observe::increments::Increments;
 use crate::diagnose::observe::observations::Observations;
 use crate::diagnose::settings::{Discrepancy, FeatureKind, Moves, Over, Settings, Times};
 
@@ -47,7 +49,8 @@ pub fn covariance(
     standing: Option<&Standing>,
 ) -> Covariance {
     let size = seen.features.len();
-    let mut covariance = Covariance { diagonal: diagonal(seen, settings), inside: Vec::new(), shared: Vec::new(), size };
+    let response = ResponseError::new(seen, settings);
+    let mut covariance = Covariance { diagonal: diagonal(seen, settings), inside: Vec::new(), shared: Vec::new(), size, response };
     for sensitivity in sensitivities {
         if sensitivity.shared > 0.0 {
             covariance.shared.push(sensitivity.column.iter().map(|x| sensitivity.shared * x).collect());
@@ -95,6 +98,9 @@ fn calibration(
     let group = &settings.groups[seen.layout.channels[channel].group];
     let size = seen.features.len();
     let mut columns = Vec::new();
+    let along = |section: usize, increment: usize, of: fn(&Increments) -> &Vec<f64>| {
+        seen.sections[section].increments.get(channel).and_then(Option::as_ref).map_or(0.0, |increments| of(increments)[increment])
+    };
     let mut push = |of: &dyn Fn(usize, Kind) -> f64| {
         let mut column = vec![0.0; seen.len()];
         for section in 0..seen.sections.len() {
@@ -109,10 +115,15 @@ fn calibration(
             Kind::Level => sd * simulated[at],
             Kind::Band(_) | Kind::Gain => sd,
             Kind::Lag => 0.0,
+            Kind::Increment(increment) => sd * along(at / size, increment, |increments| &increments.signal),
         });
     }
     if let Some(sd) = group.offset.as_deref().and_then(declared) {
-        push(&|_, kind| if kind == Kind::Level { sd } else { 0.0 });
+        push(&|at, kind| match kind {
+            Kind::Level => sd,
+            Kind::Increment(increment) => sd * along(at / size, increment, |increments| &increments.one),
+            _ => 0.0,
+        });
     }
     columns
 }
@@ -140,6 +151,7 @@ fn diagonal(seen: &Observations, settings: &Settings) -> Vec<f64> {
                 Kind::Gain => group.gain_sd * group.gain_sd + 0.1 / length.max(1.0),
                 Kind::Lag if scatter.has_lag => group.lag_sd * group.lag_sd,
                 Kind::Lag => NOTHING,
+                Kind::Increment(_) => observed.increments[feature.channel].as_ref().map_or(NOTHING, |increments| increments.variance),
             });
         }
     }

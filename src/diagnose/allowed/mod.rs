@@ -2,7 +2,9 @@
 
 pub mod covariance;
 pub mod declared;
+pub mod metric;
 pub mod recorded;
+pub mod response;
 pub mod sensitivity;
 pub mod standing;
 pub mod whiten;

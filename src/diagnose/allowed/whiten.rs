@@ -5,6 +5,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use crate::diagnose::allowed::response::ResponseError;
+
 /// The factored covariance.
 #[derive(Clone, Debug)]
 pub struct Whitener {
@@ -13,6 +15,7 @@ pub struct Whitener {
     shared: DMatrix<f64>,
     shrink: DVector<f64>,
     size: usize,
+    response: ResponseError,
 }
 
 /// The components of a covariance.
@@ -26,6 +29,8 @@ pub struct Covariance {
     pub shared: Vec<Vec<f64>>,
     /// Features per section.
     pub size: usize,
+    /// The model error of simulated effects, which depends on the effects that are fitted.
+    pub response: ResponseError,
 }
 
 impl Covariance {
@@ -36,7 +41,8 @@ impl Covariance {
     pub fn whitener(&self) -> Whitener {
         let sections = self.diagonal.len() / self.size;
         let blocks = (0..sections).map(|section| self.block(section)).collect();
-        let mut whitener = Whitener { blocks, shared: DMatrix::zeros(self.diagonal.len(), 0), shrink: DVector::zeros(0), size: self.size };
+        let (shared, shrink) = (DMatrix::zeros(self.diagonal.len(), 0), DVector::zeros(0));
+        let mut whitener = Whitener { blocks, shared, shrink, size: self.size, response: self.response.clone() };
         let columns: Vec<DVector<f64>> = self.shared.iter().map(|column| DVector::from_vec(whitener.apply(column))).collect();
         if !columns.is_empty() {
             let all = DMatrix::from_columns(&columns);
@@ -140,6 +146,18 @@ impl Products {
 }
 
 impl Whitener {
+    /// Number of features of all sections.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.blocks.len() * self.size
+    }
+
+    /// Columns of the model error of a simulated change, not whitened.
+    #[must_use]
+    pub fn response_error(&self, change: &[f64]) -> Vec<Vec<f64>> {
+        self.response.columns(change, self.size)
+    }
+
     /// The whitened difference; of the same length as `difference`.
     #[must_use]
     pub fn apply(&self, difference: &[f64]) -> Vec<f64> {
@@ -201,6 +219,7 @@ mod tests {
             inside: vec![(0, vec![0.5, -1.0]), (1, vec![2.0, 0.3])],
             shared: vec![vec![1.0, 0.0, 1.0, 0.5], vec![0.2, 0.4, -0.3, 1.0]],
             size: 2,
+            response: ResponseError::default(),
         };
         let r = [1.0, -2.0, 0.5, 0.7];
         let mut full = DMatrix::from_diagonal(&DVector::from_row_slice(&covariance.diagonal));

@@ -40,13 +40,15 @@ fn best(covariance: &Covariance, all: &[usize], strata: &[Vec<usize>], change: &
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::allowed::response::ResponseError;
     use crate::diagnose::search::candidates::Node;
 
     /// Two features in each of four sections, unit noise. The effect changes both features equally. The rival does so in the first two
     /// sections and changes them in opposite directions in the last two. Only the last two discriminate.
     #[test]
     fn the_sections_in_which_rivals_differ_are_chosen() {
-        let covariance = Covariance { diagonal: vec![1.0; 8], inside: Vec::new(), shared: Vec::new(), size: 2 };
+        let covariance =
+            Covariance { diagonal: vec![1.0; 8], inside: Vec::new(), shared: Vec::new(), size: 2, response: ResponseError::default() };
         let change = vec![2.0; 8];
         let nodes = vec![
             Node { size: 0.0, change: Vec::new() },

@@ -24,7 +24,7 @@ pub fn pictures(settings: &Settings, found: &Found, improved: &[Signals], units:
         seen.features
             .iter()
             .enumerate()
-            .filter(|(_, feature)| feature.channel == channel && !matches!(feature.kind, Kind::Gain | Kind::Lag))
+            .filter(|(_, feature)| feature.channel == channel && matches!(feature.kind, Kind::Level | Kind::Band(_)))
             .map(|(at, _)| {
                 let place = seen.place(section, at);
                 let shared: f64 = found.tolerated.shared.iter().map(|column| column[place].powi(2)).sum();

@@ -17,7 +17,7 @@ const TEMPERATURE: f64 = 4.0;
 
 /// Sets in which another effect replaces one member, and whether the data discriminate them from the answer.
 pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
-    let best = found.chosen.evidence();
+    let best = found.chosen.evidence;
     let mut causes: Vec<Cause> = Vec::new();
     let own = |at: usize| &found.candidates[found.chosen.members[at].candidate];
     for (at, fit, fall) in &found.rivals {

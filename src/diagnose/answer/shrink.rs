@@ -68,13 +68,11 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     });
     let fitter = Fitter::new(&whitener, &candidates, masks.collect());
     let z = whitener.apply(&part(&found.beside.difference));
-    let mut chosen = crate::diagnose::search::choose::Chosen { members: Vec::new(), rest: z.clone() };
-    for (at, member) in found.chosen.members.iter().enumerate() {
-        let fitted = fitter.fit(&chosen.rest, at, member.mask).unwrap_or_else(|| member.clone());
-        chosen.rest = crate::diagnose::allowed::whiten::less(&chosen.rest, &fitted.whitened);
-        chosen.members.push(Fitted { candidate: at, ..fitted });
+    let set: Vec<(usize, usize)> = found.chosen.members.iter().enumerate().map(|(at, member)| (at, member.mask)).collect();
+    let chosen = crate::diagnose::search::sets::Sets::new(&fitter, &z).chosen(&set);
+    if chosen.members.len() != set.len() {
+        return found.chosen.members.clone();
     }
-    crate::diagnose::search::choose::refit(&fitter, &z, &mut chosen);
     chosen
         .members
         .into_iter()

@@ -54,7 +54,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, protocol: Pr
     let (verdict, reason) = verdict::verdict(&facts);
     let mut causes = vec![];
     if named {
-        causes.push(Cause { evidence: found.chosen.evidence(), ..cause(inputs, found, &found.chosen.members, 1) });
+        causes.push(Cause { evidence: found.chosen.evidence, ..cause(inputs, found, &found.chosen.members, 1) });
         // Where the gap remains, the candidate with more evidence than the answer was refused. It is reported there and is not a rival.
         let best = causes[0].evidence;
         causes.extend(ambiguous.into_iter().filter(|rival| verdict != Verdict::Unexplained || rival.evidence <= best));

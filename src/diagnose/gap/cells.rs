@@ -49,6 +49,7 @@ impl Cell {
             Kind::Band(band) => format!("{} to {} Hz", edges[band], edges[band + 1]),
             Kind::Gain => "alike".into(),
             Kind::Lag => "lag".into(),
+            Kind::Increment(_) => "sample by sample".into(),
         }
     }
 }
@@ -153,6 +154,7 @@ impl Among {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::allowed::response::ResponseError;
 
     /// Two of four features, with the covariance written out: C = [[1 + 0.25 + 1, 0.5], [0.5, 3 + 0.25]].
     #[test]
@@ -162,6 +164,7 @@ mod tests {
             inside: vec![(0, vec![0.5, -1.0])],
             shared: vec![vec![1.0, 0.0, 1.0, 0.5]],
             size: 2,
+            response: ResponseError::default(),
         };
         let (a, b, c) = (1.0 + 0.25 + 1.0, 0.5, 3.0 + 0.25);
         let (x, y) = (1.0, -2.0);
@@ -174,7 +177,13 @@ mod tests {
     /// a free parameter of the fit.
     #[test]
     fn slope_of_a_line() {
-        let covariance = Covariance { diagonal: vec![1.0; 4], inside: Vec::new(), shared: vec![vec![2.0; 4]], size: 1 };
+        let covariance = Covariance {
+            diagonal: vec![1.0; 4],
+            inside: Vec::new(),
+            shared: vec![vec![2.0; 4]],
+            size: 1,
+            response: ResponseError::default(),
+        };
         let (slope, error) = covariance
             .among(&[(0, 0), (1, 0), (2, 0), (3, 0)])
             .slope([&[1.0; 4], &[0.0, 1.0, 2.0, 3.0]], &[3.0, 3.6, 4.2, 4.5])

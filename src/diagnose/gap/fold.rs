@@ -80,6 +80,7 @@ mod tests {
             measured: none(),
             references: Vec::new(),
             scatter: Vec::new(),
+            increments: Vec::new(),
             again: false,
         };
         let channel = |(name, group): (&str, usize)| ChannelFeatures {
@@ -89,6 +90,7 @@ mod tests {
             level: true,
             bands: 0,
             alike: false,
+            increments: 0,
         };
         let channels = [("Y_L", 0), ("Y_R", 0), ("Q_L", 1), ("Q_R", 1)].map(channel).to_vec();
         let seen = Observations {

@@ -107,11 +107,18 @@ pub fn worst(all: &[Invariant]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::allowed::response::ResponseError;
 
     /// w' C w with the covariance written out: C = [[1 + 4, 2 + 3], [2 + 3, 2 + 1 + 9]].
     #[test]
     fn variance_of_a_sum() {
-        let covariance = Covariance { diagonal: vec![1.0, 2.0], inside: vec![(0, vec![2.0, 1.0])], shared: vec![vec![0.0, 3.0]], size: 2 };
+        let covariance = Covariance {
+            diagonal: vec![1.0, 2.0],
+            inside: vec![(0, vec![2.0, 1.0])],
+            shared: vec![vec![0.0, 3.0]],
+            size: 2,
+            response: ResponseError::default(),
+        };
         assert!((covariance.variance(&[1.0, -1.0]) - (5.0 - 2.0 * 2.0 + 12.0)).abs() < 1e-12);
     }
 

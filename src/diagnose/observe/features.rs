@@ -33,6 +33,8 @@ pub struct ChannelFeatures {
     pub bands: usize,
     /// Whether gain and lag against the simulation are features.
     pub alike: bool,
+    /// Number of effects whose changes are compared sample by sample.
+    pub increments: usize,
 }
 
 /// Kind of a feature.
@@ -46,6 +48,8 @@ pub enum Kind {
     Gain,
     /// Distance of the record behind the simulation, in the unit of the axis.
     Lag,
+    /// Coordinate of the difference of the records along the changes that the effects cause, sample by sample.
+    Increment(usize),
 }
 
 /// A feature of the layout: channel number and kind.
@@ -70,6 +74,7 @@ impl Layout {
                 push(Kind::Gain);
                 push(Kind::Lag);
             }
+            (0..of.increments).for_each(|at| push(Kind::Increment(at)));
         }
         features
     }

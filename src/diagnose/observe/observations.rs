@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::faults::faults;
 use super::features::{ChannelFeatures, Feature, Kind, Layout, Piece, Spectrum, of_channel};
+use super::increments::Increments;
 use super::scatter::{Scatter, scatter};
 use crate::data::checks::whole;
 use crate::data::{Campaign, RecordKind};
@@ -11,7 +12,7 @@ use crate::diagnose::settings::{GroupFeatures, Settings};
 use crate::effects::{Catalogue, Signals};
 use crate::problem::{Problem, Problems, Severity};
 use crate::result::diagnosis::Fault;
-use crate::simulate::{Section, in_units, recorded_inside};
+use crate::simulate::{Section, in_units, interpolated, recorded_inside};
 use crate::units::Unit;
 
 /// One section with its records.
@@ -25,6 +26,8 @@ pub struct Observed {
     pub references: Vec<Option<Spectrum>>,
     /// Scatter of the channels of the layout.
     pub scatter: Vec<Scatter>,
+    /// For the comparison sample by sample, by channel of the layout.
+    pub increments: Vec<Option<Increments>>,
     /// Whether it repeats an earlier section: it adds no information on the simulation.
     pub again: bool,
 }
@@ -85,7 +88,15 @@ impl Observations {
         for (section, simulated, measured) in good {
             let again = section.fact("repeat of").is_some_and(|of| sections.iter().any(|known| known.section.name() == of))
                 || sections.iter().any(|known| known.measured.channels == measured.channels);
-            sections.push(Observed { section, simulated, measured, references: Vec::new(), scatter: Vec::new(), again });
+            sections.push(Observed {
+                section,
+                simulated,
+                measured,
+                references: Vec::new(),
+                scatter: Vec::new(),
+                increments: Vec::new(),
+                again,
+            });
         }
         let mut layout = Layout { channels: Vec::new(), edges: settings.edges.clone(), alike: settings.alike, furthest: settings.furthest };
         let everywhere = |name: &String| {
@@ -106,6 +117,7 @@ impl Observations {
                     level: group.level,
                     bands,
                     alike: group.alike,
+                    increments: 0,
                 });
             }
         }
@@ -132,6 +144,26 @@ impl Observations {
             observed.scatter = both.map(|both| scatter(both).unwrap_or(Scatter { level: 0.0, has_lag: false })).collect();
         });
         Some(Self { layout, features, sections, noise, left_out, faults })
+    }
+
+    /// Adds the comparison sample by sample, for the channels of some groups. `with` are the signals of each section with each effect.
+    pub fn compare_samples(&mut self, groups: &[bool], with: &[Vec<Signals>]) {
+        let channels = &mut self.layout.channels;
+        channels.iter_mut().filter(|channel| groups[channel.group]).for_each(|channel| channel.increments = with.len());
+        let channels = &self.layout.channels;
+        self.sections.par_iter_mut().enumerate().for_each(|(at, observed)| {
+            let of = |channel: &ChannelFeatures| {
+                if channel.increments == 0 {
+                    return None;
+                }
+                let values = |signals: &Signals| on_axis(observed, signals, &channel.name);
+                let (simulated, measured) = (values(&observed.simulated), values(&observed.measured));
+                let change = |with: &Vec<Signals>| values(&with[at]).iter().zip(&simulated).map(|(with, base)| with - base).collect();
+                Increments::new(&with.iter().map(change).collect::<Vec<_>>(), &simulated, &measured)
+            };
+            observed.increments = channels.iter().map(of).collect();
+        });
+        self.features = self.layout.features();
     }
 
     /// Sections that do not repeat an earlier one.
@@ -171,6 +203,9 @@ impl Observations {
             of_channel(&self.layout, of, &piece, observed.references[channel].as_ref(), noise, out);
         }
         let wanted = self.features.iter().filter(|feature| feature.channel == channel).count();
+        out.resize(before + wanted - of.increments, 0.0);
+        let increments = observed.increments.get(channel).and_then(Option::as_ref);
+        out.extend(increments.and_then(|of_it| of_it.of(&on_axis(observed, signals, &of.name))).unwrap_or_default());
         out.resize(before + wanted, 0.0);
     }
 
@@ -213,6 +248,15 @@ pub fn piece(signals: &Signals, name: &str, section: &Section) -> Option<Piece> 
     }
     let step = (signals.axis[to - 1] - signals.axis[from]) / (to - from - 1) as f64;
     Some(Piece { values: channel.values[from..to].to_vec(), rate: signals.rate, step })
+}
+
+/// A channel at the positions of the simulated record inside the section, linear between its own samples.
+fn on_axis(observed: &Observed, signals: &Signals, name: &str) -> Vec<f64> {
+    let Some(channel) = signals.channel(name) else { return Vec::new() };
+    let inside = |x: &&f64| (observed.section.start..=observed.section.end).contains(*x);
+    let mut at = 0;
+    let axis = observed.simulated.axis.iter().filter(inside);
+    axis.map(|x| interpolated(&signals.axis, &channel.values, *x, &mut at)).collect()
 }
 
 /// Simulated and measured signals in the same units: those of `unit`, else of the simulation.

@@ -4,10 +4,11 @@
 use std::sync::Arc;
 
 use super::candidates::{Candidate, Node, Workshop, applied};
-use super::choose::{Chosen, Refused, plausible, refit, search, together};
+use super::choose::{Chosen, Refused, plausible};
 use super::converge::{Converged, Converging, WORTH};
 use super::fit::{Fitted, Fitter, Mask};
 use super::place::Place;
+use super::sets::{Conditions, Sets, refit};
 use super::settle::refined;
 use crate::diagnose::observe::bench::{Bench, Runs, Set};
 use crate::effects::{Action, Applied};
@@ -135,7 +136,7 @@ impl Converging<'_> {
         let count = first.members.len();
         let fitter = Fitter::knowing(whitener, candidates, masks.to_vec(), std::mem::take(&mut now.known));
         refit(&fitter, z, &mut first);
-        let mut near = together(&fitter, z, &first, fitter.all(&first.rest));
+        let mut near = Sets::new(&fitter, z).further(&first, &now.bars);
         now.known = fitter.whitened;
         near.retain(|fit| {
             let of = &candidates[fit.candidate];
@@ -160,7 +161,8 @@ impl Converging<'_> {
         now.refused = refused;
         let barred = now.refused.iter().map(|refused| refused.fitted.candidate).collect();
         let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
-        now.chosen = search(&fitter, z, (first, barred), (&now.bars, &self.channels()), self.far, &guard, &mut now.refused);
+        let of = Conditions { bars: &now.bars, far: self.far, guard: &guard };
+        now.chosen = Sets::new(&fitter, z).search(&first, barred, &of, &mut now.refused);
         now.known = fitter.whitened;
         // A candidate refused before stays refused unless it is named together with the first member.
         let known: Vec<usize> =

@@ -465,9 +465,17 @@ mod tests {
         let channels = vec![Channel { name: "Y".into(), values: vec![0.0; axis.len()] }];
         let silent = Signals { axis, over_time: false, rate: 200.0, channels };
         let section = Section { start: 0.0, end: 2000.0, ..Section::nowhere() };
-        let observed =
-            Observed { section, simulated: silent.clone(), measured: silent, references: vec![None], scatter: Vec::new(), again: false };
-        let channel = ChannelFeatures { name: "Y".into(), group: 0, unit: Unit::one(), level: false, bands: 3, alike: false };
+        let observed = Observed {
+            section,
+            simulated: silent.clone(),
+            measured: silent,
+            references: vec![None],
+            scatter: Vec::new(),
+            increments: Vec::new(),
+            again: false,
+        };
+        let channel =
+            ChannelFeatures { name: "Y".into(), group: 0, unit: Unit::one(), level: false, bands: 3, alike: false, increments: 0 };
         let layout = Layout { channels: vec![channel], edges: vec![1.0, 9.5, 10.5, 20.0], alike: (0.5, 8.0), furthest: 1.0 };
         let (features, sections, noise) = (layout.features(), vec![observed], vec![0.5]);
         let seen = Observations { layout, features, sections, noise, left_out: Vec::new(), faults: Vec::new() };

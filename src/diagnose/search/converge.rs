@@ -2,12 +2,13 @@
 
 use super::beside::alone_again;
 use super::candidates::{Candidate, Workshop};
-use super::choose::{Bars, Chosen, Judged, Refused, TOLERANCE_SD, plausible, refit, search, taken, unconfine};
+use super::choose::{Bars, Chosen, Judged, Refused, TOLERANCE_SD, plausible, unconfine};
 use super::fit::{Fitted, Fitter, Known, Mask};
 use super::guards::{View, carried, contradiction};
 use super::lack::{left, with_room};
 use super::masks::section_masks;
 use super::place::{Place, Tolerances};
+use super::sets::{Conditions, Sets, refit};
 use super::settle::{ROUNDS, polish};
 use crate::diagnose::observe::bench::Runs;
 use crate::effects::Gauss;
@@ -24,9 +25,6 @@ const FLOOR_EXACT: f64 = 15.0;
 /// All sizes of a candidate are simulated from this share of the largest evidence on, and from this evidence on.
 pub const NEAR: f64 = 0.5;
 pub const WORTH: f64 = 10.0;
-
-/// Gain of evidence from which another candidate replaces a member: the least called positive (Kass and Raftery 1995).
-const BETTER: f64 = 2.0;
 
 /// Inputs of the search.
 pub struct Converging<'a> {
@@ -63,7 +61,8 @@ impl Converging<'_> {
             let bars = bars(*chance.get_or_insert_with(|| limit(&fitter, z.len(), self.seed)));
             refused.clear();
             let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
-            let found = search(&fitter, z, (Chosen::none(z), Vec::new()), (&bars, &self.channels()), self.far, &guard, &mut refused);
+            let of = Conditions { bars: &bars, far: self.far, guard: &guard };
+            let found = Sets::new(&fitter, z).search(&Chosen::none(z), Vec::new(), &of, &mut refused);
             let wanted = promising(&fitter, z, &found);
             let more = if wanted.is_empty() { section_masks(&fitter, z, &found, workshop.seen) } else { Vec::new() };
             known = fitter.whitened;
@@ -72,7 +71,7 @@ impl Converging<'_> {
                 let again: Vec<Fitted> = refused
                     .iter()
                     .map(|refused: &Refused| refused.fitted.clone())
-                    .filter(|fit| fit.evidence >= NEAR * found.evidence() && !reconsidered.contains(&fit.candidate))
+                    .filter(|fit| fit.evidence >= NEAR * found.evidence && !reconsidered.contains(&fit.candidate))
                     .collect();
                 reconsidered.extend(again.iter().map(|fit| fit.candidate));
                 if !polish(workshop, candidates, &again, runs) {
@@ -87,12 +86,7 @@ impl Converging<'_> {
         let false_name_rate = self.false_name_rate(&fitter, z.len(), &bars);
         let known = fitter.whitened;
         let now = self.simulated((candidates, masks), Converged { chosen, refused, bars, false_name_rate, known }, runs);
-        let mut now = self.beside((candidates, masks), now, runs);
-        if self.exchange((candidates, masks), &mut now.chosen, &now.bars, &now.refused, &mut now.known) {
-            alone_again(candidates, &now.chosen.members);
-            now = self.simulated((candidates, masks), now, runs);
-        }
-        now
+        self.beside((candidates, masks), now, runs)
     }
 
     /// Share of campaigns drawn from the covariance, with nothing hidden, in which some candidate meets the criteria of a first member. The
@@ -116,11 +110,6 @@ impl Converging<'_> {
     /// The same with another weighing.
     pub(super) fn at<'b>(&'b self, place: &'b Place) -> Converging<'b> {
         Converging { place, ..*self }
-    }
-
-    /// The channel of each feature of a section.
-    pub(super) fn channels(&self) -> Vec<usize> {
-        self.workshop.seen.features.iter().map(|feature| feature.channel).collect()
     }
 
     /// Refits the members with their fitted sizes simulated. A member whose evidence was sufficient only by interpolation is dropped.
@@ -157,51 +146,32 @@ impl Converging<'_> {
         now
     }
 
-    /// Replaces members by candidates with more evidence, after others were added or dropped. The weighing is that with the tolerances
-    /// simulated together with the members before, where computed. Returns whether any was replaced; all must then be refitted.
-    pub fn exchange(&self, of: (&[Candidate], &[Mask]), now: &mut Chosen, bars: &Bars, refused: &[Refused], known: &mut Known) -> bool {
-        let mut any = false;
-        for at in 0..now.members.len() {
-            let place = self.tolerances.and_then(|tolerances| tolerances.looked_at().beside(&now.members[..at]));
-            let better = match place {
-                Some(place) => self.at(&place).better(of, (now, at), bars, refused, &mut Known::new()),
-                None => self.better(of, (now, at), bars, refused, known),
-            };
-            if let Some(better) = better {
-                now.members[at] = better;
-                any = true;
-            }
+    /// Searches again after a member was refused: members are added, replaced and dropped. The weighing is that with the tolerances
+    /// simulated together with the first members, where computed.
+    pub fn again(&self, (candidates, masks): (&[Candidate], &[Mask]), now: &mut Chosen, bars: &Bars, refused: &mut Vec<Refused>) -> bool {
+        let place = self.tolerances.and_then(|tolerances| tolerances.looked_at().beside(&now.members[..now.members.len().min(1)]));
+        match place {
+            Some(place) => self.at(&place).searched_again((candidates, masks), now, bars, refused),
+            None => self.searched_again((candidates, masks), now, bars, refused),
         }
-        any
     }
 
-    /// The candidate with more evidence in place of a member.
-    fn better(
+    fn searched_again(
         &self,
         (candidates, masks): (&[Candidate], &[Mask]),
-        (now, at): (&Chosen, usize),
+        now: &mut Chosen,
         bars: &Bars,
-        refused: &[Refused],
-        known: &mut Known,
-    ) -> Option<Fitted> {
+        refused: &mut Vec<Refused>,
+    ) -> bool {
         let Place { whitener, z, .. } = self.place;
-        let fitter = Fitter::knowing(whitener, candidates, masks.to_vec(), std::mem::take(known));
-        let mut others = now.clone();
-        refit(&fitter, z, &mut others);
-        others.rest = others.left_by_others(z, at);
-        let member = others.members.remove(at);
-        let mut fits = fitter.all(&others.rest);
-        fits.iter_mut().for_each(|fit| unconfine(&fitter, &others.rest, fit, bars));
-        fits.retain(|fit| {
-            let (of, mask) = (&candidates[fit.candidate], &masks[fit.mask]);
-            let free = refused.iter().all(|refused| !candidates[refused.fitted.candidate].is_like(of)) && mask.asked_by.is_none();
-            let more = fit.evidence > bars.least(of).max(member.evidence + BETTER) && !taken(&fitter, &others, fit);
-            free && more && plausible(of, fit.size) && (self.far)(of, fit.size) >= TOLERANCE_SD
-        });
-        fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-        let better = fits.into_iter().find(|fit| self.guard(&fitter, &others, fit) == Judged::Sound);
-        *known = fitter.whitened;
-        better
+        let fitter = Fitter::new(whitener, candidates, masks.to_vec());
+        let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
+        let of = Conditions { bars, far: self.far, guard: &guard };
+        let alike = |at: &usize| refused.iter().any(|refused| candidates[refused.fitted.candidate].is_like(&candidates[*at]));
+        let barred = (0..candidates.len()).filter(alike).collect();
+        let before = now.set();
+        *now = Sets::new(&fitter, z).replaced(now, barred, &of, refused);
+        now.set() != before
     }
 
     /// Refuses a member with contradictory views, or whose evidence is in a single section.
@@ -229,7 +199,7 @@ impl Converging<'_> {
 /// Criteria from the evidence that occurs by chance.
 fn bars(chance: f64) -> Bars {
     let first = chance.max(FLOOR);
-    Bars { first, exact: chance.max(FLOOR_EXACT), confined: 15.0, tolerance_sd: TOLERANCE_SD, share: 0.08, most: 3 }
+    Bars { first, exact: chance.max(FLOOR_EXACT), confined: 15.0, tolerance_sd: TOLERANCE_SD, most: 3 }
 }
 
 /// A whitened difference with nothing hidden.
@@ -253,7 +223,7 @@ fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, f64
     let towards = |fit: &Fitted| (fit.candidate, fit.size);
     let mut found: Vec<(usize, f64)> = chosen.members.iter().filter(pending).map(towards).collect();
     let without = |member: &Fitted| chosen.rest.iter().zip(&member.whitened).map(|(rest, own)| rest + own).collect();
-    let mut rests: Vec<Vec<f64>> = vec![z.to_vec(), chosen.rest.clone()];
+    let mut rests: Vec<Vec<f64>> = vec![z.to_vec(), chosen.weighed()];
     if chosen.members.len() > 1 {
         rests.extend(chosen.members.iter().map(without));
     }
@@ -271,6 +241,7 @@ fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::allowed::response::ResponseError;
     use crate::diagnose::allowed::whiten::Covariance;
     use crate::diagnose::observe::features::Layout;
     use crate::diagnose::observe::observations::Observations;
@@ -304,7 +275,13 @@ mod tests {
     }
 
     fn of_unit_variance(features: usize) -> Covariance {
-        Covariance { diagonal: vec![1.0; features * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: features }
+        Covariance {
+            diagonal: vec![1.0; features * SECTIONS],
+            inside: Vec::new(),
+            shared: Vec::new(),
+            size: features,
+            response: ResponseError::default(),
+        }
     }
 
     fn everywhere() -> [Mask; 1] {
@@ -324,11 +301,10 @@ mod tests {
             let place = Place::new(of_unit_variance(3), difference.clone());
             let fitter = Fitter::new(&place.whitener, &candidates, masks.to_vec());
             let fit = |candidate: usize| fitter.fit(&difference, candidate, 0).expect("a path");
-            let mut now = Chosen { members: vec![fit(0)], rest: difference.clone() };
-            let refused: Vec<Refused> = refused.iter().map(|at| Refused::new(fit(*at), "gone")).collect();
-            let exchange =
-                |search: &Converging<'_>| search.exchange((&candidates, &masks), &mut now, &bars(0.0), &refused, &mut Known::new());
-            let any = at_place(&place, &[], exchange);
+            let mut now = Chosen { members: vec![fit(0)], ..Chosen::none(&difference) };
+            let mut refused: Vec<Refused> = refused.iter().map(|at| Refused::new(fit(*at), "gone")).collect();
+            let again = |search: &Converging<'_>| search.again((&candidates, &masks), &mut now, &bars(0.0), &mut refused);
+            let any = at_place(&place, &[], again);
             let [member] = &now.members[..] else { panic!("{} members", now.members.len()) };
             (any, member.candidate, member.size, member.fall)
         };
@@ -348,14 +324,17 @@ mod tests {
     fn what_a_member_is_wrong_by_contradicts_no_other() {
         let mut candidates = [path("first", &[0.0, 100.0]), path("further", &[10.0, 10.0])];
         let masks = everywhere();
-        let place = Place::new(of_unit_variance(2), per_section(&[6.0, 60.0]));
+        let mut response = ResponseError::default();
+        response.each = 0.2;
+        let place = Place::new(Covariance { response, ..of_unit_variance(2) }, per_section(&[6.0, 60.0]));
         let view = |feature: usize| View { says: format!("view {feature}"), sections: (0..SECTIONS).collect(), features: vec![feature] };
         let families = [vec![view(0), view(1)]];
         let mut judged = |exact: bool| {
             candidates[0].exact = exact;
             let fitter = Fitter::new(&place.whitener, &candidates, masks.to_vec());
             let first = fitter.fit(&per_section(&[0.0, 60.0]), 0, 0).expect("a path");
-            let others = Chosen { rest: crate::diagnose::allowed::whiten::less(&place.z, &first.whitened), members: vec![first] };
+            let others =
+                Chosen { members: vec![first.clone()], ..Chosen::none(&crate::diagnose::allowed::whiten::less(&place.z, &first.whitened)) };
             let further = fitter.fit(&per_section(&[6.0, 6.0]), 1, 0).expect("a path");
             at_place(&place, &families, |search| search.guard(&fitter, &others, &further))
         };

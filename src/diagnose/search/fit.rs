@@ -2,9 +2,13 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::OnceLock;
+
+use nalgebra::{DMatrix, DVector};
 
 use super::beside::Placed;
 use super::candidates::Candidate;
+use crate::diagnose::allowed::metric::reduced;
 use crate::diagnose::allowed::whiten::{Whitener, dot};
 
 /// Sections to which an effect is confined; mask 0 is all sections.
@@ -16,6 +20,9 @@ pub struct Mask {
     /// The candidate whose fit selected the sections, if they were selected from the data: the selection has a penalty.
     pub asked_by: Option<usize>,
 }
+
+/// A candidate and a mask, by number.
+pub type Member = (usize, usize);
 
 /// A fitted candidate.
 #[derive(Clone, Debug)]
@@ -57,10 +64,14 @@ pub struct Path {
     /// Sizes of the nodes, and the members simulated with them.
     sizes: Vec<f64>,
     beside: Option<Placed>,
-    nodes: Vec<Vec<f64>>,
+    pub nodes: Vec<Vec<f64>>,
     /// Squared lengths of the nodes, and inner products of each with the next.
     lengths: Vec<f64>,
     products: Vec<f64>,
+    /// Length of the whole path, in standard deviations.
+    long: f64,
+    /// The whitened model error of each node, computed when first needed.
+    errors: Vec<OnceLock<DMatrix<f64>>>,
 }
 
 /// Least distance of nodes from a size, as a share of it, for the estimate of the slope.
@@ -75,25 +86,24 @@ struct Best {
     evidence: f64,
 }
 
-/// The best fit on a path, and the length of the path.
-struct Closest {
-    segment: usize,
-    share: f64,
-    fall: f64,
-    long: f64,
+/// The best fit on a path.
+#[derive(Clone, Copy, Debug)]
+pub struct Closest {
+    pub segment: usize,
+    pub share: f64,
+    pub fall: f64,
 }
 
 /// From squared lengths of the nodes, inner products of each with the next, and inner products of each with the difference.
-fn closest(lengths: &[f64], products: &[f64], along: &[f64], discrete: bool) -> Option<Closest> {
+#[must_use]
+pub fn closest(lengths: &[f64], products: &[f64], along: &[f64], discrete: bool) -> Option<Closest> {
     let mut best: Option<Closest> = None;
-    let mut long = 0.0;
     for segment in 0..products.len() {
         // |z - (1-t) a - t b|^2 = |z|^2 + c0 + c1 t + c2 t^2
         let (aa, bb, across) = (lengths[segment], lengths[segment + 1], products[segment]);
         let c0 = aa - 2.0 * along[segment];
         let c2 = (aa - 2.0 * across + bb).max(0.0);
         let c1 = 2.0 * (across - aa) - 2.0 * (along[segment + 1] - along[segment]);
-        long += c2.sqrt();
         let share = if discrete {
             if c1 + c2 < 0.0 { 1.0 } else { 0.0 }
         } else if c2 > 0.0 {
@@ -103,10 +113,10 @@ fn closest(lengths: &[f64], products: &[f64], along: &[f64], discrete: bool) -> 
         };
         let fall = -(c0 + c1 * share + c2 * share * share);
         if best.as_ref().is_none_or(|best| fall > best.fall) {
-            best = Some(Closest { segment, share, fall, long: 0.0 });
+            best = Some(Closest { segment, share, fall });
         }
     }
-    best.map(|best| Closest { long, ..best })
+    best
 }
 
 /// A path by section, for fits to a selection of sections.
@@ -155,9 +165,13 @@ impl BySection {
 impl Path {
     fn new(of: &Candidate, nodes: Vec<Vec<f64>>) -> Self {
         let product = |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
-        let lengths = nodes.iter().map(|node| product(node, node)).collect();
-        let products = nodes.windows(2).map(|pair| product(&pair[0], &pair[1])).collect();
-        Self { sizes: of.nodes.iter().map(|node| node.size).collect(), beside: of.beside.clone(), nodes, lengths, products }
+        let lengths: Vec<f64> = nodes.iter().map(|node| product(node, node)).collect();
+        let products: Vec<f64> = nodes.windows(2).map(|pair| product(&pair[0], &pair[1])).collect();
+        let step = |at: usize| (lengths[at] - 2.0 * products[at] + lengths[at + 1]).max(0.0).sqrt();
+        let long = (0..products.len()).map(step).sum();
+        let sizes = of.nodes.iter().map(|node| node.size).collect();
+        let errors = nodes.iter().map(|_| OnceLock::new()).collect();
+        Self { sizes, beside: of.beside.clone(), nodes, lengths, products, long, errors }
     }
 
     /// Whether a candidate is unchanged.
@@ -170,14 +184,15 @@ impl Path {
     }
 
     /// Length of the change per unit of the size, between nodes at some distance on either side. Between two close nodes, scatter of the
-    /// features would dominate. 0 where one of the two sizes is infinite.
-    fn slope(&self, of: &Candidate, segment: usize, size: f64) -> f64 {
+    /// features would dominate. 0 where one of the two sizes is infinite. `nodes` are the whitened nodes, in any metric.
+    #[must_use]
+    pub fn slope(&self, of: &Candidate, nodes: &[Vec<f64>], segment: usize, size: f64) -> f64 {
         let near = |at: &usize| (of.nodes[*at].size - size).abs() < APART * size.abs();
         let from = (1..=segment).rev().find(|at| !near(at)).unwrap_or(0);
         let last = of.nodes.len() - 1;
         let to = (segment + 1..last).find(|at| !near(at)).unwrap_or(last);
         let width = (of.nodes[to].size - of.nodes[from].size).abs();
-        let difference: f64 = match (&self.nodes[from], &self.nodes[to]) {
+        let difference: f64 = match (&nodes[from], &nodes[to]) {
             (a, b) if a.is_empty() => dot(b, b),
             (a, b) if b.is_empty() => dot(a, a),
             (a, b) => a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum(),
@@ -240,9 +255,43 @@ impl<'a> Fitter<'a> {
         let path = self.whitened.get(&(candidate, mask))?;
         let of = &self.candidates[candidate];
         let along: Vec<f64> = path.nodes.iter().map(|node| if node.is_empty() { 0.0 } else { dot(z, node) }).collect();
-        let Closest { segment, share, fall, long } = closest(&path.lengths, &path.products, &along, of.discrete)?;
-        let freedom = 2.0 * (long / std::f64::consts::TAU.sqrt()).max(1.0).ln() + 2.0 * (of.alternatives as f64).ln();
-        Some(Best { segment, share, fall, evidence: fall - freedom - self.price(mask) })
+        let Closest { segment, share, fall } = closest(&path.lengths, &path.products, &along, of.discrete)?;
+        Some(Best { segment, share, fall, evidence: fall - self.price((candidate, mask)) })
+    }
+
+    /// The price of a member: of its size, along a path of that length, of the choice among the candidates of the effect, and of the mask.
+    #[must_use]
+    pub fn price(&self, member: Member) -> f64 {
+        let long = self.whitened.get(&member).map_or(0.0, |path| path.long);
+        let alternatives = self.candidates[member.0].alternatives as f64;
+        2.0 * (long / std::f64::consts::TAU.sqrt()).max(1.0).ln() + 2.0 * alternatives.ln() + self.price_of_mask(member.1)
+    }
+
+    /// Columns of the whitened model error of a member at a fit on its path, from the nearer of the two nodes.
+    #[must_use]
+    pub fn model_error(&self, member: Member, (segment, share): (usize, f64)) -> DMatrix<f64> {
+        let rows = self.whitener.len();
+        let (Some(path), false) = (self.whitened.get(&member), self.candidates[member.0].exact) else { return DMatrix::zeros(rows, 0) };
+        let near = if share < 0.5 { segment } else { segment + 1 };
+        let node = if path.nodes[near].is_empty() { 2 * segment + 1 - near } else { near };
+        if path.nodes[node].is_empty() {
+            return DMatrix::zeros(rows, 0);
+        }
+        let columns = path.errors[node].get_or_init(|| {
+            let change = self.masks[member.1].on(&self.candidates[member.0].nodes[node].change);
+            let columns: Vec<DVector<f64>> =
+                self.whitener.response_error(&change).iter().map(|column| DVector::from(self.whitener.apply(column))).collect();
+            if columns.is_empty() { DMatrix::zeros(rows, 0) } else { reduced(&DMatrix::from_columns(&columns)) }
+        });
+        let there = blend(&path.nodes[segment], &path.nodes[segment + 1], share, rows);
+        let length = path.lengths[node];
+        columns * if length > 0.0 { (dot(&there, &there) / length).sqrt() } else { 0.0 }
+    }
+
+    /// A member at a fit on its path.
+    #[must_use]
+    pub fn at(&self, (candidate, mask): Member, (segment, share): (usize, f64)) -> Fitted {
+        self.fitted(candidate, mask, Best { segment, share, fall: 0.0, evidence: 0.0 })
     }
 
     /// A candidate under a mask and the whitened difference `z`, by section.
@@ -266,7 +315,7 @@ impl<'a> Fitter<'a> {
     }
 
     /// Penalty of the choice of a mask.
-    fn price(&self, mask: usize) -> f64 {
+    fn price_of_mask(&self, mask: usize) -> f64 {
         let fixed = self.masks.iter().filter(|mask| mask.asked_by.is_none()).count();
         match self.masks[mask].asked_by {
             _ if mask == 0 => 0.0,
@@ -293,13 +342,9 @@ impl<'a> Fitter<'a> {
         let path = &self.whitened[&(candidate, mask)];
         let of = &self.candidates[candidate];
         let (from, to) = (&of.nodes[segment], &of.nodes[segment + 1]);
-        let whitened = match (&path.nodes[segment], &path.nodes[segment + 1]) {
-            (a, b) if a.is_empty() => b.iter().map(|b| share * b).collect(),
-            (a, b) if b.is_empty() => a.iter().map(|a| (1.0 - share) * a).collect(),
-            (a, b) => a.iter().zip(b).map(|(a, b)| (1.0 - share) * a + share * b).collect(),
-        };
+        let whitened = blend(&path.nodes[segment], &path.nodes[segment + 1], share, self.whitener.len());
         let size = between(from.size, to.size, share);
-        let slope = path.slope(of, segment, size);
+        let slope = path.slope(of, &path.nodes, segment, size);
         Fitted { candidate, mask, segment, share, size, fall, evidence, whitened, slope, doubtful: false }
     }
 
@@ -404,6 +449,25 @@ impl Fitted {
     }
 }
 
+/// Interpolates between two changes of this many features, each empty where it is zero.
+#[must_use]
+pub fn blend(a: &[f64], b: &[f64], share: f64, len: usize) -> Vec<f64> {
+    match (a.is_empty(), b.is_empty()) {
+        (true, true) => vec![0.0; len],
+        (true, false) => b.iter().map(|b| share * b).collect(),
+        (false, true) => a.iter().map(|a| (1.0 - share) * a).collect(),
+        (false, false) => a.iter().zip(b).map(|(a, b)| (1.0 - share) * a + share * b).collect(),
+    }
+}
+
+impl Candidate {
+    /// The size at a share of a segment of the path.
+    #[must_use]
+    pub fn size_at(&self, segment: usize, share: f64) -> f64 {
+        between(self.nodes[segment].size, self.nodes[segment + 1].size, share)
+    }
+}
+
 /// Interpolates between two sizes. One may be infinite, where the effect vanishes with increasing size: then the reciprocal is
 /// interpolated.
 fn between(from: f64, to: f64, share: f64) -> f64 {
@@ -425,8 +489,8 @@ mod tests {
         let node = |(size, change): (f64, f64)| Node { size, change: if size == 0.0 { Vec::new() } else { vec![change] } };
         let of = Candidate::path("effect", nodes.map(node).to_vec());
         let path = Path::new(&of, of.nodes.iter().map(|node| node.change.clone()).collect());
-        assert!((path.slope(&of, 1, 1.0005) - 2.0).abs() < 1e-12);
-        assert!((path.slope(&of, 0, 0.5) - 2.0).abs() < 1e-12);
+        assert!((path.slope(&of, &path.nodes, 1, 1.0005) - 2.0).abs() < 1e-12);
+        assert!((path.slope(&of, &path.nodes, 0, 0.5) - 2.0).abs() < 1e-12);
     }
 
     /// The mean of the upper half of a standard normal distribution is (2 / pi)^1/2 = 0.798, of the upper quarter 1.271 (tables of

@@ -35,6 +35,7 @@ impl Covariance {
             inside: inside.collect(),
             shared: self.shared.iter().map(whole).filter(|column| column.iter().any(|x| *x != 0.0)).collect(),
             size: features.len(),
+            response: self.response.part(sections, features),
         }
     }
 }
@@ -211,13 +212,15 @@ const SPILT: f64 = 0.3;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::allowed::response::ResponseError;
     use crate::diagnose::search::candidates::Node;
 
     /// Sixteen sections of one feature of unit variance. The effect changes it by 10 in the first and by 1 in each of the others, so that
     /// 15 of 115 are expected without the first.
     #[test]
     fn a_section_may_show_most_where_the_others_show_their_part() {
-        let covariance = Covariance { diagonal: vec![1.0; 16], inside: Vec::new(), shared: Vec::new(), size: 1 };
+        let covariance =
+            Covariance { diagonal: vec![1.0; 16], inside: Vec::new(), shared: Vec::new(), size: 1, response: ResponseError::default() };
         let mask = Mask { confined: None, sections: vec![true; 16], asked_by: None };
         let of = |first: f64, others: f64| [vec![first], vec![others; 15]].concat();
         let carried = |others: f64| carried(&covariance, &mask, &of(10.0, 1.0), &of(10.0, others));
@@ -242,7 +245,13 @@ mod tests {
         const SECTIONS: usize = 40;
         let judged = |large: f64, exact: bool| {
             let per_section = |a: f64, b: f64| (0..SECTIONS).flat_map(|_| [a, b]).collect::<Vec<f64>>();
-            let covariance = Covariance { diagonal: vec![1.0; 2 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 2 };
+            let covariance = Covariance {
+                diagonal: vec![1.0; 2 * SECTIONS],
+                inside: Vec::new(),
+                shared: Vec::new(),
+                size: 2,
+                response: ResponseError::default(),
+            };
             let change = per_section(large, 1.2);
             let nodes = vec![Node { size: 0.0, change: Vec::new() }, Node { size: 1.0, change: change.clone() }];
             let candidate = Candidate { exact, ..Candidate::path("effect", nodes) };

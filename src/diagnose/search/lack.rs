@@ -1,10 +1,11 @@
 //! Lack of fit: the residual of a set of causes beyond the allowed difference.
 
 use super::candidates::Candidate;
-use super::choose::{Chosen, Refused, refit};
-use super::fit::{Fitted, Fitter, Mask};
+use super::choose::{Chosen, Refused};
+use super::fit::{Fitter, Mask};
 use super::guards::{View, part};
 use super::place::Place;
+use super::sets::refit;
 use crate::diagnose::allowed::whiten::{Covariance, less};
 use crate::diagnose::observe::features::Kind;
 use crate::diagnose::observe::observations::Observations;
@@ -17,35 +18,15 @@ const WORSE: f64 = 1.1;
 /// Increase of the excess that is negligible against some thousand features.
 const LITTLE: f64 = 10.0;
 
-/// Model error of a simulated change, as a share of the change, independent between features.
-const WRONG: f64 = 0.2;
-/// Model error of the levels, as a share of the change, fully correlated.
-const WRONG_LEVEL: f64 = 0.05;
-
 /// The covariance with an answer, plus the model error of the simulated members, independent between features.
 #[must_use]
 pub fn with_room(beside: &Covariance, candidates: &[Candidate], masks: &[Mask], chosen: &Chosen) -> Covariance {
     let mut wider = beside.clone();
     for member in chosen.members.iter().filter(|member| !candidates[member.candidate].exact) {
         let change = member.change(candidates, masks);
-        wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| *variance += (WRONG * change).powi(2));
+        wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| *variance += (beside.response.each * change).powi(2));
     }
     wider
-}
-
-/// Fully correlated model errors of the members: small for levels, which follow from equilibrium, larger for all other features. They
-/// widen the interval of a size. `levels` marks the features of a section that are levels.
-#[must_use]
-pub fn wrong_as_one(levels: &[bool], candidates: &[Candidate], masks: &[Mask], members: &[Fitted]) -> Vec<Vec<f64>> {
-    let mut columns = Vec::new();
-    for member in members.iter().filter(|member| !candidates[member.candidate].exact) {
-        let change = member.change(candidates, masks);
-        for (level, share) in [(true, WRONG_LEVEL), (false, WRONG)] {
-            let inside = |at: usize| levels[at % levels.len()] == level;
-            columns.push(change.iter().enumerate().map(|(at, change)| if inside(at) { share * change } else { 0.0 }).collect());
-        }
-    }
-    columns
 }
 
 /// Lack of fit of a channel, in its levels or in all other features.
@@ -176,12 +157,14 @@ pub fn lack_after(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::allowed::response::ResponseError;
     use crate::diagnose::search::candidates::Node;
 
     /// Sixteen sections of nine features of unit variance; a difference of 10 in each feature gives a chi-squared of 900.
     #[test]
     fn two_of_sixteen_sections_may_stand_out_alone() {
-        let covariance = Covariance { diagonal: vec![1.0; 16 * 9], inside: Vec::new(), shared: Vec::new(), size: 9 };
+        let covariance =
+            Covariance { diagonal: vec![1.0; 16 * 9], inside: Vec::new(), shared: Vec::new(), size: 9, response: ResponseError::default() };
         let lack = |off: &[usize]| {
             let rest: Vec<f64> = (0..16 * 9).map(|at| if off.contains(&(at / 9)) { 10.0 } else { 0.0 }).collect();
             let mut view = View { says: String::new(), sections: (0..16).collect(), features: (0..9).collect() };
@@ -193,40 +176,12 @@ mod tests {
         assert_eq!((with_them, chi, alone.len()), (2700.0, 900.0, 2));
     }
 
-    /// Levels give a size of 1, all other features 0.5, both without noise. The model errors are 0.05 and 0.2, so that the joint size is
-    /// (1 / 0.05^2 + 0.5 / 0.2^2) / (1 / 0.05^2 + 1 / 0.2^2) = 0.9706, with the relative error 1 / (1 / 0.05^2 + 1 / 0.2^2)^1/2. An
-    /// operation on the signals has no model error: there it is the mean.
-    #[test]
-    fn levels_say_more_of_a_size_than_all_else() {
-        const SECTIONS: usize = 3;
-        let per_section = |level: f64, rest: f64| (0..SECTIONS).flat_map(|_| [level, rest]).collect::<Vec<f64>>();
-        let masks = vec![Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None }];
-        let nodes = vec![Node { size: 0.0, change: Vec::new() }, Node { size: 2.0, change: per_section(20.0, 20.0) }];
-        let of = |exact: bool| {
-            let mut covariance = Covariance { diagonal: vec![1e-6; 2 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 2 };
-            let candidates = [Candidate { exact, ..Candidate::path("effect", nodes.clone()) }];
-            let fit = |covariance: &Covariance| {
-                let whitener = covariance.whitener();
-                let z = whitener.apply(&per_section(10.0, 5.0));
-                Fitter::new(&whitener, &candidates, masks.clone()).fit(&z, 0, 0).expect("a path")
-            };
-            let first = fit(&covariance);
-            assert!((first.size - 0.75).abs() < 1e-9);
-            covariance.shared = wrong_as_one(&[true, false], &candidates, &masks, std::slice::from_ref(&first));
-            let fitted = fit(&covariance);
-            (fitted.size, 1.0 / fitted.slope / first.size)
-        };
-        let weights = [0.05_f64.powi(-2), 0.2_f64.powi(-2)];
-        let (size, error) = of(false);
-        assert!((size - (weights[0] + 0.5 * weights[1]) / (weights[0] + weights[1])).abs() < 1e-5, "{size}");
-        assert!((error - (weights[0] + weights[1]).powf(-0.5)).abs() < 1e-5, "{error}");
-        assert!((of(true).0 - 0.75).abs() < 1e-9);
-    }
-
     /// A simulated change of 10 has a model error of 2; an operation on the signals has none.
     #[test]
     fn only_what_is_simulated_may_be_wrong() {
-        let covariance = Covariance { diagonal: vec![1.0; 2], inside: Vec::new(), shared: Vec::new(), size: 1 };
+        let mut response = ResponseError::default();
+        response.each = 0.2;
+        let covariance = Covariance { diagonal: vec![1.0; 2], inside: Vec::new(), shared: Vec::new(), size: 1, response };
         let whitener = covariance.whitener();
         let nodes = vec![Node { size: 0.0, change: Vec::new() }, Node { size: 1.0, change: vec![10.0; 2] }];
         for (exact, variance) in [(false, 1.0 + 4.0), (true, 1.0)] {
@@ -234,7 +189,7 @@ mod tests {
             let masks = vec![Mask { confined: None, sections: vec![true; 2], asked_by: None }];
             let fitter = Fitter::new(&whitener, &candidates, masks.clone());
             let member = fitter.fit(&[10.0; 2], 0, 0).expect("a path");
-            let chosen = Chosen { rest: vec![0.0; 2], members: vec![member] };
+            let chosen = Chosen { members: vec![member], ..Chosen::none(&[0.0; 2]) };
             let wider = with_room(&covariance, &candidates, &masks, &chosen);
             assert!(wider.diagonal.iter().all(|seen| (seen - variance).abs() < 1e-9), "{:?}", wider.diagonal);
         }

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use super::beside::alone_again;
 use super::candidates::{Candidate, Workshop};
-use super::choose::{Bars, Chosen, Refused, refit};
+use super::choose::{Bars, Chosen, Refused};
 use super::fit::{Fitted, Fitter, Mask};
-use super::lack::{Lack, lack_after, unexplained, wrong_as_one};
+use super::lack::{Lack, lack_after, unexplained};
 use super::place::{Place, Tolerances};
+use super::sets::refit;
 use crate::diagnose::allowed::covariance::NOTHING;
 use crate::diagnose::observe::bench::Runs;
 use crate::diagnose::observe::features::Kind;
@@ -126,8 +127,8 @@ impl Settled<'_> {
         now
     }
 
-    /// Refits the members with the covariance for sizes: without outlying sections, without lags that jump to another period between sizes,
-    /// and with the model error of simulated changes, fully correlated for levels and for all other features.
+    /// Refits the members with the covariance for sizes: without outlying sections, and without lags that jump to another period between
+    /// sizes.
     fn sized(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Weighed, lack: &[Lack], runs: &mut Runs) -> Weighed {
         let (seen, settings) = (self.tolerances.workshop.seen, self.tolerances.settings);
         let mut covariance = now.place.covariance.clone();
@@ -149,8 +150,6 @@ impl Settled<'_> {
                 }
             }
         }
-        let levels: Vec<bool> = seen.features.iter().map(|feature| feature.kind == Kind::Level).collect();
-        covariance.shared.extend(wrong_as_one(&levels, candidates, masks, &now.chosen.members));
         now.place = Arc::new(Place::new(covariance, now.place.difference.clone()));
         self.refined((candidates, masks), &mut now, runs);
         now
@@ -194,6 +193,7 @@ pub fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], fits: &[Fit
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::allowed::response::ResponseError;
     use crate::diagnose::allowed::whiten::Covariance;
     use crate::diagnose::allowed::whiten::less;
     use crate::diagnose::search::candidates::Node;
@@ -201,7 +201,8 @@ mod tests {
     /// One feature in each of eight sections, of unit variance: three selected sections have the size 5, the others 2 or -2.
     #[test]
     fn what_all_sections_have_is_no_reason_to_choose_some() {
-        let covariance = Covariance { diagonal: vec![1.0; 8], inside: Vec::new(), shared: Vec::new(), size: 1 };
+        let covariance =
+            Covariance { diagonal: vec![1.0; 8], inside: Vec::new(), shared: Vec::new(), size: 1, response: ResponseError::default() };
         let nodes = [-10.0, 0.0, 10.0].map(|size| Node { size, change: if size == 0.0 { Vec::new() } else { vec![size; 8] } });
         let candidates = [Candidate::path("effect", nodes.to_vec())];
         let size = |others: f64, asked_by: Option<usize>| {
@@ -209,7 +210,7 @@ mod tests {
             let mask = Mask { confined: None, sections: (0..8).map(|at| at < 3).collect(), asked_by };
             let whitener = covariance.whitener();
             let member = Fitter::new(&whitener, &candidates, vec![mask.clone()]).fit(&difference, 0, 0).expect("a path");
-            let chosen = Chosen { rest: less(&difference, &member.whitened), members: vec![member.clone()] };
+            let chosen = Chosen { members: vec![member.clone()], ..Chosen::none(&less(&difference, &member.whitened)) };
             let weighed = Weighed { place: Arc::new(Place::new(covariance.clone(), difference)), chosen };
             weighed.beside_the_others(&candidates[0], &mask, member.size)
         };

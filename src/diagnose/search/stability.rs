@@ -130,6 +130,7 @@ fn resample(strata: &[Vec<usize>], sections: usize, seed: u64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::allowed::response::ResponseError;
     use crate::diagnose::allowed::whiten::Covariance;
     use crate::diagnose::allowed::whiten::less;
     use crate::diagnose::search::candidates::{Candidate, Node};
@@ -144,7 +145,13 @@ mod tests {
     #[test]
     fn sizes_scatter_like_a_resampled_mean() {
         const SECTIONS: usize = 20;
-        let covariance = Covariance { diagonal: vec![1.0; SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 1 };
+        let covariance = Covariance {
+            diagonal: vec![1.0; SECTIONS],
+            inside: Vec::new(),
+            shared: Vec::new(),
+            size: 1,
+            response: ResponseError::default(),
+        };
         let whitener = covariance.whitener();
         let z: Vec<f64> = (0..SECTIONS).map(|at| 5.0 + ((at * 7) % SECTIONS) as f64 * 0.1).collect();
         let mean = z.iter().sum::<f64>() / SECTIONS as f64;
@@ -157,7 +164,7 @@ mod tests {
         let fitter = Fitter::new(&whitener, &candidates, vec![mask]);
         let member = fitter.fit(&z, 0, 0).expect("a path");
         assert!((member.size - mean).abs() < 1e-9, "{}", member.size);
-        let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member] };
+        let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member], ..Chosen::none(&z) };
         let found = stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), 0, &[], &[(0..SECTIONS).collect()], 1);
         assert_eq!(found.first, 1.0);
         for (bound, away) in [(found.sizes.0, -1.645 * error), (found.sizes.1, 1.645 * error)] {
@@ -171,7 +178,13 @@ mod tests {
     #[test]
     fn evidence_decides_whether_there_is_more_of_it_or_less() {
         const SECTIONS: usize = 20;
-        let covariance = Covariance { diagonal: vec![1.0; 2 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 2 };
+        let covariance = Covariance {
+            diagonal: vec![1.0; 2 * SECTIONS],
+            inside: Vec::new(),
+            shared: Vec::new(),
+            size: 2,
+            response: ResponseError::default(),
+        };
         let whitener = covariance.whitener();
         let all = |of: &dyn Fn(usize) -> [f64; 2]| (0..SECTIONS).flat_map(of).collect::<Vec<f64>>();
         let nodes = vec![
@@ -185,7 +198,7 @@ mod tests {
         let (z, sized) = (all(&|_| [4.0, 2.4]), all(&|at| [4.0, if at % 2 == 0 { 3.0 } else { -3.0 }]));
         let chosen = |z: &[f64]| {
             let member = fitter.fit(z, 0, 0).expect("a path");
-            Chosen { rest: less(z, &member.whitened), members: vec![member] }
+            Chosen { rest: less(z, &member.whitened), members: vec![member], ..Chosen::none(z) }
         };
         let (by_evidence, by_size) = (chosen(&z), chosen(&sized));
         let found = stability((&fitter, &z, &by_evidence), (&fitter, &sized, &by_size), 0, &[], &[(0..SECTIONS).collect()], 1);
@@ -200,7 +213,13 @@ mod tests {
     #[test]
     fn an_effect_that_one_section_carries_is_not_told_from_one_that_all_others_show() {
         const SECTIONS: usize = 20;
-        let covariance = Covariance { diagonal: vec![1.0; SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 1 };
+        let covariance = Covariance {
+            diagonal: vec![1.0; SECTIONS],
+            inside: Vec::new(),
+            shared: Vec::new(),
+            size: 1,
+            response: ResponseError::default(),
+        };
         let whitener = covariance.whitener();
         let (mut once, mut others) = (vec![0.0; SECTIONS], vec![10.0; SECTIONS]);
         (once[3], others[3]) = (10.0, 0.0);
@@ -210,7 +229,7 @@ mod tests {
         let fitter = Fitter::new(&whitener, &candidates, vec![mask]);
         let of = |candidate: usize| {
             let member = fitter.fit(&z, candidate, 0).expect("a path");
-            let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member] };
+            let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member], ..Chosen::none(&z) };
             stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), 0, &[], &[(0..SECTIONS).collect()], 1)
         };
         let (once, others) = (of(0), of(1));

@@ -3,9 +3,11 @@
 //! discriminate.
 
 use super::candidates::{Candidate, Node, Workshop};
-use super::choose::{Chosen, refit};
+use super::choose::Chosen;
 use super::fit::{Fitted, Fitter, Mask};
+use super::joint::fit;
 use super::place::Place as Weighing;
+use super::sets::refit;
 use crate::diagnose::allowed::whiten::{dot, less};
 use crate::diagnose::observe::bench::Runs;
 use crate::diagnose::settings::Settings;
@@ -63,7 +65,7 @@ impl Place {
     fn of(chosen: &Chosen, z: &[f64]) -> Vec<Self> {
         let Some(first) = chosen.members.first() else { return Vec::new() };
         let strongest = Self { rest: chosen.left_by_others(z, 0), whitened: first.whitened.clone(), answer: first.evidence, of_all: false };
-        let all = Self { rest: z.to_vec(), whitened: first.whitened.clone(), answer: chosen.evidence(), of_all: true };
+        let all = Self { rest: z.to_vec(), whitened: first.whitened.clone(), answer: chosen.evidence, of_all: true };
         if chosen.members.len() > 1 { vec![strongest, all] } else { vec![strongest] }
     }
 
@@ -97,7 +99,8 @@ pub fn suspect(
     let keys: Vec<&String> = of.flat_map(|tolerance| &tolerance.scales).filter(there).collect();
     let everywhere = masks.first()?.clone();
     let fitted = |path: &Candidate, place: &Place| {
-        Fitter::new(whitener, std::slice::from_ref(path), vec![everywhere.clone()]).fit(&place.rest, 0, 0)
+        let fitter = Fitter::new(whitener, std::slice::from_ref(path), vec![everywhere.clone()]);
+        fit(&fitter, &place.rest, &[(0, 0)])?.members.pop()
     };
     let simulate = |path: &mut Candidate, factors: &[f64], runs: &mut Runs| {
         let (key, value) = (path.size.clone(), (workshop.neutral)(&path.size).unwrap_or(0.0));
@@ -120,14 +123,14 @@ pub fn suspect(
         paths.retain(|(_, fit)| fit.evidence >= NEAR * place.answer);
         paths.sort_by(|a, b| b.1.evidence.total_cmp(&a.1.evidence));
         paths.truncate(MOST);
-        for (path, fit) in &mut paths {
+        for (path, now) in &mut paths {
             simulate(path, &FINE, runs);
             for _ in 0..=ROUNDS {
-                *fit = fitted(path, &place)?;
-                if path.nodes.iter().any(|node| (node.size - fit.size).abs() <= ALIKE * fit.size) {
+                *now = fitted(path, &place)?;
+                if path.nodes.iter().any(|node| (node.size - now.size).abs() <= ALIKE * now.size) {
                     break;
                 }
-                simulate(path, &[fit.size], runs);
+                simulate(path, &[now.size], runs);
             }
         }
         for (path, fit) in paths.into_iter().filter(|(_, fit)| !place.is(fit)) {

@@ -21,6 +21,7 @@ pub struct Settings {
     pub groups: Vec<GroupFeatures>,
     pub tolerances: Vec<Tolerance>,
     pub discrepancies: Vec<Discrepancy>,
+    pub response: Response,
     /// Columns of the section table by which an effect may be confined.
     pub confine: Vec<String>,
     /// Columns of the section table tested as covariates of the residual; with the prefix `1 / ` the reciprocal.
@@ -36,6 +37,23 @@ pub struct Settings {
     pub invariants: Vec<(String, Vec<(String, f64)>)>,
     /// Description of the dynamic content in addition to the features.
     pub shape: Option<Shape>,
+}
+
+/// Relative error of the change that a simulated effect causes: one standard deviation each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
+    /// Common to all levels, and common to all other features; each other feature has the latter a second time by itself.
+    pub levels: f64,
+    pub others: f64,
+    /// In addition for a group of channels, and for a group in one stratum.
+    pub groups: f64,
+}
+
+impl Default for Response {
+    /// For a vehicle model (judgement): levels follow from equilibrium, dynamic content from contact and dampers as well.
+    fn default() -> Self {
+        Self { levels: 0.05, others: 0.2, groups: 0.1 }
+    }
 }
 
 /// Description of the dynamic content of the groups of channels.
@@ -56,6 +74,8 @@ pub struct GroupFeatures {
     pub level: bool,
     pub bands: usize,
     pub alike: bool,
+    /// Whether the records are compared sample by sample as well.
+    pub samples: bool,
     /// Standard deviation of a level in addition to the scatter of the record, in the unit of the channels.
     pub level_sd: f64,
     /// Standard deviation of the logarithm of a band's rms.

@@ -1,6 +1,6 @@
 //! Reads the `diagnosis` part of a catalogue.
 
-use super::{Discrepancy, FeatureKind, GroupFeatures, INVERSE, Moves, Over, Position, Settings, Shape, Times, Tolerance};
+use super::{Discrepancy, FeatureKind, GroupFeatures, INVERSE, Moves, Over, Position, Response, Settings, Shape, Times, Tolerance};
 use crate::effects::Catalogue;
 use crate::problem::{Problem, Problems};
 use crate::source::Span;
@@ -10,13 +10,14 @@ use crate::yaml::{Key, Node, Value};
 /// Default of the largest lag in m. A larger lag means that the records belong to different places.
 const FURTHEST: f64 = 50.0;
 
-const TOP: [&str; 13] = [
+const TOP: [&str; 14] = [
     "bands",
     "alike",
     "furthest lag",
     "groups",
     "tolerances",
     "discrepancies",
+    "response error",
     "confine to",
     "covariates",
     "mirrored",
@@ -25,10 +26,11 @@ const TOP: [&str; 13] = [
     "invariants",
     "shape",
 ];
-const GROUP: [&str; 13] =
-    ["level", "bands", "alike", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says", "unit"];
+const GROUP: [&str; 14] =
+    ["level", "bands", "alike", "samples", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says", "unit"];
 const SHAPE: [&str; 3] = ["range", "percentile", "wheel radius"];
 const TOLERANCE: [&str; 10] = ["default", "unit", "expected", "scales", "adds", "sets", "each section", "shared", "besides", "suspects"];
+const RESPONSE: [&str; 3] = ["levels", "others", "groups"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
 impl Settings {
@@ -211,6 +213,14 @@ impl Reader<'_> {
         self.values(node)
     }
 
+    fn response(&mut self, node: &Node) -> Response {
+        self.keys(node, &RESPONSE);
+        let usual = Response::default();
+        let [levels, others, groups] = [("levels", usual.levels), ("others", usual.others), ("groups", usual.groups)]
+            .map(|(key, usual)| self.spread(node, key, usual));
+        Response { levels, others, groups }
+    }
+
     fn settings(&mut self, node: &Node) -> Settings {
         self.keys(node, &TOP);
         let alike = node.get("alike").map_or(Vec::new(), |alike| self.rising(alike));
@@ -228,6 +238,7 @@ impl Reader<'_> {
             edges: node.get("bands").map_or(Vec::new(), |bands| self.rising(bands)),
             alike: (alike.first().copied().unwrap_or(0.5), alike.get(1).copied().unwrap_or(8.0)),
             furthest: self.furthest(node),
+            response: node.get("response error").map_or_else(Response::default, |node| self.response(node)),
             confine: names(confine),
             covariates: names(covariates),
             mirror: mirror.map(|(key, value)| (key.text, value)),
@@ -252,6 +263,7 @@ impl Reader<'_> {
                 level: self.flag(node, "level"),
                 bands: bands as usize,
                 alike: self.flag(node, "alike"),
+                samples: self.flag(node, "samples"),
                 level_sd: self.spread(node, "level sd", 0.1),
                 band_sd: self.spread(node, "band sd", 0.1),
                 gain_sd: self.spread(node, "gain sd", 0.1),
