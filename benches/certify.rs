@@ -9,7 +9,8 @@
 //!   below it may use more threads than `jobs` asks for (polars reads with all; `POLARS_MAX_THREADS=1` holds it to one).
 //!
 //! Each campaign is timed twice: as it is, and with its records as Parquet files, which the peer reads with polars (left out
-//! with a word if it has none).
+//! with a word if it has none). Both are also timed by the same protocol without its plausibility rules: the peer has none, so
+//! that this is the same work. Beside the time by the clock stands that of the processors, which is fair where others use them.
 //!
 //! - `FISHPLATE_PYTHON`: the interpreter, `python3` by default.
 //! - `FISHPLATE_QUIET`: longest wait in s before each round until the machine is idle, 0 by default; for machines that others use.
@@ -63,38 +64,39 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
         &["convert-records".as_ref(), campaign.as_os_str(), "--to".as_ref(), "parquet".as_ref(), "--out".as_ref(), columns.as_os_str()],
         1,
     )?;
-    let results_of = |folder: &'_ Path| -> Vec<std::ffi::OsString> {
-        ["certify".as_ref(), folder.as_os_str(), "--only".as_ref(), "results".as_ref(), "--out".as_ref(), out.as_os_str()]
-            .map(OsStr::to_os_string)
-            .to_vec()
-    };
-    let both = [results_of(campaign), results_of(&columns)];
-    let [results, _] = both.each_ref().map(|words| words.iter().map(|word| word.as_os_str()).collect::<Vec<_>>());
+    let bare = Path::new(SCRATCH).join("bare.fp");
+    fs::write(&bare, BARE)?;
+    let results = results_of(campaign, &out);
+    let without_rules = ["--protocol".as_ref(), bare.as_os_str()];
+    let runs = [
+        ("results", results.clone(), 0),
+        ("results without plausibility", [results.as_slice(), &without_rules].concat(), 0),
+        ("results from Parquet", results_of(&columns, &out), 1),
+        ("from Parquet without plausibility", [results_of(&columns, &out).as_slice(), &without_rules].concat(), 1),
+    ];
     let sizes = [folder_size(campaign)?, folder_size(&columns)?].map(|bytes| bytes as f64 / 1e6);
     println!("\n{}, {:.1} MB; as Parquet {:.1} MB", campaign.display(), sizes[0], sizes[1]);
     let mut counts = vec![1, threads()];
     counts.dedup();
     for jobs in counts {
-        let (mut here, mut there) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
+        let (mut here, mut there) = (runs.each_ref().map(|_| Vec::new()), [Vec::new(), Vec::new()]);
         for round in 0..=rounds {
+            for (at, (_, words, _)) in runs.iter().enumerate() {
+                wait_until_idle();
+                let ours = run(words, jobs)?;
+                here[at].extend((round > 0).then_some(ours));
+            }
             for (at, folder) in [campaign, &columns].into_iter().enumerate() {
                 wait_until_idle();
-                let words: Vec<&OsStr> = both[at].iter().map(|word| word.as_os_str()).collect();
-                let ours = seconds(&words, jobs)?;
                 let able = |peer: &&mut &mut Peer| at == 0 || peer.columns;
                 let theirs = peer.as_mut().filter(able).map(|peer| peer.run(folder, jobs)).transpose()?;
-                if round > 0 {
-                    here[at].push(ours);
-                    there[at].extend(theirs.map(|(seconds, _)| seconds));
-                }
+                there[at].extend(theirs.map(|(time, _)| time).filter(|_| round > 0));
             }
         }
-        let [text, as_columns] = here;
-        let [peer_text, peer_columns] = there;
         let of = format!("{jobs} thread{}", if jobs == 1 { "" } else { "s" });
-        print_row(&format!("results, {of}"), text, peer_text.clone());
-        print_row(&format!("results from Parquet, {of}"), as_columns.clone(), peer_columns);
-        print_row("  against the peer on the texts", as_columns, peer_text);
+        for ((what, _, format), here) in runs.iter().zip(here) {
+            print_times(&format!("{what}, {of}"), here, there[*format].clone());
+        }
     }
     if peer.as_ref().is_some_and(|peer| !peer.columns) {
         println!("  the peer has no polars and was not timed on Parquet");
@@ -110,6 +112,10 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
     Ok(())
 }
 
+fn results_of<'a>(campaign: &'a Path, out: &'a Path) -> Vec<&'a OsStr> {
+    vec!["certify".as_ref(), campaign.as_os_str(), "--only".as_ref(), "results".as_ref(), "--out".as_ref(), out.as_os_str()]
+}
+
 fn time_protocols(rounds: usize) -> Outcome<()> {
     let mut protocols: Vec<PathBuf> =
         fs::read_dir(Path::new(ROOT).join("protocols"))?.map(|entry| Ok(entry?.path())).collect::<Outcome<_>>()?;
@@ -122,6 +128,35 @@ fn time_protocols(rounds: usize) -> Outcome<()> {
         print_row(&name, repeat(rounds, || seconds(&check, threads()))?, Vec::new());
     }
     Ok(())
+}
+
+/// The protocol of the campaigns without its plausibility rules.
+const BARE: &str =
+    "protocol bare \"Annex T without plausibility rules\"\n  extends  en14363-2016-annex-t\n\nremove\n  plausibility  every\n";
+
+/// Time by the clock and of the processors [s].
+#[derive(Clone, Copy)]
+struct Time {
+    clock: f64,
+    processors: f64,
+}
+
+/// As [`seconds`], with the time of the processors; the kernel of Linux tells that of ended children, to 10 ms.
+fn run(words: &[&OsStr], jobs: usize) -> Outcome<Time> {
+    let before = children_time();
+    let clock = seconds(words, jobs)?;
+    Ok(Time { clock, processors: children_time().zip(before).map_or(f64::NAN, |(after, before)| after - before) })
+}
+
+/// Processor time of all children that have ended [s].
+fn children_time() -> Option<f64> {
+    /// Ticks in a second, the same on all systems in use.
+    const TICKS: f64 = 100.0;
+    let text = fs::read_to_string("/proc/self/stat").ok()?;
+    // Behind the name, which may have blanks: state, 12 others, then the times of children in user and system mode.
+    let words: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = |at: usize| words.get(at)?.parse::<f64>().ok();
+    Some((ticks(13)? + ticks(14)?) / TICKS)
 }
 
 /// One run of the program from its start to its end [s]. A verdict that does not hold (exit code 1) is a result as well.
@@ -180,13 +215,16 @@ impl Peer {
         Ok(Self { script: script.into(), process, requests, answers, columns: able.trim() == "parquet" })
     }
 
-    /// Seconds of one evaluation and peak memory of the process so far [MB].
-    fn run(&mut self, campaign: &Path, jobs: usize) -> Outcome<(f64, f64)> {
+    /// Time of one evaluation and peak memory of the process so far [MB].
+    fn run(&mut self, campaign: &Path, jobs: usize) -> Outcome<(Time, f64)> {
         writeln!(self.requests, "{jobs} {}", campaign.display())?;
         let mut answer = String::new();
         self.answers.read_line(&mut answer)?;
-        let (seconds, memory) = answer.trim().split_once(' ').ok_or_else(|| format!("the peer failed on {}", campaign.display()))?;
-        Ok((seconds.parse()?, memory.parse()?))
+        let words: Vec<&str> = answer.split_whitespace().collect();
+        let [clock, processors, memory] = words.as_slice() else {
+            return Err(format!("the peer failed on {}", campaign.display()).into());
+        };
+        Ok((Time { clock: clock.parse()?, processors: processors.parse()? }, memory.parse()?))
     }
 
     fn synthetic_campaign(&self) -> Outcome<PathBuf> {
@@ -220,6 +258,16 @@ fn print_row(what: &str, here: Vec<f64>, there: Vec<f64>) {
         print!("   {peer_minimum:>8.4} {peer_median:>8.4}   {:>5.1} {:>5.1}", peer_minimum / minimum, peer_median / median);
     }
     println!();
+}
+
+fn print_times(what: &str, here: Vec<Time>, there: Vec<Time>) {
+    let of = |times: &[Time], kind: fn(&Time) -> f64| times.iter().map(kind).collect::<Vec<f64>>();
+    print_row(what, of(&here, |time| time.clock), of(&there, |time| time.clock));
+    // The kernel counts in steps of 10 ms, which the mean evens out.
+    let mean = |times: &[Time]| times.iter().map(|time| time.processors).sum::<f64>() / times.len() as f64;
+    let (here, there) = (mean(&here), mean(&there));
+    print!("    processors, mean                     {here:>8.4}");
+    println!("{}", if there.is_finite() { format!("            {there:>8.4}            {:>5.1}", there / here) } else { String::new() });
 }
 
 fn minimum_and_median(mut values: Vec<f64>) -> Option<(f64, f64)> {

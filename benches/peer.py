@@ -2,7 +2,8 @@
 
     peer.py SCRIPT          SCRIPT is a module with run(folder, jobs=N)
 
-Reads one request a line, `JOBS FOLDER`; answers with the seconds that run() took and the peak memory of the process in MB.
+Reads one request a line, `JOBS FOLDER`; answers with the seconds that run() took by the clock and of the processors, and the
+peak memory of the process in MB.
 
 A script that reads `S01.csv` with polars reads `S01.parquet` instead where only that is there: the header from the schema,
 the columns with `polars.read_parquet`. A first line `parquet` says whether this is possible.
@@ -55,7 +56,7 @@ if hasattr(peer, "pl"):
 print("parquet" if hasattr(peer, "pl") else "text", flush=True)
 for line in sys.stdin:
     jobs, folder = line.rstrip("\n").split(" ", 1)
-    start = time.perf_counter()
+    start, used = time.perf_counter(), time.process_time()
     peer.run(folder, jobs=int(jobs))
-    seconds = time.perf_counter() - start
-    print(seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, flush=True)
+    seconds, processors = time.perf_counter() - start, time.process_time() - used
+    print(seconds, processors, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, flush=True)

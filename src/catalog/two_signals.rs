@@ -68,14 +68,15 @@ impl Metric {
         self.0.common_points && (chain_keeps_samples || !self.0.of_distributions)
     }
 
+    /// Number of points of both distributions, of which the metric is then computed in place of the samples.
+    pub fn points(self) -> Option<usize> {
+        self.1.points
+    }
+
     /// # Errors
     /// The reason why it is not defined.
     pub fn run(self, pair: &Pair<'_>) -> Result<f64, String> {
-        let pair = &Pair { band: self.1.band, ..*pair };
-        let Some(points) = self.1.points else { return (self.0.run)(pair) };
-        let of = |signal: &[f64]| pair::quantiles(signal, points).map_err(|undefined| undefined.to_string());
-        let (simulated, measured) = (of(pair.simulated)?, of(pair.measured)?);
-        (self.0.run)(&Pair { simulated: &simulated, measured: &measured, ..*pair })
+        (self.0.run)(&Pair { band: self.1.band, ..*pair })
     }
 }
 

@@ -4,8 +4,10 @@ use std::io::{self, ErrorKind, Read};
 
 use sha2::{Digest, Sha256};
 
+/// Bytes that are hashed at a time.
+pub const BLOCK: usize = 64;
 /// Bytes read at a time; it does not change the result.
-const BLOCK: usize = 1 << 16;
+const READ: usize = 1 << 16;
 
 /// SHA-256 of bytes that come in parts.
 #[derive(Clone, Debug, Default)]
@@ -21,7 +23,7 @@ impl Hasher {
     /// # Errors
     /// Of reading.
     pub fn add_all(&mut self, file: &mut impl Read) -> io::Result<u64> {
-        let (mut bytes, mut block) = (0, vec![0_u8; BLOCK]);
+        let (mut bytes, mut block) = (0, vec![0_u8; READ]);
         loop {
             match file.read(&mut block) {
                 Ok(0) => return Ok(bytes),

@@ -8,6 +8,7 @@ mod fault;
 mod header_fault;
 mod indexed;
 mod known;
+mod lanes;
 mod marks;
 mod memory;
 mod number;
@@ -15,6 +16,8 @@ mod raw;
 mod rows;
 mod runs;
 mod source;
+#[cfg(target_arch = "x86_64")]
+mod wide;
 
 pub(crate) use columnar::{guard, guarded};
 pub use known::Known;
@@ -29,7 +32,7 @@ use std::sync::Arc;
 
 use super::cells::{self, Heading};
 use super::faults::Faults;
-use super::hash::sha256;
+use super::hash::Hasher;
 use super::text::{decode, read_large, read_line};
 use crate::problem::Problem;
 use crate::source::{Source, Span};
@@ -204,7 +207,10 @@ fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -
         Some(problem) => vec![problem],
         None => problems,
     })?;
-    let read = rows::read(text, body, headings.len(), &mut columns, rows::Part { shown, before: 0 });
+    let mut hash = Hasher::default();
+    // The byte order mark.
+    hash.add(&bytes[..bytes.len() - text.len()]);
+    let read = rows::read(text, body, headings.len(), &mut columns, rows::Part { shown, before: 0 }, Some(&mut hash));
     let rows = read.map_err(|problems| header_fault::repeated(text, body, shown).map_or(problems, |problem| vec![problem]))?;
     let channels = headings.into_iter().map(|heading| heading.name).collect();
     Ok(Record {
@@ -213,7 +219,7 @@ fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -
         channels,
         rows,
         first_row: 0,
-        sha256: sha256(bytes),
+        sha256: hash.finish(),
         bytes: bytes.len(),
         from: Origin::File(path.to_path_buf()),
     })

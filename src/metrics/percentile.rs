@@ -144,10 +144,23 @@ pub fn percentiles(values: &[f64], percents: &[f64], method: Method) -> Result<V
         if !sorted {
             return select(&mut values, percent, method);
         }
-        let (below, weight) = method.position(values.len(), percent / 100.0);
-        blend(values[below], values[(below + 1).min(values.len() - 1)], weight)
+        of_sorted(&values, percent, method)
     };
     Ok(found.into_iter().zip(percents).map(|(value, &percent)| value.unwrap_or_else(|| of_copy(percent))).collect())
+}
+
+/// Several percentiles of values that are sorted already.
+///
+/// # Errors
+/// As [`percentile`].
+pub fn percentiles_of_sorted(sorted: &[f64], percents: &[f64], method: Method) -> Result<Vec<f64>, PercentileError> {
+    check(sorted, percents)?;
+    Ok(percents.iter().map(|&percent| of_sorted(sorted, percent, method)).collect())
+}
+
+fn of_sorted(sorted: &[f64], percent: f64, method: Method) -> f64 {
+    let (below, weight) = method.position(sorted.len(), percent / 100.0);
+    blend(sorted[below], sorted[(below + 1).min(sorted.len() - 1)], weight)
 }
 
 /// Largest number of values kept in the search for a percentile near an end.

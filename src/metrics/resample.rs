@@ -39,30 +39,72 @@ pub fn resample(axis: &[f64], signal: &[f64], step: f64) -> Result<(Vec<f64>, Ve
 /// extrapolated.
 pub fn interpolate(axis: &[f64], signal: &[f64], points: &[f64]) -> Result<Vec<f64>, ResampleError> {
     check(axis, signal)?;
-    let (Some(&first), Some(&last)) = (axis.first(), axis.last()) else {
-        return if points.is_empty() { Ok(Vec::new()) } else { Err(ResampleError::Empty) };
+    places(axis, points)?.map(|place| place.map(|place| place.value(signal))).collect()
+}
+
+/// Points on an axis, at which several signals with this axis are interpolated.
+#[derive(Debug)]
+pub struct Located(Vec<Place>);
+
+/// A point between two samples, or on the first of them.
+#[derive(Debug)]
+struct Place {
+    before: usize,
+    /// Distance from that sample; 0 on it.
+    beyond: f64,
+    /// Distance of the next sample.
+    step: f64,
+}
+
+impl Located {
+    /// # Errors
+    /// An axis that does not increase strictly; a point outside it.
+    pub fn on(axis: &[f64], points: &[f64]) -> Result<Self, ResampleError> {
+        match not_increasing(axis) {
+            Some(sample) => Err(ResampleError::Axis { sample }),
+            None => places(axis, points)?.collect::<Result<_, _>>().map(Self),
+        }
+    }
+
+    /// The values of a signal, which has a sample for each value of the axis.
+    pub fn values(&self, signal: &[f64]) -> Vec<f64> {
+        self.0.iter().map(|place| place.value(signal)).collect()
+    }
+}
+
+impl Place {
+    fn value(&self, signal: &[f64]) -> f64 {
+        let here = signal[self.before];
+        if self.beyond == 0.0 {
+            return here;
+        }
+        let slope = (signal[self.before + 1] - here) / self.step;
+        here + slope * self.beyond
+    }
+}
+
+/// Places of points on an axis that increases strictly.
+fn places<'a>(axis: &'a [f64], points: &'a [f64]) -> Result<impl Iterator<Item = Result<Place, ResampleError>> + 'a, ResampleError> {
+    let (first, last) = match axis {
+        [] if points.is_empty() => (0.0, 0.0),
+        [] => return Err(ResampleError::Empty),
+        [first, ..] => (*first, axis[axis.len() - 1]),
     };
     // Index of the sample at or before the last point.
     let mut before = 0;
-    points
-        .iter()
-        .map(|&point| {
-            if !(first <= point && point <= last) {
-                return Err(ResampleError::Outside { point, first, last });
-            }
-            let in_reach = before + 8 < axis.len() && axis[before] <= point && point < axis[before + 8];
-            before = if in_reach {
-                before + axis[before + 1..before + 8].iter().take_while(|&&at| at <= point).count()
-            } else {
-                axis.partition_point(|&at| at <= point) - 1
-            };
-            if axis[before] == point {
-                return Ok(signal[before]);
-            }
-            let slope = (signal[before + 1] - signal[before]) / (axis[before + 1] - axis[before]);
-            Ok(signal[before] + slope * (point - axis[before]))
-        })
-        .collect()
+    Ok(points.iter().map(move |&point| {
+        if !(first <= point && point <= last) {
+            return Err(ResampleError::Outside { point, first, last });
+        }
+        let in_reach = before + 8 < axis.len() && axis[before] <= point && point < axis[before + 8];
+        before = if in_reach {
+            before + axis[before + 1..before + 8].iter().take_while(|&&at| at <= point).count()
+        } else {
+            axis.partition_point(|&at| at <= point) - 1
+        };
+        let step = axis.get(before + 1).map_or(1.0, |next| next - axis[before]);
+        Ok(Place { before, beyond: point - axis[before], step })
+    }))
 }
 
 /// Index of the first sample that is not larger than the one before, or is NaN.

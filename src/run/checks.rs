@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::facts::Known;
-use super::plausibility;
+use super::plausibility::Questions;
 use super::record::{Fault, Work};
 use super::section::{SectionValues, one_record};
 use super::sections::Unit;
@@ -17,10 +17,16 @@ use crate::result::CheckResult;
 use crate::units::Dimension;
 
 /// Checks that use the track record; without one their result is "not checked". Returns the values of the track record.
-pub fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mut SectionValues) -> Result<Evaluated, Fault> {
+pub fn track_checks(
+    work: &Work<'_>,
+    unit: &Unit,
+    questions: &Questions<'_>,
+    known: &Known<'_>,
+    values: &mut SectionValues,
+) -> Result<Evaluated, Fault> {
     let mut wanted: BTreeSet<NodeId> =
         work.graph.checks.iter().flatten().map(|input| input.node).filter(|&node| work.graph.nodes[node].track).collect();
-    wanted.extend(plausibility::wanted(work, unit, known, true));
+    wanted.extend(questions.wanted(work, true));
     let campaign = work.campaign(unit);
     let there = || match campaign.record_source(RecordKind::Track, &unit.cell) {
         Ok(_) => Ok(true),
@@ -29,9 +35,9 @@ pub fn track_checks(work: &Work<'_>, unit: &Unit, known: &Known<'_>, values: &mu
         Err(_) => Ok(false),
     };
     let found = if !wanted.is_empty() && campaign.has(RecordKind::Track) && there()? {
-        one_record(work, unit, RecordKind::Track.into(), &wanted, known, values)?.0
+        Evaluated::from(one_record(work, unit, RecordKind::Track.into(), &wanted, known, values)?.0)
     } else {
-        Vec::new()
+        Evaluated::default()
     };
     for (check, inputs) in work.plan.checks.iter().zip(&work.graph.checks) {
         if !inputs.is_empty() && !inputs.iter().all(|input| work.graph.nodes[input.node].track) {

@@ -1,36 +1,134 @@
 //! Both sides of a section at common points, and values of expressions over their samples.
 
+use std::borrow::Cow;
+use std::cell::RefCell;
+use std::ops::Range;
+use std::rc::Rc;
+use std::sync::Arc;
+
 use super::facts::Known;
-use super::signal::{Extent, Samples, Signal, apply, arithmetic, each};
+use super::signal::{Along, Extent, Samples, Signal, apply, arithmetic, each};
 use crate::catalog::Reducer;
 use crate::check::evaluate::number;
 use crate::check::plan::{self, AxisOperation, Side, SignalKind};
 use crate::metrics::percentile::Method;
-use crate::metrics::resample;
+use crate::metrics::resample::{self, Located};
+
+/// Where the samples of two records meet. It is the same for all signals of the two.
+#[derive(Debug)]
+pub struct Meeting {
+    /// The measured samples of the section.
+    along: Arc<Along>,
+    inside: Range<usize>,
+    onto: Onto,
+}
+
+/// The simulated values at the measured samples.
+#[derive(Debug)]
+enum Onto {
+    /// These samples lie there already.
+    Samples(Range<usize>),
+    Interpolated(Located),
+}
+
+/// What all comparisons of the records of one section need, each computed once.
+#[derive(Debug, Default)]
+pub struct Meetings {
+    met: RefCell<Vec<Met>>,
+    sorted: RefCell<Vec<Sorted>>,
+}
+
+/// The values of a signal that a meeting has of one side, sorted.
+#[derive(Debug)]
+struct Sorted {
+    of: (Arc<Vec<f64>>, Option<Rc<Meeting>>, Side),
+    values: Rc<Vec<f64>>,
+}
+
+/// A meeting, and of what: both axes and the shift between them.
+#[derive(Debug)]
+struct Met {
+    of: (Arc<Along>, Arc<Along>, u64),
+    found: Result<Rc<Meeting>, String>,
+}
+
+impl Meetings {
+    /// The simulated axis is moved by `shift` (SI). Simulated values are interpolated at the measured samples of the section, unless their
+    /// own lie there already. The section is the same for all meetings.
+    pub fn of(&self, simulated: &Samples, measured: &Samples, extent: Option<Extent>, shift: f64) -> Result<Rc<Meeting>, String> {
+        let mut all = self.met.borrow_mut();
+        let (s, m) = (&simulated.along, &measured.along);
+        let same = |met: &&Met| Arc::ptr_eq(&met.of.0, s) && Arc::ptr_eq(&met.of.1, m) && met.of.2 == shift.to_bits();
+        if let Some(met) = all.iter().find(same) {
+            return met.found.clone();
+        }
+        let found = Meeting::of(s, m, extent, shift).map(Rc::new);
+        all.push(Met { of: (Arc::clone(s), Arc::clone(m), shift.to_bits()), found: found.clone() });
+        found
+    }
+
+    /// The values that a meeting has of a signal, sorted: several metrics take their distribution, at several numbers of points.
+    pub fn sorted(&self, (samples, meeting, side): (&Samples, Option<&Rc<Meeting>>, Side), values: &[f64]) -> Rc<Vec<f64>> {
+        let mut all = self.sorted.borrow_mut();
+        let same = |known: &&Sorted| {
+            let (of, met, from) = &known.of;
+            Arc::ptr_eq(of, &samples.values) && met.as_ref().map(Rc::as_ptr) == meeting.map(Rc::as_ptr) && *from == side
+        };
+        if let Some(known) = all.iter().find(same) {
+            return Rc::clone(&known.values);
+        }
+        let mut sorted = values.to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let sorted = Rc::new(sorted);
+        all.push(Sorted { of: (Arc::clone(&samples.values), meeting.cloned(), side), values: Rc::clone(&sorted) });
+        sorted
+    }
+}
+
+impl Meeting {
+    fn of(simulated: &Along, measured: &Arc<Along>, extent: Option<Extent>, shift: f64) -> Result<Self, String> {
+        let inside = measured.part_inside(extent)?;
+        let along = if inside.len() == measured.axis.len() { Arc::clone(measured) } else { Arc::new(measured.part(inside.clone())) };
+        let own = if shift == 0.0 { Some(simulated.part_inside(extent)?) } else { None };
+        let there = |own: &Range<usize>| {
+            let (s, m) = (&simulated.axis[own.clone()], &along.axis);
+            s.len() == m.len() && s.iter().zip(m.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()))
+        };
+        let onto = match own.filter(there) {
+            Some(own) => Onto::Samples(own),
+            None => Onto::Interpolated(located(simulated, &along.axis, shift)?),
+        };
+        Ok(Self { along, inside, onto })
+    }
+
+    /// Axis values at which both have a sample.
+    pub fn axis(&self) -> &[f64] {
+        &self.along.axis
+    }
+
+    pub fn simulated<'a>(&self, samples: &'a Samples) -> Cow<'a, [f64]> {
+        match &self.onto {
+            Onto::Samples(own) => Cow::Borrowed(&samples.values[own.clone()]),
+            Onto::Interpolated(located) => Cow::Owned(located.values(&samples.values)),
+        }
+    }
+
+    pub fn measured<'a>(&self, samples: &'a Samples) -> &'a [f64] {
+        &samples.values[self.inside.clone()]
+    }
+}
 
 /// Both signals at the measured samples of the section.
-pub struct Common {
-    pub simulated: Vec<f64>,
-    pub measured: Samples,
+struct Common {
+    simulated: Vec<f64>,
+    measured: Samples,
 }
 
 impl Common {
-    /// The simulated signal is moved along the axis by `shift` (SI) and interpolated at the measured points, unless its samples lie
-    /// there already.
-    pub fn of(simulated: &Samples, measured: &Samples, extent: Option<Extent>, shift: f64) -> Result<Self, String> {
-        let cut = |samples: &Samples| match extent {
-            Some(extent) => samples.cut(extent),
-            None => Ok(samples.clone()),
-        };
-        if shift != 0.0 {
-            let measured = cut(measured)?;
-            return Ok(Self { simulated: at(simulated, &measured.along.axis, shift)?, measured });
-        }
-        let (s, m) = (cut(simulated)?, cut(measured)?);
-        let same = s.along.axis.len() == m.along.axis.len()
-            && s.along.axis.iter().zip(m.along.axis.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()));
-        let onto = if same { s.values.to_vec() } else { at(simulated, &m.along.axis, shift)? };
-        Ok(Self { simulated: onto, measured: m })
+    fn of(both: &Both<'_>) -> Result<Self, String> {
+        let meeting = both.meetings.of(both.simulated, both.measured, both.extent, both.shift)?;
+        let measured = Samples { along: Arc::clone(&meeting.along), values: Arc::new(meeting.measured(both.measured).to_vec()) };
+        Ok(Self { simulated: meeting.simulated(both.simulated).into_owned(), measured })
     }
 
     /// Samples of a signal that may be one number all along.
@@ -49,14 +147,14 @@ fn number_of(reducer: Reducer, samples: &Samples, method: Method) -> Result<f64,
     value.ok_or_else(|| format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len()))
 }
 
-/// The simulated signal, moved along the axis by `shift`, at the given points.
-fn at(simulated: &Samples, points: &[f64], shift: f64) -> Result<Vec<f64>, String> {
-    let own = &simulated.along.axis;
-    let interpolated = match shift {
-        0.0 => resample::interpolate(own, &simulated.values, points),
-        _ => resample::interpolate(&own.iter().map(|at| at + shift).collect::<Vec<_>>(), &simulated.values, points),
+/// Points on the simulated axis, moved along by `shift`.
+fn located(simulated: &Along, points: &[f64], shift: f64) -> Result<Located, String> {
+    let own = &simulated.axis;
+    let located = match shift {
+        0.0 => Located::on(own, points),
+        _ => Located::on(&own.iter().map(|at| at + shift).collect::<Vec<_>>(), points),
     };
-    interpolated.map_err(|error| match shift {
+    located.map_err(|error| match shift {
         0.0 => format!("the simulation cannot be interpolated at the measured points: {error}"),
         _ => format!("the repeat cannot be interpolated at the points of its original: {error}"),
     })
@@ -70,12 +168,13 @@ pub struct Both<'a> {
     pub extent: Option<Extent>,
     /// Added to the axis of the simulated signal, SI.
     pub shift: f64,
+    pub meetings: &'a Meetings,
 }
 
 impl Both<'_> {
     /// The value of a reduced expression over both sides, and the number of samples.
     pub fn reduced(&self, reducer: Reducer, method: Method, of: &plan::Signal) -> Result<(f64, usize), String> {
-        let common = Common::of(self.simulated, self.measured, self.extent, self.shift)?;
+        let common = Common::of(self)?;
         let samples = common.filled(self.signal(of, &common, method)?);
         Ok((number_of(reducer, &samples, method)?, samples.values.len()))
     }

@@ -47,29 +47,42 @@ impl Print {
     }
 }
 
-/// Marks of a signal: rolling hashes of runs of samples. Constant runs are equal everywhere and give no mark; another rule reports
-/// them.
+/// Samples whose runs are hashed together: the hashes stay in the first-level cache.
+const TOGETHER: usize = 256;
+
+/// Marks of a signal: hashes of runs of samples. Constant runs are equal everywhere and give no mark; another rule reports them.
 fn marks(samples: &[f64]) -> Vec<u64> {
-    const BASE: u64 = 0x9E37_79B9_7F4A_7C15;
-    let leaving = (1..RUN).fold(1_u64, |power, _| power.wrapping_mul(BASE));
-    let hashes: Vec<u64> = samples.iter().map(|value| mixed(value.to_bits())).collect();
-    let mut rolled = 0_u64;
-    let mut unchanged = 0;
-    let mut found = Vec::new();
-    for (at, hash) in hashes.iter().enumerate() {
-        if at >= RUN {
-            rolled = rolled.wrapping_sub(hashes[at - RUN].wrapping_mul(leaving));
+    let mut found = Vec::with_capacity(2 * samples.len() / ONE_IN as usize);
+    let mut hashes = [0; TOGETHER + RUN];
+    for start in (0..samples.len().saturating_sub(RUN - 1)).step_by(TOGETHER) {
+        let part = &samples[start..samples.len().min(start + TOGETHER + RUN - 1)];
+        for (hash, value) in hashes.iter_mut().zip(part) {
+            *hash = hash_of(*value);
         }
-        rolled = rolled.wrapping_mul(BASE).wrapping_add(*hash);
-        unchanged = if at > 0 && samples[at] == samples[at - 1] { unchanged + 1 } else { 0 };
-        if at + 1 >= RUN && unchanged + 1 < RUN {
-            let mark = mixed(rolled);
-            if mark.is_multiple_of(ONE_IN) {
-                found.push(mark);
+        // The hash of a run is made of those of its halves: no step waits for the one before.
+        for half in [1, 2, 4] {
+            for at in 0..TOGETHER + RUN - half {
+                hashes[at] = hashes[at].rotate_left(TURN * half as u32).wrapping_add(hashes[at + half]);
+            }
+        }
+        for (run, samples) in hashes.iter().zip(part.windows(RUN)) {
+            if run.is_multiple_of(ONE_IN) && samples.iter().any(|value| *value != samples[0]) {
+                found.push(mixed(*run));
             }
         }
     }
     found
+}
+
+/// Of consecutive samples, the hash of one is turned by so many bits against that of the next.
+const TURN: u32 = 9;
+
+fn hash_of(value: f64) -> u64 {
+    /// Odd, with its bits well spread (the golden ratio).
+    const SPREAD: u64 = 0x9E37_79B9_7F4A_7C15;
+    let bits = value.to_bits();
+    let hash = (bits ^ bits >> 32).wrapping_mul(SPREAD);
+    hash ^ hash >> 32
 }
 
 /// Mixes the bits (finaliser of SplitMix64, Steele et al. 2014).
@@ -144,7 +157,7 @@ impl Several {
         self.again[word] & bit != 0
     }
 
-    /// Marks are hashes: their bits are as good as random. The lowest four are alike in all of them.
+    /// Marks are hashes: their bits are as good as random.
     fn place(&self, mark: u64) -> (usize, u64) {
         ((mark >> 16) as usize & (self.once.len() - 1), 1 << (mark >> 8 & 63))
     }

@@ -19,46 +19,49 @@ use crate::units::Dimension;
 /// Significant digits of a number in the sentence of a finding; the result file has all digits.
 const DIGITS: usize = 4;
 
-/// Nodes whose values the rules need, of the track record (`track`) or of the other records.
-pub fn wanted(work: &Work<'_>, unit: &Unit, known: &Known<'_>, track: bool) -> BTreeSet<NodeId> {
-    let mut wanted = BTreeSet::new();
-    for (rule, nodes, _) in positions(work, unit, known) {
-        let of_rule = nodes.inputs.iter().flat_map(InputNode::nodes);
-        wanted.extend(of_rule.filter(|&node| work.graph.nodes[node].track == track));
-        if let (Test::Distinct(_) | Test::Exchanged(_), Some(own), false) = (&rule.test, nodes.own, track) {
-            wanted.insert(own);
-        }
-    }
-    wanted
-}
+/// A rule at a recorded position, its nodes and the name of the position.
+type Asked<'a> = (&'a Plausibility, &'a PositionNodes, &'a str);
 
-/// Every rule that applies to the section, at every recorded position: the rule, its nodes and the name of the position. A rule is
-/// passed over where it cannot be determined, for a missing datum, whether it applies or to which signal.
-fn positions<'a>(
-    work: &'a Work<'_>,
-    unit: &Unit,
-    known: &'a Known<'_>,
-) -> impl Iterator<Item = (&'a Plausibility, &'a PositionNodes, &'a str)> {
-    let asked = |rule: &Plausibility| rule.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known)) == Ok(false);
-    let decided = |nodes: &PositionNodes| {
-        let nodes: BTreeSet<NodeId> = nodes.own.into_iter().chain(nodes.inputs.iter().flat_map(InputNode::nodes)).collect();
-        needed(work.graph, &nodes, known).is_ok()
-    };
-    let (plan, graph, recorded) = (work.plan, work.graph, &work.recorded[unit.campaign]);
-    plan.plausibility.iter().enumerate().filter(move |(_, rule)| asked(rule)).flat_map(move |(at, rule)| {
-        graph.plausibility[at]
-            .positions
-            .iter()
-            .enumerate()
-            .filter(move |(position, nodes)| recorded[at][*position] && decided(nodes))
-            .map(move |(position, nodes)| (rule, nodes, rule.signals.get(position).map_or("", |(name, _)| name.as_str())))
-    })
+/// What the rules ask of a section.
+pub struct Questions<'a>(Vec<Asked<'a>>);
+
+impl<'a> Questions<'a> {
+    /// Every rule that applies to the section, at every recorded position. A rule is passed over where it cannot be determined, for a
+    /// missing datum, whether it applies or to which signal.
+    pub fn of(work: &Work<'a>, unit: &Unit, known: &Known<'_>) -> Self {
+        let applies = |rule: &Plausibility| rule.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known)) == Ok(false);
+        let decided = |nodes: &PositionNodes| {
+            let nodes: BTreeSet<NodeId> = nodes.own.into_iter().chain(nodes.inputs.iter().flat_map(InputNode::nodes)).collect();
+            needed(work.graph, &nodes, known).is_ok()
+        };
+        let (plan, graph, recorded) = (work.plan, work.graph, &work.recorded[unit.campaign]);
+        let of_rule = |(at, rule): (usize, &'a Plausibility)| {
+            let positions = graph.plausibility[at].positions.iter().zip(&recorded[at]).enumerate();
+            let name = |position: usize| rule.signals.get(position).map_or("", |(name, _)| name.as_str());
+            let asked = positions.filter(|(_, (nodes, recorded))| **recorded && decided(nodes));
+            asked.map(|(position, (nodes, _))| (rule, nodes, name(position))).collect::<Vec<Asked<'a>>>()
+        };
+        Self(plan.plausibility.iter().enumerate().filter(|(_, rule)| applies(rule)).flat_map(of_rule).collect())
+    }
+
+    /// Nodes whose values the rules need, of the track record (`track`) or of the other records.
+    pub fn wanted(&self, work: &Work<'_>, track: bool) -> BTreeSet<NodeId> {
+        let mut wanted = BTreeSet::new();
+        for (rule, nodes, _) in &self.0 {
+            let of_rule = nodes.inputs.iter().flat_map(InputNode::nodes);
+            wanted.extend(of_rule.filter(|&node| work.graph.nodes[node].track == track));
+            if let (Test::Distinct(_) | Test::Exchanged(_), Some(own), false) = (&rule.test, nodes.own, track) {
+                wanted.insert(own);
+            }
+        }
+        wanted
+    }
 }
 
 /// Checks one section and adds its findings to the values.
-pub fn look(work: &Work<'_>, unit: &Unit, sides: &Sides<'_>, track: &Evaluated, values: &mut SectionValues) {
+pub fn look((work, unit): (&Work<'_>, &Unit), questions: &Questions<'_>, sides: &Sides<'_>, track: &Evaluated, values: &mut SectionValues) {
     let mut channels: Vec<(&Plausibility, Exchanged, exchanged::Channels<'_>)> = Vec::new();
-    for (rule, nodes, name) in positions(work, unit, sides.known) {
+    for &(rule, nodes, name) in &questions.0 {
         match &rule.test {
             Test::Exchanged(test) => match (nodes.own, channels.last_mut()) {
                 (Some(own), Some((of, _, list))) if std::ptr::eq(*of, rule) => list.push((name, own)),

@@ -6,10 +6,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::checks::{record_checks, track_checks};
+use super::common::Meetings;
 use super::copies::Print;
 use super::facts::Known;
 use super::margins::note_margins;
-use super::plausibility;
+use super::plausibility::{self, Questions};
 use super::record::{Fault, Found, Opened, Work, needed, open};
 use super::sections::Unit;
 use super::sides::{Evaluated, Original, RecordOfSide, Sides};
@@ -85,11 +86,12 @@ fn active(work: &Work<'_>, unit: &Unit, known: &Known<'_>) -> Result<Active, Fau
 
 fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionValues) -> Result<Vec<SectionValues>, Fault> {
     let known = unit.known(work.facts);
-    let track = track_checks(work, unit, &known, common)?;
+    let questions = Questions::of(work, unit, &known);
+    let track = track_checks(work, unit, &questions, &known, common)?;
     let active = active(work, unit, &known)?;
     // A record is reduced to numbers before the next one is opened, so that one record is in memory at a time.
-    let simulated = records(work, unit, Side::Simulated, &wanted(work, unit, &known, &active, shifts, Side::Simulated), &known, common);
-    let wanted = wanted(work, unit, &known, &active, shifts, Side::Measured);
+    let simulated = records(work, unit, Side::Simulated, &wanted(work, &questions, &active, shifts, Side::Simulated), &known, common);
+    let wanted = wanted(work, &questions, &active, shifts, Side::Measured);
     let measured = match &simulated {
         Ok(simulated) if !shifts.plain() => shifted(work, unit, shifts, &wanted, &known, simulated, common),
         _ => records(work, unit, Side::Measured, &wanted, &known, common).map(|measured| vec![Ok(measured)]),
@@ -104,10 +106,11 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
         let mut values = common.clone();
         match measured {
             Ok(measured) => {
-                let sides = Sides::of_section(work, unit, (&simulated, &measured), original.as_ref(), &known);
+                let meetings = Meetings::default();
+                let sides = Sides::of_section(work, unit, (&simulated, &measured), original.as_ref(), (&known, &meetings));
                 quantities(work, &sides, &active, &mut values);
                 record_checks(work, &sides, &mut values);
-                plausibility::look(work, unit, &sides, &track, &mut values);
+                plausibility::look((work, unit), &questions, &sides, &track, &mut values);
             }
             Err(says) => values.fault = Some(says),
         }
@@ -149,8 +152,8 @@ fn records(
     records
 }
 
-fn of_side(work: &Work<'_>, unit: &Unit, which: WhichRecord, found: Evaluated) -> RecordOfSide {
-    let campaign = work.campaign(unit);
+fn of_side(work: &Work<'_>, unit: &Unit, which: WhichRecord, found: Vec<(NodeId, Found)>) -> RecordOfSide {
+    let (campaign, found) = (work.campaign(unit), Evaluated::from(found));
     RecordOfSide { name: campaign.record_name(which).cloned(), called: campaign.record_called(which).cloned(), which, found }
 }
 
@@ -217,7 +220,7 @@ fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &Active, values: &mut 
 }
 
 /// Nodes whose values are needed from the records of one side.
-fn wanted(work: &Work<'_>, unit: &Unit, known: &Known<'_>, active: &Active, shifts: &Shifts<'_>, side: Side) -> BTreeSet<NodeId> {
+fn wanted(work: &Work<'_>, questions: &Questions<'_>, active: &Active, shifts: &Shifts<'_>, side: Side) -> BTreeSet<NodeId> {
     let mut wanted = BTreeSet::new();
     for (index, quantity) in work.graph.quantities.iter().enumerate() {
         let rule = &work.plan.quantities[index];
@@ -229,7 +232,7 @@ fn wanted(work: &Work<'_>, unit: &Unit, known: &Known<'_>, active: &Active, shif
     for check in &work.graph.checks {
         wanted.extend(check.iter().flat_map(InputNode::nodes).filter(|&node| !work.graph.nodes[node].track));
     }
-    wanted.extend(plausibility::wanted(work, unit, known, false));
+    wanted.extend(questions.wanted(work, false));
     if shifts.farthest.is_some() {
         wanted.extend(synchronisation::signals(work, active));
     }
@@ -260,7 +263,7 @@ pub struct OneRecord {
     /// The column of its value in a row; a repeat takes the place of the simulation.
     pub place: Side,
     pub name: Option<Arc<str>>,
-    pub found: Evaluated,
+    pub found: Vec<(NodeId, Found)>,
     pub opened: Opened,
 }
 
@@ -297,7 +300,8 @@ pub fn single(work: &Work<'_>, unit: &Unit, index: usize, signal: usize) -> Resu
         }
         None => None,
     };
-    let sides = Sides::of_section(work, unit, (&simulated, &measured), original.as_ref(), &known);
+    let meetings = Meetings::default();
+    let sides = Sides::of_section(work, unit, (&simulated, &measured), original.as_ref(), (&known, &meetings));
     let rows = sides.rows(work, signal, nodes).map_err(Fault::new)?;
     Ok(Computed { rows, records: all })
 }

@@ -1,8 +1,9 @@
 //! The evaluated records of one section, and the values, differences and metrics computed from them.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::common::{Both, Common};
+use super::common::{Both, Meetings};
 use super::facts::Known;
 use super::record::{Found, Work};
 use super::sections::Unit;
@@ -14,10 +15,37 @@ use crate::check::plan::{Center, Chosen, Evaluation, Expr, InputSide, Kind, Pair
 use crate::data::WhichRecord;
 use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
 use crate::metrics::percentile::Method;
-use crate::metrics::statistics;
+use crate::metrics::{pair, statistics};
 
-/// Values of the requested nodes of one record.
-pub type Evaluated = Vec<(NodeId, Found)>;
+/// Values of the requested nodes of one record, in the order in which they were computed.
+#[derive(Clone, Debug, Default)]
+pub struct Evaluated {
+    all: Vec<(NodeId, Found)>,
+    /// For each node, its place among all and one more; 0 where it has none.
+    places: Vec<usize>,
+}
+
+impl From<Vec<(NodeId, Found)>> for Evaluated {
+    fn from(all: Vec<(NodeId, Found)>) -> Self {
+        let mut places = vec![0; all.iter().map(|(node, _)| node + 1).max().unwrap_or(0)];
+        // Of a node that was found twice, the first counts.
+        for (at, (node, _)) in all.iter().enumerate().rev() {
+            places[*node] = at + 1;
+        }
+        Self { all, places }
+    }
+}
+
+impl Evaluated {
+    pub fn get(&self, node: NodeId) -> Option<&Found> {
+        let place = self.places.get(node)?.checked_sub(1)?;
+        self.all.get(place).map(|(_, found)| found)
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = &(NodeId, Found)> {
+        self.all.iter()
+    }
+}
 
 /// One record of a side.
 #[derive(Clone, Debug)]
@@ -41,6 +69,7 @@ pub struct Sides<'a> {
     pub extent: Option<Extent>,
     /// Interpolation rule of percentiles.
     pub method: Method,
+    pub meetings: &'a Meetings,
 }
 
 /// The original of a repeated section, and its measured records.
@@ -62,10 +91,11 @@ pub struct Two<'a> {
     pub method: Method,
     /// Added to the axis of the simulated record, SI: a repeat is at another distance than its original.
     pub shift: f64,
+    pub meetings: &'a Meetings,
 }
 
 /// The values of a side that is not read.
-pub static NOT_READ: Evaluated = Vec::new();
+pub static NOT_READ: Evaluated = Evaluated { all: Vec::new(), places: Vec::new() };
 
 impl<'a> Sides<'a> {
     /// The simulated and the measured records of a section.
@@ -74,9 +104,9 @@ impl<'a> Sides<'a> {
         unit: &Unit,
         (simulated, measured): (&'a [RecordOfSide], &'a [RecordOfSide]),
         original: Option<&'a Original<'a>>,
-        known: &'a Known<'a>,
+        (known, meetings): (&'a Known<'a>, &'a Meetings),
     ) -> Self {
-        Self { simulated, measured, original, known, extent: unit.extent, method: work.plan.sections.percentiles }
+        Self { simulated, measured, original, known, extent: unit.extent, method: work.plan.sections.percentiles, meetings }
     }
 
     fn of(&self, side: Side) -> &'a [RecordOfSide] {
@@ -88,12 +118,13 @@ impl<'a> Sides<'a> {
 
     /// One record in the place of both sides.
     pub fn alone(&self, record: &'a RecordOfSide) -> Two<'a> {
-        Two { simulated: &record.found, measured: &record.found, known: self.known, extent: self.extent, method: self.method, shift: 0.0 }
+        let Self { known, extent, method, meetings, .. } = *self;
+        Two { simulated: &record.found, measured: &record.found, known, extent, method, shift: 0.0, meetings }
     }
 
     /// Every record of one side with every record of the other, with the names of those of which there are several.
     pub fn pairs(&self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>)> {
-        let (known, extent, method) = (self.known, self.extent, self.method);
+        let Self { known, extent, method, meetings, .. } = *self;
         let of = |records: &'a [RecordOfSide]| -> Vec<(Option<Arc<str>>, &'a Evaluated)> {
             if records.is_empty() {
                 return vec![(None, &NOT_READ)];
@@ -103,7 +134,7 @@ impl<'a> Sides<'a> {
         let (simulated, measured) = (of(self.simulated), of(self.measured));
         simulated.into_iter().flat_map(move |(s, simulated)| {
             let one = |(m, measured): &(Option<Arc<str>>, &'a Evaluated)| {
-                (names(s.as_ref(), m.as_ref()), Two { simulated, measured, known, extent, method, shift: 0.0 })
+                (names(s.as_ref(), m.as_ref()), Two { simulated, measured, known, extent, method, shift: 0.0, meetings })
             };
             measured.iter().map(one).collect::<Vec<_>>()
         })
@@ -112,12 +143,12 @@ impl<'a> Sides<'a> {
     /// Every measured record of a repeat with that of its original, which takes the place of the measurement. Distances are counted
     /// from the start of each section.
     fn repeats(&self) -> impl Iterator<Item = Joined<'a>> {
-        let (known, own, method) = (self.known, self.extent, self.method);
+        let Self { known, extent: own, method, meetings, .. } = *self;
         self.original.into_iter().flat_map(move |original| {
             let extent = original.unit.extent;
             let shift = extent.zip(own).map_or(0.0, |((first, _), (again, _))| first - again);
             self.measured.iter().zip(&original.records).map(move |(repeat, first)| {
-                let two = Two { simulated: &repeat.found, measured: &first.found, known, extent, method, shift };
+                let two = Two { simulated: &repeat.found, measured: &first.found, known, extent, method, shift, meetings };
                 let second = Two { known: &original.known, ..self.alone(first) };
                 Joined { record: repeat.name.clone(), two, first: self.alone(repeat), second }
             })
@@ -323,21 +354,27 @@ impl Two<'_> {
 
     /// A metric of both signals of a node, and the number of measured samples.
     fn compared(&self, metric: Metric, on_common_points: bool, node: NodeId, over: Option<NodeId>) -> Result<(f64, usize), String> {
-        let (simulated, measured) = (samples_of(self.simulated, node)?, samples_of(self.measured, node)?);
-        let common = if on_common_points {
-            Common::of(simulated, measured, self.extent, self.shift)?
-        } else {
-            Common { simulated: simulated.values.to_vec(), measured: measured.clone() }
-        };
+        let of @ (simulated, measured) = (samples_of(self.simulated, node)?, samples_of(self.measured, node)?);
+        let meeting = if on_common_points { Some(self.meetings.of(simulated, measured, self.extent, self.shift)?) } else { None };
         let over = match over {
             None => None,
             Some(node) => Some((samples_of(self.simulated, node)?, samples_of(self.measured, node)?)),
         };
         let over = over.map(|(s, m)| (s.values.as_slice(), m.values.as_slice()));
-        let (Rate::PerTime(rate) | Rate::PerLength(rate)) = common.measured.along.rate;
-        let measured = &common.measured.values;
-        let pair = Pair { axis: &common.measured.along.axis, simulated: &common.simulated, measured, rate, band: None, over };
-        Ok((metric.run(&pair)?, measured.len()))
+        let (Rate::PerTime(rate) | Rate::PerLength(rate)) = measured.along.rate;
+        let (axis, simulated, measured) = match &meeting {
+            Some(meeting) => (meeting.axis(), meeting.simulated(simulated), meeting.measured(measured)),
+            None => (measured.along.axis.as_slice(), Cow::Borrowed(simulated.values.as_slice()), measured.values.as_slice()),
+        };
+        let pair = Pair { axis, simulated: &simulated, measured, rate, band: None, over };
+        let Some(points) = metric.points() else { return Ok((metric.run(&pair)?, measured.len())) };
+        let quantiles = |side: Side, samples: &Samples, values: &[f64]| {
+            let sorted = self.meetings.sorted((samples, meeting.as_ref(), side), values);
+            pair::quantiles_of_sorted(&sorted, points).map_err(|undefined| undefined.to_string())
+        };
+        let of_simulated = quantiles(Side::Simulated, of.0, &simulated)?;
+        let of_measured = quantiles(Side::Measured, of.1, measured)?;
+        Ok((metric.run(&Pair { simulated: &of_simulated, measured: &of_measured, ..pair })?, measured.len()))
     }
 
     pub fn input(&self, input: &InputNode, side: InputSide) -> Result<f64, String> {
@@ -349,11 +386,11 @@ impl Two<'_> {
         match &input.joint {
             None => {
                 let record = self.record(input.side.resolve(side));
-                let samples = record.iter().find_map(|(id, found)| match found {
-                    Found::Number(_, samples) if *id == input.node => Some(*samples),
-                    _ => None,
-                });
-                Ok((number_of(record, input.node)?, samples.unwrap_or(0)))
+                let samples = match record.get(input.node) {
+                    Some(Found::Number(_, samples)) => *samples,
+                    _ => 0,
+                };
+                Ok((number_of(record, input.node)?, samples))
             }
             Some(Joint::Metric { metric, on_common_points, over }) => self.compared(*metric, *on_common_points, input.node, *over),
             Some(Joint::Samples { reducer, signal }) => {
@@ -363,6 +400,7 @@ impl Two<'_> {
                     known: self.known,
                     extent: self.extent,
                     shift: self.shift,
+                    meetings: self.meetings,
                 };
                 both.reduced(*reducer, self.method, signal)
             }
@@ -377,27 +415,26 @@ impl Two<'_> {
     fn samples(&self, work: &Work<'_>, nodes: &SignalNodes, value: &ValueNodes, side: InputSide) -> usize {
         let own = |input: &&InputNode| work.graph.nodes[input.node].inputs.contains(&nodes.processed);
         let input = value.inputs.iter().find(own).or(value.inputs.first());
-        let found = input.and_then(|input| self.record(side).iter().find(|(id, _)| *id == input.node));
-        match found {
-            Some((_, Found::Number(_, samples))) => *samples,
-            Some((_, Found::Samples(samples))) => samples.values.len(),
-            Some((_, Found::Failed(_))) | None => 0,
+        match input.and_then(|input| self.record(side).get(input.node)) {
+            Some(Found::Number(_, samples)) => *samples,
+            Some(Found::Samples(samples)) => samples.values.len(),
+            Some(Found::Failed(_)) | None => 0,
         }
     }
 }
 
 pub fn number_of(found: &Evaluated, node: NodeId) -> Result<f64, String> {
-    match found.iter().find(|(id, _)| *id == node) {
-        Some((_, Found::Number(value, _))) => Ok(*value),
-        Some((_, Found::Failed(reason))) => Err(reason.clone()),
+    match found.get(node) {
+        Some(Found::Number(value, _)) => Ok(*value),
+        Some(Found::Failed(reason)) => Err(reason.clone()),
         _ => Err("a value is missing".into()),
     }
 }
 
 pub fn samples_of(found: &Evaluated, node: NodeId) -> Result<&Samples, String> {
-    match found.iter().find(|(id, _)| *id == node) {
-        Some((_, Found::Samples(samples))) => Ok(samples),
-        Some((_, Found::Failed(reason))) => Err(reason.clone()),
+    match found.get(node) {
+        Some(Found::Samples(samples)) => Ok(samples),
+        Some(Found::Failed(reason)) => Err(reason.clone()),
         _ => Err("a signal is missing".into()),
     }
 }

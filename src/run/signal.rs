@@ -50,7 +50,14 @@ impl Along {
         from..to.max(from)
     }
 
-    fn part(&self, range: Range<usize>) -> Self {
+    /// The same, of a section or of all; there must be one sample.
+    pub fn part_inside(&self, extent: Option<Extent>) -> Result<Range<usize>, String> {
+        let Some((start, end)) = extent else { return Ok(0..self.axis.len()) };
+        let range = self.inside((start, end));
+        if range.is_empty() { Err(format!("no sample lies between {} and {}", rounded(start), rounded(end))) } else { Ok(range) }
+    }
+
+    pub fn part(&self, range: Range<usize>) -> Self {
         let part = |of: &[f64]| Arc::new(of[range.clone()].to_vec());
         Self {
             axis: part(&self.axis),
@@ -95,10 +102,7 @@ impl Cutter {
         let cut = match self.known.iter().position(|(whole, ..)| Arc::ptr_eq(whole, &samples.along)) {
             Some(known) => &self.known[known],
             None => {
-                let range = samples.along.inside(self.extent);
-                if range.is_empty() {
-                    return Err(format!("no sample lies between {} and {}", rounded(self.extent.0), rounded(self.extent.1)));
-                }
+                let range = samples.along.part_inside(Some(self.extent))?;
                 let part = Arc::new(samples.along.part(range.clone()));
                 self.known.push((Arc::clone(&samples.along), range, part));
                 &self.known[self.known.len() - 1]

@@ -61,7 +61,7 @@ pub fn stretch(
         let read = file.seek(SeekFrom::Start(mark.from)).and_then(|_| (&mut file).take(mark.to - mark.from).read_to_end(&mut buffer));
         read.map_err(|error| one(unreadable(shown, &error)))?;
         let text = decode_from(&buffer, shown, mark.first_row + 2).map_err(one)?;
-        rows::read(text, 0, headings.len(), &mut columns, rows::Part { shown, before: mark.first_row })?;
+        rows::read(text, 0, headings.len(), &mut columns, rows::Part { shown, before: mark.first_row }, None)?;
         stretch.add(&columns, mark.first_row);
     }
     columns.iter_mut().for_each(|column| column.values = Vec::new());

@@ -93,6 +93,7 @@ fn number(digits: u64) -> Option<i64> {
 mod tests {
     use proptest::prelude::*;
 
+    use super::super::lanes::{Lanes, each};
     use super::*;
 
     /// In the middle of other cells.
@@ -147,8 +148,35 @@ mod tests {
         assert_eq!(read(b"1e999,", 0..5), None);
     }
 
+    /// What the lanes of this processor read, they read as the standard library does.
+    #[test]
+    fn any_lanes_read_the_same() {
+        let long = ["9007199254740992", "9007199254740993", "0.123456789012345", "-0.01806157", "123456789.123456", ".5", "5.", "1e-5"];
+        let faults = ["", "-", ".", "-.", "--1", "1.2.3", "1:5", "1/5", "12345678901234567x", "0x1", "1,", "inf", "nan", "1 "];
+        each!(lanes => {
+            for text in long.into_iter().chain(["9007199254740993.5", "12345678901234567", "0.00000000000000001"]) {
+                let row = format!("0.98765432109876,{text},0.98765432109876");
+                assert_eq!(lanes.number(row.as_bytes(), 17..17 + text.len()), text.parse().ok(), "{text}");
+            }
+            for text in faults {
+                let row = format!("0.98765432109876,{text},0.98765432109876");
+                assert_eq!(lanes.number(row.as_bytes(), 17..17 + text.len()), None, "{text}");
+            }
+        });
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4096))]
+
+        /// As the standard library, which rounds correctly.
+        #[test]
+        fn lanes_are_right_to_the_last_bit(text in "-?[0-9]{0,10}(\\.[0-9]{0,16})?") {
+            let row = format!("0.98765432109876,{text},0.98765432109876");
+            let expected = text.parse::<f64>().ok().map(f64::to_bits);
+            each!(lanes => {
+                prop_assert_eq!(lanes.number(row.as_bytes(), 17..17 + text.len()).map(f64::to_bits), expected);
+            });
+        }
 
         /// The standard library rounds correctly.
         #[test]
@@ -161,10 +189,12 @@ mod tests {
 
         #[test]
         fn any_bytes_are_survived(bytes in prop::collection::vec(prop::sample::select(b"0123456789-+.,e\n\r \xff\x80:/".to_vec()), 0..32), from in 0..32_usize, to in 0..34_usize) {
-            if let Some(number) = read(&bytes, from..to) {
-                let text = std::str::from_utf8(&bytes[from..to]).expect("digits");
-                prop_assert_eq!(text.parse::<f64>().ok().map(f64::to_bits), Some(number.to_bits()));
-            }
+            each!(lanes => {
+                if let Some(number) = lanes.number(&bytes, from..to) {
+                    let text = std::str::from_utf8(&bytes[from..to]).expect("digits");
+                    prop_assert_eq!(text.parse::<f64>().ok().map(f64::to_bits), Some(number.to_bits()));
+                }
+            });
         }
     }
 }

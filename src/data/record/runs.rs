@@ -189,7 +189,7 @@ pub(super) fn text(path: &Path, shown: &str, wanted: &[Wanted], each: &mut dyn F
         }
         if end > 0 && (full > 0 || rows_read == 0) {
             let text = decode_from(&buffer[..end], shown, rows_read + 2).map_err(one)?;
-            let rows = rows::read(text, 0, headings.len(), &mut columns, rows::Part { shown, before: rows_read })?;
+            let rows = rows::read(text, 0, headings.len(), &mut columns, rows::Part { shown, before: rows_read }, None)?;
             let before = bytes - buffer.len() as u64;
             each(&Block { first_row: rows_read, rows, columns: &columns, bytes: (before, before + end as u64) });
             rows_read += rows;

@@ -3,7 +3,7 @@
 use super::{Undefined, check, check_values};
 use crate::metrics::{
     incomplete_beta::incomplete_beta,
-    percentile::{Method, percentiles},
+    percentile::{Method, percentiles_of_sorted},
     statistics::{Divisor, mean, peak_magnitude, variance},
     sum::{sum, sum_of_pairs},
 };
@@ -29,11 +29,19 @@ pub fn area_metric(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined
 /// # Errors
 /// No points, no samples, a sample that is not finite.
 pub fn quantiles(signal: &[f64], points: usize) -> Result<Vec<f64>, Undefined> {
+    quantiles_of_sorted(&sorted(signal), points)
+}
+
+/// [`quantiles`] of a signal whose samples are sorted already, for several numbers of points.
+///
+/// # Errors
+/// As [`quantiles`].
+pub fn quantiles_of_sorted(sorted: &[f64], points: usize) -> Result<Vec<f64>, Undefined> {
     if points == 0 {
         return Err(Undefined::because("a distribution needs at least one point"));
     }
     let percents: Vec<f64> = (0..points).map(|point| 100.0 * (point as f64 + 0.5) / points as f64).collect();
-    percentiles(signal, &percents, Method::Linear).map_err(|error| Undefined::because(error.to_string()))
+    percentiles_of_sorted(sorted, &percents, Method::Linear).map_err(|error| Undefined::because(error.to_string()))
 }
 
 /// [`area_metric`] for different numbers of values: the integral of the distance between the distribution functions.

@@ -21,7 +21,7 @@ pub use deviation::{
 };
 pub use distribution::{
     area_between, area_metric, bogojevic, bogojevic_mean_term, bogojevic_variance_probability, bogojevic_variance_ratio, f_two_sided,
-    quantiles,
+    quantiles, quantiles_of_sorted,
 };
 pub use geers::{
     geers_comprehensive, geers_phase, russell_comprehensive, russell_magnitude, russell_phase, sprague_geers_comprehensive,
