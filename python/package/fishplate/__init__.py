@@ -170,9 +170,9 @@ def _campaigns(given: Any) -> list[_fishplate.Campaign]:
     opened = [each if isinstance(each, Campaign) else Campaign(_existing(each)) for each in ([given] if one else given)]
     if not opened:
         raise _wrong("no-campaign", "no campaign is given")
-    for one in opened:
-        if one._given[3]:
-            says = f"the records of {one.name!r} are in a data frame of an engine"
+    for each in opened:
+        if each._given[3]:
+            says = f"the records of {each.name!r} are in a data frame of an engine"
             raise _wrong("not-here", says, "use `certify` of that engine, such as `fishplate.spark.certify`")
     return [each._inner for each in opened]
 

@@ -94,7 +94,10 @@ class Job:
         count = max(1, 4 * workers) if shards is None else shards
         if count < 1:
             raise wrong("shards", f"shards = {shards} is no number of parts")
-        pieces, frames, places, given = None, {}, {}, None
+        pieces: Any = None
+        frames: dict[str, Any] = {}
+        places: dict[str, list[int]] = {}
+        given: list[str] | _records.Bare
         if isinstance(campaign, Campaign):
             places = _records.places(campaign, count)
             given, pieces, frames = _records.split(campaign, places)

@@ -88,7 +88,7 @@ def packed(record: Any) -> bytes:
     sink = pyarrow.BufferOutputStream()
     with pyarrow.ipc.new_stream(sink, record.schema) as stream:
         stream.write_table(record)
-    return sink.getvalue().to_pybytes()
+    return bytes(sink.getvalue())
 
 
 def unpacked(content: bytes) -> Any:

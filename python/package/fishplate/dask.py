@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from importlib import import_module
 from os import PathLike
 from typing import Any
 
@@ -35,8 +36,6 @@ def certify(
 
     A part whose worker is lost is made again. One that cannot be made is told in a warning, and its sections as missing.
     """
-    from distributed import as_completed
-
     workers = len(client.scheduler_info(n_workers=-1)["workers"])
     job = _engines.Job.of(campaign, protocol, parameters, shards=shards, workers=workers, plots=plots, keep=keep)
     here = _records.gathered(job.pieces) if job.pieces is not None else {}
@@ -50,7 +49,7 @@ def certify(
         for number in job.open
     }
     try:
-        for future in as_completed(list(futures)):
+        for future in import_module("distributed").as_completed(list(futures)):
             job.attempt(futures[future], future.result)
         return job.result(plots)
     finally:
@@ -67,9 +66,7 @@ def _part(number: int, work: _engines.Work, pieces: list[Any]) -> bytes:
 
 def _cut(client: Any, frame: Any, path: str, places: dict[str, list[int]]) -> list[Any]:
     """The pieces of each partition of a data frame, on the workers."""
-    import dask
-
-    made = dask.delayed(lambda rows: _records.gathered(_records.cut(rows, path, places)), pure=False)
+    made = import_module("dask").delayed(lambda rows: _records.gathered(_records.cut(rows, path, places)), pure=False)
     return list(client.compute([made(rows) for rows in frame.to_delayed()]))
 
 
@@ -98,19 +95,17 @@ def main() -> int:
 
 
 def _cluster(address: str | None, work: Callable[..., Result]) -> Result:
-    from distributed import Client, LocalCluster
-
+    distributed: Any = import_module("distributed")
     if address is not None:
-        with Client(address) as client:
+        with distributed.Client(address) as client:
             return work(certify, client)
-    with LocalCluster(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+    options = dict(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=None)
+    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
         return work(certify, client)
 
 
 def _command(address: str, words: list[str]) -> int:
-    from distributed import Client
-
-    with Client(address) as client:
+    with import_module("distributed").Client(address) as client:
         # A task that a lost worker had is given to another one; the command is started there once more.
         done = client.submit(_launch.here, words, os.getcwd(), dict(os.environ), pure=False, retries=_engines.RETRIES)
         return _launch.told(*done.result())

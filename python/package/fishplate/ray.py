@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from importlib import import_module
 from os import PathLike
 from typing import Any
 
@@ -24,8 +25,7 @@ def certify(
     **parameters: Any,
 ) -> Result:
     """The same result as `fishplate.certify`, made by the workers of a Ray cluster. All else is as of `fishplate.dask.certify`."""
-    import ray
-
+    ray: Any = import_module("ray")
     workers = int(ray.cluster_resources().get("CPU", 1))
     job = _engines.Job.of(campaign, protocol, parameters, shards=shards, workers=workers, plots=plots, keep=keep)
     if job.frames:
@@ -42,8 +42,7 @@ def certify(
 
 
 def _got(task: Any) -> Any:
-    import ray
-
+    ray: Any = import_module("ray")
     try:
         return ray.get(task)
     except ray.exceptions.RayTaskError as error:
@@ -52,10 +51,8 @@ def _got(task: Any) -> Any:
 
 def _of_frames(job: _engines.Job) -> Any:
     """The parts of a campaign whose records are datasets of Ray."""
-    import ray
-
     places, work = job.places, job.work
-    pieces = [ray.data.from_arrow(job.pieces)] if job.pieces is not None else []
+    pieces = [import_module("ray.data").from_arrow(job.pieces)] if job.pieces is not None else []
     for path, frame in job.frames.items():
         pieces.append(frame.map_batches(lambda rows, path=path: _records.cut(rows, path, places), batch_format="pyarrow"))
     whole = pieces[0].union(*pieces[1:]) if pieces[1:] else pieces[0]
@@ -76,8 +73,7 @@ def simulator(
     function: Callable[[Task], Any], *, keep: str | PathLike[str] | None = None, identity: str | None = None
 ) -> Callable[[Task], Any]:
     """A simulator for `diagnose` whose runs are tasks of a Ray cluster; see `fishplate.dask.simulator`."""
-    import ray
-
+    ray: Any = import_module("ray")
     task = ray.remote(max_retries=_engines.RETRIES)(_runs.called)
 
     def run(asked: _runs.Run) -> Any:
@@ -91,8 +87,7 @@ def main() -> int:
 
 
 def _cluster(address: str | None, work: Callable[..., Result]) -> Result:
-    import ray
-
+    ray: Any = import_module("ray")
     ray.init(address=address, include_dashboard=False, log_to_driver=False)
     try:
         return work(certify)
@@ -101,8 +96,7 @@ def _cluster(address: str | None, work: Callable[..., Result]) -> Result:
 
 
 def _command(address: str, words: list[str]) -> int:
-    import ray
-
+    ray: Any = import_module("ray")
     ray.init(address=address, log_to_driver=False)
     try:
         task = ray.remote(max_retries=_engines.RETRIES)(_launch.here)
