@@ -76,7 +76,7 @@ pub fn preflight(
     };
     let without = run(&[]).map_err(one)?;
     let before = seen.of(0, &without, true);
-    let each = |(effect, fit): &(&Effect, &Fit)| {
+    let each = |(effect, fit): &(&Effect, &Fit)| -> Result<Moved, Problem> {
         let (applied, size) = applied(effect, fit);
         let plan = Plan::new(catalogue, &applied, &observed.section, name)?;
         let mut signals = if plan.settings.is_empty() { without.clone() } else { run(&plan.settings)? };
