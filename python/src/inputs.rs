@@ -11,6 +11,7 @@ use crate::error::{one_raised, or_raise};
 use crate::table::Table;
 use fishplate::data;
 use fishplate::data::campaign::Memory;
+use fishplate::data::sites::originals;
 use fishplate::problem::Problems;
 
 /// A campaign that is open. Its records are read when it is evaluated.
@@ -51,6 +52,12 @@ impl Campaign {
     #[getter]
     fn sections(&self) -> Vec<&str> {
         self.inner.names.iter().map(|name| name.value.as_str()).collect()
+    }
+
+    /// The number of the section that each section repeats, of whose records it needs those, too.
+    #[getter]
+    fn originals(&self) -> Vec<Option<usize>> {
+        self.inner.sections.as_ref().map_or_else(|| vec![None; self.inner.names.len()], originals)
     }
 
     fn __repr__(&self) -> String {

@@ -74,7 +74,7 @@ mod _fishplate {
     #[pymodule_export]
     use super::shipped;
     #[pymodule_export]
-    use super::table::{Table, csv, from_arrays, read_record};
+    use super::table::{Table, csv, from_arrays, read_elsewhere, read_record};
 
     use pyo3::prelude::*;
 

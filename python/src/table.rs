@@ -109,6 +109,12 @@ impl Table {
         self.schema.fields().iter().map(|field| field.name().clone()).collect()
     }
 
+    /// Ending, SHA-256 and size of the file that it was read from.
+    #[getter]
+    fn _file(&self) -> Option<(&'static str, &str, usize)> {
+        self.file.as_ref().map(|file| (file.ending, file.sha256.as_str(), file.bytes))
+    }
+
     #[getter]
     fn num_rows(&self) -> usize {
         self.rows()
@@ -194,6 +200,15 @@ pub fn read_record(py: Python<'_>, path: PathBuf) -> PyResult<Table> {
         Ok(Table { file: Some(file), ..Table::new(columns) })
     });
     made.map_err(|problems: Vec<Problem>| raised(py, &Problems(problems)))
+}
+
+/// A table that another process read from a file, with what `_file` said there.
+#[pyfunction]
+pub fn read_elsewhere(table: &Bound<'_, PyAny>, file: (String, String, usize)) -> PyResult<Table> {
+    let (ending, sha256, bytes) = file;
+    let ending = Format::ALL.into_iter().map(Format::ending).find(|known| *known == ending);
+    let file = ending.map(|ending| ReadFrom { ending, sha256, bytes });
+    Ok(Table { file, ..Table::of(table)? })
 }
 
 /// A small table as the text of a CSV file. Missing values and NaN are empty cells.

@@ -18,6 +18,12 @@ def coach():
     return COACH
 
 
+@pytest.fixture(scope="session")
+def whole():
+    """The result on one machine."""
+    return fishplate.certify(COACH)
+
+
 def records(folder, kind, convert):
     return {path.stem: convert(fishplate.read(path)) for path in sorted((folder / kind).glob("*.csv"))}
 
@@ -88,3 +94,18 @@ def small(count=12, seed=1, rows=1200, **changes):
         "simulation": {name: record() for name in names},
     }
     return parts | changes
+
+
+def long_frame(kind, folder=COACH, seed=1):
+    """The records of all sections in one data frame, its rows in no order."""
+    import polars
+
+    frames = [table.to_polars().with_columns(polars.lit(section).alias("section")) for section, table in records(folder, kind, lambda table: table).items()]
+    return polars.concat(frames, how="diagonal").sample(fraction=1.0, shuffle=True, seed=seed)
+
+
+def of_frames(convert, folder=COACH, kinds=KINDS):
+    """The campaign of long data frames, which `convert` makes those of an engine."""
+    text = lambda name: (folder / name).read_text()
+    frames = {kind: convert(long_frame(kind, folder)) for kind in kinds}
+    return fishplate.Campaign(text("campaign.yaml"), vehicle=text("vehicle.yaml"), sections=text("sections.csv"), **frames)

@@ -28,6 +28,10 @@ pub struct SimulatorChoice {
     /// Neither store nor reuse records of another simulator.
     #[arg(long, requires = "simulator", conflicts_with = "cache")]
     no_cache: bool,
+    /// Words before each call of another simulator that start it on another machine and wait for it, such as `srun -n1`
+    /// [default: calls run here]. All machines see the folder of the cache
+    #[arg(long, value_name = "WORDS", requires = "cache", allow_hyphen_values = true)]
+    launch: Option<String>,
 }
 
 /// A simulator, ready for a campaign.
@@ -53,7 +57,8 @@ impl SimulatorChoice {
         };
         let (source, _) = read_text(file, &file.display().to_string()).map_err(|problem| problems.push(problem)).ok()?;
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let program = read_program(&source, folder, problems)?;
+        let mut program = read_program(&source, folder, problems)?;
+        program.launch = self.launch.iter().flat_map(|words| words.split_whitespace()).map(str::to_string).collect();
         let cache = match (&self.cache, self.no_cache) {
             (_, true) => Ok(Cache::none()),
             (Some(folder), _) => Cache::at(folder),

@@ -6,6 +6,7 @@
 mod columnar;
 mod fault;
 mod header_fault;
+mod held;
 mod indexed;
 mod known;
 mod lanes;
@@ -20,6 +21,7 @@ mod source;
 mod wide;
 
 pub(crate) use columnar::{guard, guarded};
+pub use held::Held;
 pub use known::Known;
 pub use memory::{Frame, ReadFrom};
 pub use raw::read_raw;

@@ -1,5 +1,7 @@
 //! Before a diagnosis: each effect once on one section. It shows which features an effect changes, and stops at a simulator that fails.
 
+use rayon::prelude::*;
+
 use super::observe::features::Kind;
 use super::observe::observations::Observations;
 use super::settings::Settings;
@@ -74,17 +76,18 @@ pub fn preflight(
     };
     let without = run(&[]).map_err(one)?;
     let before = seen.of(0, &without, true);
-    let mut effects = Vec::new();
-    for effect in candidates().filter(reached) {
-        for fit in &effect.fits {
-            let (applied, size) = applied(effect, fit);
-            let plan = Plan::new(catalogue, &applied, &observed.section, name).map_err(one)?;
-            let mut signals = if plan.settings.is_empty() { without.clone() } else { run(&plan.settings).map_err(one)? };
-            plan.operate(&mut signals, &observed.section).map_err(one)?;
-            let after = seen.of(0, &signals, true);
-            effects.push(Moved { title: effect.title.clone(), size, features: moved(&seen, settings, &before, &after) });
-        }
-    }
+    let each = |(effect, fit): &(&Effect, &Fit)| -> Result<Moved, Problem> {
+        let (applied, size) = applied(effect, fit);
+        let plan = Plan::new(catalogue, &applied, &observed.section, name)?;
+        let mut signals = if plan.settings.is_empty() { without.clone() } else { run(&plan.settings)? };
+        plan.operate(&mut signals, &observed.section)?;
+        let after = seen.of(0, &signals, true);
+        Ok(Moved { title: effect.title.clone(), size, features: moved(&seen, settings, &before, &after) })
+    };
+    let fits: Vec<(&Effect, &Fit)> =
+        candidates().filter(reached).flat_map(|effect| effect.fits.iter().map(move |fit| (effect, fit))).collect();
+    let made: Vec<Result<Moved, Problem>> = fits.par_iter().map(each).collect();
+    let effects = made.into_iter().collect::<Result<Vec<Moved>, Problem>>().map_err(one)?;
     let left_out = candidates().filter(|effect| !reached(effect)).map(|effect| effect.title.clone()).collect();
     Ok(Preflight { section: observed.section.name().to_string(), features: seen.features.len(), effects, left_out })
 }

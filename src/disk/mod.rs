@@ -328,6 +328,15 @@ pub fn scratch() -> io::Result<tempfile::TempDir> {
     tempfile::Builder::new().prefix("fishplate-").tempdir()
 }
 
+/// A temporary folder inside another one, removed when dropped.
+///
+/// # Errors
+/// The system's error.
+pub fn scratch_in(folder: &Path) -> io::Result<tempfile::TempDir> {
+    pass(Op::Scratch, folder)?;
+    tempfile::Builder::new().prefix("fishplate-").tempdir_in(folder)
+}
+
 /// A temporary file without a name, removed when dropped.
 ///
 /// # Errors

@@ -318,3 +318,51 @@ mod programs {
         assert_eq!(channel(&after, "Q_1L"), channel(&before, "Q_1L"));
     }
 }
+
+/// Another command starts each call, as on another machine: the same records, which the cache of one serves to the other.
+#[cfg(unix)]
+#[test]
+fn calls_that_another_command_starts() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let place = twin();
+    let launcher =
+        place.write("launcher", "#!/bin/sh\n[ \"$1\" = --there ] && shift && echo \"$@\" >> \"$LOG\" && TMPDIR=/nowhere exec \"$@\"\n");
+    fs::set_permissions(&launcher, fs::Permissions::from_mode(0o755)).expect("executable");
+    let log = place.path("log");
+    let sim = place.text("sim.yaml");
+    place.write("sim.yaml", &format!("{sim}environment: {{LOG: '{}'}}\n", log.display()));
+    let launch = format!("{} --there", launcher.display());
+    let ran = place.simulated("there", &arguments(&["--launch", &launch]));
+    assert!(ran.stderr.contains("(4 calls of twin, 0 records from the cache)"), "{}", ran.stderr);
+    let calls = fs::read_to_string(&log).expect("calls");
+    // The record is written where all machines see it.
+    let cache = place.path("cache").display().to_string();
+    assert!(calls.lines().count() == 4 && calls.lines().all(|call| call.starts_with(FISHPLATE) && call.contains(&format!("-o {cache}/"))));
+    let ran = place.simulated("here", &arguments(&[]));
+    assert!(ran.stderr.contains("(0 calls of twin, 4 records from the cache)"), "{}", ran.stderr);
+    place.simulated("alone", &[&USED[..], &["--no-cache"]].concat());
+    for section in SECTIONS {
+        let record = format!("simulation/{section}.csv");
+        assert!(place.text(&format!("there/{record}")) == place.text(&format!("alone/{record}")));
+    }
+    let left: Vec<_> = fs::read_dir(place.path("cache")).expect("a folder").flatten().filter(|entry| entry.file_name().len() > 2).collect();
+    assert!(left.is_empty(), "{left:?}");
+    let refused = place.simulate("refused", &[&USED[..], &["--launch", &launch]].concat());
+    assert!(refused.code == 2 && refused.stderr.contains("--cache"), "{}", refused.stderr);
+    let missing = place.simulate("missing", &[&USED[..], &["--cache", "other", "--launch", "no-such-launcher"]].concat());
+    assert!(missing.code == 3 && missing.stderr.contains("could not be started"), "{}", missing.stderr);
+}
+
+/// The process of a function is started so, too.
+#[cfg(unix)]
+#[test]
+fn a_function_that_another_command_starts() {
+    let place = Place::new();
+    place.write("twins.yaml", CATALOGUE);
+    place.write("sim.yaml", "simulator: twin\npython: twin.py\nchannels: [Y_1R]\n");
+    place.write("twin.py", "import os\nPARAMETERS = []\n\ndef simulate(parameters, inputs):\n    x = inputs['distance']\n    return {'Y_1R [kN]': [float(os.environ['THERE'])] * len(x)}\n");
+    let ran = place.simulated("there", &arguments(&["--launch", "env THERE=7.5"]));
+    assert!(ran.stderr.contains("(4 calls of twin, 0 records from the cache)"), "{}", ran.stderr);
+    assert!(channel(&place.record("there", SECTIONS[0]), "Y_1R").iter().all(|value| (value - 7.5).abs() < 1e-9));
+}

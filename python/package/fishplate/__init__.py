@@ -15,7 +15,7 @@ import os as _os
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from . import _fishplate
+from . import _fishplate, _records
 from ._fishplate import TYPESETS, Report, Result, Table, Task, __version__
 from ._tables import table as _table
 from ._tables import wrong as _wrong
@@ -54,8 +54,9 @@ class Campaign:
     sections
         The table of sections: a data frame, a dict of arrays, or the text of `sections.csv`.
     measurement, simulation, track
-        Dicts from section to record: a data frame, an Arrow table, a dict of arrays, or what `read` returns. Several simulations: a dict
-        from name to such a dict. The unit stands in the name of the column, `"Y_1R [kN]"`, or in the metadata of its field under `unit`.
+        Dicts from section to record: a data frame, an Arrow table, a dict of arrays, or what `read` returns. Or one data frame with the
+        rows of all sections and a column `section`; it may be a data frame of Spark, Dask or Ray, for `certify` of that engine.
+        Several simulations: a dict from name to such a dict or data frame. The unit stands in the name of the column, `"Y_1R [kN]"`, or in the metadata of its field under `unit`.
 
     With a folder, the parts that are given take the place of its files.
     """
@@ -66,9 +67,9 @@ class Campaign:
         *,
         vehicle: str | Mapping[str, Any] | None = None,
         sections: Any = None,
-        measurement: Mapping[str, Any] | None = None,
-        simulation: Mapping[str, Any] | None = None,
-        track: Mapping[str, Any] | None = None,
+        measurement: Any = None,
+        simulation: Any = None,
+        track: Any = None,
     ) -> None:
         folder, keys, text = _described(description)
         texts: dict[str, bytes] = {}
@@ -80,18 +81,36 @@ class Campaign:
             keys.setdefault("sections", "sections.csv")
             given = sections.encode() if isinstance(sections, str) else _fishplate.csv(_table(sections, "sections"))
             texts["sections.csv"] = given
+        named: list[tuple[str, Any]] = []
         for kind, of_sections in (("measurement", measurement), ("simulation", simulation), ("track", track)):
             if of_sections is None:
                 continue
-            nested = bool(of_sections) and all(_is_records(one) for one in of_sections.values())
+            nested = isinstance(of_sections, Mapping) and bool(of_sections) and all(_is_records(one) for one in of_sections.values())
             keys.setdefault(kind, {str(name): f"{kind}/{name}" for name in of_sections} if nested else kind)
-            named = [(f"{kind}/{name}", one) for name, one in of_sections.items()] if nested else [(kind, of_sections)]
-            for path, all_records in named:
-                for section, record in all_records.items():
-                    records[f"{path}/{section}"] = _table(record, f"{path}/{section}")
+            named += [(f"{kind}/{name}", one) for name, one in of_sections.items()] if nested else [(kind, of_sections)]
         if folder is None:
             texts["campaign.yaml"] = text if text is not None else _yaml(keys, "campaign")
+        frames: dict[str, Any] = {}
+        for path, all_records in named:
+            if not isinstance(all_records, Mapping):
+                if not _records.is_long(all_records):
+                    raise _wrong("not-records", f"`{path}` is neither a dict of records nor a data frame with a column `section`")
+                if _records.of_engine(all_records):
+                    frames[path] = all_records
+                    continue
+                all_records = _records.by_section(all_records, _fishplate.Campaign.of(folder, texts, {}).sections)
+            for section, record in all_records.items():
+                records[f"{path}/{section}"] = _table(record, f"{path}/{section}")
+        self._given = (folder, texts, records, frames)
         self._inner = _fishplate.Campaign.of(folder, texts, records)
+
+    @classmethod
+    def _of(cls, folder: str | None, texts: dict[str, bytes], records: dict[str, Any]) -> Campaign:
+        """From parts by their paths."""
+        made = cls.__new__(cls)
+        made._given = (folder, texts, records, {})
+        made._inner = _fishplate.Campaign.of(folder, texts, records)
+        return made
 
     @property
     def name(self) -> str:
@@ -119,7 +138,9 @@ def _described(description: Any) -> tuple[str | None, dict[str, Any], bytes | No
 
 
 def _is_records(one: Any) -> bool:
-    """Whether a value is a dict from section to record, not a record: a record in a dict has arrays."""
+    """Whether a value has the records of many sections: a dict of records, where a record has arrays; or a table with their names."""
+    if not isinstance(one, Mapping):
+        return _records.is_long(one)
     return isinstance(one, Mapping) and bool(one) and all(isinstance(record, (Mapping, Table)) or _speaks(record) for record in one.values())
 
 
@@ -149,6 +170,10 @@ def _campaigns(given: Any) -> list[_fishplate.Campaign]:
     opened = [each if isinstance(each, Campaign) else Campaign(_existing(each)) for each in ([given] if one else given)]
     if not opened:
         raise _wrong("no-campaign", "no campaign is given")
+    for each in opened:
+        if each._given[3]:
+            says = f"the records of {each.name!r} are in a data frame of an engine"
+            raise _wrong("not-here", says, "use `certify` of that engine, such as `fishplate.spark.certify`")
     return [each._inner for each in opened]
 
 

@@ -1,11 +1,18 @@
-"""`certify` on a Dask cluster: `fishplate.dask.certify(client, campaign)`."""
+"""`certify` on a Dask cluster, and simulators whose runs are tasks of it.
+
+    python -m fishplate.dask certify CAMPAIGN --out DIR [--scheduler ADDRESS]     without an address, a cluster of this machine's cores
+    python -m fishplate.dask run ADDRESS COMMAND...                               one command on a worker, for `--launch` of the program
+"""
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
+from importlib import import_module
 from os import PathLike
 from typing import Any
 
-from . import Result, _engines, judge
+from . import Result, Task, _engines, _launch, _records, _runs
 
 
 def certify(
@@ -15,19 +22,94 @@ def certify(
     *,
     shards: int | None = None,
     plots: int = 8,
+    keep: str | PathLike[str] | None = None,
     **parameters: Any,
 ) -> Result:
     """The same result as `fishplate.certify`, made by the workers of a `distributed.Client`.
 
-    The workers see the campaign under the same path. A part whose worker is lost is made again.
+    campaign
+        Folders that the workers see under the same path; or a `Campaign` in memory, or of Dask data frames.
+    shards
+        Number of parts; four for each worker.
+    keep
+        A folder that all workers see, for the values of the parts: a job that is started again makes only those that are missing.
+
+    A part whose worker is lost is made again. One that cannot be made is told in a warning, and its sections as missing.
     """
-    count = _engines.parts(shards, len(client.scheduler_info()["workers"]))
-    given = (count, _engines.folders(campaign), _engines.asked(protocol), parameters, plots > 0)
-    futures = [
-        client.submit(_engines.part, number, *given, pure=False, retries=_engines.RETRIES, key=f"fishplate-{number}-{id(given)}")
-        for number in range(count)
-    ]
+    workers = len(client.scheduler_info(n_workers=-1)["workers"])
+    job = _engines.Job.of(campaign, protocol, parameters, shards=shards, workers=workers, plots=plots, keep=keep)
+    here = _records.gathered(job.pieces) if job.pieces is not None else {}
+    there = [cut for path, frame in job.frames.items() for cut in _cut(client, frame, path, job.places)]
+
+    def records(number: int) -> list[Any]:
+        return [here.get(number, {}), *(client.submit(_of_part, cut, number, pure=False) for cut in there)]
+
+    futures = {
+        client.submit(_part, number, job.work, records(number), pure=False, retries=_engines.RETRIES, priority=-number): number
+        for number in job.open
+    }
     try:
-        return judge(client.gather(futures), plots=plots)
+        for future in import_module("distributed").as_completed(list(futures)):
+            job.attempt(futures[future], future.result)
+        return job.result(plots)
     finally:
-        client.cancel(futures)
+        client.cancel(list(futures))
+
+
+def _part(number: int, work: _engines.Work, pieces: list[Any]) -> bytes:
+    found: dict[str, tuple[bool, list[bytes]]] = {}
+    for some in pieces:
+        for path, (ordered, rows) in some.items():
+            found.setdefault(path, (ordered, []))[1].extend(rows)
+    return _engines.part(number, work, found)
+
+
+def _cut(client: Any, frame: Any, path: str, places: dict[str, list[int]]) -> list[Any]:
+    """The pieces of each partition of a data frame, on the workers."""
+    made = import_module("dask").delayed(lambda rows: _records.gathered(_records.cut(rows, path, places)), pure=False)
+    return list(client.compute([made(rows) for rows in frame.to_delayed()]))
+
+
+def _of_part(cut: dict[int, Any], number: int) -> Any:
+    return cut.get(number, {})
+
+
+def simulator(
+    client: Any, function: Callable[[Task], Any], *, keep: str | PathLike[str] | None = None, identity: str | None = None
+) -> Callable[[Task], Any]:
+    """A simulator for `diagnose` whose runs are tasks of a Dask cluster; `jobs` of `diagnose` is the number of runs at the same time.
+
+    keep, identity
+        A folder for its records, and a text that changes with the function and with whatever it reads: no run is made twice, also not if
+        the diagnosis is started again.
+    """
+
+    def run(task: _runs.Run) -> Any:
+        return client.submit(_runs.called, function, task, pure=False, retries=_engines.RETRIES).result()
+
+    return _runs.simulator(run, function, keep, identity)
+
+
+def main() -> int:
+    return _launch.main("dask", _cluster, _command)
+
+
+def _cluster(address: str | None, work: Callable[..., Result]) -> Result:
+    distributed: Any = import_module("distributed")
+    if address is not None:
+        with distributed.Client(address) as client:
+            return work(certify, client)
+    options = dict(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=None)
+    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
+        return work(certify, client)
+
+
+def _command(address: str, words: list[str]) -> int:
+    with import_module("distributed").Client(address) as client:
+        # A task that a lost worker had is given to another one; the command is started there once more.
+        done = client.submit(_launch.here, words, os.getcwd(), dict(os.environ), pure=False, retries=_engines.RETRIES)
+        return _launch.told(*done.result())
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

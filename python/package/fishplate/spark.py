@@ -1,12 +1,17 @@
-"""`certify` on a Spark cluster: `fishplate.spark.certify(spark, campaign)`."""
+"""`certify` on a Spark cluster: `fishplate.spark.certify(spark, campaign)`, and simulators whose runs are jobs of it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from os import PathLike
 from typing import Any
 
-from . import Result, _engines, judge
+from . import Result, Task, _engines, _records, _runs
+
+#: The columns of what executors return: the number of a part, its values, or a pickled error.
+VALUES = "part int, values binary, error binary"
+#: Those of a table of pieces.
+PIECES = "part int, record string, ordered boolean, rows binary"
 
 
 def certify(
@@ -16,22 +21,76 @@ def certify(
     *,
     shards: int | None = None,
     plots: int = 8,
+    keep: str | PathLike[str] | None = None,
     **parameters: Any,
 ) -> Result:
     """The same result as `fishplate.certify`, made by the executors of a Spark session through `mapInArrow`.
 
-    The executors have the wheel, and see the campaign under the same path. Spark makes a part again whose executor is lost.
+    The executors have the wheel, pyarrow and pandas. The campaign is folders that they see under the same path; or a `Campaign` in memory,
+    or of Spark data frames. All else is as of `fishplate.dask.certify`; `shards` is four for each core.
     """
-    count = _engines.parts(shards, spark.sparkContext.defaultParallelism)
-    given = (count, _engines.folders(campaign), _engines.asked(protocol), parameters, plots > 0)
+    workers = spark.sparkContext.defaultParallelism
+    job = _engines.Job.of(campaign, protocol, parameters, shards=shards, workers=workers, plots=plots, keep=keep)
+    work, numbers = job.work, job.open
 
-    def reduced(batches: Iterator[Any]) -> Iterator[Any]:
+    def of_numbers(batches: Iterator[Any]) -> Iterator[Any]:
+        for batch in batches:
+            yield from _values(_engines.row(numbers[at], work) for at in batch.column(0).to_pylist())
+
+    def of_pieces(table: Any) -> Any:
         import pyarrow
 
-        for batch in batches:
-            numbers = batch.column(0).to_pylist()
-            values = [_engines.part(number, *given) for number in numbers]
-            yield pyarrow.RecordBatch.from_arrays([pyarrow.array(values, pyarrow.binary())], names=["values"])
+        made = _records.gathered(table).items()
+        return pyarrow.Table.from_batches(list(_values(_engines.row(number, work, records) for number, records in made)))
 
-    rows = spark.range(0, count, 1, count).mapInArrow(reduced, "values binary").collect()
-    return judge([bytes(row["values"]) for row in rows], plots=plots)
+    if job.pieces is not None or job.frames:
+        made = _pieces(spark, job).groupBy("part").applyInArrow(of_pieces, VALUES)
+    else:
+        made = spark.range(0, len(numbers), 1, max(1, len(numbers))).mapInArrow(of_numbers, VALUES)
+    if numbers:
+        try:
+            _engines.rows(((row["part"], row["values"], row["error"]) for row in made.collect()), job)
+        except Exception:
+            # Spark ends the whole job where the executor of one task is lost again and again; what was kept until then counts.
+            if not job.kept():
+                raise
+    return job.result(plots)
+
+
+def _values(made: Iterator[tuple[int, bytes | None, bytes | None]]) -> Iterator[Any]:
+    import pyarrow
+
+    kinds = (("part", pyarrow.int32()), ("values", pyarrow.binary()), ("error", pyarrow.binary()))
+    for row in made:
+        yield pyarrow.RecordBatch.from_arrays([pyarrow.array([cell], kind) for cell, (_, kind) in zip(row, kinds)], schema=pyarrow.schema(kinds))
+
+
+def _pieces(spark: Any, job: _engines.Job) -> Any:
+    """All records, cut to the parts that need them."""
+    places = job.places
+    found = [spark.createDataFrame(job.pieces)] if job.pieces is not None else []
+    for path, frame in job.frames.items():
+
+        def cut(batches: Iterator[Any], path: str = path) -> Iterator[Any]:
+            import pyarrow
+
+            for batch in batches:
+                for piece in _records.cut(pyarrow.Table.from_batches([batch]), path, places).to_batches():
+                    yield pyarrow.RecordBatch.from_arrays([*piece.columns[:3], piece.column(3).cast("binary")], names=piece.schema.names)
+
+        found.append(frame.mapInArrow(cut, PIECES))
+    whole = found[0]
+    for more in found[1:]:
+        whole = whole.unionByName(more)
+    return whole
+
+
+def simulator(
+    spark: Any, function: Callable[[Task], Any], *, keep: str | PathLike[str] | None = None, identity: str | None = None
+) -> Callable[[Task], Any]:
+    """A simulator for `diagnose` whose runs are jobs of one task each on a Spark cluster; see `fishplate.dask.simulator`."""
+
+    def run(asked: _runs.Run) -> Any:
+        return spark.sparkContext.parallelize([asked], 1).map(lambda asked: _runs.called(function, asked)).collect()[0]
+
+    return _runs.simulator(run, function, keep, identity)

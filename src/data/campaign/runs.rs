@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{Campaign, RecordKind};
 use crate::data::cells::name_and_unit;
 use crate::data::folder::Folder;
-use crate::data::record::{Known, RecordSource};
+use crate::data::record::{Held, Known, RecordSource};
 use crate::data::table::{Cell, Table};
 use crate::disk;
 use crate::problem::{Problem, Problems};
@@ -77,7 +77,7 @@ pub(super) fn read(tree: &Node, folder: &Folder, problems: &mut Problems) -> Vec
         problems.push(Problem::error("wrong-kind", says).at(&node.span).help(EXAMPLE));
         return Vec::new();
     }
-    let mut runs = Vec::new();
+    let (mut runs, held) = (Vec::new(), Held::default());
     for (key, node) in node.entries() {
         let name = Spanned::new(key.text.trim().to_string(), key.span.clone());
         if let Err(problem) = crate::data::folder::check_file_name(&name.value, &name.span) {
@@ -89,16 +89,17 @@ pub(super) fn read(tree: &Node, folder: &Folder, problems: &mut Problems) -> Vec
             problems.push(Problem::error("wrong-kind", says).at(&node.span).help(EXAMPLE));
             continue;
         }
-        if let Some(run) = one(name, node, folder, problems) {
+        if let Some(run) = one(name, node, (folder, &held), problems) {
             runs.push(run);
         }
     }
     runs
 }
 
-fn one(name: Spanned<String>, node: &Node, folder: &Folder, problems: &mut Problems) -> Option<Run> {
+fn one(name: Spanned<String>, node: &Node, (folder, held): (&Folder, &Held), problems: &mut Problems) -> Option<Run> {
     let before = problems.errors();
-    let mut run = Run { name, files: Vec::new(), facts: Vec::new(), known: <[Known; 3]>::default(), correct_drift: false };
+    let known = std::array::from_fn(|_| Known::with(held));
+    let mut run = Run { name, files: Vec::new(), facts: Vec::new(), known, correct_drift: false };
     for (key, value) in node.entries() {
         let Some(text) = value.scalar_text().map(str::trim).filter(|text| !text.is_empty()) else {
             let says = format!("`{}` of a run must be a single value; this is {}", key.text, value.kind_in_words());

@@ -4,10 +4,15 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::Column;
+use super::held::Held;
 
 /// Known once for all that share it; computed by the first who asks while the others wait.
 #[derive(Clone, Debug, Default)]
-pub struct Known(Arc<Mutex<Option<Arc<KnownFile>>>>);
+pub struct Known {
+    file: Arc<Mutex<Option<Arc<KnownFile>>>>,
+    /// Parts of this file and others.
+    pub held: Held,
+}
 
 #[derive(Debug)]
 pub struct KnownFile {
@@ -54,6 +59,11 @@ impl Mark {
 }
 
 impl Known {
+    /// Of a file whose parts are kept with those of others.
+    pub fn with(held: &Held) -> Self {
+        Self { file: Arc::default(), held: held.clone() }
+    }
+
     /// What is known, if it is enough; otherwise what is computed now.
     ///
     /// # Errors
@@ -64,7 +74,7 @@ impl Known {
         compute: impl FnOnce() -> Result<KnownFile, E>,
     ) -> Result<Arc<KnownFile>, E> {
         // Nothing is half-written under the lock, so a panic of another thread does no harm.
-        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         match &*known {
             Some(file) if enough(file) => Ok(Arc::clone(file)),
             _ => compute().map(|file| Arc::clone(known.insert(Arc::new(file)))),
@@ -73,12 +83,12 @@ impl Known {
 
     /// What is known, if no one else shares it.
     pub fn taken(self) -> Option<KnownFile> {
-        let known = Arc::into_inner(self.0)?.into_inner().unwrap_or_else(PoisonError::into_inner)?;
+        let known = Arc::into_inner(self.file)?.into_inner().unwrap_or_else(PoisonError::into_inner)?;
         Arc::into_inner(known)
     }
 
     /// Keeps what was found in passing.
     pub fn keep(&self, file: KnownFile) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(file));
+        *self.file.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(file));
     }
 }

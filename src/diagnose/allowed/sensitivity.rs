@@ -1,8 +1,11 @@
 //! Sensitivity of the simulated features to the declared tolerances.
 
+use rayon::prelude::*;
+
 use super::covariance::Sensitivity;
 use crate::diagnose::observe::bench::{Bench, Runs};
-use crate::diagnose::settings::Settings;
+use crate::diagnose::settings::{Settings, Tolerance};
+use crate::problem::Problem;
 
 /// Step of the finite differences, in standard deviations: large against the scatter of contact solutions, small enough to be linear.
 const STEP: f64 = 1.5;
@@ -19,7 +22,8 @@ pub fn sensitivities(
     wanted: &dyn Fn(usize) -> bool,
     runs: &mut Runs,
 ) -> Vec<Option<Sensitivity>> {
-    let mut columns = Vec::new();
+    // What is tried, and the name of its tolerance; all simulations are asked for at once, so that many workers have one.
+    let mut asked = Vec::new();
     let now = |section: usize, key: &str| bench.value(section, key).or_else(|| value(key));
     for tolerance in &settings.tolerances {
         let sd = declared(&tolerance.name).unwrap_or(tolerance.default);
@@ -35,27 +39,25 @@ pub fn sensitivities(
                 moves.iter().filter_map(|(key, by)| Some((key.clone(), by.from(now(section, key))?))).collect()
             };
             let some = |section: usize| moved(section).iter().any(|(key, to)| now(section, key) != Some(*to));
-            if !(0..bench.seen.sections.len()).any(some) || !wanted(columns.len()) {
-                columns.push(None);
-                continue;
-            }
-            runs.made += bench.seen.sections.len();
-            columns.push(match bench.moved(&moved) {
-                Ok(made) => Some(Sensitivity {
-                    tolerance: tolerance.name.clone(),
-                    column: made.iter().zip(base).map(|(made, base)| (made - base) / deviations).collect(),
-                    expected: tolerance.expected,
-                    per_section: tolerance.per_section,
-                    shared: tolerance.shared,
-                }),
-                Err(problem) => {
-                    runs.failed.push(format!("{}: {}", tolerance.name, problem.says));
-                    None
-                }
-            });
+            let changes = (0..bench.seen.sections.len()).any(some) && wanted(asked.len());
+            asked.push((tolerance, deviations, changes.then(|| (0..bench.seen.sections.len()).map(moved).collect::<Vec<_>>())));
         }
     }
-    columns
+    let made: Vec<Option<Result<Vec<f64>, Problem>>> =
+        asked.par_iter().map(|(.., moved)| moved.as_ref().map(|moved| bench.moved(&|section| moved[section].clone()))).collect();
+    let column = |(&(tolerance, deviations, _), made): (&(&Tolerance, f64, _), Option<Result<Vec<f64>, Problem>>)| {
+        let made = made?;
+        runs.made += bench.seen.sections.len();
+        let made = made.map_err(|problem| runs.failed.push(format!("{}: {}", tolerance.name, problem.says))).ok()?;
+        Some(Sensitivity {
+            tolerance: tolerance.name.clone(),
+            column: made.iter().zip(base).map(|(made, base)| (made - base) / deviations).collect(),
+            expected: tolerance.expected,
+            per_section: tolerance.per_section,
+            shared: tolerance.shared,
+        })
+    };
+    asked.iter().zip(made).map(column).collect()
 }
 
 /// Expected deviations of the tolerances, as settings of the simulator. `value` gives a parameter's value where no setting changes it.

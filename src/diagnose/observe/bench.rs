@@ -15,6 +15,14 @@ pub struct Runs {
     pub failed: Vec<String>,
 }
 
+impl Runs {
+    /// Adds those that were made at the same time.
+    pub fn add(&mut self, other: Self) {
+        self.made += other.made;
+        self.failed.extend(other.failed);
+    }
+}
+
 /// Settings common to all simulations of a bench, in some sections or in all.
 #[derive(Clone, Debug)]
 pub struct Set {

@@ -152,24 +152,32 @@ impl Workshop<'_> {
     /// All candidates of the catalogue.
     #[must_use]
     pub fn candidates(&self, runs: &mut Runs) -> Vec<Candidate> {
-        let mut all = Vec::new();
-        for effect in self.catalogue.effects.iter().filter(|effect| effect.candidate) {
+        // They do not depend on each other: all simulations are asked for at once, so that many workers have one.
+        let effects: Vec<&Effect> = self.catalogue.effects.iter().filter(|effect| effect.candidate).collect();
+        let of_effect = |effect: &&Effect| {
             (self.trying)(&effect.title);
+            let mut runs = Runs::default();
             let mut found = match &effect.action {
-                Action::Simulator => self.simulated(effect, runs),
+                Action::Simulator => self.simulated(effect, &mut runs),
                 Action::Signals(operator, channels) => self.operated(effect, *operator, channels),
                 Action::Formulas(_) => self.expressed(effect),
             };
             let alternatives = found.len();
             found.iter_mut().for_each(|candidate| candidate.alternatives = alternatives);
-            all.extend(found);
-        }
-        all
+            (found, runs)
+        };
+        let made: Vec<(Vec<Candidate>, Runs)> = effects.par_iter().map(of_effect).collect();
+        made.into_iter()
+            .flat_map(|(found, of_these)| {
+                runs.add(of_these);
+                found
+            })
+            .collect()
     }
 
     fn simulated(&self, effect: &Effect, runs: &mut Runs) -> Vec<Candidate> {
         let Some(bench) = self.bench else { return Vec::new() };
-        let mut found = Vec::new();
+        let mut asked = Vec::new();
         for fit in &effect.fits {
             let Some(((size, sizes), others)) = fit.axes.split_first() else { continue };
             let parameter = &effect.parameters[*size];
@@ -188,13 +196,24 @@ impl Workshop<'_> {
                     false => neutral.unwrap_or(0.0),
                 };
                 let (coarse, pending) = coarse(sizes, none);
-                let mut made =
-                    Candidate { fixed, pending, ..Candidate::new(effect, parameter, vec![Node { size: none, change: Vec::new() }]) };
-                self.simulate(bench, effect, &mut made, &coarse, runs);
-                found.push(made);
+                let none = vec![Node { size: none, change: Vec::new() }];
+                asked.push((Candidate { fixed, pending, ..Candidate::new(effect, parameter, none) }, coarse));
             }
         }
-        found
+        let made: Vec<(Candidate, Runs)> = asked
+            .into_par_iter()
+            .map(|(mut candidate, coarse)| {
+                let mut runs = Runs::default();
+                self.simulate(bench, effect, &mut candidate, &coarse, &mut runs);
+                (candidate, runs)
+            })
+            .collect();
+        made.into_iter()
+            .map(|(candidate, of_it)| {
+                runs.add(of_it);
+                candidate
+            })
+            .collect()
     }
 
     /// Simulates further sizes of a candidate.
@@ -202,10 +221,14 @@ impl Workshop<'_> {
         let beside = candidate.beside.as_ref().map(|placed| placed.there.clone());
         let there = beside.as_ref().map(|there| there.on(bench));
         let from = there.as_ref().zip(beside.as_ref()).map_or((bench, &self.ground.base[..]), |(bench, there)| (bench, &there.base[..]));
-        for size in sizes {
+        let made = |size: &f64| {
             let mut values = candidate.fixed.clone();
             values.push((candidate.size.clone(), *size));
-            match self.run(from, &applied(effect, values)) {
+            self.run(from, &applied(effect, values))
+        };
+        let made: Vec<Result<Vec<f64>, Problem>> = sizes.par_iter().map(made).collect();
+        for (size, made) in sizes.iter().zip(made) {
+            match made {
                 Ok(change) => candidate.nodes.push(Node { size: *size, change }),
                 Err(problem) => runs.failed.push(format!("{} = {size}: {}", candidate.size, problem.says)),
             }

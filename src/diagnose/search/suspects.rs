@@ -2,6 +2,8 @@
 //! explains a gap much better than the answer, the cause is outside the catalogue. If it is only slightly better, the data do not
 //! discriminate.
 
+use rayon::prelude::*;
+
 use super::candidates::{Candidate, Node, Workshop};
 use super::choose::Chosen;
 use super::fit::{Fitted, Fitter, Mask};
@@ -104,18 +106,24 @@ pub fn suspect(
     };
     let simulate = |path: &mut Candidate, factors: &[f64], runs: &mut Runs| {
         let (key, value) = (path.size.clone(), (workshop.neutral)(&path.size).unwrap_or(0.0));
-        for factor in factors {
-            runs.made += workshop.seen.sections.len();
-            // A factor with which the vehicle cannot be simulated is skipped.
-            if let Ok(made) = bench.features(&[(key.clone(), factor * value)]) {
-                path.nodes.push(Node { size: *factor, change: less(&made, &workshop.ground.base) });
-            }
-        }
+        runs.made += factors.len() * workshop.seen.sections.len();
+        // A factor with which the vehicle cannot be simulated is skipped.
+        let made = |factor: &f64| {
+            let made = bench.features(&[(key.clone(), factor * value)]).ok()?;
+            Some(Node { size: *factor, change: less(&made, &workshop.ground.base) })
+        };
+        path.nodes.par_extend(factors.par_iter().filter_map(made));
         path.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
     };
     (workshop.trying)("parameters outside the catalogue");
     let mut coarse: Vec<Candidate> = keys.iter().map(|key| Candidate::of_path(key, keys.len())).collect();
-    coarse.iter_mut().for_each(|path| simulate(path, &COARSE, runs));
+    // All at once, so that many workers have a simulation.
+    let made = |path: &mut Candidate| {
+        let mut runs = Runs::default();
+        simulate(path, &COARSE, &mut runs);
+        runs
+    };
+    coarse.par_iter_mut().map(made).collect::<Vec<Runs>>().into_iter().for_each(|made| runs.add(made));
     let mut best: Option<Suspect> = None;
     for place in Place::of(&now, z) {
         let mut paths: Vec<(Candidate, Fitted)> =

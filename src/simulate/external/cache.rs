@@ -54,6 +54,14 @@ impl Cache {
         Ok(cache)
     }
 
+    /// A temporary folder inside, for who sees this folder only.
+    ///
+    /// # Errors
+    /// The system's error.
+    pub(super) fn scratch(&self) -> std::io::Result<disk::Scratch> {
+        self.folder.as_deref().map_or_else(disk::scratch, disk::scratch_in)
+    }
+
     /// The path of an entry, whether it exists or not.
     fn file(&self, key: &str) -> Option<PathBuf> {
         Some(self.folder.as_ref()?.join(key.get(..2)?).join(format!("{key}.csv")))

@@ -73,8 +73,7 @@ impl<'a> External<'a> {
         }
         let basis = basis(campaign, &program, vehicle.as_deref())?;
         let (calls, found, units) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::default());
-        let workers = |python| Workers::new(python, &program.environment, &program.folder, program.timeout);
-        let workers = program.python.clone().map(workers);
+        let workers = program.python.clone().map(|python| Workers::new(python, &program));
         Ok(Self { campaign, program, cache, vehicle, workers, basis, units, calls, found })
     }
 
@@ -218,11 +217,14 @@ impl<'a> External<'a> {
         }
         let section = task.section;
         let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be created: {error}"));
-        let folder = disk::scratch().map_err(failed)?;
+        // A record that another machine writes must lie where both see it.
+        let folder = if self.program.launch.is_empty() { disk::scratch() } else { self.cache.scratch() };
+        let folder = folder.map_err(failed)?;
         let out = folder.path().join("record.csv");
         let words = self.filled(task, &out)?;
         let executable = self.program.executable();
         let call = Call {
+            launch: &self.program.launch,
             program: &executable,
             arguments: words.get(1..).unwrap_or_default(),
             environment: &self.program.environment,

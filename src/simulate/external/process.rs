@@ -15,6 +15,8 @@ pub(super) type Printed = File;
 /// A call of a program.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'a> {
+    /// Words before the program, which start it on another machine.
+    pub launch: &'a [String],
     pub program: &'a Path,
     pub arguments: &'a [String],
     pub environment: &'a [(String, String)],
@@ -40,6 +42,14 @@ const BYTES: u64 = 4096;
 const FIRST_LOOK: Duration = Duration::from_millis(1);
 const LONGEST_PAUSE: Duration = Duration::from_millis(50);
 
+/// A command that starts a program, by words before it if there are any.
+pub(super) fn launched(launch: &[String], program: &Path) -> Command {
+    let Some((first, words)) = launch.split_first() else { return Command::new(program) };
+    let mut command = Command::new(first);
+    command.args(words).arg(program);
+    command
+}
+
 /// Runs a program to its end. Its output goes to files, so that it cannot block.
 ///
 /// # Errors
@@ -48,7 +58,7 @@ pub fn run(call: &Call<'_>) -> Result<(), Fault> {
     let mut error = disk::scratch_file().map_err(Fault::NotStarted)?;
     let mut output = disk::scratch_file().map_err(Fault::NotStarted)?;
     let to = |file: &File| file.try_clone().map(Stdio::from).map_err(Fault::NotStarted);
-    let mut command = Command::new(call.program);
+    let mut command = launched(call.launch, call.program);
     command.args(call.arguments).current_dir(call.folder).stdin(Stdio::null()).stdout(to(&output)?).stderr(to(&error)?);
     command.envs(call.environment.iter().map(|(name, value)| (name, value)));
     let mark = Mark::new();

@@ -2,15 +2,16 @@
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Write};
-use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, Command, Stdio};
+use std::path::PathBuf;
+use std::process::{Child, ChildStdin, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Mutex, OnceLock};
 use std::time::Duration;
 
 use serde_json::{Map, Value, json};
 
-use super::process::{Printed, end, last_lines};
+use super::process::{Printed, end, last_lines, launched};
+use super::read::Program;
 use super::started::{self, Mark};
 use crate::disk;
 
@@ -42,6 +43,7 @@ pub enum Failed {
 #[derive(Debug)]
 pub struct Workers {
     python: Python,
+    launch: Vec<String>,
     environment: Vec<(String, String)>,
     folder: PathBuf,
     timeout: Duration,
@@ -65,9 +67,9 @@ struct Worker {
 pub type Columns = Vec<(String, Vec<f64>)>;
 
 impl Workers {
-    pub fn new(python: Python, environment: &[(String, String)], folder: &Path, timeout: Duration) -> Self {
-        let (idle, parameters) = (Mutex::default(), OnceLock::new());
-        Self { python, environment: environment.to_vec(), folder: folder.to_path_buf(), timeout, idle, parameters }
+    pub fn new(python: Python, program: &Program) -> Self {
+        let Program { launch, environment, folder, timeout, .. } = program.clone();
+        Self { python, launch, environment, folder, timeout, idle: Mutex::default(), parameters: OnceLock::new() }
     }
 
     /// The parameters that the file declares. A process is started to ask for them.
@@ -101,7 +103,7 @@ impl Workers {
 
     fn start(&self) -> Result<Worker, Failed> {
         let errors = disk::scratch_file().map_err(Failed::NotStarted)?;
-        let mut command = Command::new(&self.python.interpreter);
+        let mut command = launched(&self.launch, &self.python.interpreter);
         command.args(["-c", WORKER]).arg(&self.python.file).current_dir(&self.folder);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(errors.try_clone().map_err(Failed::NotStarted)?);
         command.envs(self.environment.iter().map(|(name, value)| (name, value)));

@@ -21,6 +21,8 @@ pub struct Program {
     pub source: Arc<Source>,
     /// Working folder: the folder of its file.
     pub folder: PathBuf,
+    /// Words before each call, which start it on another machine; empty: it runs here.
+    pub launch: Vec<String>,
     /// Empty for a Python function.
     pub command: Vec<Word>,
     /// The function that is called in place of a command.
@@ -107,6 +109,7 @@ pub fn read_program(source: &Arc<Source>, folder: &Path, problems: &mut Problems
         name,
         source: Arc::clone(source),
         folder,
+        launch: Vec::new(),
         command,
         python,
         set,

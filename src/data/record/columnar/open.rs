@@ -3,10 +3,11 @@
 use std::io::{Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::panic::AssertUnwindSafe;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use arrow_schema::{DataType, Schema};
+use bytes::Bytes;
 use parquet::arrow::arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions};
 use parquet::arrow::parquet_to_arrow_schema;
 use parquet::arrow::push_decoder::PushBuffers;
@@ -16,6 +17,7 @@ use parquet::file::reader::ChunkReader;
 
 use super::{Column, Heading, MAGIC, Wanted, find_columns, guard};
 use crate::data::cells::{HeadingUnit, duplicates, name_and_unit, shortened};
+use crate::data::record::held::Held;
 use crate::data::text::{LARGEST_RECORD, plain_size, unreadable};
 use crate::data::write::Digits;
 use crate::disk;
@@ -42,7 +44,10 @@ pub(super) enum Store {
     Memory(PushBuffers, u64),
     Disk {
         file: disk::Reader,
+        path: PathBuf,
         size: u64,
+        /// Where parts are kept that are read again.
+        held: Option<Held>,
     },
 }
 
@@ -50,7 +55,16 @@ impl Store {
     pub fn disk(path: &Path, shown: &str) -> Result<Self, Problem> {
         let size = plain_size(path, shown)?;
         let file = disk::open(path).map_err(|error| unreadable(shown, &error))?;
-        Ok(Self::Disk { file, size })
+        Ok(Self::Disk { file, path: path.to_path_buf(), size, held: None })
+    }
+
+    /// As [`Self::disk`], of a file of which several stretches are read.
+    pub fn held(path: &Path, shown: &str, kept: &Held) -> Result<Self, Problem> {
+        let mut store = Self::disk(path, shown)?;
+        if let Self::Disk { held, .. } = &mut store {
+            *held = Some(kept.clone());
+        }
+        Ok(store)
     }
 
     pub fn memory(bytes: Vec<u8>) -> Self {
@@ -85,7 +99,7 @@ impl Store {
             Self::Disk { .. } => {
                 let bytes = self.read(range.clone(), shown)?;
                 let seen = look(&bytes);
-                buffers.push_range(range, bytes.into());
+                buffers.push_range(range, bytes);
                 Ok(seen)
             }
         }
@@ -98,20 +112,24 @@ impl Store {
         }
     }
 
-    pub fn read(&mut self, range: Range<u64>, shown: &str) -> Result<Vec<u8>, Problem> {
+    pub fn read(&mut self, range: Range<u64>, shown: &str) -> Result<Bytes, Problem> {
         if range.start > range.end || range.end > self.size() {
             return Err(damaged(shown, "a part of it lies outside the file"));
         }
         let count = usize::try_from(range.end - range.start).map_err(|_| damaged(shown, "a part of it is too large"))?;
         match self {
-            Self::Memory(whole, _) => {
-                let bytes = whole.get_bytes(range.start, count).map_err(|error| damaged(shown, &error.to_string()))?;
-                Ok(bytes.to_vec())
-            }
-            Self::Disk { file, .. } => {
+            Self::Memory(whole, _) => whole.get_bytes(range.start, count).map_err(|error| damaged(shown, &error.to_string())),
+            Self::Disk { file, path, held, .. } => {
+                if let Some(kept) = held.as_ref().and_then(|held| held.get(path, &range)) {
+                    return Ok(kept);
+                }
                 let mut bytes = vec![0; count];
                 let done = file.seek(SeekFrom::Start(range.start)).and_then(|_| file.read_exact(&mut bytes));
-                done.map(|()| bytes).map_err(|error| unreadable(shown, &error))
+                let bytes = done.map(|()| Bytes::from(bytes)).map_err(|error| unreadable(shown, &error))?;
+                if let Some(held) = held {
+                    held.keep(path, range.start, bytes.clone());
+                }
+                Ok(bytes)
             }
         }
     }
@@ -289,17 +307,17 @@ pub(in crate::data::record) fn not_numbers(kind: &DataType, name: &str, at: &Spa
 }
 
 /// The bytes of the footer.
-fn footer(store: &mut Store, shown: &str) -> Result<Vec<u8>, Problem> {
+fn footer(store: &mut Store, shown: &str) -> Result<Bytes, Problem> {
     let size = store.size();
     if size == 0 {
         return Err(Problem::error("file-empty", format!("`{shown}` is empty")));
     }
     let head = store.read(0..size.min(4), shown)?;
-    if head == b"PARE" {
+    if *head == *b"PARE" {
         let says = format!("`{shown}` is an encrypted Parquet file, which is not read");
         return Err(Problem::error("format-not-read", says).help("export it without encryption"));
     }
-    if head != MAGIC {
+    if *head != *MAGIC {
         return Err(mislabelled(&store.read(0..size.min(512), shown)?, shown));
     }
     let tail = store.read(size.saturating_sub(TAIL)..size, shown)?;

@@ -8,7 +8,8 @@ use parquet::file::statistics::Statistics;
 use super::open::{Opened, Store};
 use super::{Column, no_rows};
 use crate::data::faults::Faults;
-use crate::data::hash::Hasher;
+use crate::data::hash::{Hasher, sha256};
+use crate::data::record::held::Held;
 use crate::data::record::known::{Known, KnownFile};
 use crate::data::record::runs::{Block, Run, Stretch, axis_of};
 use crate::data::record::{Record, Wanted};
@@ -99,16 +100,24 @@ impl Opened<'_> {
     }
 }
 
-/// The file and its hash. It is read twice, since it need not fit into memory.
+/// The file and its hash. A small file is read once, and kept for the stretches that follow. A larger one is read to its end for the
+/// hash, and the row groups that are needed once more.
 fn open<'a>(path: &Path, shown: &'a str, known: &Known) -> Result<(Opened<'a>, String), Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
-    let opened = Opened::open(Store::disk(path, shown).map_err(one)?, shown).map_err(one)?;
+    let store = Store::held(path, shown, &known.held).map_err(one)?;
     let compute = || {
+        if Held::takes_whole(store.size()) {
+            let whole = disk::read(path, store.size())?;
+            let file = KnownFile { sha256: sha256(&whole), bytes: whole.len() as u64, index: None };
+            known.held.keep(path, 0, whole.into());
+            return Ok(file);
+        }
         let mut hash = Hasher::default();
         let mut file = disk::open(path)?;
         let bytes = hash.add_all(&mut file)?;
         Ok(KnownFile { sha256: hash.finish(), bytes, index: None })
     };
-    let known = known.or(|_| true, compute).map_err(|error: std::io::Error| one(unreadable(shown, &error)))?;
-    Ok((opened, known.sha256.clone()))
+    let file = known.or(|_| true, compute).map_err(|error: std::io::Error| one(unreadable(shown, &error)))?;
+    let opened = Opened::open(store, shown).map_err(one)?;
+    Ok((opened, file.sha256.clone()))
 }

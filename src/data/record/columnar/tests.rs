@@ -190,3 +190,25 @@ proptest! {
         survived(&bytes);
     }
 }
+
+/// Neighbouring stretches have row groups in common; the hash needs every byte of the file.
+#[cfg(target_os = "linux")]
+#[test]
+fn stretches_of_a_small_file_read_each_byte_once() {
+    // What this thread has read, in bytes, from the cache of the system or not.
+    let read = || {
+        let told = std::fs::read_to_string("/proc/thread-self/io").expect("what a thread reads");
+        let line = told.lines().find_map(|line| line.strip_prefix("rchar: ")).expect("a line");
+        line.trim().parse::<u64>().expect("a number")
+    };
+    let path = Path::new("examples/run/records/north-measured.parquet");
+    let size = std::fs::metadata(path).expect("there").len();
+    let wanted = [Wanted::new("distance", Dimension::LENGTH), Wanted::new("Y_1R", FORCE)];
+    let (known, before) = (Known::default(), read());
+    for start in 0..20 {
+        let start = 200.0 + 50.0 * f64::from(start);
+        read_stretch(path, "north", &wanted, "distance", start..start + 100.0, &known).expect("inside");
+    }
+    let more = read() - before;
+    assert!((size..size + 20_000).contains(&more), "{more} bytes of a file of {size}");
+}

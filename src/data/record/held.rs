@@ -1,0 +1,111 @@
+//! Bytes of files that neighbouring stretches have in common: read once, and kept for the next stretch within a bound.
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use bytes::Bytes;
+
+/// Most bytes that are kept in all: both sides and the track of a run of 60 km with 24 channels, or some row groups of longer ones. It
+/// bounds the memory of a worker, whatever the length of the archive.
+const MOST: usize = 64 << 20;
+/// Largest file that is kept as a whole, when it is read for its hash: four of them fit.
+const WHOLE: u64 = MOST as u64 / 4;
+
+/// The parts of files that were read last; shared by all files of a campaign.
+#[derive(Clone, Default)]
+pub struct Held(Arc<Mutex<Parts>>);
+
+#[derive(Default)]
+struct Parts {
+    /// The one that was used last is the first.
+    parts: VecDeque<Part>,
+    bytes: usize,
+}
+
+struct Part {
+    file: PathBuf,
+    start: u64,
+    bytes: Bytes,
+}
+
+impl Part {
+    fn of(&self, file: &Path, range: &Range<u64>) -> Option<Bytes> {
+        let from = usize::try_from(range.start.checked_sub(self.start)?).ok()?;
+        let to = usize::try_from(range.end.checked_sub(self.start)?).ok()?;
+        (from <= to && to <= self.bytes.len() && self.file == file).then(|| self.bytes.slice(from..to))
+    }
+}
+
+impl fmt::Debug for Held {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Held").finish_non_exhaustive()
+    }
+}
+
+impl Held {
+    /// Whether a file of so many bytes is kept as a whole.
+    pub fn takes_whole(size: u64) -> bool {
+        size <= WHOLE
+    }
+
+    /// A part of a file, if it is kept.
+    pub fn get(&self, file: &Path, range: &Range<u64>) -> Option<Bytes> {
+        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let at = held.parts.iter().position(|part| part.of(file, range).is_some())?;
+        let part = held.parts.remove(at)?;
+        let found = part.of(file, range);
+        held.parts.push_front(part);
+        found
+    }
+
+    /// Keeps a part of a file; those that were not used for the longest time go.
+    pub fn keep(&self, file: &Path, start: u64, bytes: Bytes) {
+        if bytes.len() > MOST {
+            return;
+        }
+        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        held.bytes += bytes.len();
+        held.parts.push_front(Part { file: file.to_path_buf(), start, bytes });
+        while held.bytes > MOST {
+            let Some(last) = held.parts.pop_back() else { return };
+            held.bytes -= last.bytes.len();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_is_found_within_what_is_kept() {
+        let held = Held::default();
+        let (file, other) = (Path::new("a"), Path::new("b"));
+        assert_eq!(held.get(file, &(0..1)), None);
+        held.keep(file, 10, Bytes::from_static(b"0123456789"));
+        assert_eq!(held.get(file, &(12..15)).as_deref(), Some(&b"234"[..]));
+        assert_eq!(held.get(file, &(10..20)).as_deref(), Some(&b"0123456789"[..]));
+        for outside in [9..12, 15..21, 20..22, 0..5] {
+            assert_eq!(held.get(file, &outside), None, "{outside:?}");
+        }
+        assert_eq!(held.get(other, &(12..15)), None);
+    }
+
+    #[test]
+    fn what_is_kept_is_bounded_and_the_least_used_goes_first() {
+        let held = Held::default();
+        let quarter = || Bytes::from(vec![7_u8; MOST / 4]);
+        let names: Vec<PathBuf> = (0..5).map(|number| PathBuf::from(number.to_string())).collect();
+        names[..4].iter().for_each(|name| held.keep(name, 0, quarter()));
+        assert!(held.get(&names[0], &(0..1)).is_some(), "used again");
+        held.keep(&names[4], 0, quarter());
+        let kept: Vec<bool> = names.iter().map(|name| held.get(name, &(0..1)).is_some()).collect();
+        assert_eq!(kept, [true, false, true, true, true]);
+        held.keep(Path::new("large"), 0, Bytes::from(vec![0_u8; MOST + 1]));
+        assert_eq!(held.get(Path::new("large"), &(0..1)), None);
+        assert!(held.0.lock().expect("held").bytes <= MOST);
+    }
+}
