@@ -359,10 +359,9 @@ fn calls_that_another_command_starts() {
 #[test]
 fn a_function_that_another_command_starts() {
     let place = Place::new();
-    place.write("twins.yaml", CATALOGUE);
     place.write("sim.yaml", "simulator: twin\npython: twin.py\nchannels: [Y_1R]\n");
     place.write("twin.py", "import os\nPARAMETERS = []\n\ndef simulate(parameters, inputs):\n    x = inputs['distance']\n    return {'Y_1R [kN]': [float(os.environ['THERE'])] * len(x)}\n");
-    let ran = place.simulated("there", &arguments(&["--launch", "env THERE=7.5"]));
+    let ran = place.simulated("there", &["--simulator", "sim.yaml", "--cache", "cache", "--launch", "env THERE=7.5"]);
     assert!(ran.stderr.contains("(4 calls of twin, 0 records from the cache)"), "{}", ran.stderr);
     assert!(channel(&place.record("there", SECTIONS[0]), "Y_1R").iter().all(|value| (value - 7.5).abs() < 1e-9));
 }
