@@ -41,7 +41,7 @@ def test_datasets_of_ray():
 
 def test_a_worker_that_is_killed(whole, tmp_path, monkeypatch):
     """Each part takes a second and tells the process in which it is made; nested, since workers cannot import this file."""
-    fast, folder = _engines.part, str(tmp_path)
+    fast, folder = _engines.of_pieces, str(tmp_path)
 
     def slow(number, *given):
         import os
@@ -51,7 +51,7 @@ def test_a_worker_that_is_killed(whole, tmp_path, monkeypatch):
             time.sleep(1.0)
         return fast(number, *given)
 
-    monkeypatch.setattr(_engines, "part", slow)
+    monkeypatch.setattr(_engines, "of_pieces", slow)
     killed = []
 
     def kill():

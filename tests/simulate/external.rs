@@ -359,10 +359,11 @@ fn calls_that_another_command_starts() {
 #[test]
 fn a_function_that_another_command_starts() {
     let place = Place::new();
-    place.write("twins.yaml", CATALOGUE);
     place.write("sim.yaml", "simulator: twin\npython: twin.py\nchannels: [Y_1R]\n");
-    place.write("twin.py", "import os\nPARAMETERS = []\n\ndef simulate(parameters, inputs):\n    x = inputs['distance']\n    return {'Y_1R [kN]': [float(os.environ['THERE'])] * len(x)}\n");
-    let ran = place.simulated("there", &arguments(&["--launch", "env THERE=7.5"]));
+    let body = "x = [float(one) for one in inputs['distance']]\n    time = [0.02 * one for one in x]\n    ";
+    let made = "return {'time [s]': time, 'distance [m]': x, 'Y_1R [kN]': [float(os.environ['THERE'])] * len(x)}\n";
+    place.write("twin.py", &format!("import os\nPARAMETERS = []\n\ndef simulate(parameters, inputs):\n    {body}{made}"));
+    let ran = place.simulated("there", &["--simulator", "sim.yaml", "--cache", "cache", "--launch", "env THERE=7.5"]);
     assert!(ran.stderr.contains("(4 calls of twin, 0 records from the cache)"), "{}", ran.stderr);
     assert!(channel(&place.record("there", SECTIONS[0]), "Y_1R").iter().all(|value| (value - 7.5).abs() < 1e-9));
 }

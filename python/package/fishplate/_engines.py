@@ -58,6 +58,20 @@ def part(number: int, work: Work, records: Any = None) -> bytes:
     return made
 
 
+def picked(cut: Mapping[int, Any], number: int) -> Any:
+    """The pieces of a part among those of a block of rows."""
+    return cut.get(number, {})
+
+
+def of_pieces(number: int, work: Work, *pieces: Mapping[str, tuple[bool, list[bytes]]]) -> bytes:
+    """As `part`, of pieces of records that were cut by several tasks."""
+    found: dict[str, tuple[bool, list[bytes]]] = {}
+    for some in pieces:
+        for path, (ordered, rows) in some.items():
+            found.setdefault(path, (ordered, []))[1].extend(rows)
+    return part(number, work, found)
+
+
 def _keep(file: str, content: bytes) -> None:
     """A file is there whole or not at all, also if two workers make it."""
     unfinished = f"{file}.{os.getpid()}-{os.urandom(4).hex()}"

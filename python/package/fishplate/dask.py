@@ -42,10 +42,10 @@ def certify(
     there = [cut for path, frame in job.frames.items() for cut in _cut(client, frame, path, job.places)]
 
     def records(number: int) -> list[Any]:
-        return [here.get(number, {}), *(client.submit(_of_part, cut, number, pure=False) for cut in there)]
+        return [here.get(number, {}), *(client.submit(_engines.picked, cut, number, pure=False) for cut in there)]
 
     futures = {
-        client.submit(_part, number, job.work, records(number), pure=False, retries=_engines.RETRIES, priority=-number): number
+        client.submit(_engines.of_pieces, number, job.work, *records(number), pure=False, retries=_engines.RETRIES, priority=-number): number
         for number in job.open
     }
     try:
@@ -56,22 +56,10 @@ def certify(
         client.cancel(list(futures))
 
 
-def _part(number: int, work: _engines.Work, pieces: list[Any]) -> bytes:
-    found: dict[str, tuple[bool, list[bytes]]] = {}
-    for some in pieces:
-        for path, (ordered, rows) in some.items():
-            found.setdefault(path, (ordered, []))[1].extend(rows)
-    return _engines.part(number, work, found)
-
-
 def _cut(client: Any, frame: Any, path: str, places: dict[str, list[int]]) -> list[Any]:
     """The pieces of each partition of a data frame, on the workers."""
     made = import_module("dask").delayed(lambda rows: _records.gathered(_records.cut(rows, path, places)), pure=False)
     return list(client.compute([made(rows) for rows in frame.to_delayed()]))
-
-
-def _of_part(cut: dict[int, Any], number: int) -> Any:
-    return cut.get(number, {})
 
 
 def simulator(

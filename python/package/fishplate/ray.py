@@ -28,12 +28,12 @@ def certify(
     ray: Any = import_module("ray")
     workers = int(ray.cluster_resources().get("CPU", 1))
     job = _engines.Job.of(campaign, protocol, parameters, shards=shards, workers=workers, plots=plots, keep=keep)
-    if job.frames:
-        _engines.rows(_of_frames(job), job)
-        return job.result(plots)
-    task = ray.remote(max_retries=_engines.RETRIES)(_engines.part)
-    pieces = _records.gathered(job.pieces) if job.pieces is not None else {}
-    made = {task.remote(number, job.work, pieces.get(number, {})): number for number in job.open}
+    task, pick, cut = (ray.remote(max_retries=_engines.RETRIES)(work) for work in (_engines.of_pieces, _engines.picked, _cut))
+    here = _records.gathered(job.pieces) if job.pieces is not None else {}
+    there = [cut.remote(rows, path, job.places) for path, frame in job.frames.items() for rows in frame.to_arrow_refs()]
+    made = {
+        task.remote(number, job.work, here.get(number, {}), *(pick.remote(some, number) for some in there)): number for number in job.open
+    }
     waiting = list(made)
     while waiting:
         (done, *_), waiting = ray.wait(waiting, num_returns=1)
@@ -49,24 +49,9 @@ def _got(task: Any) -> Any:
         raise error.cause from None
 
 
-def _of_frames(job: _engines.Job) -> Any:
-    """The parts of a campaign whose records are datasets of Ray."""
-    places, work = job.places, job.work
-    pieces = [import_module("ray.data").from_arrow(job.pieces)] if job.pieces is not None else []
-    for path, frame in job.frames.items():
-        pieces.append(frame.map_batches(lambda rows, path=path: _records.cut(rows, path, places), batch_format="pyarrow"))
-    whole = pieces[0].union(*pieces[1:]) if pieces[1:] else pieces[0]
-    made = whole.groupby("part").map_groups(lambda rows: _values(rows, work), batch_format="pyarrow")
-    for row in made.iter_rows():
-        yield row["part"], row["values"], row["error"]
-
-
-def _values(rows: Any, work: _engines.Work) -> Any:
-    import pyarrow
-
-    made = [_engines.row(number, work, records) for number, records in _records.gathered(rows).items()]
-    kinds = {"part": pyarrow.int32(), "values": pyarrow.large_binary(), "error": pyarrow.large_binary()}
-    return pyarrow.table([pyarrow.array([row[at] for row in made], kind) for at, kind in enumerate(kinds.values())], names=list(kinds))
+def _cut(rows: Any, path: str, places: dict[str, list[int]]) -> Any:
+    """The pieces of a block of a dataset, on a worker."""
+    return _records.gathered(_records.cut(rows, path, places))
 
 
 def simulator(
