@@ -542,6 +542,16 @@ sections
   use          sections
   zone         zone
   faulty       not used
+  report       total_length in km for each zone
+  report       mean_radius for each zone where direction is not straight
+  report       mean_speed for each zone
+  report       mean_cant_deficiency for each zone
+  report       largest_cant_deficiency for each zone
+  report       right_hand_curves for each zone where direction is not straight
+  report       share_of_zone_1
+  report       share_of_zone_2
+  report       share_of_zone_3
+  report       share_of_zone_4
   percentiles  linear
 
 # ---- running safety
@@ -671,6 +681,30 @@ estimate loading "Estimated maximum"
 estimate quasi_static "Mean value"
   is      mean
   source  "EN 14363:2016, clause 7, one-dimensional method"
+
+# ---- the sections, without limits
+estimate total_length "Total length"
+  is  total of length
+
+estimate mean_radius "Mean radius"
+  is    mean of radius
+  note  "Without sections on straight track."
+
+estimate mean_speed "Mean speed"
+  is  mean of speed
+
+estimate mean_cant_deficiency "Mean cant deficiency"
+  is  mean of cant_deficiency
+
+estimate largest_cant_deficiency "Largest cant deficiency"
+  is  maximum of cant_deficiency
+
+estimate right_hand_curves "Share of right-hand curves"
+  is  share of sections where direction is right
+
+estimate share_of_zone_{zone_name} "Share of the sections in zone {zone_name}"
+  for each  zone_name in 1, 2, 3, 4
+  is        share of sections where zone is {zone_name}
 
 # ---- verdicts
 verdict

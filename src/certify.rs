@@ -91,6 +91,7 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
         verdicts: outcome.verdicts,
         quantities: outcome.quantities,
         sections: outcome.sections,
+        reported: outcome.reported,
         found: Vec::new(),
         reduction: outcome.reduction,
         zones: outcome.zones,

@@ -275,7 +275,7 @@ fn what_cannot_be_looked_into_is_told() {
         ],
         "nothing-found",
     );
-    refused(&["simulate", "examples/run", "--out", &out], "section-in-run");
+    refused(&["simulate", "examples/run", "--protocol", "en14363-2016-annex-t", "--out", &out], "no-sections");
     refused(&["sections", "examples/coach", "--cut", &out], "no-runs");
     // A protocol that does not look for sections leaves nothing to cut, and none of it may be written among the records.
     refused(&["diagnose", "examples/run", "--protocol", "en14363-2016-annex-t", "--out", &out], "no-sections");
@@ -285,4 +285,25 @@ fn what_cannot_be_looked_into_is_told() {
     refused(&["sections", &shown, "--cut", &shown], "output-is-input");
     fs::copy(copy.join("records/south-measured.csv"), copy.join("records/north-measured.csv")).expect("copied");
     refused(&["sections", &copy.display().to_string(), "--out", &out], "records-apart");
+}
+
+/// The sections that are found are simulated: each has the record that the model makes of the track cut for it, and the campaign that
+/// is written has a file for each.
+#[test]
+fn the_sections_found_in_runs_are_simulated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    done(&["simulate", "examples/run", "--effect", "friction=0.2", "--out", &at("simulated")], &[0]);
+    done(&["sections", "examples/run", "--cut", &at("cut")], &[0]);
+    done(&["simulate", &at("cut"), "--effect", "friction=0.2", "--out", &at("again")], &[0]);
+    let records = |name: &str| {
+        let mut all: Vec<_> =
+            fs::read_dir(Path::new(&at(name)).join("simulation")).expect("records").map(|one| one.expect("a file").path()).collect();
+        all.sort();
+        all.iter().map(|path| (path.file_name().expect("a name").to_owned(), fs::read(path).expect("bytes"))).collect::<Vec<_>>()
+    };
+    let made = records("simulated");
+    assert_eq!(made.len(), 12);
+    assert!(made == records("again"), "the records differ from those of the cut sections");
+    done(&["certify", &at("simulated"), "--only", "results", "--out", &at("report")], &[0, 1]);
 }

@@ -80,7 +80,12 @@ fn common_parts_stand_once() {
             let what = match &node.operation {
                 // Their expressions hold places; that there is one for each quantity and signal is their meaning.
                 // So do verdicts: a person may judge several.
-                Operation::Value(_) | Operation::Compare(_) | Operation::Estimate(_) | Operation::Limit(_) | Operation::Verdict(_) => {
+                Operation::Value(_)
+                | Operation::Compare(_)
+                | Operation::Estimate(_)
+                | Operation::Report(_)
+                | Operation::Limit(_)
+                | Operation::Verdict(_) => {
                     continue;
                 }
                 Operation::Constant(expr) => format!("constant {}", check::evaluate::shape(expr)),

@@ -1,5 +1,6 @@
 //! An archive of continuous runs of two vehicles, to measure how the evaluation grows with its length:
 //! `cargo run --release --example archive -- --km 500 --out target/archive` makes 40 runs of 12.5 km; `--runs` gives another number.
+//! `--lengths 5,5,2.8,1.8` makes one run of the first vehicle for each zone instead, each of this length in km.
 //!
 //! Both sides are made by the vehicle model. The measurement has another friction and noise; all else is the same. A run has one speed and
 //! curves that suit it, so that the sections of each zone of Annex T are found in the runs of one speed.
@@ -41,13 +42,18 @@ fn main() {
     let after = |key: &str| arguments.iter().position(|one| one == key).and_then(|at| arguments.get(at + 1));
     let km = after("--km").and_then(|km| km.parse::<f64>().ok()).filter(|km| *km > 0.0);
     let runs = after("--runs").and_then(|runs| runs.parse::<usize>().ok()).unwrap_or(RUNS).max(VEHICLES.len());
-    let enough = |km: &f64| 1000.0 * km / runs as f64 >= SHORTEST;
-    let (Some(km), Some(out)) = (km.filter(enough), after("--out")) else {
-        eprintln!("arguments: --km LENGTH --out FOLDER [--runs NUMBER], with at least {SHORTEST} m for each run");
+    let listed = after("--lengths").map(|list| list.split(',').filter_map(|km| km.parse::<f64>().ok()).map(|km| 1000.0 * km).collect());
+    // Lengths in m of the runs of each vehicle.
+    let lengths: Option<Vec<f64>> = listed.or_else(|| km.map(|km| vec![1000.0 * km / runs as f64; runs / VEHICLES.len()]));
+    let enough = |lengths: &Vec<f64>| !lengths.is_empty() && lengths.iter().all(|length| *length >= SHORTEST);
+    let (Some(lengths), Some(out)) = (lengths.filter(enough), after("--out")) else {
+        eprintln!("arguments: --km LENGTH [--runs NUMBER] or --lengths KM,KM,...; --out FOLDER; with at least {SHORTEST} m for each run");
         std::process::exit(2);
     };
-    match VEHICLES.iter().enumerate().try_for_each(|(at, vehicle)| campaign(&PathBuf::from(out), at, *vehicle, (km, runs))) {
-        Ok(()) => println!("{km} km in {runs} runs: {out}"),
+    let vehicles = if km.is_some() { VEHICLES.len() } else { 1 };
+    let all = VEHICLES.iter().take(vehicles).enumerate();
+    match all.into_iter().try_for_each(|(at, vehicle)| campaign(&PathBuf::from(out), at, *vehicle, &lengths)) {
+        Ok(()) => println!("{} km in {} runs: {out}", vehicles as f64 * lengths.iter().sum::<f64>() / 1000.0, vehicles * lengths.len()),
         Err(why) => {
             eprintln!("{why}");
             std::process::exit(3);
@@ -56,7 +62,7 @@ fn main() {
 }
 
 /// Writes the runs of one vehicle.
-fn campaign(out: &Path, at: usize, (name, differs): (&str, &[(&str, f64)]), (km, runs): (f64, usize)) -> Result<(), String> {
+fn campaign(out: &Path, at: usize, (name, differs): (&str, &[(&str, f64)]), lengths: &[f64]) -> Result<(), String> {
     let folder = out.join(name);
     let (vehicle, text) = vehicle(name, differs)?;
     let profile = Profile::new(&profile()?, None, &vehicle).ok_or("no profile")?;
@@ -65,8 +71,8 @@ fn campaign(out: &Path, at: usize, (name, differs): (&str, &[(&str, f64)]), (km,
         wet.set("friction", FRICTION).map_err(|_| "the friction is not admissible")?;
         wet
     };
-    let length = 1000.0 * km / runs as f64;
-    let numbers: Vec<usize> = (0..runs / VEHICLES.len()).collect();
+    let runs = VEHICLES.len() * lengths.len();
+    let numbers: Vec<usize> = (0..lengths.len()).collect();
     let write = |inside: &str, bytes: &[u8]| {
         let path = folder.join(inside);
         disk::make_folder(path.parent().unwrap_or(&folder)).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -75,6 +81,7 @@ fn campaign(out: &Path, at: usize, (name, differs): (&str, &[(&str, f64)]), (km,
     numbers.par_iter().try_for_each(|number| {
         let mut random = Gauss::new((1 + runs * at + number) as u64);
         let kind = line::KINDS[number % line::KINDS.len()];
+        let length = lengths[*number];
         let track = line::track(&kind, length, &mut random);
         let window = Window { from: line::STRAIGHT, to: length };
         for (side, vehicle, noise) in [("simulation", &vehicle, 0.0), ("measurement", &wet, 1.0)] {

@@ -205,6 +205,7 @@ fn meaning(kind: &str, field: &Field) -> Option<String> {
     match key.word {
         "over" => from_pest::domain(text, quiet).map(|domain| domain.meaning()),
         "limit" if kind == "quantity" => from_pest::limit(text, quiet).map(|limit| limit.meaning()),
+        "report" => from_pest::report(text, quiet).map(|report| report.meaning()),
         "minimum pairs" => from_pest::minimum(text, quiet).map(|minimum| minimum.meaning()),
         "filter" | "step" | "metric" => {
             from_pest::chain(text, quiet).map(|chain| chain.iter().map(|step| step.node.meaning()).collect::<Vec<_>>().join("; "))

@@ -10,7 +10,7 @@ use crate::metrics::rounded;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::{Block, Text};
-use crate::syntax::phrase::{At, Fit as WrittenFit, Limit as Written, Node, Phrase};
+use crate::syntax::phrase::{At, Fit as WrittenFit, Node, Phrase};
 use crate::units::Dimension;
 
 /// Largest number of regressors. With more, the number of sections of usual tests is too small for a regression.
@@ -54,36 +54,41 @@ impl Checker<'_> {
     /// The estimate of a limit, in one zone if it is for each. Without a dimension (values that have an error), only names are checked.
     pub(super) fn estimate(
         &mut self,
-        written: &Written,
+        name: &At<String>,
+        phrase: &Phrase,
         text: &Text,
         dimension: Option<Dimension>,
         zone: Option<&str>,
     ) -> Option<Estimate> {
-        let name = written.statistic.node.clone();
-        let plain = bare(&name);
-        if let Node::Path(_) | Node::Percentile(_) = written.estimate.node
+        let plain = bare(&name.node);
+        if let Node::Path(_) | Node::Percentile(_) = phrase.node
             && !self.names.estimates.contains_key(&plain)
             && plain != COUNT
         {
-            let statistic = At { node: plain, range: written.statistic.range.clone() };
+            let statistic = At { node: plain, range: name.range.clone() };
             return self.statistic(&statistic, text).map(|statistic| self.of_statistic(statistic));
         }
-        let kind = self.of_values(&written.estimate, text, dimension?, zone)?;
+        let kind = self.of_values(phrase, text, dimension?, zone)?;
+        self.named_estimate(&plain, kind, dimension)
+    }
+
+    /// An expression over a group with its name, title and unit. `values` is the dimension of the values, if there are any.
+    pub(super) fn named_estimate(&self, name: &str, kind: OfGroup, values: Option<Dimension>) -> Option<Estimate> {
         let title = self.blocks.iter().find(|block| block.kind.text == "estimate" && block.name_text() == name);
-        let title = title.and_then(|block| block.title.as_ref()).map_or_else(|| self.with_values(&bare(&name)), |title| title.text.clone());
+        let title = title.and_then(|block| block.title.as_ref()).map_or_else(|| self.with_values(name), |title| title.text.clone());
         let of_scatter = match &kind.taken[..] {
             [Taking::Bound { of, .. }] => of.of_scatter,
             [Taking::Weighted { statistic, .. }] => statistic.of_scatter(),
             _ => false,
         };
         let of_scatter = of_scatter && matches!(kind.expr.kind, Kind::Input(0));
-        let found = self.number_type(&kind.expr)?;
+        let Type::Number(found) = kind.expr.ty else { return None };
         let of_data = kind.taken.iter().find_map(|taking| match taking {
             Taking::Data { of, .. } => self.datum_unit(of, found),
             _ => None,
         });
-        let unit = (Some(found) != dimension).then(|| of_data.unwrap_or_else(|| self.own_unit("", found)));
-        Some(Estimate { name: bare(&name), title, kind: EstimateKind::Of(Box::new(kind)), of_scatter, unit })
+        let unit = (Some(found) != values).then(|| of_data.unwrap_or_else(|| self.own_unit("", found)));
+        Some(Estimate { name: name.to_string(), title, kind: EstimateKind::Of(Box::new(kind)), of_scatter, unit })
     }
 
     fn of_statistic(&self, statistic: Statistic) -> Estimate {
@@ -144,19 +149,20 @@ impl Checker<'_> {
 
     /// A name with a meaning in a group: a statistic, `n`, an estimate.
     pub(super) fn group_path(&mut self, path: &str, span: &Origin, scope: &mut Scope) -> Option<Option<Expr>> {
-        let dimension = scope.group.as_ref()?.values?;
+        let values = scope.group.as_ref()?.values;
+        if let Some(written) = self.names.estimates.get(path).cloned() {
+            self.used_defines.insert(format!("estimate {path}"));
+            self.unconfirmed |= self.names.unconfirmed.contains_key(path);
+            let found = self.inside("estimate", path, span, |checker| checker.expr(&written.phrase, &written.text, scope));
+            return Some(found);
+        }
+        let dimension = values?;
         let ddof = self.ddof;
         let group = scope.group.as_mut()?;
         let expr = |kind, dimension| Some(Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() }));
         if path == COUNT && !self.names.parameter_blocks.contains_key(path) {
             let kind = group.take(Taking::Count);
             return expr(kind, Dimension::ONE);
-        }
-        if let Some(written) = self.names.estimates.get(path).cloned() {
-            self.used_defines.insert(format!("estimate {path}"));
-            self.unconfirmed |= self.names.unconfirmed.contains_key(path);
-            let found = self.inside("estimate", path, span, |checker| checker.expr(&written.phrase, &written.text, scope));
-            return Some(found);
         }
         match Statistic::named(path)? {
             Statistic::Each => {
@@ -250,7 +256,10 @@ impl Checker<'_> {
             words.windows(2).any(|pair| pair == ["of", quantity])
         };
         let of_block = |block: &Block| {
-            let fields = block.fields_named("limit").chain(block.fields_named("is").filter(|_| block.kind.text == "estimate"));
+            let fields = block
+                .fields_named("limit")
+                .chain(block.fields_named("report"))
+                .chain(block.fields_named("is").filter(|_| block.kind.text == "estimate"));
             fields.into_iter().any(|field| refers(&field.value))
         };
         self.blocks.iter().any(of_block)
@@ -461,14 +470,14 @@ impl Checker<'_> {
         self.problems.push(
             Problem::error("no-group", "this estimate needs values of a group, which are not available here")
                 .at(span)
-                .help("write the estimate before its bound: `limit (mean + 3 * std) 60 kN`"),
+                .help("write it in a quantity: `limit (mean + 3 * std) 60 kN`, or `report (mean + 3 * std)`"),
         );
         None
     }
 }
 
 /// The words without an outer pair of parentheses.
-fn bare(words: &str) -> String {
+pub(super) fn bare(words: &str) -> String {
     let inside = words.strip_prefix('(').and_then(|rest| rest.strip_suffix(')'));
     let whole = |inside: &&str| {
         let mut depth = 0_i32;

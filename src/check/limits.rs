@@ -1,25 +1,23 @@
 //! Checks limits: statistic, bound, factors, conditions and scope.
 
 use super::evaluate::{Values, number, words};
+use super::groups::Grouped;
 use super::names::normalised;
-use super::plan::{DatumKind, Estimate, EstimateKind, Expr, Key, Kind, Limit, OfGroup, Scalar, Scope as LimitScope, Type};
+use super::plan::{Estimate, EstimateKind, Expr, Kind, Limit, OfGroup, Scalar, Scope as LimitScope, Type};
 use super::scalar_names::LIMITS_NOT_VALUES;
 use super::scalars::{Scope, in_words};
-use super::{Checker, Grouped, overlap};
-use crate::catalog::{Best, Statistic};
+use super::{Checker, overlap};
+use crate::catalog::Best;
 use crate::metrics::rounded;
 use crate::problem::{Problem, Problems};
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
-use crate::syntax::phrase::{At, Limit as Written, Node, Scope as WrittenScope};
+use crate::syntax::phrase::Limit as Written;
 use crate::units::{Dimension, Unit};
 
 /// Behind a number that is not from a checked source.
 pub(super) const TO_BE_CONFIRMED: &str = ", to be confirmed against the standard";
-
-/// Keys of groups that every campaign has.
-const KEYS: [&str; 5] = ["zone", "section", "site", "record", super::scalar_names::CAMPAIGN];
 
 /// What all limits of a quantity have in common.
 struct Common<'a> {
@@ -30,8 +28,6 @@ struct Common<'a> {
     best: Option<&'a (Best, Span)>,
     /// Names of the statistics that have a limit.
     names: Vec<String>,
-    /// Places of the signals of the quantity.
-    places: &'a [String],
 }
 
 impl Checker<'_> {
@@ -48,11 +44,11 @@ impl Checker<'_> {
         let mut names = Vec::new();
         for field in &fields {
             if let Some(limit) = from_pest::limit(&field.value, &mut Problems::default()) {
-                names.push(self.with_statistic(limit, &field.value).statistic.node);
+                names.push(self.with_statistic(limit.statistic, limit.estimate, &field.value).0.node);
             }
         }
-        let common = Common { block, unit, best, names, places };
-        self.grouped = Grouped { quantity: block.name_text().to_string(), places: places.to_vec() };
+        let common = Common { block, unit, best, names };
+        self.grouped = Grouped::values(block, places);
         let mut limits = Vec::new();
         let mut ok = true;
         for field in fields {
@@ -71,48 +67,19 @@ impl Checker<'_> {
         ok.then_some(limits)
     }
 
-    /// Replaces a choice parameter by the statistic that it names.
-    fn with_statistic(&mut self, mut limit: Written, text: &Text) -> Written {
-        let At { node: word, range } = &limit.statistic;
-        let named = Statistic::named(word).is_some() || self.names.estimates.contains_key(word);
-        let parameter = self.names.parameter_blocks.contains_key(word);
-        if let (false, true, Node::Path(_)) = (named, parameter, &limit.estimate.node)
-            && let Some(choice) = self.choice_word(&word.clone(), &text.place(range.clone()))
-        {
-            limit.estimate.node = if let Some(Statistic::Percentile(percent)) = Statistic::named(&choice) {
-                Node::Percentile(percent)
-            } else {
-                Node::Path(choice.clone())
-            };
-            limit.statistic.node = choice;
-        }
-        limit
-    }
-
     /// The limits of a field: one, or one for every zone.
     fn limit(&mut self, text: &Text, common: &Common<'_>) -> Option<Vec<Limit>> {
         let written = from_pest::limit(text, self.problems)?;
-        let written = self.with_statistic(written, text);
+        let (statistic, estimate) = self.with_statistic(written.statistic, written.estimate, text);
+        let written = Written { statistic, estimate, ..written };
         let dimension = common.unit.map(|(unit, _)| unit.dimension);
         let unconfirmed = common.block.field("unconfirmed").is_some();
-        let scope = self.scope_of(&written.scope, text, common.block.name_text(), common.places);
-        let zones = match &scope {
-            Some((scope, true)) if !scope.zones.is_empty() => scope.zones.clone(),
-            Some((_, true)) => self.zone_names.clone(),
-            _ => Vec::new(),
-        };
-        if zones.is_empty() {
-            self.unconfirmed = unconfirmed;
-            let estimate = self.estimate(&written, text, dimension, None);
-            return Some(vec![self.limit_of(&written, &estimate?, scope?.0, None, text, common)?]);
-        }
-        let (scope, _) = scope?;
+        let scope = self.scope_of(&written.scope, text);
         let mut limits = Vec::new();
-        for zone in zones {
+        for (scope, zone) in self.zone_by_zone(scope) {
             self.unconfirmed = unconfirmed;
-            let estimate = self.estimate(&written, text, dimension, Some(&zone))?;
-            let scope = LimitScope { zones: vec![zone.clone()], ..scope.clone() };
-            limits.push(self.limit_of(&written, &estimate, scope, Some(zone), text, common)?);
+            let estimate = self.estimate(&written.statistic, &written.estimate, text, dimension, zone.as_deref());
+            limits.push(self.limit_of(&written, &estimate?, scope?, zone, text, common)?);
         }
         Some(limits)
     }
@@ -291,124 +258,6 @@ impl Checker<'_> {
             Problem::error("unit-mismatch", format!("a factor must be a plain number, this is {}", in_words(&factor.ty))).at(&factor.span),
         );
         None
-    }
-
-    /// The rows that a limit or a minimum applies to, and whether there is one limit for every zone.
-    pub(super) fn scope_of(
-        &mut self,
-        scope: &At<WrittenScope>,
-        text: &Text,
-        quantity: &str,
-        places: &[String],
-    ) -> Option<(LimitScope, bool)> {
-        let written = &scope.node;
-        let zones = self.limit_zones(&written.zones, text);
-        let (mut each_zone, mut each, mut ok) = (false, Vec::new(), true);
-        for key in &written.each {
-            let place = text.place(key.range.clone());
-            if matches!(key.node.as_str(), "zone" | "zones") {
-                ok &= !each_zone || self.key_twice(&key.node, &place);
-                if self.zone_names.is_empty() {
-                    self.problems.push(Problem::error("unknown-zone", "the protocol has no zones").at(&place));
-                    ok = false;
-                }
-                each_zone = true;
-                continue;
-            }
-            match self.key(&key.node, &place, quantity, places) {
-                Some(found) if !each.contains(&found) => each.push(found),
-                Some(_) => ok = self.key_twice(&key.node, &place),
-                None => ok = false,
-            }
-        }
-        let condition = match &written.condition {
-            None => None,
-            Some(condition) => {
-                let words = normalised(&text.text[condition.range.clone()]);
-                let condition = self.expr(condition, text, &mut Scope::section());
-                let condition = condition.filter(|condition| self.flag_type(condition).is_some());
-                ok &= condition.is_some();
-                condition.map(|condition| (condition, words))
-            }
-        };
-        let zones = zones.filter(|_| ok)?;
-        Some((LimitScope { zones, each, condition }, each_zone))
-    }
-
-    fn limit_zones(&mut self, zones: &[At<String>], text: &Text) -> Option<Vec<String>> {
-        let mut found: Vec<String> = Vec::new();
-        let mut ok = true;
-        for zone in zones {
-            let place = text.place(zone.range.clone());
-            if !self.zone_names.contains(&zone.node) {
-                let known = self.zone_names.clone();
-                let problem = Problem::error("unknown-zone", format!("there is no zone {}", zone.node)).at(&place);
-                self.problems.push(if known.is_empty() {
-                    problem.help("the protocol has no zones")
-                } else {
-                    problem.help(format!("known zones: {}", known.join(", ")))
-                });
-                ok = false;
-            } else if found.contains(&zone.node) {
-                ok = self.key_twice(&format!("zone {}", zone.node), &place);
-            } else {
-                found.push(zone.node.clone());
-            }
-        }
-        ok.then_some(found)
-    }
-
-    fn key_twice(&mut self, key: &str, at: &Span) -> bool {
-        self.problems.push(Problem::error("duplicate-name", format!("`{key}` is named twice in the scope")).at(at));
-        false
-    }
-
-    /// A key by which rows are grouped: section, site, record, a place of the signal, or a section column of words.
-    fn key(&mut self, name: &str, span: &Span, quantity: &str, places: &[String]) -> Option<Key> {
-        match name {
-            "section" => return Some(Key::Section),
-            "site" => return Some(Key::Site),
-            "record" => return Some(Key::Record),
-            _ => {}
-        }
-        if let Some(place) = places.iter().find(|place| *place == name || Some(place.as_str()) == name.strip_suffix('s')) {
-            return Some(Key::Place(place.clone()));
-        }
-        if let Some(index) = self.campaign_column(name, span) {
-            if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
-                let says = format!("`{name}` is a number; only a column of words can form groups");
-                let help = "declare the column with `one of ...`, or use it in an estimate: `mean of ...`";
-                self.problems.push(Problem::error("not-a-word", says).at(span).help(help));
-                return None;
-            }
-            return Some(Key::Column(index));
-        }
-        let words = self.names.columns.iter().filter(|datum| !matches!(datum.kind, DatumKind::Number(_)));
-        let columns: Vec<String> = words.map(|datum| datum.name.clone()).filter(|name| !KEYS.contains(&name.as_str())).collect();
-        let known = KEYS.into_iter().chain(places.iter().map(String::as_str));
-        let known = known.chain(columns.iter().map(String::as_str));
-        self.problems.push(
-            Problem::error("unknown-key", format!("the values of `{quantity}` cannot be grouped by `{name}`"))
-                .at(span)
-                .suggest(name, known),
-        );
-        None
-    }
-
-    /// A key inside an estimate: there the zone is one like others.
-    pub(super) fn group_key(&mut self, key: &At<String>, text: &Text) -> Option<Key> {
-        let place = text.place(key.range.clone());
-        if !matches!(key.node.as_str(), "zone" | "zones") {
-            let Grouped { quantity, places } = self.grouped.clone();
-            return self.key(&key.node, &place, &quantity, &places);
-        }
-        match self.zone.as_ref().map(|zone| &zone.kind) {
-            Some(Kind::Column(index)) => Some(Key::Column(*index)),
-            _ => {
-                self.problems.push(Problem::error("unknown-zone", "the protocol has no zones").at(&place));
-                None
-            }
-        }
     }
 
     /// A limit that refers to other limits and is a constant must be above zero.

@@ -1,8 +1,9 @@
 //! Checks how many pairs quantities need: in all, and in each group.
 
 use super::Checker;
+use super::groups::Grouped;
 use super::names::normalised;
-use super::plan::{MinimumOfGroups, Scope};
+use super::plan::MinimumOfGroups;
 use crate::problem::{Problem, Problems};
 use crate::source::Span;
 use crate::syntax::document::{Block, Field};
@@ -54,24 +55,21 @@ impl Checker<'_> {
 
     /// The minimum counts of groups of a quantity.
     pub(super) fn minimum_of_groups(&mut self, fields: &[Field], block: &Block, places: &[String]) -> Option<Vec<MinimumOfGroups>> {
+        self.grouped = Grouped::values(block, places);
         let mut all = Vec::new();
         let mut ok = true;
         for field in fields {
             let Some(written) = from_pest::minimum(&field.value, &mut Problems::default()) else { continue };
             let before = self.problems.0.len();
             let needed = self.pairs(&written.count, field);
-            let scope = self.scope_of(&written.scope, &field.value, block.name_text(), places);
-            let (Some(needed), Some((scope, each_zone))) = (needed, scope) else {
+            let scope = self.scope_of(&written.scope, &field.value);
+            let (Some(needed), true) = (needed, scope.is_some()) else {
                 ok = false;
                 self.once(before);
                 continue;
             };
-            let zones = if scope.zones.is_empty() { self.zone_names.clone() } else { scope.zones.clone() };
-            let scopes: Vec<Scope> = match each_zone {
-                true => zones.into_iter().map(|zone| Scope { zones: vec![zone], ..scope.clone() }).collect(),
-                false => vec![scope],
-            };
-            all.extend(scopes.into_iter().map(|scope| MinimumOfGroups { needed, scope }));
+            let scopes = self.zone_by_zone(scope).into_iter().filter_map(|(scope, _)| scope);
+            all.extend(scopes.map(|scope| MinimumOfGroups { needed, scope }));
         }
         ok.then_some(all)
     }

@@ -5,6 +5,7 @@
 
 mod closed;
 mod conditions;
+pub mod constant;
 mod declared;
 pub mod diff;
 mod domains;
@@ -12,6 +13,7 @@ mod estimates;
 pub mod evaluate;
 pub mod family;
 mod find;
+mod groups;
 mod idle;
 mod like;
 mod limits;
@@ -25,8 +27,10 @@ pub mod plan;
 mod plausibility;
 mod positions;
 pub mod possible;
+mod printed;
 mod quantities;
 mod records;
+mod reports;
 mod rules;
 mod scalar_names;
 mod scalars;
@@ -47,6 +51,7 @@ use crate::problem::{Problem, Problems};
 use crate::source::{Span, Spanned};
 use crate::syntax::document::{Block, Document, Field, Text};
 use crate::units::Dimension;
+use groups::Grouped;
 use names::Names;
 use plan::{Axis, Expr, NamedFilter, Parameter, Plan, SetBy, Step};
 
@@ -102,15 +107,8 @@ struct Checker<'a> {
     minimum_pairs: usize,
     /// Minimum counts of groups that every quantity has unless it gives its own.
     minimum_of_groups: Vec<Field>,
-    /// The quantity whose limits are looked at, and the places of its signals.
+    /// What the scopes that are looked at group.
     grouped: Grouped,
-}
-
-/// A quantity and by what places its values can be grouped.
-#[derive(Clone, Debug, Default)]
-struct Grouped {
-    quantity: String,
-    places: Vec<String>,
 }
 
 /// The plan of a protocol with its parameters set; `None` after a problem of severity error.
@@ -201,17 +199,22 @@ fn written_rules(block: &Block) -> usize {
     match block.kind.text.as_str() {
         "zone" | "check" | "filter" | "domain" => 1,
         "plausibility" => block.fields_named("of").count().max(1),
-        "quantity" => 1 + block.fields_named("limit").count(),
+        "quantity" => 1 + block.fields_named("limit").count() + block.fields_named("report").count(),
+        "sections" => block.fields_named("report").count(),
         "verdict" => usize::from(block.name.is_some()),
         _ => 0,
     }
 }
 
 fn rule_count(plan: &Plan) -> usize {
-    let limits = |quantity: &plan::Quantity| {
-        let mut written: Vec<&Span> = quantity.limits.iter().map(|limit| &limit.span).collect();
+    // One for each zone is written once.
+    fn written<'a>(spans: impl Iterator<Item = &'a Span>) -> usize {
+        let mut written: Vec<&Span> = spans.collect();
         written.dedup();
         written.len()
+    }
+    let of_quantity = |quantity: &plan::Quantity| {
+        1 + written(quantity.limits.iter().map(|limit| &limit.span)) + written(quantity.reports.iter().map(|report| &report.span))
     };
     plan.zones.len()
         + plan.checks.len()
@@ -219,7 +222,8 @@ fn rule_count(plan: &Plan) -> usize {
         + plan.filters.len()
         + plan.domains.len()
         + plan.verdicts.iter().filter(|verdict| verdict.name.is_some()).count()
-        + plan.quantities.iter().map(|quantity| 1 + limits(quantity)).sum::<usize>()
+        + written(plan.sections.reports.iter().map(|report| &report.span))
+        + plan.quantities.iter().map(of_quantity).sum::<usize>()
 }
 
 impl Checker<'_> {
@@ -317,6 +321,7 @@ impl Checker<'_> {
         }
         let zones: Vec<plan::Zone> = of("zone").filter_map(|block| self.zone(block)).collect();
         sections.find = self.find(of("sections").next(), &sections, zones.len());
+        sections.reports = self.reports_of_sections(of("sections").next());
         let checks = of("check").filter_map(|block| self.section_check(block)).collect();
         let plausibility = of("plausibility").filter_map(|block| self.plausibility(block)).flatten().collect();
         let filters = of("filter").filter_map(|block| self.named_filter(block)).collect();

@@ -6,9 +6,7 @@ use super::Checker;
 use super::conditions::impossible;
 use super::evaluate::{Values, number, words};
 use super::names::{Assignment, bare_word, normalised};
-use super::plan::{
-    DatumKind, Evaluation, Expr, InputSide, Kind, Pairing, Position, Quantity, QuantityWords, Records, Side, Signal, Step, Valued,
-};
+use super::plan::{Evaluation, Expr, InputSide, Pairing, Position, Quantity, QuantityWords, Records, Side, Signal, Step, Valued};
 use super::records::Compare;
 use super::scalars::Scope;
 use super::steps::after;
@@ -18,7 +16,7 @@ use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Node, Phrase};
-use crate::units::{Dimension, Unit};
+use crate::units::Dimension;
 
 /// The result of checking value and difference, or the metric, of a quantity.
 pub(super) struct Compared {
@@ -106,12 +104,13 @@ impl Checker<'_> {
         let best = compared.as_ref().and_then(|compared| compared.best.as_ref());
         let places: Vec<String> = positions.iter().flatten().next().map_or_else(Vec::new, |(_, at)| at.keys().cloned().collect());
         let limits = self.limits(block, unit.as_ref().zip(from), best, &places);
+        let reports = self.reports(block, unit.as_ref().map(|unit| unit.dimension), &places);
         let minima = self.minima(block);
         if let (Some(reported), Some(limit)) = (block.field("reported"), block.field("limit")) {
             let says = "a quantity is either reported without a limit, or has one";
             self.problems.push(Problem::error("reported-and-limit", says).at(&reported.key.span).also(&limit.key.span, "the limit"));
         }
-        let meant = block.field("reported").is_some() || self.is_referred_to(block.name_text());
+        let meant = block.field("reported").or(block.field("report")).is_some() || self.is_referred_to(block.name_text());
         if block.field("limit").is_none() && !incomplete && !meant {
             self.problems.push(
                 Problem::warning(
@@ -161,6 +160,7 @@ impl Checker<'_> {
                 None => None,
             },
             limits: limits?.into_iter().map(Arc::new).collect(),
+            reports: reports?.into_iter().map(Arc::new).collect(),
             minimum_signals: minimum_signals?,
             minimum_pairs: minimum_pairs?,
             minimum_of_groups: minimum_of_groups?,
@@ -357,6 +357,7 @@ impl Checker<'_> {
             );
             return None;
         }
+        self.can_vary(&field.key.text, &expr, &scope.inputs, &field.value.span)?;
         let mut inputs = vec![scope.inputs];
         for (position, at) in &positions[1..] {
             // Only named signals differ between positions.
@@ -405,53 +406,6 @@ impl Checker<'_> {
         let expr = self.expr(&phrase, &text, &mut Scope::pair(dimension?))?;
         let dimension = self.number_type(&expr)?;
         Some((expr, dimension))
-    }
-
-    /// The unit in which values are printed: as stated, else that of the signal, else SI.
-    fn quantity_unit(&mut self, block: &Block, of: &Text, dimension: Dimension) -> Option<Unit> {
-        if let Some(field) = block.field("in") {
-            let unit = self.unit(&field.value)?;
-            if unit.dimension != dimension {
-                self.problems.push(
-                    Problem::error(
-                        "unit-mismatch",
-                        format!("the values are {}; the unit is that of {}", dimension.in_words(), unit.dimension.in_words()),
-                    )
-                    .at(&field.value.span)
-                    .also(&of.span, dimension.in_words()),
-                );
-                return None;
-            }
-            return Some(unit);
-        }
-        let signal = from_pest::of_places(of, self.problems)?.signal.node;
-        Some(self.own_unit(&signal, dimension))
-    }
-
-    /// The declared unit of the first section column or vehicle datum in an expression that has this dimension.
-    pub(super) fn datum_unit(&self, expr: &Expr, dimension: Dimension) -> Option<Unit> {
-        let datum = match &expr.kind {
-            Kind::Column(index) => self.names.columns.get(*index)?,
-            Kind::Vehicle(index) => self.names.vehicle.get(*index)?,
-            Kind::Negative(inner) | Kind::Power(inner, _) => return self.datum_unit(inner, dimension),
-            Kind::Binary(_, left, right) => return self.datum_unit(left, dimension).or_else(|| self.datum_unit(right, dimension)),
-            Kind::Call(_, arguments) => return arguments.iter().find_map(|argument| self.datum_unit(argument, dimension)),
-            _ => return None,
-        };
-        match &datum.kind {
-            DatumKind::Number(unit) if unit.dimension == dimension => Some(unit.clone()),
-            _ => None,
-        }
-    }
-
-    /// The unit of a channel or signal if its dimension agrees, else the SI unit.
-    pub(super) fn own_unit(&self, name: &str, dimension: Dimension) -> Unit {
-        let channel = self.names.channels.get(name).map(|channel| channel.unit.clone());
-        let own = channel.or_else(|| self.names.signals.get(name).and_then(|signal| signal.unit.clone()));
-        match own {
-            Some(unit) if unit.dimension == dimension => unit,
-            _ => Unit::si(dimension),
-        }
     }
 
     pub(super) fn section_condition(&mut self, field: &Field) -> Option<Expr> {

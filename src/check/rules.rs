@@ -140,6 +140,7 @@ impl Checker<'_> {
             only_words: String::new(),
             faulty: OnFault::NotUsed,
             minimum: 1,
+            reports: Vec::new(),
             percentiles: Method::Linear,
         };
         let Some(block) = block else { return rules };

@@ -31,7 +31,14 @@ impl Checker<'_> {
         let Some(Reduce { own: Some(dimension), axis, side, .. }) = scope.reduce else {
             let what = reducer.in_words();
             let problem = Problem::error("no-signal", format!("`{what}` needs a signal, and there is none here")).at(&span);
-            self.problems.push(if scope.reduce.is_some() { problem.help(format!("name the signal: `{what} of ...`")) } else { problem });
+            let of_sections = scope.group.as_ref().is_some_and(|group| group.values.is_none() && scope.limits.is_none());
+            self.problems.push(if of_sections {
+                problem.help(format!("of the sections there are only data: `{what} of speed`, `{what} of length`"))
+            } else if scope.reduce.is_some() {
+                problem.help(format!("name the signal: `{what} of ...`"))
+            } else {
+                problem
+            });
             return None;
         };
         let ty = Type::Number(reducer.gives(dimension, axis));

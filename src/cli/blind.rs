@@ -114,7 +114,7 @@ impl Blinded {
         let places = |campaign: &Campaign| check_folder(&self.out, REPORT, campaign);
         let found = diagnosed(&asked, &places, &|_| {}, &mut problems);
         console.problems(&problems);
-        let Some((campaign, outcome)) = found else {
+        let Some((files, outcome)) = found else {
             let fault = problems.0.first().map_or("no diagnosis".to_string(), |problem| problem.says.clone());
             return Ok(without(&name, fault));
         };
@@ -128,7 +128,7 @@ impl Blinded {
             Ok(truth) => truth,
             Err(fault) => return Ok(without(&name, format!("truth.json: {fault}"))),
         };
-        let really = self.true_effect(folder, &campaign, &outcome, catalogue, &truth);
+        let really = self.true_effect(folder, &files.campaign, &outcome, catalogue, &truth);
         Ok(case(&name, &outcome.diagnosis, &truth, really.as_ref(), &outcome.found.seen.sections))
     }
 

@@ -8,13 +8,12 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::convert_records::Records;
 use super::inputs::{Prepared, prepare, start_jobs};
+use super::of_runs::WithFiles;
 use super::output::{Console, Exit};
 use super::places::{CAMPAIGN, REPORT, check_folder, same};
 use super::simulator::{Chosen, SimulatorChoice};
 use crate::certify::Compiled;
-use crate::data::cut::cut;
 use crate::data::hash::sha256;
-use crate::data::record::Format;
 use crate::data::write::Outputs;
 use crate::data::{Campaign, RecordKind};
 pub use crate::deliver::diagnosis_json as json;
@@ -23,7 +22,7 @@ use crate::diagnose::inputs::{Inputs, Reference};
 use crate::diagnose::preflight::{Preflight, preflight};
 use crate::diagnose::settings::Settings;
 use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
-use crate::disk::{self, Scratch, SetKind};
+use crate::disk::SetKind;
 use crate::effects::Catalogue;
 use crate::library;
 use crate::prepare::for_diagnosis;
@@ -111,19 +110,18 @@ impl Diagnose {
         };
         let mut problems = Problems::default();
         let places = |campaign: &Campaign| self.out.as_deref().map_or(Ok(()), |out| self.check_folders(out, campaign));
-        let sections = self.of_runs(&places, &mut problems);
-        let asked = Asked { folder: sections.as_ref().map_or(&self.campaign, |folder| folder.path()), ..self.asked() };
+        let asked = self.asked();
         let Some(out) = self.out.clone() else {
-            let found = if problems.any_error() { None } else { preflighted(&asked, &trying, &mut problems) };
+            let found = preflighted(&asked, &trying, &mut problems);
             bar.finish_and_clear();
             console.problems(&problems);
             return found.map_or_else(|| stopped(&problems), |found| console.print(&found.in_words()));
         };
-        let outcome = if problems.any_error() { None } else { diagnosed(&asked, &places, &trying, &mut problems) };
+        let outcome = diagnosed(&asked, &places, &trying, &mut problems);
         bar.finish_and_clear();
         console.problems(&problems);
-        let Some((campaign, outcome)) = outcome else { return stopped(&problems) };
-        match self.write(&out, &campaign, &outcome, console) {
+        let Some((files, outcome)) = outcome else { return stopped(&problems) };
+        match self.write(&out, &files.campaign, &outcome, console) {
             Ok(()) => {}
             Err(problem) => return console.fail(problem, Exit::Unfinished),
         }
@@ -148,29 +146,6 @@ impl Diagnose {
         }
         console.problems(&Problems(all.iter().filter_map(Outputs::mended).collect()));
         all.into_iter().try_for_each(Outputs::commit)
-    }
-
-    /// If the sections are parts of runs, a campaign in a folder of its own in which each of them has its records: found first, if the
-    /// protocol looks for them.
-    fn of_runs(&self, places: &dyn Fn(&Campaign) -> Result<(), Problem>, problems: &mut Problems) -> Option<Scratch> {
-        let opened = Campaign::open(&self.campaign, &mut Problems::default())?;
-        if opened.runs().is_empty() {
-            return None;
-        }
-        let Prepared { campaign, .. } =
-            prepare(&self.campaign, self.protocol.as_deref(), &[], problems).filter(|_| !problems.any_error())?;
-        places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
-        let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be made: {error}"));
-        let folder = disk::scratch().map_err(|error| problems.push(failed(error))).ok()?;
-        let mut outputs = Outputs::of(SetKind::Campaign, folder.path()).for_this_run();
-        match cut(&campaign, Format::Parquet, &mut outputs) {
-            Ok(_) => outputs.commit().map_err(|problem| problems.push(problem)).ok()?,
-            Err(found) => {
-                problems.0.extend(found);
-                return None;
-            }
-        }
-        Some(folder)
     }
 
     /// Refuses output folders that are inputs, or that are the same.
@@ -206,7 +181,7 @@ fn stopped(problems: &Problems) -> Exit {
 /// What is read before anything is simulated.
 struct Opened {
     compiled: Compiled,
-    campaign: Campaign,
+    files: WithFiles,
     catalogue: Catalogue,
     settings: Settings,
     sections: Vec<Section>,
@@ -215,17 +190,19 @@ struct Opened {
 fn opened(asked: &Asked<'_>, places: &dyn Fn(&Campaign) -> Result<(), Problem>, problems: &mut Problems) -> Option<Opened> {
     let Prepared { compiled, campaign } = prepare(asked.folder, asked.protocol, &[], problems)?;
     places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
-    let (catalogue, settings, sections) = for_diagnosis(&campaign, asked.catalogue, problems)?;
-    Some(Opened { compiled, campaign, catalogue, settings, sections })
+    let files = WithFiles::of(campaign, problems)?;
+    let (catalogue, settings, sections) = for_diagnosis(&files.campaign, asked.catalogue, problems)?;
+    Some(Opened { compiled, files, catalogue, settings, sections })
 }
 
 /// Each effect once on one section.
 fn preflighted(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &mut Problems) -> Option<Preflight> {
-    let Opened { campaign, catalogue, settings, sections, .. } = opened(asked, &|_| Ok(()), problems)?;
-    let chosen = simulating(asked.simulator, &campaign, &catalogue, problems)?;
+    let Opened { files, catalogue, settings, sections, .. } = opened(asked, &|_| Ok(()), problems)?;
+    let campaign = &files.campaign;
+    let chosen = simulating(asked.simulator, campaign, &catalogue, problems)?;
     trying("each effect once");
     let simulator = chosen.as_ref().map(Chosen::simulator);
-    preflight(&campaign, &sections, &catalogue, &settings, simulator).map_err(|found| problems.0.extend(found.0)).ok()
+    preflight(campaign, &sections, &catalogue, &settings, simulator).map_err(|found| problems.0.extend(found.0)).ok()
 }
 
 /// Reads all inputs and diagnoses; `places` checks the output folders before the computation.
@@ -234,9 +211,12 @@ pub fn diagnosed(
     places: &dyn Fn(&Campaign) -> Result<(), Problem>,
     trying: &(dyn Fn(&str) + Sync),
     problems: &mut Problems,
-) -> Option<(Campaign, Outcome)> {
-    let Opened { compiled, campaign, catalogue, settings, sections } = opened(asked, places, problems)?;
-    let references: Vec<Campaign> = asked.references.iter().map(|folder| Campaign::open(folder, problems)).collect::<Option<_>>()?;
+) -> Option<(WithFiles, Outcome)> {
+    let Opened { compiled, files, catalogue, settings, sections } = opened(asked, places, problems)?;
+    let campaign = &files.campaign;
+    let opened = asked.references.iter().map(|folder| WithFiles::open(folder, asked.protocol, &|_| Ok(()), problems));
+    let references: Vec<WithFiles> = opened.collect::<Option<_>>()?;
+    let references: Vec<&Campaign> = references.iter().map(|reference| &reference.campaign).collect();
     for reference in &references {
         reference.one_of_each().and_then(|()| reference.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
     }
@@ -252,22 +232,22 @@ pub fn diagnosed(
         let cache = asked.resume.map(|folder| kept(folder, campaign, &settings)).transpose();
         Some((chosen, cache.map_err(|problem| problems.push(problem)).ok()?))
     };
-    let (chosen, cache) = with_all(&campaign)?;
-    let of_references: Vec<_> = references.iter().map(&mut with_all).collect::<Option<_>>()?;
+    let (chosen, cache) = with_all(campaign)?;
+    let of_references: Vec<_> = references.iter().copied().map(&mut with_all).collect::<Option<_>>()?;
     // Another simulator runs each effect once on one section first: what is misspelt is told within seconds.
     let strict = chosen.as_ref().filter(|chosen| chosen.is_external()).map(|chosen| Strict::new(chosen.simulator()));
     if let Some(strict) = &strict {
         trying("each effect once");
-        let found = preflight(&campaign, &sections, &catalogue, &settings, Some(strict));
+        let found = preflight(campaign, &sections, &catalogue, &settings, Some(strict));
         found.map_err(|found| problems.0.extend(found.0)).ok()?;
     }
     let own = || Some(strict.as_ref()? as &dyn Simulator);
     let references: Vec<Reference<'_>> = std::iter::zip(&references, &of_references)
-        .map(|(campaign, (chosen, cache))| Reference { campaign, simulator: chosen.as_ref().map(Chosen::simulator), cache: cache.clone() })
+        .map(|(&campaign, (chosen, cache))| Reference { campaign, simulator: chosen.as_ref().map(Chosen::simulator), cache: cache.clone() })
         .collect();
     let inputs = Inputs {
         references: &references,
-        campaign: &campaign,
+        campaign,
         catalogue: &catalogue,
         settings: &settings,
         simulator: own().or_else(|| chosen.as_ref().map(Chosen::simulator)),
@@ -286,7 +266,7 @@ pub fn diagnosed(
     match found {
         Ok(outcome) => {
             problems.0.extend(outcome.warnings.0.iter().cloned());
-            Some((campaign, outcome))
+            Some((files, outcome))
         }
         Err(found) => {
             found.0.into_iter().for_each(|problem| problems.push(problem));

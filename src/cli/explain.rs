@@ -9,7 +9,10 @@ use serde_json::{Value, json};
 use super::output::{Console, Exit};
 use super::protocols::load;
 use crate::catalog::entries;
-use crate::check::{self, Overrides, plan::Plan};
+use crate::check::{
+    self, Overrides,
+    plan::{Plan, Report},
+};
 use crate::graph;
 use crate::problem::{Problem, Problems};
 use crate::run::needs;
@@ -157,6 +160,14 @@ fn plan_text(plan: &Plan) -> String {
     for zone in &plan.zones {
         let _ = writeln!(out, "zone {}: {}; at least {} sections", zone.name, zone.condition_words, zone.minimum_sections);
     }
+    // A report or limit `for each zone` is written once.
+    let mut written: Vec<&crate::source::Span> = Vec::new();
+    for report in &plan.sections.reports {
+        if !written.contains(&&report.span) {
+            written.push(&report.span);
+            let _ = writeln!(out, "sections report {}", report.words);
+        }
+    }
     for check in &plan.checks {
         let _ = writeln!(out, "check {}: {}", check.name, check.words);
     }
@@ -171,12 +182,16 @@ fn plan_text(plan: &Plan) -> String {
             quantity.words.processing,
             quantity.words.comparison
         );
-        // A limit `for each zone` is written once.
-        let mut written: Vec<&crate::source::Span> = Vec::new();
         for limit in &quantity.limits {
             if !written.contains(&&limit.span) {
                 written.push(&limit.span);
                 let _ = writeln!(out, "  limit       {} {}", limit.estimate.title, limit.words);
+            }
+        }
+        for report in &quantity.reports {
+            if !written.contains(&&report.span) {
+                written.push(&report.span);
+                let _ = writeln!(out, "  report      {}", report.words);
             }
         }
     }
@@ -204,12 +219,14 @@ fn plan_json(plan: &Plan) -> Value {
         .map(|quantity| {
             let limits: Vec<Value> =
                 quantity.limits.iter().map(|limit| json!({"statistic": limit.estimate.name, "limit": limit.words})).collect();
-            json!({
+            let mut one = json!({
                 "id": quantity.id, "title": quantity.title, "unit": quantity.unit.text,
                 "signals": quantity.positions.iter().map(|position| position.name.as_str()).collect::<Vec<_>>(),
                 "filter": quantity.words.filter, "value": quantity.words.processing, "comparison": quantity.words.comparison,
                 "limits": limits, "minimum_signals": quantity.minimum_signals, "minimum_pairs": quantity.minimum_pairs,
-            })
+            });
+            with_reports(&mut one, quantity.reports.iter().map(AsRef::as_ref));
+            one
         })
         .collect();
     let zones: Vec<Value> = plan
@@ -227,10 +244,20 @@ fn plan_json(plan: &Plan) -> Value {
             Some(json!({"name": verdict.name.as_ref()?, "title": verdict.title, "rule": verdict.criterion, "words": verdict.words}))
         })
         .collect();
+    with_reports(&mut json, plan.sections.reports.iter());
     if !verdicts.is_empty() {
         json["verdicts"] = json!(verdicts);
     }
     json
+}
+
+/// Estimates without a limit, each as written; no key where there are none.
+fn with_reports<'a>(of: &mut Value, reports: impl Iterator<Item = &'a Report>) {
+    let mut words: Vec<&str> = reports.map(|report| report.words.as_str()).collect();
+    words.dedup();
+    if !words.is_empty() {
+        of["reports"] = json!(words);
+    }
 }
 
 fn registry(as_json: bool) -> String {

@@ -12,6 +12,7 @@ mod init;
 mod inputs;
 mod needs;
 mod new;
+mod of_runs;
 mod output;
 mod places;
 mod protocols;

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::convert_records::Records;
 use super::inputs::{progress_bar, start_jobs};
+use super::of_runs::WithFiles;
 use super::output::{Console, Exit};
 use super::places::{CAMPAIGN, check_file, check_folder};
 use super::simulator::{Chosen, SimulatorChoice};
@@ -30,7 +31,7 @@ use crate::yaml;
 
 #[derive(Debug, Args)]
 pub struct Simulate {
-    /// Folder of a campaign; all its sections are simulated.
+    /// Folder of a campaign; all its sections are simulated. Of runs, those are that the table of sections or the protocol gives.
     #[arg(required_unless_present = "vehicle", conflicts_with_all = ["vehicle", "track", "speed", "output"])]
     campaign: Option<PathBuf>,
     /// Vehicle file; its contact profile is in the same folder.
@@ -49,6 +50,10 @@ pub struct Simulate {
     /// Catalogue of effects: a path, or the name of a shipped one.
     #[arg(long = "effects", value_name = "CATALOGUE", default_value = library::CATALOGUES[0].name)]
     catalogue: String,
+    /// Protocol that finds the sections in the runs of a campaign: a path, or the name of a shipped one [default: the one in
+    /// campaign.yaml]
+    #[arg(long, short, conflicts_with = "vehicle")]
+    protocol: Option<String>,
     /// Output folder for the simulated campaign; created if missing.
     #[arg(long, required_unless_present = "vehicle")]
     out: Option<PathBuf>,
@@ -115,17 +120,13 @@ impl Simulate {
     /// Simulates every section of a campaign, and writes a campaign with the simulated records.
     fn whole(&self, folder: &Path, (catalogue, effects): (&Catalogue, &[Applied]), steps: Steps, console: &Console) -> Exit {
         let mut problems = Problems::default();
-        let campaign = Campaign::open(folder, &mut problems);
-        if let (Some(campaign), Some(out)) = (&campaign, &self.out)
-            && let Err(problem) = check_folder(out, CAMPAIGN, campaign)
-        {
-            problems.push(problem);
-        }
-        let prepared = campaign.as_ref().and_then(|campaign| {
+        let places = |campaign: &Campaign| self.out.as_ref().map_or(Ok(()), |out| check_folder(out, CAMPAIGN, campaign));
+        let files = WithFiles::open(folder, self.protocol.as_deref(), &places, &mut problems);
+        let prepared = files.as_ref().map(|files| &files.campaign).and_then(|campaign| {
             if self.increment || self.baseline {
                 campaign.only_one(RecordKind::Simulation).map_err(|problem| problems.push(problem)).ok()?;
             }
-            campaign.file_for_each_section().and_then(|()| campaign.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
+            campaign.one_vehicle().map_err(|problem| problems.push(problem)).ok()?;
             let sections = sections(campaign, &mut problems)?;
             let chosen = self.simulator.open(campaign, &mut problems)?.integrated(steps);
             if let Err(found) = chosen.check(catalogue) {

@@ -10,8 +10,8 @@ use super::{
 };
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
-    AxisOperation, Decision, Evaluation, Expr, Input, Key, Kind, Limit, OfSignals, Operator, Plan, Plausibility, Position, Quantity, Scope,
-    Signal, SignalKind, Step, StepSpec, Taken, Test, Valued,
+    AxisOperation, Decision, Evaluation, Expr, Input, Key, Kind, Limit, OfSignals, Operator, Plan, Plausibility, Position, Quantity,
+    Report, Scope, Signal, SignalKind, Step, StepSpec, Taken, Test, Valued,
 };
 use crate::source::Span;
 use crate::units::Dimension;
@@ -58,7 +58,7 @@ impl Builder {
             Operation::Constant(expr) => format!("constant {}", shape(expr)),
             Operation::Select(conditions) => format!("select {}", conditions.iter().map(shape).collect::<Vec<_>>().join(";")),
             // Each of these belongs to a single rule.
-            Operation::Value(_) | Operation::Compare(_) | Operation::Estimate(_) | Operation::Limit(_) => {
+            Operation::Value(_) | Operation::Compare(_) | Operation::Estimate(_) | Operation::Report(_) | Operation::Limit(_) => {
                 format!("{kind} {label} {}", from.start)
             }
             _ => kind.clone(),
@@ -68,7 +68,7 @@ impl Builder {
             return node;
         }
         let mut of: Vec<usize> = inputs.iter().map(|&input| self.nodes[input].class).collect();
-        if matches!(operation, Operation::Estimate(_) | Operation::Limit(_) | Operation::Verdict(_)) {
+        if matches!(operation, Operation::Estimate(_) | Operation::Report(_) | Operation::Limit(_) | Operation::Verdict(_)) {
             of.sort_unstable();
             of.dedup();
         }
@@ -325,7 +325,8 @@ impl Builder {
             let label = format!("{}: {title}{}", quantity.id, of_rows(&limit.scope));
             let kind = format!("estimate {index}");
             let estimate = Operation::Estimate(Arc::clone(limit));
-            let rows = rows.iter().copied().chain(self.rows_of_others(plan, limit)).collect();
+            let others = limit.estimate.others().into_iter().chain(limit.bound.others());
+            let rows = rows.iter().copied().chain(self.rows_of_others(plan, others)).collect();
             let estimate = self.add(estimate, rows, quantity.unit.dimension, &limit.span, label, kind);
             let label = format!("{}: {name} {}", quantity.id, limit.words);
             let operation = Operation::Limit(Arc::clone(limit));
@@ -333,13 +334,21 @@ impl Builder {
             LimitNodes { estimate, limit }
         };
         let limits = quantity.limits.iter().map(limit).collect();
-        QuantityNodes { signals, limits }
+        let report = |report: &Arc<Report>| {
+            let others = self.rows_of_others(plan, report.estimate.others().into_iter());
+            let label = format!("{}: {}{}", quantity.id, report.estimate.title, of_rows(&report.scope));
+            let rows = rows.iter().copied().chain(others).collect();
+            let operation = Operation::Report(Arc::clone(report));
+            self.add(operation, rows, quantity.unit.dimension, &report.span, label, format!("report {index}"))
+        };
+        let reports = quantity.reports.iter().map(report).collect();
+        QuantityNodes { signals, limits, reports }
     }
 
-    /// The rows of other quantities from which a limit or its estimate takes a number.
-    fn rows_of_others(&mut self, plan: &Plan, limit: &Limit) -> Vec<NodeId> {
+    /// The rows of other quantities from which an estimate or a limit takes a number.
+    fn rows_of_others(&mut self, plan: &Plan, others: impl Iterator<Item = usize>) -> Vec<NodeId> {
         let mut rows = Vec::new();
-        for other in limit.estimate.others().into_iter().chain(limit.bound.others()) {
+        for other in others {
             let Some(quantity) = plan.quantities.get(other) else { continue };
             rows.extend((0..quantity.positions.len()).map(|number| self.position(other, quantity, number).compare));
         }

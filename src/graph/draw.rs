@@ -80,7 +80,11 @@ fn cards(graph: &Graph) -> Vec<Card> {
                 .collect();
             inputs.sort_unstable();
             inputs.dedup();
-            let count = if matches!(first.operation, Operation::Estimate(_) | Operation::Limit(_)) { 1 } else { members.len() };
+            let count = if matches!(first.operation, Operation::Estimate(_) | Operation::Report(_) | Operation::Limit(_)) {
+                1
+            } else {
+                members.len()
+            };
             let stage = first.operation.stage();
             let column = (stage, matches!(first.operation, Operation::Value(_)));
             Card { column, lines: wrapped(&label(graph, members)), count, inputs, y: 0.0 }
@@ -92,7 +96,7 @@ fn label(graph: &Graph, members: &[NodeId]) -> String {
     let labels: Vec<&str> = members.iter().map(|&id| graph.nodes[id].label.as_str()).collect();
     match graph.nodes[members[0]].operation {
         Operation::Read { .. } | Operation::Arithmetic(_) => shortened(&labels.join(", ")),
-        Operation::Estimate(_) | Operation::Limit(_) => {
+        Operation::Estimate(_) | Operation::Report(_) | Operation::Limit(_) => {
             let (quantity, _) = labels[0].split_once(": ").unwrap_or(("", labels[0]));
             let mut rest: Vec<&str> = labels.iter().map(|label| label.split_once(": ").map_or(*label, |(_, rest)| rest)).collect();
             // A limit `for each zone` is one line.

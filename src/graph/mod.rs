@@ -16,7 +16,7 @@ pub use print::{dot, json, text};
 use std::sync::Arc;
 
 use crate::catalog::{Function, Metric, Reducer};
-use crate::check::plan::{AxisOperation, Decision, Evaluation, Expr, InputSide, Limit, Operator, Signal, StepSpec};
+use crate::check::plan::{AxisOperation, Decision, Evaluation, Expr, InputSide, Limit, Operator, Report, Signal, StepSpec};
 use crate::source::Span;
 use crate::units::Dimension;
 
@@ -91,6 +91,8 @@ pub enum Operation {
     Compare(Arc<Evaluation>),
     /// The estimate of a limit, for each group of rows.
     Estimate(Arc<Limit>),
+    /// An estimate without a limit, for each group of rows.
+    Report(Arc<Report>),
     /// Compares estimates with their limit, for each group of rows.
     Limit(Arc<Limit>),
     /// From limits, from other verdicts, or by a person.
@@ -115,7 +117,7 @@ impl Operation {
             Self::Cut => Stage::Cut,
             Self::Reduce(_) | Self::Value(_) => Stage::Process,
             Self::Compare(_) => Stage::Compare,
-            Self::Estimate(_) => Stage::Estimate,
+            Self::Estimate(_) | Self::Report(_) => Stage::Estimate,
             Self::Limit(_) => Stage::Limit,
             Self::Verdict(_) => Stage::Verdict,
         }
@@ -160,6 +162,8 @@ pub struct QuantityNodes {
     pub signals: Vec<SignalNodes>,
     /// One for each limit of the quantity.
     pub limits: Vec<LimitNodes>,
+    /// One for each report of the quantity.
+    pub reports: Vec<NodeId>,
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,9 @@
 use serde_json::{Map, Value, json};
 
 use super::{attached, estimates};
-use crate::result::{CampaignInfo, Certification, ProtocolFile, ProtocolInfo, QuantityResult, StatisticResult, ZoneResult, report};
+use crate::result::{
+    CampaignInfo, Certification, ProtocolFile, ProtocolInfo, QuantityResult, Reported, StatisticResult, ZoneResult, report,
+};
 
 /// The complete result, ending in a line break.
 pub fn results(found: &Certification) -> String {
@@ -22,6 +24,9 @@ pub fn results(found: &Certification) -> String {
     }
     root.insert("quantities".into(), quantities(&found.quantities));
     root.insert("sections".into(), Value::Array(found.sections.iter().map(|section| zone_as_number(json!(section))).collect()));
+    if !found.reported.is_empty() {
+        root.insert("reported".into(), reported(&found.reported, "sections"));
+    }
     if !found.found.is_empty() {
         root.insert("found_sections".into(), json!(found.found));
     }
@@ -117,6 +122,9 @@ fn quantity(quantity: &QuantityResult) -> Value {
     if quantity.from.is_some() {
         entry.insert("groups".into(), Value::Array(quantity.statistics.iter().map(group).collect()));
     }
+    if !quantity.reported.is_empty() {
+        entry.insert("reported".into(), reported(&quantity.reported, "values"));
+    }
     let values = quantity.values.iter().map(|pair| {
         let mut row = Map::new();
         if pair.campaign.is_some() {
@@ -175,6 +183,28 @@ fn group(one: &StatisticResult) -> Value {
         entry.insert("regression".into(), regression);
     }
     Value::Object(entry)
+}
+
+/// Estimates without a limit; `of` is what is counted.
+fn reported(all: &[Reported], of: &str) -> Value {
+    let one = |one: &Reported| {
+        let mut entry = Map::new();
+        entry.insert("keys".into(), one.group.iter().map(|(key, member)| (key.clone(), json!(member))).collect());
+        entry.insert("where".into(), json!(one.condition));
+        entry.insert("estimate".into(), json!(one.name));
+        entry.insert("title".into(), json!(one.title));
+        entry.insert("scope".into(), json!(one.scope));
+        entry.insert(of.into(), json!(one.count));
+        entry.insert("n".into(), json!(one.n));
+        entry.insert("unit".into(), json!(one.unit));
+        entry.insert("value".into(), json!(one.value));
+        entry.insert("low".into(), json!(one.interval.map(|(low, _)| low)));
+        entry.insert("high".into(), json!(one.interval.map(|(_, high)| high)));
+        entry.insert("reason".into(), json!(one.reason));
+        entry.insert("rule".into(), json!(one.rule));
+        Value::Object(entry)
+    };
+    Value::Array(all.iter().map(one).collect())
 }
 
 /// Writes the name of a zone as a number if it is an integer.

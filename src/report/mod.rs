@@ -4,6 +4,7 @@
 
 pub mod attached;
 pub mod blind;
+pub mod brief;
 pub mod comparison;
 pub mod diagnosis;
 pub mod estimates;

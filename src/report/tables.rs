@@ -1,6 +1,27 @@
 //! All tables of the report as CSV.
 
-use crate::result::{Certification, ClassSpread, CoordinateRange, DomainResult, OfRecord, QuantityResult, WantedPoint};
+use crate::result::{Certification, ClassSpread, CoordinateRange, DomainResult, OfRecord, QuantityResult, Reported, WantedPoint};
+
+/// Columns of estimates without a limit; the quantity is empty where they are of sections.
+const REPORTED: [&str; 12] =
+    ["quantity", "estimate", "title", "scope", "where", "count", "n", "unit", "value", "low 95 %", "high 95 %", "reason"];
+
+fn reported_row(quantity: Option<&QuantityResult>, one: &Reported) -> Vec<String> {
+    vec![
+        quantity.map_or_else(String::new, |quantity| quantity.id.clone()),
+        one.name.clone(),
+        one.title.clone(),
+        one.scope.clone(),
+        one.condition.clone().unwrap_or_default(),
+        one.count.to_string(),
+        one.n.to_string(),
+        one.unit.clone(),
+        number(one.value),
+        number(one.interval.map(|(low, _)| low)),
+        number(one.interval.map(|(_, high)| high)),
+        one.reason.clone().unwrap_or_default(),
+    ]
+}
 
 /// File names and contents for the folder `tables/`.
 ///
@@ -58,6 +79,12 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
         ],
         statistics.collect(),
     )?;
+    let all_reported = found.reported.iter().map(|one| (None, one));
+    let all_reported = all_reported.chain(found.quantities.iter().flat_map(|of| of.reported.iter().map(move |one| (Some(of), one))));
+    let rows: Vec<Vec<String>> = all_reported.map(|(quantity, one)| reported_row(quantity, one)).collect();
+    if !rows.is_empty() {
+        add("reported", &REPORTED, rows)?;
+    }
     // A column of its own says which of several campaigns a row is of.
     let pooled = !found.campaign.members.is_empty();
     let header = |all: &[&'static str], after: usize| {

@@ -23,7 +23,7 @@ pub use finding::{Consequence, Finding};
 pub use kind::{Kind, VerdictWords};
 pub use origin::{FittedTo, ImportedOne, ImportedSide, OriginInfo};
 pub use quantity::{
-    LimitFactor, Outside, PairValue, QuantityResult, RegressionAt, RegressionFigure, RegressionPoint, Sample, StatisticResult,
+    LimitFactor, Outside, PairValue, QuantityResult, RegressionAt, RegressionFigure, RegressionPoint, Reported, Sample, StatisticResult,
 };
 pub use report::ReportItem;
 pub use spread::{ClassSpread, Furthest, OfRecord, Spread};
@@ -46,6 +46,8 @@ pub struct Certification {
     pub verdicts: Vec<VerdictResult>,
     pub quantities: Vec<QuantityResult>,
     pub sections: Vec<SectionResult>,
+    /// Numbers of the data of the sections used, which the protocol reports.
+    pub reported: Vec<Reported>,
     /// How sections were found in runs; empty if a table of sections states them.
     pub found: Vec<found::FoundSections>,
     /// The sections that were kept, where the protocol reduces them.

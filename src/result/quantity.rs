@@ -38,6 +38,8 @@ pub struct QuantityResult {
     /// How far several records of one side are apart.
     pub spread: Option<Spread>,
     pub statistics: Vec<StatisticResult>,
+    /// Estimates without a limit.
+    pub reported: Vec<Reported>,
     /// Number of sites of the values.
     pub n: usize,
     pub values: Vec<PairValue>,
@@ -102,6 +104,33 @@ pub struct StatisticResult {
     pub limit_text: String,
     pub reason: Option<String>,
     /// Place of the limit in the protocol.
+    pub rule: RulePlace,
+}
+
+/// An estimate without a limit, of one group of values or of sections.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Reported {
+    /// `mean`, the name of an estimate, or an expression as written.
+    pub name: String,
+    pub title: String,
+    /// `all`, `zone 1, wheelset 2`.
+    pub scope: String,
+    /// Which of their values or sections, in the words of the protocol.
+    pub condition: Option<String>,
+    /// Each key with its member; of a zone alone, the zone.
+    #[serde(serialize_with = "as_map")]
+    pub group: Vec<(String, String)>,
+    /// Number of values, or of sections.
+    pub count: usize,
+    /// Number of independent units.
+    pub n: usize,
+    pub unit: String,
+    pub value: Option<f64>,
+    /// 95 % confidence interval, as in [`StatisticResult::interval`].
+    pub interval: Option<(f64, f64)>,
+    /// Why there is no value.
+    pub reason: Option<String>,
+    /// Place of the report in the protocol.
     pub rule: RulePlace,
 }
 

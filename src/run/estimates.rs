@@ -11,7 +11,7 @@ use super::table::{Member, Table, independent};
 use crate::catalog::Statistic;
 use crate::check::evaluate::{Values, flag, number, words};
 use crate::check::plan::{
-    DataReducer, DatumKind, Estimate, EstimateKind, Expr, Fit, Key, Kind, OfGroup, Operator, Plan, Quantity, Scalar, Taking, Type,
+    DataReducer, DatumKind, Estimate, EstimateKind, Expr, Fit, Key, Kind, OfGroup, Operator, Plan, Position, Scalar, Taking, Type,
 };
 use crate::metrics::cluster::{self, Bounds, Draws, Mean, StandardDeviation};
 use crate::metrics::percentile::{Method, percentile};
@@ -25,7 +25,7 @@ use crate::units;
 pub struct Group<'a> {
     pub plan: &'a Plan,
     pub facts: &'a Facts,
-    pub quantity: &'a Quantity,
+    pub positions: &'a [Position],
     pub members: &'a [Member<'a>],
     pub table: &'a Table<'a>,
 }
@@ -134,7 +134,7 @@ impl Group<'_> {
     pub fn groups(&self, keys: &[Key]) -> IndexMap<String, Vec<usize>> {
         let mut groups: IndexMap<String, Vec<usize>> = IndexMap::new();
         for (row, member) in self.members.iter().enumerate() {
-            let name: Vec<String> = keys.iter().map(|key| of_key(self.plan, self.quantity, key, member).1).collect();
+            let name: Vec<String> = keys.iter().map(|key| of_key(self.plan, self.positions, key, member).1).collect();
             groups.entry(name.join(", ")).or_default().push(row);
         }
         groups

@@ -59,34 +59,52 @@ impl Group<'_> {
     }
 }
 
-/// One finding for each quantity, estimate, target and range of data, with the groups in which it is so.
+/// An estimate of a quantity, and the groups in which it is read outside its data.
+struct Read<'a> {
+    quantity: &'a str,
+    estimate: &'a str,
+    groups: Vec<&'a str>,
+}
+
+/// One finding for each target and range of data, with the estimates that are read there.
 pub fn findings(quantities: &[QuantityResult]) -> Vec<Finding> {
-    let mut all = Vec::new();
+    let mut all: Vec<(&Outside, Vec<Read<'_>>)> = Vec::new();
     for quantity in quantities {
-        let mut found: Vec<(&str, &Outside, Vec<&str>)> = Vec::new();
         for statistic in &quantity.statistics {
             for outside in &statistic.outside {
-                let title = statistic.title.as_str();
-                match found.iter_mut().find(|(known, of, _)| *known == title && *of == outside) {
-                    Some((.., groups)) if groups.last() == Some(&statistic.scope.as_str()) => {}
-                    Some((.., groups)) => groups.push(&statistic.scope),
-                    None => found.push((title, outside, vec![&statistic.scope])),
+                let (id, title, group) = (quantity.id.as_str(), statistic.title.as_str(), statistic.scope.as_str());
+                let new = || Read { quantity: id, estimate: title, groups: vec![group] };
+                let Some((_, reads)) = all.iter_mut().find(|(known, _)| *known == outside) else {
+                    all.push((outside, vec![new()]));
+                    continue;
+                };
+                match reads.iter_mut().find(|read| read.quantity == id && read.estimate == title) {
+                    Some(read) if read.groups.last() == Some(&group) => {}
+                    Some(read) => read.groups.push(group),
+                    None => reads.push(new()),
                 }
             }
         }
-        all.extend(found.into_iter().map(|(title, outside, groups)| finding(&quantity.id, title, outside, &groups)));
     }
-    all
+    all.iter().map(|(outside, reads)| finding(outside, reads)).collect()
 }
 
-fn finding(quantity: &str, title: &str, outside: &Outside, groups: &[&str]) -> Finding {
+fn finding(outside: &Outside, reads: &[Read<'_>]) -> Finding {
     let Outside { regressor, unit, target, low, high } = outside;
     let suffix = if unit == "-" { String::new() } else { format!(" {unit}") };
     let (beyond, side, edge) = if target < low { (low - target, "below", *low) } else { (target - high, "above", *high) };
     let share = 100.0 * beyond / (high - low);
-    let of_groups = if groups == ["all"] { String::new() } else { format!(" ({})", groups.join("; ")) };
+    let (of, groups) = match reads {
+        [one] => (format!("{}: {} is", one.quantity, one.estimate), one.groups.as_slice()),
+        several => {
+            let mut quantities: Vec<&str> = several.iter().map(|read| read.quantity).collect();
+            quantities.dedup();
+            (format!("{}: {} estimates are", quantities.join(", "), several.len()), &[][..])
+        }
+    };
+    let of_groups = if groups.is_empty() || groups == ["all"] { String::new() } else { format!(" ({})", groups.join("; ")) };
     let says = format!(
-        "{quantity}: {title} is read at {regressor} = {}{suffix}, {}{suffix} {side} the data, which reach from {} to {}{suffix}; that is {share:.0} % of their range{of_groups}",
+        "{of} read at {regressor} = {}{suffix}, {}{suffix} {side} the data, which reach from {} to {}{suffix}; that is {share:.0} % of their range{of_groups}",
         rounded(*target),
         rounded(beyond),
         rounded(*low),

@@ -8,7 +8,7 @@ use super::facts::Facts;
 use super::sections::Unit;
 use super::table::Member;
 use crate::check::evaluate::flag;
-use crate::check::plan::{Key, Limit, Plan, Quantity, Scalar, Scope};
+use crate::check::plan::{Key, Limit, Plan, Position, Quantity, Scalar, Scope};
 
 /// The group of rows of an estimate.
 #[derive(Clone, Debug)]
@@ -22,13 +22,32 @@ pub struct Part<'a> {
     rows: Vec<usize>,
 }
 
-/// The groups of a limit or a minimum.
+/// What the rows that are grouped are of.
+#[derive(Clone, Copy, Debug)]
+pub struct Grouped<'a> {
+    pub positions: &'a [Position],
+    /// Whether a zone without rows has none because of the rules of the quantity.
+    selective: bool,
+}
+
+impl<'a> Grouped<'a> {
+    pub fn values(quantity: &'a Quantity) -> Self {
+        Self { positions: &quantity.positions, selective: quantity.only.is_some() || quantity.evaluation.of_repeats() }
+    }
+
+    /// Sections by themselves, each of which is one row.
+    pub fn sections() -> Self {
+        Self { positions: &[], selective: true }
+    }
+}
+
+/// The groups of a limit, a minimum or a report.
 ///
 /// Left out are: zones that need no section and have none; zones that the condition of the quantity excludes or that have no
 /// repeats, unless all are excluded; groups in which a condition leaves no row, unless it leaves none in any group. A group of a
 /// place exists wherever the place was recorded.
-pub fn parts<'a>(plan: &Plan, quantity: &Quantity, scope: &'a Scope, members: &[Member<'_>], facts: &Facts) -> Vec<Part<'a>> {
-    let selective = (quantity.only.is_some() || quantity.evaluation.of_repeats()) && !members.is_empty();
+pub fn parts<'a>(plan: &Plan, of: Grouped<'_>, scope: &'a Scope, members: &[Member<'_>], facts: &Facts) -> Vec<Part<'a>> {
+    let selective = of.selective && !members.is_empty();
     let needed = |name: &str| !selective && plan.zones.iter().any(|zone| zone.name == name && zone.minimum_sections > 0);
     let filled = |zone: &str| members.iter().any(|member| member.unit.zone.as_deref() == Some(zone));
     if !scope.zones.is_empty() && !scope.zones.iter().any(|zone| needed(zone) || filled(zone)) {
@@ -50,20 +69,20 @@ pub fn parts<'a>(plan: &Plan, quantity: &Quantity, scope: &'a Scope, members: &[
         let excluded = scope.condition.is_some() && !scope.zones.is_empty() && rows.is_empty();
         return if excluded { Vec::new() } else { vec![whole] };
     }
-    let groups = whole.by_keys(plan, quantity, members, &rows);
+    let groups = whole.by_keys(plan, of.positions, members, &rows);
     // Missing groups are reported for the group of all rows.
     if groups.is_empty() && scope.condition.is_none() { vec![whole] } else { groups }
 }
 
 /// The member of a key that a row belongs to, and its printed name.
-pub(super) fn of_key(plan: &Plan, quantity: &Quantity, key: &Key, member: &Member<'_>) -> (String, String) {
+pub(super) fn of_key(plan: &Plan, positions: &[Position], key: &Key, member: &Member<'_>) -> (String, String) {
     let named = |of: &str, name: String| (name.clone(), format!("{of} {name}"));
     match key {
         Key::Section => named("section", member.unit.name.clone()),
         Key::Site => named("site", member.unit.site_name.clone()),
         Key::Record => named("record", member.row.record.as_deref().unwrap_or("1").to_string()),
         Key::Place(place) => {
-            let places = &quantity.positions[member.row.position].places;
+            let places = positions.get(member.row.position).map_or(&[][..], |position| &position.places);
             let of = places.iter().find(|(known, _)| known == place).map_or(String::new(), |(_, member)| member.clone());
             named(&place.replace('_', " "), of)
         }
@@ -82,9 +101,9 @@ pub(super) fn of_key(plan: &Plan, quantity: &Quantity, key: &Key, member: &Membe
 
 impl<'a> Part<'a> {
     /// Groups of rows by keys. For places, every recorded position has a group; for sections, the groups that occur.
-    fn by_keys(&self, plan: &Plan, quantity: &Quantity, members: &[Member<'_>], rows: &[usize]) -> Vec<Self> {
+    fn by_keys(&self, plan: &Plan, positions: &[Position], members: &[Member<'_>], rows: &[usize]) -> Vec<Self> {
         let keys = &self.scope.each;
-        let of = |member: &Member<'_>, key: &Key| of_key(plan, quantity, key, member);
+        let of = |member: &Member<'_>, key: &Key| of_key(plan, positions, key, member);
         let mut rows_of: HashMap<Vec<String>, Vec<usize>> = HashMap::new();
         // Combinations of the section keys, in order of occurrence.
         let mut of_sections: IndexSet<Vec<Option<(String, String)>>> = IndexSet::new();
@@ -131,20 +150,28 @@ impl<'a> Part<'a> {
 
     /// The group as text: `all`, `zones 2, 3`, `zone 1, wheelset 2`.
     pub fn in_words(&self) -> String {
+        let condition = self.scope.condition.iter().map(|(_, words)| words.clone());
+        let words: Vec<String> = self.names().into_iter().chain(condition).collect();
+        if words.is_empty() { "all".into() } else { words.join(", ") }
+    }
+
+    /// The zones and keys as text: `zones 2, 3`, `wheelset 2`.
+    pub fn names(&self) -> Vec<String> {
         let mut words: Vec<String> = Vec::new();
         if !self.zones.is_empty() {
             words.push(format!("{} {}", if self.zones.len() == 1 { "zone" } else { "zones" }, self.zones.join(", ")));
         }
         words.extend(self.keys.iter().map(|(_, _, words)| words.clone()));
-        words.extend(self.scope.condition.iter().map(|(_, words)| words.clone()));
-        if words.is_empty() { "all".into() } else { words.join(", ") }
+        words
     }
 
     /// Each key with its member, the zone first; empty where only the zone defines the groups.
     pub fn keys(&self) -> Vec<(String, String)> {
-        if self.keys.is_empty() {
-            return Vec::new();
-        }
+        if self.keys.is_empty() { Vec::new() } else { self.keys_with_zone() }
+    }
+
+    /// Each key with its member, the zone first.
+    pub fn keys_with_zone(&self) -> Vec<(String, String)> {
         let zone = match self.zones.as_slice() {
             [one] => Some(("zone".to_string(), one.clone())),
             _ => None,

@@ -5,15 +5,18 @@ use std::collections::BTreeSet;
 use super::facts::Facts;
 use super::limits::{self, Compared, Judging};
 use super::minima::{self, TooFew};
+use super::reports;
 use super::section::SectionValues;
 use super::sections::Unit;
 use super::spreads;
 use super::table::{Member, count_independent};
 use super::together;
 use super::verdicts;
-use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
+use crate::check::constant;
+use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Valued, Zone};
 use crate::graph::{Graph, Operation, QuantityNodes};
-use crate::result::{Consequence, Finding, PairValue, QuantityResult, Verdict, VerdictResult, ZoneResult, usable_sections};
+use crate::metrics::rounded;
+use crate::result::{Consequence, Finding, PairValue, QuantityResult, Reported, Verdict, VerdictResult, ZoneResult, usable_sections};
 
 #[derive(Debug)]
 pub struct Judged {
@@ -25,6 +28,8 @@ pub struct Judged {
     pub verdicts: Vec<VerdictResult>,
     pub quantities: Vec<QuantityResult>,
     pub zones: Vec<ZoneResult>,
+    /// Numbers of the data of the sections.
+    pub reported: Vec<Reported>,
 }
 
 /// What was told before anything is judged.
@@ -63,7 +68,8 @@ pub fn judge(plan: &Plan, graph: &Graph, facts: &Facts, units: &[Unit], values: 
         Verdict::NotAssessable => verdict.in_words().to_string(),
         _ => overall.outcome.word(&rule.words).to_string(),
     });
-    Judged { verdict, own_word: own, reasons: overall.reasons, verdicts: named, quantities, zones }
+    let reported = reports::of_sections(plan, facts, used.iter().map(|(unit, _)| *unit));
+    Judged { verdict, own_word: own, reasons: overall.reasons, verdicts: named, quantities, zones, reported }
 }
 
 /// One reason for each of several campaigns of which no section is used: the verdict names it, but nothing of it was assessed.
@@ -194,9 +200,40 @@ pub fn rows<'a>(plan: &Plan, quantity: &'a Quantity, index: usize, used: &[(&'a 
     } else if pairs < quantity.minimum_pairs {
         Some(minima::in_words(pairs, members.len(), quantity.minimum_pairs))
     } else {
-        minima::reason(&too_few)
+        minima::reason(&too_few).or_else(|| whatever_the_records(quantity, &members, facts))
     };
     Rows { members, too_few, reason }
+}
+
+/// Why the values say nothing of the records: with the data of these sections and vehicles, each is the same number whatever the
+/// records are.
+fn whatever_the_records(quantity: &Quantity, members: &[Member<'_>], facts: &Facts) -> Option<String> {
+    let (first, others) = members.split_first()?;
+    if others.iter().any(|member| member.row.value != first.row.value) {
+        return None;
+    }
+    let fixed = |member: &Member<'_>| {
+        let known = member.unit.known(facts);
+        let of = |valued: &Valued| {
+            let inputs = valued.inputs.get(member.row.position)?;
+            constant::whatever_the_records(&valued.expr, inputs, &known)
+        };
+        match quantity.evaluation.as_ref() {
+            Evaluation::Combined { of: valued, .. } => of(valued),
+            Evaluation::Values { values, records } => match records {
+                Records::Compared { difference, .. } | Records::Spread { difference, .. } => {
+                    constant::whatever_the_records(difference, &[], &known).or_else(|| of(values.get(member.row.which)?))
+                }
+                Records::Of(_) => of(values.get(member.row.which)?),
+            },
+            Evaluation::Metric { .. } => None,
+        }
+    };
+    let says = || {
+        let value = rounded(quantity.unit.from_si(first.row.value));
+        format!("every value is {value}{} whatever the records are, with the data of these sections and vehicles", quantity.unit.suffix())
+    };
+    members.iter().all(|member| fixed(member).is_some()).then(says)
 }
 
 /// The result, and a sentence for each limit that is not met.
@@ -260,6 +297,7 @@ fn quantity_result(graph: &Graph, index: usize, judging: &Judging<'_>, reason: O
             _ => None,
         },
         statistics,
+        reported: reports::of_quantity(graph, &graph.quantities[index].reports, judging),
         n: count_independent(plan, members),
         values,
         holds,

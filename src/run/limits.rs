@@ -2,13 +2,13 @@
 
 use super::estimates::{Group, Taken};
 use super::facts::{Facts, Known, Vehicle};
-use super::groups::{Closeness, Part, parts};
+use super::groups::{Closeness, Grouped, Part, parts};
 use super::minima::TooFew;
 use super::table::{Member, Table, count_independent};
 use super::told::factors;
 use crate::catalog::Statistic;
 use crate::check::evaluate::{Values, flag, number};
-use crate::check::plan::{EstimateKind, Limit, Plan, Quantity, Scalar};
+use crate::check::plan::{Estimate, EstimateKind, Limit, Plan, Quantity, Report, Scalar};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
 use crate::result::{Outside, RegressionFigure, RulePlace, Sample, StatisticResult};
 use crate::source::Span;
@@ -34,7 +34,7 @@ pub struct Estimated<'a> {
 
 impl<'a> Estimated<'a> {
     /// Of a group without an estimate.
-    fn empty(part: Part<'a>, members: Vec<Member<'a>>) -> Self {
+    pub fn empty(part: Part<'a>, members: Vec<Member<'a>>) -> Self {
         let value = Err("no value is available".into());
         Self { part, members, value, interval: None, regression: None, divided_at: None, outside: Vec::new() }
     }
@@ -97,12 +97,12 @@ impl<'a> Judging<'a> {
             // Of several vehicles, those of each group decide.
             _ => {}
         }
-        let parts = parts(self.plan, self.quantity, &limit.scope, self.members, self.facts);
+        let parts = parts(self.plan, Grouped::values(self.quantity), &limit.scope, self.members, self.facts);
         Ok(parts.into_iter().filter_map(|part| self.of_part(limit, part)).collect())
     }
 
     fn group<'g>(&'g self, members: &'g [Member<'g>]) -> Group<'g> {
-        Group { plan: self.plan, facts: self.facts, quantity: self.quantity, members, table: self.table }
+        Group { plan: self.plan, facts: self.facts, positions: &self.quantity.positions, members, table: self.table }
     }
 
     /// `None` of a group whose vehicle the limit does not apply to.
@@ -114,10 +114,20 @@ impl<'a> Judging<'a> {
             Ok(Err(reason)) => return Some(none(format!("it cannot be determined whether the limit applies: {reason}"))),
             Err(reason) => return Some(none(reason)),
         };
-        Some(self.estimated(limit, part, members))
+        Some(self.estimated(&limit.estimate, part, members))
     }
 
-    fn estimated(&self, limit: &Limit, part: Part<'a>, members: Vec<Member<'a>>) -> Estimated<'a> {
+    /// An estimate of each of its groups, without a limit.
+    pub fn of_report(&self, report: &'a Report) -> Vec<Estimated<'a>> {
+        let parts = parts(self.plan, Grouped::values(self.quantity), &report.scope, self.members, self.facts);
+        let of_part = |part: Part<'a>| match part.members(self.facts, self.members) {
+            Ok(members) => self.estimated(&report.estimate, part, members),
+            Err(reason) => Estimated { value: Err(reason), ..Estimated::empty(part, Vec::new()) },
+        };
+        parts.into_iter().map(of_part).collect()
+    }
+
+    fn estimated(&self, estimate: &Estimate, part: Part<'a>, members: Vec<Member<'a>>) -> Estimated<'a> {
         if members.is_empty() {
             return Estimated::empty(part, members);
         }
@@ -125,10 +135,10 @@ impl<'a> Judging<'a> {
             return Estimated { value: Err(reason), ..Estimated::empty(part, members) };
         }
         let group = self.group(&members);
-        let (value, interval, regression, divided_at, outside) = match &limit.estimate.kind {
+        let (value, interval, regression, divided_at, outside) = match &estimate.kind {
             EstimateKind::Each => (Ok(None), None, None, None, Vec::new()),
             EstimateKind::Of(of) => {
-                let entry = match limit.estimate.statistic() {
+                let entry = match estimate.statistic() {
                     Some((Statistic::Named(entry), _)) => Some(entry),
                     _ => None,
                 };
@@ -319,10 +329,15 @@ fn apart(value: f64, bound: f64) -> (String, String) {
 /// Significant digits of a value in a sentence; more are used close to the limit.
 const LEAST_DIGITS: usize = 3;
 const MOST_DIGITS: usize = 12;
+/// Smaller numbers have a power of ten: zeros are hard to count.
+const SMALLEST: f64 = 1e-4;
 
 fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
+    }
+    if value.abs() < SMALLEST {
+        return format!("{value:.*e}", digits - 1).replace('-', "\u{2212}");
     }
     let decimals = (digits as f64 - 1.0 - value.abs().log10().floor()).clamp(0.0, 17.0) as usize;
     format!("{value:.decimals$}").replace('-', "\u{2212}")

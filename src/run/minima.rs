@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::facts::Facts;
-use super::groups::parts;
+use super::groups::{Grouped, parts};
 use super::judge::count;
 use super::table::{Member, Row, independent};
 use crate::check::plan::{Plan, Quantity};
@@ -40,7 +40,7 @@ pub fn in_words(pairs: usize, rows: usize, needed: usize) -> String {
 pub fn too_few(plan: &Plan, quantity: &Quantity, members: &[Member<'_>], facts: &Facts) -> Vec<TooFew> {
     let mut found = Vec::new();
     for minimum in &quantity.minimum_of_groups {
-        for part in parts(plan, quantity, &minimum.scope, members, facts) {
+        for part in parts(plan, Grouped::values(quantity), &minimum.scope, members, facts) {
             let (says, inside) = match part.members(facts, members) {
                 Ok(inside) => {
                     let pairs = pairs(plan, &inside);

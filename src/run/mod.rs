@@ -25,6 +25,7 @@ pub mod pool;
 mod record;
 mod reduce;
 pub mod replay;
+mod reports;
 mod requirements;
 mod section;
 mod sections;
@@ -51,7 +52,8 @@ use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::study::Reduction;
 use crate::result::{
-    DataItem, DomainRange, DomainResult, FileHash, Finding, QuantityResult, SectionResult, Trace, Verdict, VerdictResult, ZoneResult,
+    DataItem, DomainRange, DomainResult, FileHash, Finding, QuantityResult, Reported, SectionResult, Trace, Verdict, VerdictResult,
+    ZoneResult,
 };
 
 pub use basis::Basis;
@@ -80,6 +82,8 @@ pub struct Outcome {
     pub quantities: Vec<QuantityResult>,
     pub sections: Vec<SectionResult>,
     pub zones: Vec<ZoneResult>,
+    /// Numbers of the data of the sections.
+    pub reported: Vec<Reported>,
     pub domain: Vec<DomainRange>,
     pub application: Vec<DomainResult>,
     pub traces: Vec<Trace>,
@@ -170,6 +174,7 @@ pub fn judge(
         verdicts: judged.verdicts,
         quantities: judged.quantities,
         zones: judged.zones,
+        reported: judged.reported,
         domain,
         application: evaluated.application.clone(),
         traces,

@@ -8,7 +8,7 @@ use super::sections::STATE;
 use super::wanted::columns as columns_of;
 use crate::check::plan::{
     AxisOperation, Datum, DatumKind, Estimate, EstimateKind, Evaluation, Expr, Independent, Input, Key, Kind, Limit, OfGroup, Plan,
-    Quantity, Records, Scalar, Scope, Side, Signal, SignalKind, Taking, Test, Valued,
+    Quantity, Records, Report, Scalar, Scope, Side, Signal, SignalKind, Taking, Test, Valued,
 };
 use crate::data::campaign::POINT_KEY;
 use crate::data::sites;
@@ -319,6 +319,7 @@ fn other_rules(plan: &Plan) -> Vec<(String, Parts<'_>)> {
         Box::new(|see| {
             plan.sections.zone.into_iter().for_each(|index| see.column(index));
             plan.sections.only.iter().for_each(|only| see.expr(only));
+            plan.sections.reports.iter().for_each(|one| report(one, see));
         }),
     ));
     for zone in &plan.zones {
@@ -374,6 +375,7 @@ fn quantity(rule: &Quantity, see: &mut dyn See) {
         Evaluation::Combined { of, .. } => valued(of, see),
     }
     rule.limits.iter().for_each(|one| limit(one, see));
+    rule.reports.iter().for_each(|one| report(one, see));
     rule.minimum_of_groups.iter().for_each(|minimum| scope(&minimum.scope, see));
 }
 
@@ -417,6 +419,11 @@ fn limit(limit: &Limit, see: &mut dyn See) {
     of_group(&limit.bound, see);
     limit.factors.iter().flat_map(|(factor, when)| [factor, when]).chain(&limit.only_when).for_each(|part| see.expr(part));
     scope(&limit.scope, see);
+}
+
+fn report(report: &Report, see: &mut dyn See) {
+    estimate(&report.estimate, see);
+    scope(&report.scope, see);
 }
 
 fn scope(scope: &Scope, see: &mut dyn See) {

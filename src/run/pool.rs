@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::estimates::Group;
 use super::facts::{Facts, Known, Vehicle};
-use super::groups::{Part, parts};
+use super::groups::{Grouped, Part, parts};
 use super::judge::{Rows, members, rows};
 use super::limits::{Judging, applying};
 use super::section::SectionValues;
@@ -170,7 +170,7 @@ impl Estimator {
         let table: Vec<Result<&[Member<'_>], String>> =
             others.iter().map(|rows| rows.as_ref().map(Vec::as_slice).map_err(Clone::clone)).collect();
         let EstimateKind::Of(of) = &limit.estimate.kind else { return None };
-        let group = Group { plan, facts, quantity, members: &members, table: &table };
+        let group = Group { plan, facts, positions: &quantity.positions, members: &members, table: &table };
         group.number(of).ok().map(|value| value / self.bound).filter(|value| value.is_finite())
     }
 }
@@ -312,7 +312,7 @@ fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &[Unit], values: &[Se
     let judging = Judging { plan, facts, quantity, members: &members, table, too_few: &[] };
     let mut limits = Vec::new();
     for limit in &quantity.limits {
-        for part in parts(plan, quantity, &limit.scope, &members, facts) {
+        for part in parts(plan, Grouped::values(quantity), &limit.scope, &members, facts) {
             limits.extend(of_part(rules, &judging, limit, &part, units));
         }
     }
@@ -341,7 +341,7 @@ fn minima(minimum: &MinimumOfGroups, judging: &Judging<'_>, units: &[Unit]) -> V
         };
         PooledMinimum { needed: minimum.needed, pairs: units.iter().map(signals).collect() }
     };
-    parts(plan, quantity, &minimum.scope, members, facts).iter().map(of_part).collect()
+    parts(plan, Grouped::values(quantity), &minimum.scope, members, facts).iter().map(of_part).collect()
 }
 
 fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Option<PooledLimit> {

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::basis::without_unused_originals;
 use super::facts::{Known, Vehicle};
-use super::groups::{Part, parts};
+use super::groups::{Grouped, Part, parts};
 use super::judge::{Rows, members, rows};
 use super::limits::{Judging, applying};
 use super::section::{self, SectionValues};
@@ -238,7 +238,7 @@ impl Evaluated {
                     continue;
                 }
                 let each = matches!(limit.estimate.kind, EstimateKind::Each);
-                for part in parts(plan, quantity, &limit.scope, &members, &self.facts) {
+                for part in parts(plan, Grouped::values(quantity), &limit.scope, &members, &self.facts) {
                     let inside = part.members(&self.facts, &members).map(|inside| applying(limit, &self.facts, inside));
                     let Ok(Ok(Some(inside))) = inside else { continue };
                     let of_vehicle = |vehicle: &Vehicle| judging.bound(limit, &part, &inside, &Known::vehicle(vehicle));

@@ -84,6 +84,7 @@ fn does(work: &Work<'_>, unit: &Unit, known: &Known<'_>, operation: &Operation, 
         | Operation::Value(_)
         | Operation::Compare(_)
         | Operation::Estimate(_)
+        | Operation::Report(_)
         | Operation::Limit(_)
         | Operation::Verdict(_) => return None,
     })

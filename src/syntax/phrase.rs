@@ -173,6 +173,23 @@ impl Minimum {
     }
 }
 
+/// `mean for each zone`, `total of length in km`: an estimate without a limit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    pub of: Phrase,
+    /// The text of the unit, if it has one.
+    pub unit: Option<At<String>>,
+    pub scope: At<Scope>,
+}
+
+impl Report {
+    /// As [`Phrase::meaning`].
+    pub fn meaning(&self) -> String {
+        let unit = self.unit.as_ref().map_or(String::new(), |unit| format!(" in {}", unit.node));
+        format!("{}{unit} {}", self.of.meaning(), self.scope.node.meaning())
+    }
+}
+
 /// The values that a limit applies to, and their groups. By default, all values form one group.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scope {

@@ -91,6 +91,7 @@ fn quantity(found: &Certification) -> QuantityResult {
         from: Some("measured".into()),
         among: None,
         repeats: false,
+        reported: Vec::new(),
         spread: None,
         against: None,
         statistics,

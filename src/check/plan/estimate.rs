@@ -21,6 +21,16 @@ pub struct Limit {
     pub span: Span,
 }
 
+/// An estimate without a limit. It is printed and decides nothing. One `for each zone` gives one for every zone.
+#[derive(Clone, Debug)]
+pub struct Report {
+    pub estimate: Estimate,
+    pub scope: Scope,
+    /// As written: `mean for each zone`.
+    pub words: String,
+    pub span: Span,
+}
+
 /// What is estimated from the rows of a group.
 #[derive(Clone, Debug)]
 pub struct Estimate {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Axis, Expr, Limit, Scope, Signal, Step};
+use super::{Axis, Expr, Limit, Report, Scope, Signal, Step};
 use crate::catalog::{Metric, Reducer};
 use crate::result;
 use crate::source::{Span, Spanned};
@@ -76,6 +76,7 @@ pub struct Quantity {
     pub evaluation: Arc<Evaluation>,
     pub only: Option<Expr>,
     pub limits: Vec<Arc<Limit>>,
+    pub reports: Vec<Arc<Report>>,
     pub minimum_signals: usize,
     pub minimum_pairs: usize,
     /// Pairs that groups of values need.

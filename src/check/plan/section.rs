@@ -1,6 +1,6 @@
 //! Zones, checks, plausibility rules, the rules of sections, domains.
 
-use super::{Expr, Find, Input, Keep, Signal, Step};
+use super::{Expr, Find, Input, Keep, Report, Signal, Step};
 use crate::metrics::percentile::Method;
 use crate::source::Span;
 use crate::units::Unit;
@@ -118,6 +118,8 @@ pub struct SectionRules {
     pub only_words: String,
     pub faulty: OnFault,
     pub minimum: usize,
+    /// Numbers of section data that are printed.
+    pub reports: Vec<Report>,
     pub percentiles: Method,
 }
 

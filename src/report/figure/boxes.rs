@@ -9,8 +9,8 @@ use super::symbol::symbol;
 use crate::report::number;
 use crate::result::study::{QuantitySpread, Spread, StatisticSpread};
 
-/// Heights of a panel's plotting area and of its labels, in points.
-const PANEL: f64 = 98.0;
+/// Heights of the plotting area and of its labels, in points.
+const PANEL: f64 = 130.0;
 const LABELS: f64 = 22.0;
 /// Distance of a number from a line, from its centre, in points.
 const CLEAR: f64 = 3.8;
@@ -19,17 +19,68 @@ const HALF: f64 = 9.0;
 /// Maximum of the scale; values beyond are cut at the frame and marked.
 const FARTHEST: f64 = 3.0;
 
-/// A panel: axis title, and one labelled box per statistic.
+/// A figure of one kind of statistic: one labelled box for each quantity and scope.
 struct Panel<'a> {
-    title: &'static str,
+    of: Of,
     boxes: Vec<(String, &'a StatisticSpread, &'a QuantitySpread, Spread)>,
     /// Values have a sign, and the limit applies on both sides.
     signed: bool,
 }
 
-/// One panel each for means, standard deviations and other statistics; empty panels are omitted.
-pub fn boxes(quantities: &[QuantitySpread]) -> String {
-    let panels = panels(quantities);
+/// The statistics of a figure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of {
+    Means,
+    Deviations,
+    Others,
+}
+
+impl Of {
+    pub const ALL: [Self; 3] = [Self::Means, Self::Deviations, Self::Others];
+
+    /// In the name of the figure.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Means => "mean",
+            Self::Deviations => "std",
+            Self::Others => "other",
+        }
+    }
+
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Means => "Means",
+            Self::Deviations => "Standard deviations",
+            Self::Others => "Other statistics",
+        }
+    }
+
+    fn axis(self) -> &'static str {
+        match self {
+            Self::Means => "mean / limit",
+            Self::Deviations => "standard deviation / limit",
+            Self::Others => "statistic / limit",
+        }
+    }
+
+    /// Whether a statistic of this name is among them.
+    pub fn has(self, statistic: &str) -> bool {
+        match statistic {
+            "mean" => self == Self::Means,
+            "std" => self == Self::Deviations,
+            _ => self == Self::Others,
+        }
+    }
+}
+
+/// Statistics of which there is something to draw, with the number of boxes.
+pub fn drawn(quantities: &[QuantitySpread]) -> Vec<(Of, usize)> {
+    let all = Of::ALL.into_iter().map(|of| (of, panel(quantities, of).boxes.len()));
+    all.filter(|(_, boxes)| *boxes > 0).collect()
+}
+
+pub fn boxes(quantities: &[QuantitySpread], of: Of) -> String {
+    let panel = panel(quantities, of);
     let legend = Legend::new(
         vec![
             Entry::ground(SHADE, "middle half of all selections"),
@@ -40,39 +91,34 @@ pub fn boxes(quantities: &[QuantitySpread]) -> String {
         WIDTH - 40.0,
     );
     let top = legend.height() + 8.0;
-    let mut canvas = Canvas::new(WIDTH, top + panels.len() as f64 * (PANEL + LABELS + 8.0));
+    let mut canvas = Canvas::new(WIDTH, top + PANEL + LABELS + 2.0);
     legend.draw(&mut canvas, (40.0, 0.0));
-    for (at, panel) in panels.iter().enumerate() {
-        draw(&mut canvas, panel, top + at as f64 * (PANEL + LABELS + 8.0));
-    }
+    draw(&mut canvas, &panel, top);
     canvas.finish()
 }
 
-fn panels(quantities: &[QuantitySpread]) -> Vec<Panel<'_>> {
-    let of = |wanted: &dyn Fn(&str) -> bool, scoped: bool| {
-        let statistics = quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
-        statistics
-            .filter(|(_, statistic)| wanted(&statistic.name))
-            .filter_map(|(quantity, statistic)| {
-                let mut label = quantity.symbol.clone();
-                if scoped {
-                    label = format!("{label} {}", statistic.name);
-                }
-                if statistic.scope != "all" {
-                    label = format!("{label}, {}", statistic.scope);
-                }
-                Some((label, statistic, quantity, statistic.spread?))
-            })
-            .collect::<Vec<_>>()
+fn panel(quantities: &[QuantitySpread], of: Of) -> Panel<'_> {
+    let statistics = quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
+    let one = |(quantity, statistic): (&'_ QuantitySpread, &'_ StatisticSpread)| {
+        let mut label = quantity.symbol.clone();
+        if of == Of::Others {
+            label = format!("{label} {}", statistic.name);
+        }
+        if statistic.scope != "all" {
+            label = format!("{label}, {}", statistic.scope);
+        }
+        label
     };
-    let mut panels = vec![
-        Panel { title: "mean / limit", boxes: of(&|name| name == "mean", false), signed: true },
-        Panel { title: "standard deviation / limit", boxes: of(&|name| name == "std", false), signed: false },
-        Panel { title: "statistic / limit", boxes: of(&|name| name != "mean" && name != "std", true), signed: true },
-    ];
-    panels[2].signed = panels[2].boxes.iter().any(|(.., spread)| spread.min < 0.0);
-    panels.retain(|panel| !panel.boxes.is_empty());
-    panels
+    let boxes: Vec<_> = statistics
+        .filter(|(_, statistic)| of.has(&statistic.name))
+        .filter_map(|(quantity, statistic)| Some((one((quantity, statistic)), statistic, quantity, statistic.spread?)))
+        .collect();
+    let signed = match of {
+        Of::Means => true,
+        Of::Deviations => false,
+        Of::Others => boxes.iter().any(|(.., spread)| spread.min < 0.0),
+    };
+    Panel { of, boxes, signed }
 }
 
 fn draw(canvas: &mut Canvas, panel: &Panel<'_>, top: f64) {
@@ -86,7 +132,7 @@ fn draw(canvas: &mut Canvas, panel: &Panel<'_>, top: f64) {
     let left = Frame::axis_room(&ticks).max(36.0);
     let frame = Frame { x: Scale { low: 0.0, high: panel.boxes.len() as f64, from: left, to: WIDTH - 4.0 }, y };
     beyond(canvas, &frame, panel.signed);
-    frame.y_axis(canvas, &ticks, panel.title);
+    frame.y_axis(canvas, &ticks, panel.of.axis());
     canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
         for limit in if panel.signed { &[-1.0, 1.0][..] } else { &[1.0][..] } {
             layer.line((frame.left(), frame.y.at(*limit)), (frame.right(), frame.y.at(*limit)), INK, 0.9);

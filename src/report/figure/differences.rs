@@ -8,7 +8,7 @@ use super::frame::Frame;
 use super::levels::{Levels, speaks_of};
 use super::pairs::{pair_group, tooltip};
 use super::style::{GRID, MUTED, SHADE, SMALL, TEXT, TICK, WIDTH, cut, text_width};
-use super::zones::Zones;
+use super::zones::Marks;
 use crate::report::number;
 use crate::result::QuantityResult;
 
@@ -80,10 +80,10 @@ impl<'a> Slots<'a> {
     }
 }
 
-/// Reference levels and zone marks.
+/// Reference levels and marks.
 #[derive(Clone, Copy, Debug)]
 pub struct Against<'a> {
-    pub zones: &'a Zones,
+    pub marks: &'a Marks<'a>,
     pub levels: &'a Levels,
     pub slots: &'a Slots<'a>,
 }
@@ -96,7 +96,7 @@ pub fn scale(quantity: &QuantityResult, levels: &Levels, bottom: f64, top: f64) 
 
 /// Draws the diagram from `left` to the right edge of the figure, between `top` and `bottom`, in points.
 pub fn draw(canvas: &mut Canvas, quantity: &QuantityResult, against: &Against<'_>, (left, top, bottom): (f64, f64, f64)) {
-    let Against { zones, levels, slots } = *against;
+    let Against { marks, levels, slots } = *against;
     let x = Scale { low: 0.0, high: slots.sections.len().max(1) as f64, from: left, to: WIDTH - 2.0 };
     let y = scale(quantity, levels, bottom, top);
     let frame = Frame { x, y };
@@ -114,7 +114,7 @@ pub fn draw(canvas: &mut Canvas, quantity: &QuantityResult, against: &Against<'_
     frame.spine(canvas);
     let decimals = number::decimals(&quantity.unit, quantity.values.iter().map(|pair| pair.difference));
     for pair in &quantity.values {
-        let (mark, color) = zones.mark(pair.zone.as_deref());
+        let (mark, color) = marks.mark(pair);
         let title = tooltip(pair, quantity, decimals);
         canvas.group(&pair_group(pair, &title), |layer| {
             layer.mark(mark, (x.at(slots.place(&pair.section, &pair.signal)), y.at(pair.difference)), 1.8, color);

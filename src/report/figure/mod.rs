@@ -5,7 +5,7 @@
 
 mod application;
 pub mod axis;
-mod boxes;
+pub mod boxes;
 pub mod canvas;
 mod choices;
 mod differences;
@@ -15,6 +15,7 @@ mod frequency;
 pub mod legend;
 mod levels;
 mod map;
+mod multiples;
 mod offsets;
 mod overview;
 mod pairs;
@@ -27,11 +28,11 @@ mod trace;
 mod zones;
 
 pub use application::application;
-pub use boxes::boxes;
 pub use choices::choices;
 pub use domain::domain;
 pub use frequency::{frequency, has_frequency};
 pub use map::map;
+pub use multiples::LINES;
 pub use offsets::{selection, shares};
 pub use overview::overview;
 pub use pairs::pairs;
@@ -41,7 +42,7 @@ pub use states::{before_after, signals};
 pub use trace::trace;
 pub use zones::Zones;
 
-use crate::report::{estimates, sides, view};
+use crate::report::{brief, estimates, sides, view};
 use crate::result::Certification;
 
 /// All figures of a report by their names in the view ([`super::view::FigureView::name`]).
@@ -53,7 +54,14 @@ pub fn figures(found: &Certification) -> Vec<(String, String)> {
     if !found.quantities.is_empty() {
         drawn.push(("overview".to_owned(), overview(&found.quantities)));
     }
-    for (at, quantity) in found.quantities.iter().enumerate().filter(|(_, quantity)| !quantity.values.is_empty()) {
+    if brief::is_brief(&found.quantities) {
+        for (at, matrix) in brief::matrices(&found.quantities).iter().enumerate() {
+            let pages = matrix.lines.chunks(LINES).enumerate();
+            drawn.extend(pages.map(|(page, lines)| (multiples_name(at, page), multiples::multiples(matrix, lines, &zones))));
+        }
+    }
+    let with_chapter = brief::in_full(&found.quantities).into_iter().map(|at| (at, &found.quantities[at]));
+    for (at, quantity) in with_chapter.filter(|(_, quantity)| !quantity.values.is_empty()) {
         drawn.push((format!("pairs-{at}"), pairs(quantity, &zones)));
         if has_frequency(quantity) {
             drawn.push((format!("frequency-{at}"), frequency(quantity, &zones)));
@@ -78,4 +86,9 @@ pub fn figures(found: &Certification) -> Vec<(String, String)> {
         drawn.push(("graph".to_owned(), found.protocol.graph_svg.clone()));
     }
     drawn
+}
+
+/// Name of a page of small diagrams.
+pub fn multiples_name(matrix: usize, page: usize) -> String {
+    format!("multiples-{matrix}-{page}")
 }

@@ -28,8 +28,11 @@ const CLOSE: usize = 50;
 ///
 /// A statistic beyond its limit is labelled with its number and with the word at the end of the row, so that colour is not needed.
 pub fn overview(quantities: &[QuantityResult]) -> String {
-    let series = Series::of(quantities);
-    let lines: Vec<usize> = quantities.iter().map(line_count).collect();
+    // What is reported without a limit has nothing to draw.
+    let some = quantities.iter().any(|one| !one.decides_nothing());
+    let quantities: Vec<&QuantityResult> = quantities.iter().filter(|one| !some || !one.decides_nothing()).collect();
+    let series = Series::of(&quantities);
+    let lines: Vec<usize> = quantities.iter().map(|quantity| line_count(quantity)).collect();
     let total: usize = lines.iter().sum();
     let (line, gap) = if total > CLOSE { (LINE.1, GAP.1) } else { (LINE.0, GAP.0) };
     let labels = quantities.iter().map(|one| text_width(&one.symbol, TEXT)).fold(20.0, f64::max).min(120.0);
@@ -43,7 +46,7 @@ pub fn overview(quantities: &[QuantityResult]) -> String {
     let top = legend.height() + 14.0;
     let height = total as f64 * line + quantities.len() as f64 * gap + gap;
     let mut canvas = Canvas::new(WIDTH, top + height + 26.0);
-    let frame = Frame { x: scale(quantities, left, right), y: Scale { low: 0.0, high: 1.0, from: top + height, to: top } };
+    let frame = Frame { x: scale(&quantities, left, right), y: Scale { low: 0.0, high: 1.0, from: top + height, to: top } };
     legend.draw(&mut canvas, (left, 0.0));
     ground(&mut canvas, &frame);
     let mut y = top + gap;
@@ -79,8 +82,8 @@ fn signed(statistic: &StatisticResult) -> Option<f64> {
 struct Series(IndexSet<(String, String)>);
 
 impl Series {
-    fn of(quantities: &[QuantityResult]) -> Self {
-        let of = |quantity| shown(quantity).map(|statistic| Self::key(quantity, statistic));
+    fn of(quantities: &[&QuantityResult]) -> Self {
+        let of = |quantity: &&QuantityResult| shown(quantity).map(|statistic| Self::key(quantity, statistic)).collect::<Vec<_>>();
         Self(quantities.iter().flat_map(of).collect())
     }
 
@@ -102,12 +105,12 @@ impl Series {
     }
 }
 
-fn scale(quantities: &[QuantityResult], from: f64, to: f64) -> Scale {
-    let values: Vec<f64> = quantities.iter().flat_map(shown).filter_map(signed).collect();
+fn scale(quantities: &[&QuantityResult], from: f64, to: f64) -> Scale {
+    let values: Vec<f64> = quantities.iter().flat_map(|quantity| shown(quantity)).filter_map(signed).collect();
     let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let high = if largest <= 1.15 { 1.25 } else { ((largest + 0.15) * 4.0).ceil() / 4.0 }.min(FARTHEST);
     let has_sign = values.iter().any(|value| *value < 0.0)
-        || quantities.iter().filter(|quantity| quantity.from.is_none()).flat_map(shown).any(|one| one.name == "mean");
+        || quantities.iter().filter(|quantity| quantity.from.is_none()).flat_map(|quantity| shown(quantity)).any(|one| one.name == "mean");
     Scale { low: if has_sign { -high } else { 0.0 }, high, from, to }
 }
 
@@ -150,7 +153,8 @@ fn row(canvas: &mut Canvas, frame: &Frame, quantity: &QuantityResult, series: &S
     let shared = statistics.len() > LINES;
     let farthest = statistics.iter().filter_map(|one| signed(one)).fold(0.0_f64, |most, value| most.max(value.abs()));
     if statistics.iter().all(|one| signed(one).is_none()) {
-        nothing(canvas, frame, middle, "not assessable");
+        // A value that is not above zero has no ratio to a limit that it should reach.
+        nothing(canvas, frame, middle, if quantity.holds.is_none() { "not assessable" } else { "no ratio to the limit" });
         return;
     }
     for (at, statistic) in statistics.iter().enumerate() {

@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::legend::Legend;
 use super::levels::Levels;
 use super::style::{MUTED, TICK, WIDTH};
-use super::zones::Zones;
+use super::zones::{Marks, Zones};
 use crate::report::number;
 use crate::report::sides::Sides;
 use crate::result::{PairValue, QuantityResult};
@@ -25,7 +25,8 @@ const TICKS: usize = 5;
 /// metric gives one number for both signals, only the right diagram over the full width.
 pub fn pairs(quantity: &QuantityResult, zones: &Zones) -> String {
     let levels = Levels::of(quantity);
-    let marks = Legend::new(zones.legend(quantity.values.iter().map(|pair| pair.zone.as_deref())), WIDTH - AXIS);
+    let looks = Marks::of(quantity.values.iter(), zones);
+    let marks = Legend::new(looks.legend(quantity.values.iter()), WIDTH - AXIS);
     let lines = Legend::new(levels.legend.clone(), WIDTH - AXIS);
     let top = marks.height() + lines.height() + 16.0;
     let bottom = top + HEIGHT;
@@ -40,9 +41,9 @@ pub fn pairs(quantity: &QuantityResult, zones: &Zones) -> String {
     marks.draw(&mut canvas, (AXIS, 0.0));
     lines.draw(&mut canvas, (AXIS, marks.height()));
     if both {
-        scatter(&mut canvas, quantity, zones, &with_sides, (side, bottom));
+        scatter(&mut canvas, quantity, &looks, &with_sides, (side, bottom));
     }
-    differences::draw(&mut canvas, quantity, &differences::Against { zones, levels: &levels, slots: &slots }, (left, top, bottom));
+    differences::draw(&mut canvas, quantity, &differences::Against { marks: &looks, levels: &levels, slots: &slots }, (left, top, bottom));
     canvas.finish()
 }
 
@@ -51,7 +52,13 @@ fn ends(values: &[(&PairValue, f64, f64)]) -> impl Iterator<Item = f64> {
     values.iter().flat_map(|(_, simulated, measured)| [*simulated, *measured])
 }
 
-fn scatter(canvas: &mut Canvas, quantity: &QuantityResult, zones: &Zones, values: &[(&PairValue, f64, f64)], (left, bottom): (f64, f64)) {
+fn scatter(
+    canvas: &mut Canvas,
+    quantity: &QuantityResult,
+    marks: &Marks<'_>,
+    values: &[(&PairValue, f64, f64)],
+    (left, bottom): (f64, f64),
+) {
     let of = |side: &str| axis::title(side, &quantity.unit);
     let Sides { one, other, .. } = Sides::of(quantity);
     let frame = Frame { x: Scale::over(ends(values), left, left + HEIGHT), y: Scale::over(ends(values), bottom, bottom - HEIGHT) };
@@ -63,7 +70,7 @@ fn scatter(canvas: &mut Canvas, quantity: &QuantityResult, zones: &Zones, values
     frame.spine(canvas);
     let decimals = number::decimals(&quantity.unit, ends(values));
     for (pair, simulated, measured) in values {
-        let (mark, color) = zones.mark(pair.zone.as_deref());
+        let (mark, color) = marks.mark(pair);
         let title = tooltip(pair, quantity, decimals);
         canvas.group(&pair_group(pair, &title), |layer| {
             layer.mark(mark, (frame.x.at(*measured), frame.y.at(*simulated)), 2.1, color);

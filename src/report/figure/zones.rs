@@ -1,11 +1,11 @@
-//! Marks of zones: a zone has the same mark in all figures of a report.
+//! Marks of zones and records: a zone has the same mark in all figures of a report.
 
 use indexmap::IndexSet;
 use plotters::style::RGBColor;
 
 use super::legend::Entry;
 use super::style::{self, Mark};
-use crate::result::Certification;
+use crate::result::{Certification, PairValue};
 
 /// The zones of a campaign in the order of the protocol.
 #[derive(Clone, Debug, Default)]
@@ -38,6 +38,35 @@ impl Zones {
                 Entry::mark(mark, color, format!("zone {name}"))
             })
             .collect()
+    }
+}
+
+/// Marks of the values of a quantity: one for each record where there are several, else one for each zone.
+#[derive(Clone, Debug)]
+pub struct Marks<'a> {
+    zones: &'a Zones,
+    /// Empty where there is one record of each side.
+    records: IndexSet<&'a str>,
+}
+
+impl<'a> Marks<'a> {
+    pub fn of(values: impl Iterator<Item = &'a PairValue>, zones: &'a Zones) -> Self {
+        Self { zones, records: values.filter_map(|value| value.record.as_deref()).collect() }
+    }
+
+    pub fn mark(&self, value: &PairValue) -> (Mark, RGBColor) {
+        match value.record.as_deref().and_then(|record| self.records.get_index_of(record)) {
+            Some(n) => (Mark::nth(n), style::color(n)),
+            None => self.zones.mark(value.zone.as_deref()),
+        }
+    }
+
+    pub fn legend(&self, values: impl Iterator<Item = &'a PairValue>) -> Vec<Entry> {
+        if self.records.is_empty() {
+            return self.zones.legend(values.map(|value| value.zone.as_deref()));
+        }
+        let entry = |(n, record): (usize, &&str)| Entry::mark(Mark::nth(n), style::color(n), *record);
+        self.records.iter().enumerate().map(entry).collect()
     }
 }
 

@@ -12,7 +12,7 @@ pub use document::{Chapter, Document, Head, Item, Table};
 use crate::report::figure;
 use crate::report::number;
 use crate::report::view::{self, Fact, Finding};
-use crate::result::study::{Found, Share, Study};
+use crate::result::study::{Found, QuantitySpread, Share, Study};
 use crate::result::{Verdict, VerdictWords};
 
 /// The study as printed in both reports.
@@ -89,18 +89,27 @@ fn settings(study: &Study) -> Chapter {
 pub fn figures(study: &Study) -> Vec<(String, String)> {
     let words = &study.protocol.verdict_words;
     match &study.found {
-        Found::Sections(found) => vec![("boxes".into(), figure::boxes(&found.quantities))],
+        Found::Sections(found) => boxes(&found.quantities, BOXES),
         Found::Sync(found) => {
             let mut drawn = vec![("selection".into(), figure::selection(found)), ("shares".into(), figure::shares(found, words))];
             for (at, offset) in found.offsets.iter().enumerate() {
                 if let Ok(study) = &offset.study {
-                    drawn.push((format!("boxes-{at}"), figure::boxes(&study.quantities)));
+                    drawn.extend(boxes(&study.quantities, &format!("{BOXES}-{at}")));
                 }
             }
             drawn
         }
         Found::Parameters(found) => vec![("choices".into(), figure::choices(found, words))],
     }
+}
+
+/// Name of the box plots.
+const BOXES: &str = "boxes";
+
+/// The box plots of each kind of statistic.
+fn boxes(quantities: &[QuantitySpread], name: &str) -> Vec<(String, String)> {
+    let one = |(of, _): (figure::boxes::Of, usize)| (format!("{name}-{}", of.name()), figure::boxes::boxes(quantities, of));
+    figure::boxes::drawn(quantities).into_iter().map(one).collect()
 }
 
 /// `93.84 %`, with enough decimals that a share below 1 is not printed as all, nor one above 0 as none.

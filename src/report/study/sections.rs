@@ -1,7 +1,8 @@
 //! Text of the study of selections.
 
 use super::document::{Chapter, Head, Item, Table};
-use super::{Opening, percent, share};
+use super::{BOXES, Opening, percent, share};
+use crate::report::figure;
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::report::view::{Fact, Finding};
@@ -65,7 +66,7 @@ pub fn chapters(found: &SelectionStudy, words: &VerdictWords) -> Vec<Chapter> {
     items.extend(found.methods.iter().map(Item::text));
     let mut chapters = vec![
         Chapter { id: "selections".into(), title: "Selections".into(), items },
-        Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items: spread(&found.quantities, "boxes", "") },
+        Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items: spread(&found.quantities) },
         Chapter { id: "failing".into(), title: "Criteria not met".into(), items: failing(found) },
         Chapter {
             id: "sections".into(),
@@ -105,8 +106,24 @@ fn strata(found: &SelectionStudy) -> Item {
     }
 }
 
+/// The box plots, one figure for each kind of statistic.
+pub fn boxes(quantities: &[QuantitySpread], name: &str, at: &str) -> Vec<Item> {
+    let one = |(of, count): (figure::boxes::Of, usize)| {
+        let all = || quantities.iter().flat_map(|quantity| &quantity.statistics).filter(|statistic| of.has(&statistic.name));
+        let beyond = all().filter(|statistic| statistic.failing > 0.0).count();
+        Item::figure(
+            format!("{name}-{}", of.name()),
+            format!("{} of all selections divided by their limits{at}", of.in_words()),
+            format!(
+                "Box plots of {count} normalised statistics; {beyond} exceed their limits in some selections. The numbers are in the table."
+            ),
+        )
+    };
+    figure::boxes::drawn(quantities).into_iter().map(one).collect()
+}
+
 /// The box plots and their numbers.
-pub fn spread(quantities: &[QuantitySpread], figure: &str, at: &str) -> Vec<Item> {
+fn spread(quantities: &[QuantitySpread]) -> Vec<Item> {
     let statistics = || quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
     // Columns with the same content in every row are omitted.
     let scopes = statistics().any(|(_, statistic)| statistic.scope != "all");
@@ -124,31 +141,19 @@ pub fn spread(quantities: &[QuantitySpread], figure: &str, at: &str) -> Vec<Item
             row
         })
         .collect();
-    let beyond = statistics().filter(|(_, statistic)| statistic.failing > 0.0).count();
     let mut head = vec![Head::text("Quantity"), Head::short("Statistic")];
     head.extend(scopes.then(|| Head::short("Pairs")));
     head.extend(["All", "Min", "25 %", "Median", "75 %", "Max", "Outliers"].map(Head::number));
     head.push(Head::number("Not met"));
-    vec![
-        Item::figure(
-            figure,
-            format!("Statistics of all selections divided by their limits{at}"),
-            format!(
-                "Box plots of {} normalised statistics; {beyond} exceed their limits in some selections. The numbers are in the table.",
-                rows.len()
-            ),
+    let table = Table {
+        caption: format!(
+            "Statistics divided by their limits over the selections; “All” refers to all usable sections together{}",
+            known(&spreads)
         ),
-        Item::Table {
-            table: Table {
-                caption: format!(
-                    "Statistics divided by their limits over the selections{at}; “All” refers to all usable sections together{}",
-                    known(&spreads)
-                ),
-                head,
-                rows,
-            },
-        },
-    ]
+        head,
+        rows,
+    };
+    boxes(quantities, BOXES, "").into_iter().chain([Item::Table { table }]).collect()
 }
 
 fn shown(value: f64) -> String {

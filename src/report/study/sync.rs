@@ -1,7 +1,7 @@
 //! Text of the study of the synchronisation.
 
 use super::document::{Chapter, Head, Item, Table};
-use super::{Opening, percent, sections, share};
+use super::{BOXES, Opening, percent, sections, share};
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::report::view::Fact;
@@ -53,7 +53,7 @@ pub fn chapters(found: &SyncStudy, words: &VerdictWords) -> Vec<Chapter> {
         if let Ok(study) = &offset.study {
             let words = format!(", offset {}", shown(found, offset.offset));
             items.push(Item::Heading { text: format!("Offset {}", shown(found, offset.offset)) });
-            items.extend(sections::spread(&study.quantities, &format!("boxes-{at}"), &words).into_iter().take(1));
+            items.extend(sections::boxes(&study.quantities, &format!("{BOXES}-{at}"), &words));
         }
     }
     chapters.push(Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items });

@@ -104,7 +104,7 @@ fn filled(data: &ReportData) -> Result<String, Problems> {
     environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
     let context = minijinja::context! {
         sections => !data.section_tables.is_empty() || !data.zones.is_empty(),
-        quantities => !data.quantities.is_empty(),
+        quantities => !data.quantities.is_empty() || data.brief.is_some(),
         traces => !data.traces.is_empty(),
         domain => !data.domain.is_empty() || !data.application.is_empty(),
     };

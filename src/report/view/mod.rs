@@ -4,12 +4,15 @@
 //! unchanged: escaping is the task of the template.
 
 pub mod application;
+mod brief;
+mod finding;
 mod groups;
 mod identity;
 mod made;
 mod notation;
 mod protocol;
 mod quantity;
+mod reports;
 mod search;
 mod section;
 mod spread;
@@ -20,16 +23,20 @@ mod wording;
 use indexmap::IndexSet;
 use serde::Serialize;
 
+use crate::report::brief::in_full;
 use crate::report::sides::{self, capital};
 use crate::report::{estimates, findings, number};
-use crate::result::{CampaignInfo, CampaignMember, Certification, DataItem, Kind, QuantityResult, StatisticResult, Trace, Verdict};
+use crate::result::{CampaignInfo, CampaignMember, Certification, DataItem, Kind, QuantityResult, Trace, Verdict};
 
+pub use brief::{BriefCell, BriefRow, BriefTable, BriefView};
+pub use finding::Finding;
 pub use groups::{EstimateRow, GroupRow, GroupTable};
 pub use identity::{IdentityRow, ReportHead};
 pub use made::{MadeRow, MadeView};
 pub use notation::{ChannelRow, NotationView, SymbolRow, Term};
 pub use protocol::{ProtocolView, SourceFile, view as protocol_view};
 pub use quantity::{QuantityView, StatisticView, ValueBlock, ValueRow, WorstPair};
+pub use reports::{ReportRow, ReportTable};
 pub use search::{ReductionView, SearchView};
 pub use section::{CheckTable, ColumnHead, DomainView, SectionRow, SectionTable, ZoneView};
 pub use spread::{SpreadClass, SpreadRow, SpreadTable};
@@ -84,11 +91,16 @@ pub struct ReportData {
     pub estimates: Vec<EstimateRow>,
     /// Figure of the normalised statistics of all quantities; `None` if there are none.
     pub overview: Option<FigureView>,
+    /// In place of a chapter for each of many quantities.
+    pub brief: Option<BriefView>,
+    /// Quantities with a chapter: all, or of many those that do not meet their limits.
     pub quantities: Vec<QuantityView>,
     /// How sections were found in runs.
     pub searches: Vec<SearchView>,
     pub reduction: Option<ReductionView>,
     pub zones: Vec<ZoneView>,
+    /// Numbers of the data of the sections.
+    pub reported: Vec<ReportTable>,
     /// Sections by zone, in the order of the zones; sections without a zone last.
     pub section_tables: Vec<SectionTable>,
     pub traces: Vec<TraceView>,
@@ -100,52 +112,6 @@ pub struct ReportData {
     pub findings: Vec<findings::Row>,
     /// Remarks that do not change the verdict.
     pub notes: Vec<String>,
-}
-
-/// Result of a check or verdict as a word, a sign and a class for styling, so that it does not depend on colour alone.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Finding {
-    /// `good`, `bad` or `open`.
-    pub class: &'static str,
-    /// `✓`, `✗` or `?`.
-    pub sign: &'static str,
-    pub word: String,
-}
-
-impl Finding {
-    pub(crate) fn new(holds: Option<bool>, good: &str, bad: &str, open: &str) -> Self {
-        let (class, sign, word) = match holds {
-            Some(true) => ("good", "✓", good),
-            Some(false) => ("bad", "✗", bad),
-            None => ("open", "?", open),
-        };
-        Self { class, sign, word: word.to_owned() }
-    }
-
-    /// Of a statistic: marginal if its interval contains the limit.
-    pub(crate) fn of_statistic(statistic: Option<&StatisticResult>) -> Self {
-        Self::of(statistic.and_then(|one| one.holds)).marginal(statistic.is_some_and(|one| one.marginal))
-    }
-
-    /// Of a quantity: marginal if one of its statistics is.
-    pub(crate) fn of_quantity(quantity: &QuantityResult) -> Self {
-        if quantity.decides_nothing() {
-            return Self { class: "open", sign: "–", word: "no limit".into() };
-        }
-        Self::of(quantity.holds).marginal(quantity.holds.is_some() && quantity.statistics.iter().any(|one| one.marginal))
-    }
-
-    fn marginal(mut self, marginal: bool) -> Self {
-        if marginal {
-            self.word.push_str(", marginal");
-        }
-        self
-    }
-
-    /// Of an acceptance criterion or a requirement: `met`, `not met`, `not assessed`.
-    pub(crate) fn of(holds: Option<bool>) -> Self {
-        Self::new(holds, "met", "not met", "not assessed")
-    }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -213,8 +179,9 @@ pub fn view(found: &Certification) -> ReportData {
         Verdict::NotValidated => Some(false),
         Verdict::NotAssessable => None,
     };
-    let quantities: Vec<QuantityView> =
-        found.quantities.iter().enumerate().map(|(at, quantity)| quantity::view(at, quantity, found.protocol.source.as_deref())).collect();
+    let work = found.protocol.source.as_deref();
+    let with_chapter = in_full(&found.quantities).into_iter();
+    let quantities: Vec<QuantityView> = with_chapter.map(|at| quantity::view(at, &found.quantities[at], work)).collect();
     let (summary, further) = summary::tables(&found.quantities);
     let reasons = verdicts::reasons(found);
     ReportData {
@@ -232,7 +199,7 @@ pub fn view(found: &Certification) -> ReportData {
         more_reasons: more_reasons(reasons.len()),
         reasons,
         identity: identity::checklist(found),
-        symbols: quantities.iter().map(|quantity| quantity.symbol.clone()).collect(),
+        symbols: found.quantities.iter().map(|quantity| symbol(&quantity.symbol)).collect(),
         notation: notation::view(found),
         key_facts: key_facts(found),
         campaign: campaign(&found.campaign),
@@ -241,10 +208,12 @@ pub fn view(found: &Certification) -> ReportData {
         further,
         estimates: found.quantities.iter().flat_map(groups::rows).collect(),
         overview: overview(found),
+        brief: brief::view(&found.quantities, work),
         quantities,
         searches: search::searches(found),
         reduction: search::reduction(found),
         zones: section::zones(found),
+        reported: reports::tables(&found.reported),
         section_tables: section::tables(found),
         traces: traces(found),
         domain: section::domain(found),

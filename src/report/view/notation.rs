@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::Finding;
+use crate::report::brief::in_full;
 use crate::report::number;
 use crate::result::{Certification, QuantityResult};
 
@@ -152,9 +153,10 @@ pub(super) fn view(found: &Certification) -> NotationView {
                 note: channel.note.clone(),
             })
             .collect(),
-        symbols: found
-            .quantities
-            .iter()
+        // Of many quantities, those with a chapter: the table of all has their words.
+        symbols: in_full(&found.quantities)
+            .into_iter()
+            .map(|at| &found.quantities[at])
             .map(|quantity| SymbolRow {
                 symbol: super::symbol(&quantity.symbol),
                 title: quantity.title.clone(),

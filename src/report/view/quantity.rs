@@ -6,6 +6,7 @@ use indexmap::IndexMap;
 use serde::Serialize;
 
 use super::groups::{self, GroupTable};
+use super::reports::{self, ReportTable};
 use super::spread::{self, SpreadTable};
 use super::{FigureView, Finding, name, summary};
 use crate::report::sides::Sides;
@@ -49,6 +50,8 @@ pub struct QuantityView {
     pub statistics: Vec<StatisticView>,
     /// Estimates by group.
     pub groups: Vec<GroupTable>,
+    /// Estimates without a limit.
+    pub reported: Vec<ReportTable>,
     /// How far several records of one side are apart.
     pub spreads: Vec<SpreadTable>,
     /// Whether values are those of several records.
@@ -148,6 +151,7 @@ pub(super) fn view(at: usize, quantity: &QuantityResult, work: Option<&str>) -> 
         short_sides: sides.short,
         statistics: stated(quantity).into_iter().map(statistic).collect(),
         groups: groups::tables(quantity),
+        reported: reports::tables(&quantity.reported),
         spreads: spread::tables(quantity),
         by_record: quantity.values.iter().any(|pair| pair.record.is_some()),
         worst,

@@ -270,6 +270,7 @@ fn in_words(rule: Rule) -> &'static str {
         Rule::weight => "a weight: section data, or an expression of them in parentheses",
         Rule::for_groups => "`for each ...`",
         Rule::minimum => "a minimum",
+        Rule::report => "an estimate such as `mean` or `total of length`",
         Rule::share | Rule::kw_share => "`share where ...`",
         Rule::in_quotes => "a name in quotes",
         Rule::over | Rule::kw_over => "`over`",

@@ -10,7 +10,7 @@ use pest::Parser;
 use pest::iterators::Pair;
 
 use super::document::Text;
-use super::phrase::{Alias, At, Domain, Limit, Minimum, Node, OfPlaces, OverVerdicts, Phrase, Pick, Scope, Step, Verdict};
+use super::phrase::{Alias, At, Domain, Limit, Minimum, Node, OfPlaces, OverVerdicts, Phrase, Pick, Report, Scope, Step, Verdict};
 use crate::problem::Problems;
 use tree::{cases, either, estimate, pick, step, sum};
 
@@ -130,14 +130,21 @@ pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
 pub fn minimum(text: &Text, problems: &mut Problems) -> Option<Minimum> {
     let mut inner = parts(parse(Rule::minimum, text, problems)?);
     let count = cases(inner.next()?)?;
-    let scope = match inner.next() {
-        Some(pair) => {
-            let range = bytes(&pair);
-            At { node: scope(parts(pair).next()?)?, range }
-        }
-        None => At { node: Scope::default(), range: 0..0 },
-    };
-    Some(Minimum { count, scope })
+    Some(Minimum { count, scope: scope_or_all(inner.next())? })
+}
+
+/// An estimate without a limit: `mean for each zone`, `total of length in km`.
+pub fn report(text: &Text, problems: &mut Problems) -> Option<Report> {
+    let mut inner = parts(parse(Rule::report, text, problems)?).peekable();
+    let of = cases(inner.next()?)?;
+    let unit = inner.next_if(|pair| pair.as_rule() == Rule::coordinate_unit).map(|unit| named(&unit));
+    Some(Report { of, unit, scope: scope_or_all(inner.next())? })
+}
+
+fn scope_or_all(pair: Option<Pair<'_, Rule>>) -> Option<At<Scope>> {
+    let Some(pair) = pair else { return Some(At { node: Scope::default(), range: 0..0 }) };
+    let range = bytes(&pair);
+    Some(At { node: scope(parts(pair).next()?)?, range })
 }
 
 fn scope(pair: Pair<'_, Rule>) -> Option<Scope> {

@@ -1,0 +1,151 @@
+//! Checks which rows a limit, a minimum or a report is of, and by what keys they form groups.
+
+use super::Checker;
+use super::names::normalised;
+use super::plan::{DatumKind, Key, Kind, Scope};
+use super::scalars::Scope as Names;
+use crate::problem::Problem;
+use crate::source::Span;
+use crate::syntax::document::{Block, Text};
+use crate::syntax::phrase::{At, Scope as Written};
+
+/// Keys of groups that every campaign has.
+const KEYS: [&str; 5] = ["zone", "section", "site", "record", super::scalar_names::CAMPAIGN];
+
+/// What is grouped.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Grouped {
+    /// In words: "the values of `Y`".
+    what: String,
+    /// The places of the signals; `None` of sections, which have no place and no record.
+    places: Option<Vec<String>>,
+}
+
+impl Grouped {
+    /// The values of a quantity.
+    pub fn values(quantity: &Block, places: &[String]) -> Self {
+        Self { what: format!("the values of `{}`", quantity.name_text()), places: Some(places.to_vec()) }
+    }
+
+    pub fn sections() -> Self {
+        Self { what: "the sections".into(), places: None }
+    }
+}
+
+impl Checker<'_> {
+    /// A scope by itself, or once for every zone if it says so, with the zone. One that was not understood is kept, so that what
+    /// else there is in the rule is looked at.
+    pub(super) fn zone_by_zone(&self, scope: Option<(Scope, bool)>) -> Vec<(Option<Scope>, Option<String>)> {
+        let Some((scope, true)) = scope else { return vec![(scope.map(|(scope, _)| scope), None)] };
+        let zones = if scope.zones.is_empty() { self.zone_names.clone() } else { scope.zones.clone() };
+        zones.into_iter().map(|zone| (Some(Scope { zones: vec![zone.clone()], ..scope.clone() }), Some(zone))).collect()
+    }
+
+    /// The rows that a limit or a minimum applies to, and whether there is one limit for every zone.
+    pub(super) fn scope_of(&mut self, scope: &At<Written>, text: &Text) -> Option<(Scope, bool)> {
+        let written = &scope.node;
+        let zones = self.limit_zones(&written.zones, text);
+        let (mut each_zone, mut each, mut ok) = (false, Vec::new(), true);
+        for key in &written.each {
+            let place = text.place(key.range.clone());
+            if matches!(key.node.as_str(), "zone" | "zones") {
+                ok &= !each_zone || self.key_twice(&key.node, &place);
+                if self.zone_names.is_empty() {
+                    self.problems.push(Problem::error("unknown-zone", "the protocol has no zones").at(&place));
+                    ok = false;
+                }
+                each_zone = true;
+                continue;
+            }
+            match self.key(&key.node, &place) {
+                Some(found) if !each.contains(&found) => each.push(found),
+                Some(_) => ok = self.key_twice(&key.node, &place),
+                None => ok = false,
+            }
+        }
+        let condition = match &written.condition {
+            None => None,
+            Some(condition) => {
+                let words = normalised(&text.text[condition.range.clone()]);
+                let condition = self.expr(condition, text, &mut Names::section());
+                let condition = condition.filter(|condition| self.flag_type(condition).is_some());
+                ok &= condition.is_some();
+                condition.map(|condition| (condition, words))
+            }
+        };
+        let zones = zones.filter(|_| ok)?;
+        Some((Scope { zones, each, condition }, each_zone))
+    }
+
+    fn limit_zones(&mut self, zones: &[At<String>], text: &Text) -> Option<Vec<String>> {
+        let mut found: Vec<String> = Vec::new();
+        let mut ok = true;
+        for zone in zones {
+            let place = text.place(zone.range.clone());
+            if !self.zone_names.contains(&zone.node) {
+                let known = self.zone_names.clone();
+                let problem = Problem::error("unknown-zone", format!("there is no zone {}", zone.node)).at(&place);
+                self.problems.push(if known.is_empty() {
+                    problem.help("the protocol has no zones")
+                } else {
+                    problem.help(format!("known zones: {}", known.join(", ")))
+                });
+                ok = false;
+            } else if found.contains(&zone.node) {
+                ok = self.key_twice(&format!("zone {}", zone.node), &place);
+            } else {
+                found.push(zone.node.clone());
+            }
+        }
+        ok.then_some(found)
+    }
+
+    fn key_twice(&mut self, key: &str, at: &Span) -> bool {
+        self.problems.push(Problem::error("duplicate-name", format!("`{key}` is named twice in the scope")).at(at));
+        false
+    }
+
+    /// A key by which rows are grouped: section, site, record, a place of the signal, or a section column of words.
+    fn key(&mut self, name: &str, span: &Span) -> Option<Key> {
+        let Grouped { what, places } = self.grouped.clone();
+        match name {
+            "section" => return Some(Key::Section),
+            "site" => return Some(Key::Site),
+            "record" if places.is_some() => return Some(Key::Record),
+            _ => {}
+        }
+        if let Some(place) = places.iter().flatten().find(|place| *place == name || Some(place.as_str()) == name.strip_suffix('s')) {
+            return Some(Key::Place(place.clone()));
+        }
+        if let Some(index) = self.campaign_column(name, span) {
+            if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
+                let says = format!("`{name}` is a number; only a column of words can form groups");
+                let help = "declare the column with `one of ...`, or use it in an estimate: `mean of ...`";
+                self.problems.push(Problem::error("not-a-word", says).at(span).help(help));
+                return None;
+            }
+            return Some(Key::Column(index));
+        }
+        let words = self.names.columns.iter().filter(|datum| !matches!(datum.kind, DatumKind::Number(_)));
+        let columns: Vec<String> = words.map(|datum| datum.name.clone()).filter(|name| !KEYS.contains(&name.as_str())).collect();
+        let of_all = KEYS.into_iter().filter(|key| places.is_some() || *key != "record");
+        let known = of_all.chain(places.iter().flatten().map(String::as_str)).chain(columns.iter().map(String::as_str));
+        self.problems.push(Problem::error("unknown-key", format!("{what} cannot be grouped by `{name}`")).at(span).suggest(name, known));
+        None
+    }
+
+    /// A key inside an estimate: there the zone is one like others.
+    pub(super) fn group_key(&mut self, key: &At<String>, text: &Text) -> Option<Key> {
+        let place = text.place(key.range.clone());
+        if !matches!(key.node.as_str(), "zone" | "zones") {
+            return self.key(&key.node, &place);
+        }
+        match self.zone.as_ref().map(|zone| &zone.kind) {
+            Some(Kind::Column(index)) => Some(Key::Column(*index)),
+            _ => {
+                self.problems.push(Problem::error("unknown-zone", "the protocol has no zones").at(&place));
+                None
+            }
+        }
+    }
+}
