@@ -45,8 +45,7 @@ pub fn sensitivities(
     }
     let made: Vec<Option<Result<Vec<f64>, Problem>>> =
         asked.par_iter().map(|(.., moved)| moved.as_ref().map(|moved| bench.moved(&|section| moved[section].clone()))).collect();
-    let column = |(&(tolerance, deviations, _), made): (&(&Tolerance, f64, _), Option<Result<Vec<f64>, Problem>>)| {
-        let made = made?;
+    let mut column = |tolerance: &Tolerance, deviations: f64, made: Result<Vec<f64>, Problem>| {
         runs.made += bench.seen.sections.len();
         let made = made.map_err(|problem| runs.failed.push(format!("{}: {}", tolerance.name, problem.says))).ok()?;
         Some(Sensitivity {
@@ -57,7 +56,7 @@ pub fn sensitivities(
             shared: tolerance.shared,
         })
     };
-    asked.iter().zip(made).map(column).collect()
+    asked.iter().zip(made).map(|((tolerance, deviations, _), made)| column(tolerance, *deviations, made?)).collect()
 }
 
 /// Expected deviations of the tolerances, as settings of the simulator. `value` gives a parameter's value where no setting changes it.

@@ -148,7 +148,7 @@ impl Products {
 impl Whitener {
     /// Number of features of all sections.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn features(&self) -> usize {
         self.blocks.len() * self.size
     }
 

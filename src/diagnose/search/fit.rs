@@ -270,7 +270,7 @@ impl<'a> Fitter<'a> {
     /// Columns of the whitened model error of a member at a fit on its path, from the nearer of the two nodes.
     #[must_use]
     pub fn model_error(&self, member: Member, (segment, share): (usize, f64)) -> DMatrix<f64> {
-        let rows = self.whitener.len();
+        let rows = self.whitener.features();
         let (Some(path), false) = (self.whitened.get(&member), self.candidates[member.0].exact) else { return DMatrix::zeros(rows, 0) };
         let near = if share < 0.5 { segment } else { segment + 1 };
         let node = if path.nodes[near].is_empty() { 2 * segment + 1 - near } else { near };
@@ -342,7 +342,7 @@ impl<'a> Fitter<'a> {
         let path = &self.whitened[&(candidate, mask)];
         let of = &self.candidates[candidate];
         let (from, to) = (&of.nodes[segment], &of.nodes[segment + 1]);
-        let whitened = blend(&path.nodes[segment], &path.nodes[segment + 1], share, self.whitener.len());
+        let whitened = blend(&path.nodes[segment], &path.nodes[segment + 1], share, self.whitener.features());
         let size = between(from.size, to.size, share);
         let slope = path.slope(of, &path.nodes, segment, size);
         Fitted { candidate, mask, segment, share, size, fall, evidence, whitened, slope, doubtful: false }

@@ -124,12 +124,11 @@ impl<'a> Sets<'a> {
     pub fn search(&self, start: &Chosen, mut barred: Vec<usize>, of: &Conditions<'_>, refused: &mut Vec<Refused>) -> Chosen {
         let kept = start.members.len();
         let mut best = self.grown(start.clone(), kept, &mut barred, of, refused);
-        if kept == 0 && of.bars.most > 1 {
-            if let Some(pair) = self.pair(start, &barred, of) {
-                let grown = self.grown(pair, 0, &mut barred.clone(), of, refused);
-                if self.worth(&grown, of.bars) > self.worth(&best, of.bars) + BETTER {
-                    best = grown;
-                }
+        let pair = if kept == 0 && of.bars.most > 1 { self.pair(start, &barred, of) } else { None };
+        if let Some(pair) = pair {
+            let grown = self.grown(pair, 0, &mut barred.clone(), of, refused);
+            if self.worth(&grown, of.bars) > self.worth(&best, of.bars) + BETTER {
+                best = grown;
             }
         }
         refused.retain(|refused| best.members.iter().all(|member| member.candidate != refused.fitted.candidate));
