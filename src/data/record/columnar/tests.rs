@@ -206,7 +206,7 @@ fn stretches_of_a_small_file_read_each_byte_once() {
     let wanted = [Wanted::new("distance", Dimension::LENGTH), Wanted::new("Y_1R", FORCE)];
     let (known, before) = (Known::default(), read());
     for start in 0..20 {
-        let start = 200.0 + 50.0 * f64::from(start);
+        let start = 1_200.0 + 50.0 * f64::from(start);
         read_stretch(path, "north", &wanted, "distance", start..start + 100.0, &known).expect("inside");
     }
     let more = read() - before;
