@@ -1,6 +1,6 @@
 //! An archive of continuous runs of two vehicles, to measure how the evaluation grows with its length:
 //! `cargo run --release --example archive -- --km 500 --out target/archive` makes 40 runs of 12.5 km; `--runs` gives another number.
-//! `--lengths 5,5,2.8,1.8` makes one run of the first vehicle for each zone instead, each of this length in km.
+//! `--lengths 5,5,2.8,1.7` makes one run of the first vehicle for each zone instead, each of this length in km.
 //!
 //! Both sides are made by the vehicle model. The measurement has another friction and noise; all else is the same. A run has one speed and
 //! curves that suit it, so that the sections of each zone of Annex T are found in the runs of one speed.

@@ -33,10 +33,10 @@ def test_the_function_gives_what_the_program_gives(found, tmp_path):
     diagnosis = json.loads(found.json())
     assert found.verdict == diagnosis["verdict"] == "unexplained"
     named = {effect["name"]: effect["parameters"] for effect in diagnosis["causes"][0]["effects"]}
-    assert set(named) == {"shoulder_friction", "elbow_friction"}
-    assert named["elbow_friction"]["elbow.coulomb"]["value"] == pytest.approx(0.1420, abs=2e-4)
-    assert named["shoulder_friction"]["shoulder.coulomb"]["value"] == pytest.approx(0.1282, abs=2e-4)
-    assert diagnosis["shrink"]["fraction_removed"] == pytest.approx(0.35, abs=0.01)
+    assert set(named) == {"elbow_friction", "motor_inertia"}
+    assert named["elbow_friction"]["elbow.coulomb"]["value"] == pytest.approx(0.1106, abs=2e-4)
+    assert named["motor_inertia"]["motor.inertia"]["value"] == pytest.approx(4.462e-5, rel=1e-2)
+    assert diagnosis["shrink"]["fraction_removed"] == pytest.approx(0.39, abs=0.01)
 
 
 def test_the_report(found, tmp_path):

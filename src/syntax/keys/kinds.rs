@@ -166,7 +166,7 @@ pub const KINDS: &[Kind] = &[
             phrase("is", "The expression.", "Y at side R + Y at side L"),
             phrase("at", "The places at which it exists, without those that the expression fixes.", "each wheelset"),
             phrase("in", "The unit of printed values.", "kN"),
-            pattern(text("named", "The name of a position in tables, with places in braces.", "sum_{wheelset}")),
+            pattern(text("named", "The name of a position in tables, with places in braces.", "SigmaY_{wheelset}")),
             CLAUSE,
             SOURCE,
             NOTE,
