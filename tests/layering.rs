@@ -98,6 +98,58 @@ fn the_diagnosis_goes_one_way() {
     compare(&found, PARTS);
 }
 
+/// Paths of the diagnosis that a file names, such as `features::layout`, in single and grouped imports.
+fn paths(code: &str) -> BTreeSet<String> {
+    let path = |rest: &str| rest.chars().take_while(|c| c.is_ascii_lowercase() || *c == '_' || *c == ':').collect::<String>();
+    code.split("crate::diagnose::").skip(1).map(|rest| path(rest).trim_end_matches(':').to_string()).collect()
+}
+
+/// A file may be read after those that it imports, down to files that import none.
+#[test]
+fn files_of_the_diagnosis_make_no_circle() {
+    let folder = root().join("src/diagnose");
+    let mut left: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for (_, path) in sources().into_iter().filter(|(module, _)| module == "diagnose") {
+        let inside = path.strip_prefix(&folder).expect("below it").with_extension("");
+        let parts: Vec<String> = inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        if parts.last().is_some_and(|part| part == "mod") {
+            continue;
+        }
+        let parent = parts[..parts.len() - 1].join("::");
+        let code = code(&path);
+        let mut uses = paths(&code);
+        let beside = |name: String| if parent.is_empty() { name } else { format!("{parent}::{name}") };
+        uses.extend(imports(&code, "super::").into_iter().map(beside));
+        left.insert(parts.join("::"), uses);
+    }
+    assert!(left.len() > 30, "the files were not found");
+    let names: BTreeSet<String> = left.keys().cloned().collect();
+    // A path may go on to what a file holds.
+    let file = |path: &String| names.iter().find(|name| *path == **name || path.starts_with(&format!("{name}::"))).cloned();
+    for (name, uses) in &mut left {
+        *uses = uses.iter().filter_map(file).filter(|used| used != name).collect();
+    }
+    while let Some(lowest) = left.iter().find(|(_, uses)| uses.iter().all(|used| !left.contains_key(used))).map(|(name, _)| name.clone()) {
+        left.remove(&lowest);
+    }
+    assert!(left.is_empty(), "each of these files imports another of them: {:?}", left.keys().collect::<Vec<_>>());
+}
+
+/// What can change an answer stands in one file, with its unit and reason.
+#[test]
+fn constants_of_the_diagnosis_stand_in_one_file() {
+    let types = ["f64", "usize", "u64", "i32", "[f64", "(f64"];
+    for (_, path) in sources().into_iter().filter(|(module, path)| module == "diagnose" && !path.ends_with("levels.rs")) {
+        let number = |line: &&str| {
+            let said = line.trim_start().trim_start_matches("pub ").strip_prefix("const ").and_then(|rest| rest.split_once(": "));
+            said.is_some_and(|(_, kind)| types.iter().any(|one| kind.starts_with(one)))
+        };
+        if let Some(line) = code(&path).lines().find(number) {
+            panic!("{}: `{}` belongs into levels.rs", path.display(), line.trim());
+        }
+    }
+}
+
 const MODULES: &str = "| module | imports |";
 const PARTS: &str = "| part | what it is | imports |";
 

@@ -1,9 +1,7 @@
 //! Diagnosis of a campaign: identification of effects, the corrected simulation, and the protocol evaluated again.
 
-use super::allowed::whiten::{dot, less};
 use super::answer::shrink::{applied, compare, folds, improved, shares, trained};
 use super::inputs::Inputs;
-use super::observe::observations::Observed;
 use super::run::{Found, find};
 use super::settings::Settings;
 use crate::certify::{Compiled, certify};
@@ -12,6 +10,9 @@ use crate::data::origin::OriginEffect;
 use crate::data::record::Format;
 use crate::data::text::UNREADABLE;
 use crate::data::write::Outputs;
+use crate::diagnose::features::observed::Observed;
+use crate::diagnose::levels::campaign::{EARNED, STRONG};
+use crate::diagnose::uncertainty::whiten::{dot, less};
 use crate::disk::{self, SetKind};
 use crate::effects::{Applied, Catalogue, Gauss, Signals};
 use crate::problem::{Problem, Problems};
@@ -49,7 +50,7 @@ pub struct Outcome {
 pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Section>) -> Result<Outcome, Problems> {
     let compiled = &compiled.only_telling();
     let mut problems = Problems::default();
-    super::observe::columns::in_words_of(compiled, inputs.settings, inputs.campaign, &mut sections, &mut problems);
+    crate::diagnose::features::columns::in_words_of(compiled, inputs.settings, inputs.campaign, &mut sections, &mut problems);
     let (_, mut units, _) = match sections.first() {
         Some(first) => recorded(inputs.campaign, crate::data::RecordKind::Simulation, first).map_err(Problems)?,
         None => return Err(Problems(vec![Problem::error("no-sections", "the campaign has no sections")])),
@@ -163,12 +164,6 @@ fn idle(
     }))
 }
 
-/// Least share of the gap that an effect must remove in the quantities that it changes.
-const EARNED: f64 = 0.05;
-/// Evidence, in thresholds, from which an effect need not reduce the gap. It may then increase the gap by [`EARNED`] times the evidence
-/// in these units, since a gap masked by a second effect increases when one of the two is corrected.
-const STRONG: f64 = 4.0 / 3.0;
-
 /// Influence of effects that are known to be true.
 #[derive(Clone, Debug)]
 pub struct Really {
@@ -213,7 +208,7 @@ pub fn effect_of_truth(
         detectability: super::run::length(&found.alone.whitener, &change),
         weakest: several.filter_map(beside).reduce(f64::min),
         removed: compare(&outcome.before, &made, None, 1, Vec::new()).fraction_removed,
-        cells: super::gap::locate::moved(&settings, found, &change),
+        cells: crate::diagnose::localisation::locate::moved(&settings, found, &change),
     })
 }
 

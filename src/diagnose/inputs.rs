@@ -1,8 +1,8 @@
 //! Inputs of a diagnosis.
 
-use super::observe::cache::Cache;
 use super::settings::Settings;
 use crate::data::Campaign;
+use crate::diagnose::features::cache::Cache;
 use crate::effects::Catalogue;
 use crate::model::parameter;
 use crate::simulate::Simulator;

@@ -2,17 +2,20 @@
 
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap)]
 
-pub mod allowed;
 pub mod answer;
 mod campaign;
-pub mod gap;
+pub mod features;
+pub mod inference;
 pub mod inputs;
-pub mod observe;
+pub mod levels;
+pub mod localisation;
 pub mod preflight;
+pub mod response;
 pub mod run;
 pub mod score;
-pub mod search;
+pub mod selection;
 pub mod settings;
+pub mod uncertainty;
 
 pub use campaign::{Outcome, Really, diagnose, effect_of_truth, write_improved};
-pub use observe::cache::Cache;
+pub use features::cache::Cache;

@@ -2,18 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::observe::features::Kind;
-use super::observe::observations::Observations;
 use super::settings::Settings;
 use crate::data::Campaign;
+use crate::diagnose::features::layout::Kind;
+use crate::diagnose::features::observations::Observations;
+use crate::diagnose::levels::preflight::{LISTED, SEEN};
 use crate::effects::{Action, Applied, Catalogue, Effect, Fit};
 use crate::problem::{Problem, Problems};
 use crate::simulate::{Plan, Section, Simulator, Task};
-
-/// A change of a feature counts from one standard deviation on.
-const SEEN: f64 = 1.0;
-/// Number of features that are listed for an effect.
-const LISTED: usize = 4;
 
 /// What the effects of a catalogue change in one section.
 #[derive(Debug)]

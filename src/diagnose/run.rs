@@ -4,27 +4,28 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::allowed::covariance::strata;
-use super::allowed::declared::Declared;
-use super::allowed::whiten::{Covariance, Whitener, dot};
 use super::inputs::{Inputs, value_of};
-use super::observe::bench::Runs;
-use super::observe::observations::{Observations, Observed};
-use super::search::beside::alone_again;
-use super::search::candidates::Candidate;
-use super::search::choose::{Bars, Chosen, Refused, chi_squared, contradicting, nearest};
-use super::search::converge::{Converged, Converging};
-use super::search::fit::{Fitted, Fitter, Known, Mask};
-use super::search::ground::Ground;
-use super::search::guards::families;
-use super::search::lack::{Lack, drop_what_harms, lack_of_fit, left};
-use super::search::masks::masks;
-use super::search::place::{Place, Places};
-use super::search::sets::{Sets, refit};
-use super::search::settle::{Settled, Weighed};
-use super::search::stability::{Stability, stability};
-use super::search::suspects::{Suspect, suspect};
 use super::settings::Settings;
+use crate::diagnose::features::bench::Runs;
+use crate::diagnose::features::observations::Observations;
+use crate::diagnose::features::observed::Observed;
+use crate::diagnose::features::strata::strata;
+use crate::diagnose::inference::chosen::{Bars, Chosen, Refused, chi_squared, contradicting, nearest};
+use crate::diagnose::inference::fit::{Fitted, Fitter, Known, alone_again};
+use crate::diagnose::inference::sets::{Sets, refit};
+use crate::diagnose::response::candidate::Candidate;
+use crate::diagnose::response::ground::Ground;
+use crate::diagnose::response::mask::Mask;
+use crate::diagnose::selection::converging::{Converged, Converging};
+use crate::diagnose::selection::guards::families;
+use crate::diagnose::selection::lack::{Lack, drop_what_harms, lack_of_fit, left};
+use crate::diagnose::selection::masks::masks;
+use crate::diagnose::selection::place::{Place, Places};
+use crate::diagnose::selection::settle::{Settled, Weighed};
+use crate::diagnose::selection::stability::{Stability, stability};
+use crate::diagnose::selection::suspects::{Suspect, suspect};
+use crate::diagnose::uncertainty::declared::Declared;
+use crate::diagnose::uncertainty::whiten::{Covariance, Whitener, dot};
 use crate::effects::{Action, Applied, Signals};
 use crate::model::parameter;
 use crate::problem::{Problem, Problems};
@@ -329,7 +330,7 @@ pub fn chi(found: &Found) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::search::candidates::Node;
+    use crate::diagnose::response::candidate::Node;
     use crate::diagnose::settings::Tolerance;
 
     /// 0.7 e^0.2 is 4 standard deviations from 0.7 for a relative standard deviation of 5 %, and so is 0.7 e^-0.2, where the tolerance

@@ -4,7 +4,8 @@ use indexmap::IndexMap;
 use serde_json::Value;
 
 use super::campaign::Really;
-use super::observe::observations::Observed;
+use crate::diagnose::features::observed::Observed;
+use crate::diagnose::levels::score::DETECTABLE;
 use crate::effects::{Action, Applied, CHANNEL, Catalogue, Confined};
 use crate::metrics::interval::wilson;
 use crate::result::blind::{Blind, BySize, Calibration, Case, Places, Score};
@@ -208,9 +209,6 @@ pub fn case(campaign: &str, diagnosis: &Diagnosis, truth: &Truth, really: Option
         fault: None,
     }
 }
-
-/// Whitened length, in standard deviations, from which an effect counts as detectable.
-const DETECTABLE: f64 = 5.0;
 
 /// Scores of all cases.
 #[must_use]

@@ -1,7 +1,7 @@
 //! Sections and bands, from the spectrum of the measurement.
 
 use super::records::{Pair, Roles, Series};
-use crate::diagnose::observe::features::{Piece, Spectrum};
+use crate::diagnose::features::layout::{Piece, Spectrum};
 
 /// Shares of the power of the measured channels below the lowest and the highest frequency that count.
 const LOWEST: f64 = 0.01;

@@ -7,8 +7,8 @@ use std::path::Path;
 use fishplate::data::Campaign;
 use fishplate::diagnose::answer::causes::{interval, nothing_out_of_the_ordinary};
 use fishplate::diagnose::answer::steady::{self, drifts};
-use fishplate::diagnose::gap::trends::certain;
 use fishplate::diagnose::inputs::{Inputs, Reference};
+use fishplate::diagnose::localisation::trends::certain;
 use fishplate::diagnose::run::{Found, find};
 use fishplate::diagnose::settings::Settings;
 use fishplate::effects::{Channel, Signals};
@@ -342,7 +342,7 @@ fn a_parameter_that_no_effect_moves_is_a_suspect() {
 fn a_cell_tells_mean_and_root_mean_square_of_its_differences() {
     use statrs::distribution::{ChiSquared, ContinuousCDF};
     let (found, settings) = found_by(EFFECTS, Truth { jump: -2.0, ..NOTHING }, &[]);
-    let places = fishplate::diagnose::gap::locate::locate(&settings, &found, &Vec::new());
+    let places = fishplate::diagnose::localisation::locate::locate(&settings, &found, &Vec::new());
     let [place] = &places[..] else { panic!("{places:?}") };
     assert!((place.difference - 2.0 / 8.0).abs() < 1e-9, "{}", place.difference);
     assert!((place.difference_rms - 2.0 / 8.0_f64.sqrt()).abs() < 1e-9, "{}", place.difference_rms);
@@ -361,7 +361,7 @@ fn diagnosis_and_certification_tell_a_difference_with_the_same_sign() {
         verdict\n  validated when every limit holds\n";
     let truth = Truth { lift: 0.5, ..NOTHING };
     let (found, settings) = found_by(EFFECTS, truth, &[]);
-    let places = fishplate::diagnose::gap::locate::locate(&settings, &found, &Vec::new());
+    let places = fishplate::diagnose::localisation::locate::locate(&settings, &found, &Vec::new());
     let [place] = &places[..] else { panic!("{places:?}") };
     let folder = tempfile::tempdir().unwrap();
     campaign(folder.path(), truth);
@@ -382,7 +382,7 @@ fn diagnosis_and_certification_tell_a_difference_with_the_same_sign() {
 #[test]
 fn a_difference_that_grows_with_a_column_is_told_with_its_slope() {
     let (found, settings) = found_by(EFFECTS, Truth { stiffness: 1.2, ..NOTHING }, &[]);
-    let (trends, together) = fishplate::diagnose::gap::trends::trends(&settings, &found, &Vec::new());
+    let (trends, together) = fishplate::diagnose::localisation::trends::trends(&settings, &found, &Vec::new());
     let over = |name: &str| trends.iter().find(|trend| trend.covariate == name).unwrap_or_else(|| panic!("no trend over {name}"));
     let load = over("load");
     // Simulated - measured.
@@ -411,7 +411,7 @@ fn a_difference_that_grows_with_a_column_is_told_with_its_slope() {
         let (found, settings) = found_by(&no_effects, Truth { stiffness, ..NOTHING }, &[]);
         let errors = (stiffness - 1.0) / 0.2 * -wanted / error;
         assert!(found.chosen.members.is_empty() && (errors > 4.79) == sure, "{errors}");
-        assert_eq!(certain(&fishplate::diagnose::gap::trends::trends(&settings, &found, &Vec::new()).0), sure);
+        assert_eq!(certain(&fishplate::diagnose::localisation::trends::trends(&settings, &found, &Vec::new()).0), sure);
     }
     assert_eq!(over("1 / load").from, "load 4.5", "the reciprocal is least where the load is most");
     assert!(trends.iter().all(|trend| trend.covariate != "zone"), "what is the same everywhere is no covariate");

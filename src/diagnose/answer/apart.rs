@@ -1,11 +1,12 @@
 //! Selection of the sections that, if measured again, would best discriminate two causes: T-optimal design (Atkinson and Fedorov 1975)
 //! among further sections like those of each stratum.
 
-use crate::diagnose::allowed::whiten::{Covariance, dot};
+use crate::diagnose::inference::fit::Fitted;
+use crate::diagnose::response::candidate::Candidate;
+use crate::diagnose::response::mask::Mask;
 use crate::diagnose::run::Found;
-use crate::diagnose::search::candidates::Candidate;
-use crate::diagnose::search::fit::{Fitted, Mask};
-use crate::diagnose::search::guards::{View, in_view};
+use crate::diagnose::selection::guards::{View, in_view};
+use crate::diagnose::uncertainty::whiten::{Covariance, dot};
 
 /// Distance of two causes, in standard deviations of the allowed difference.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,8 +41,8 @@ fn best(covariance: &Covariance, all: &[usize], strata: &[Vec<usize>], change: &
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::allowed::response::ResponseError;
-    use crate::diagnose::search::candidates::Node;
+    use crate::diagnose::response::candidate::Node;
+    use crate::diagnose::uncertainty::response::ResponseError;
 
     /// Two features in each of four sections, unit noise. The effect changes both features equally. The rival does so in the first two
     /// sections and changes them in opposite directions in the last two. Only the last two discriminate.

@@ -3,10 +3,12 @@
 use indexmap::IndexMap;
 use serde_json::json;
 
+use crate::diagnose::inference::fit::Fitted;
 use crate::diagnose::inputs::Inputs;
+use crate::diagnose::levels::causes::INTERPOLATION;
+use crate::diagnose::levels::common::NINETY;
 use crate::diagnose::run::{Found, deviations};
-use crate::diagnose::search::fit::Fitted;
-use crate::diagnose::search::stability::Stability;
+use crate::diagnose::selection::stability::Stability;
 use crate::diagnose::settings::Settings;
 use crate::effects::Action;
 use crate::result::diagnosis::{Cause, NamedEffect, Value};
@@ -56,14 +58,11 @@ fn around(found: &Found, member: &Fitted, drawn: Option<(f64, f64)>) -> Option<(
     if of.discrete || !member.size.is_finite() {
         return None;
     }
-    let error = if member.slope > 0.0 { 1.645 * (1.0 / member.slope).hypot(0.02 * member.size.abs().min(1e12)) } else { 0.0 };
+    let error = if member.slope > 0.0 { NINETY * (1.0 / member.slope).hypot(INTERPOLATION * member.size.abs().min(1e12)) } else { 0.0 };
     let drawn = drawn.unwrap_or((member.size, member.size));
     let (below, above) = (error.hypot((member.size - drawn.0).max(0.0)), error.hypot((drawn.1 - member.size).max(0.0)));
     Some(((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)))
 }
-
-/// Half the width of the 90 % range of vehicles, in declared standard deviations.
-const ORDINARY: f64 = 1.645;
 
 /// The member with the least evidence among those whose interval includes the neutral value, or a value within the declared tolerance;
 /// with the reason why it is not named. Other sections might then have given the opposite sign, another effect, or no more than the
@@ -77,7 +76,7 @@ pub fn nothing_out_of_the_ordinary(found: &Found, settings: &Settings) -> Option
         let nearest = nothing.clamp(low, high);
         let holds = match deviations(of, nearest, settings, &found.declared, true) {
             _ if nearest == nothing => format!("{}, at which the effect has no influence", short(nothing)),
-            away if away < ORDINARY => format!("{}, which is {away:.1} declared standard deviations away", short(nearest)),
+            away if away < NINETY => format!("{}, which is {away:.1} declared standard deviations away", short(nearest)),
             _ => return None,
         };
         Some((at, format!("the interval of its size, {} to {}, includes {holds}", short(low), short(high)), member.evidence))

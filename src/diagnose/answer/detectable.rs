@@ -1,10 +1,8 @@
 //! Smallest detectable sizes of the effects.
 
+use crate::diagnose::levels::detectable::SEEN;
 use crate::diagnose::run::{Found, length};
 use crate::result::diagnosis::Detectable;
-
-/// Length of a whitened change that counts as detectable, in standard deviations.
-const SEEN: f64 = 5.0;
 
 /// Per effect and parameter, the smallest detectable sizes to either side of neutral.
 pub fn detectable(found: &Found) -> Vec<Detectable> {

@@ -1,6 +1,7 @@
 //! Figures of the sections with the largest gap: measured, simulated, simulated with the effects.
 
-use crate::diagnose::observe::features::Kind;
+use crate::diagnose::features::layout::Kind;
+use crate::diagnose::levels::pictures::{PANELS, SECTIONS, SMOOTH};
 use crate::diagnose::run::Found;
 use crate::diagnose::settings::Settings;
 use crate::effects::Signals;
@@ -8,12 +9,6 @@ use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
 use crate::result::Curve;
 use crate::result::diagnosis::{Panel, Picture};
 use crate::simulate::{Section, Units};
-
-/// Number of sections, and of panels per section.
-const SECTIONS: usize = 2;
-const PANELS: usize = 4;
-/// Cut-off frequency of the low-pass for display, in Hz.
-const SMOOTH: f64 = 20.0;
 
 /// The sections with the largest gap, each with the channels of one group and position; for forces of a bogie vehicle, the four wheels of
 /// one bogie.

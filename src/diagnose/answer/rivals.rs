@@ -3,17 +3,14 @@
 use super::apart::{Apart, apart};
 use super::causes::cause;
 use super::verdict::Verdict;
+use crate::diagnose::inference::chosen::plausible;
+use crate::diagnose::inference::fit::Fitted;
 use crate::diagnose::inputs::Inputs;
+use crate::diagnose::levels::chosen::TOLERANCE_SD;
+use crate::diagnose::levels::rivals::{NEAREST, NEAREST_SHARE, OUTSIDE, OUTSIDE_SUSPECTED, OUTSIDE_UNEXPLAINED, TEMPERATURE, TOLD_APART};
 use crate::diagnose::run::{Found, deviations};
-use crate::diagnose::search::choose::{TOLERANCE_SD, plausible};
-use crate::diagnose::search::fit::Fitted;
 use crate::effects::Effect;
 use crate::result::diagnosis::Cause;
-
-/// Largest loss of evidence of a rival that the data do not discriminate from the answer.
-const NEAREST: f64 = 8.0;
-/// Divisor of the evidence before it becomes a probability: real discrepancies deviate from the assumed covariance.
-const TEMPERATURE: f64 = 4.0;
 
 /// Sets in which another effect replaces one member, and whether the data discriminate them from the answer.
 pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
@@ -39,7 +36,7 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
         if deviations(of, fit.size, inputs.settings, &found.declared, true) < TOLERANCE_SD {
             continue;
         }
-        let near = *fall <= (0.12 * found.chosen.members[*at].evidence).max(NEAREST) && fit.evidence > found.bars.least(of)
+        let near = *fall <= (NEAREST_SHARE * found.chosen.members[*at].evidence).max(NEAREST) && fit.evidence > found.bars.least(of)
             || found.stability.get(*at).is_some_and(|stability| stability.as_well(fit.candidate));
         let drawn = found.stability.get(*at).map_or(0.0, |stability| stability.instead_of(fit.candidate));
         let mut members = found.chosen.members.clone();
@@ -64,9 +61,9 @@ pub fn probabilities(causes: &mut [Cause], verdict: Verdict, suspected: bool, fa
     };
     // A cause outside the catalogue is always possible, and more probable where a residual remains.
     let outside = match verdict {
-        Verdict::Unexplained => 4.0,
-        _ if suspected => 1.0,
-        _ => 0.05,
+        Verdict::Unexplained => OUTSIDE_UNEXPLAINED,
+        _ if suspected => OUTSIDE_SUSPECTED,
+        _ => OUTSIDE,
     };
     let all = weights.iter().sum::<f64>() + outside;
     causes.iter_mut().zip(weights).for_each(|(cause, weight)| cause.probability = weight / all);
@@ -93,9 +90,6 @@ pub fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verd
     measurements.extend(more_sections(inputs, found, causes));
     (!measurements.is_empty()).then(|| measurements.join("; or "))
 }
-
-/// Distance from which two causes are not confused by chance, in standard deviations.
-const TOLD_APART: f64 = 5.0;
 
 /// A statement where two possible causes are far apart but neither is preferred: the data would discriminate them if one were the whole
 /// cause.

@@ -2,20 +2,17 @@
 
 use rayon::prelude::*;
 
-use crate::diagnose::allowed::whiten::dot;
+use crate::diagnose::inference::fit::{Fitted, Fitter};
+use crate::diagnose::levels::common::RESAMPLES;
+use crate::diagnose::levels::shrink::{FOLDS, TOUCHED};
 use crate::diagnose::run::Found;
-use crate::diagnose::search::fit::{Fitted, Fitter};
-use crate::diagnose::search::guards::View;
+use crate::diagnose::selection::guards::View;
+use crate::diagnose::uncertainty::whiten::dot;
 use crate::effects::{Applied, Catalogue, Confined, Gauss, Signals};
 use crate::problem::Problem;
 use crate::result::diagnosis::{QuantityShrink, Shrink, Touched};
 use crate::result::{Certification, QuantityResult};
 use crate::simulate::{Simulator, simulate};
-
-/// Number of folds for cross-validation, stratified.
-const FOLDS: usize = 4;
-/// Bootstrap resamples of the sections.
-const DRAWS: usize = 400;
 
 /// The chosen effects with the sizes of the members.
 #[must_use]
@@ -55,13 +52,13 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     let view = View { says: String::new(), sections: kept.clone(), features: features.clone() };
     let size = found.seen.features.len();
     let whitener = found.settled.covariance.part(&kept, &features).whitener();
-    let part = |column: &[f64]| crate::diagnose::search::guards::part(column, size, &view);
-    let mut candidates: Vec<crate::diagnose::search::candidates::Candidate> =
+    let part = |column: &[f64]| crate::diagnose::selection::guards::part(column, size, &view);
+    let mut candidates: Vec<crate::diagnose::response::candidate::Candidate> =
         found.chosen.members.iter().map(|member| found.candidates[member.candidate].clone()).collect();
     for candidate in &mut candidates {
         candidate.nodes.iter_mut().filter(|node| !node.change.is_empty()).for_each(|node| node.change = part(&node.change));
     }
-    let masks = found.masks.iter().map(|mask| crate::diagnose::search::fit::Mask {
+    let masks = found.masks.iter().map(|mask| crate::diagnose::response::mask::Mask {
         confined: mask.confined.clone(),
         sections: kept.iter().map(|at| mask.sections[*at]).collect(),
         asked_by: mask.asked_by.map(|by| found.chosen.members.iter().position(|member| member.candidate == by).unwrap_or(usize::MAX)),
@@ -69,7 +66,7 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     let fitter = Fitter::new(&whitener, &candidates, masks.collect());
     let z = whitener.apply(&part(&found.beside.difference));
     let set: Vec<(usize, usize)> = found.chosen.members.iter().enumerate().map(|(at, member)| (at, member.mask)).collect();
-    let chosen = crate::diagnose::search::sets::Sets::new(&fitter, &z).chosen(&set);
+    let chosen = crate::diagnose::inference::sets::Sets::new(&fitter, &z).chosen(&set);
     if chosen.members.len() != set.len() {
         return found.chosen.members.clone();
     }
@@ -105,9 +102,6 @@ pub fn improved(
     };
     (0..found.seen.sections.len()).into_par_iter().map(each).collect()
 }
-
-/// An effect touches a quantity if the root mean square change of its values exceeds this share of the limit of their standard deviation.
-const TOUCHED: f64 = 0.1;
 
 /// Quantities before and after, with the interval of the removed share. `noise` is the protocol evaluated on records that differ only by
 /// the declared noise.
@@ -166,9 +160,9 @@ fn removed(before: &Certification, after: &Certification, quantities: &[usize], 
     let share = |(from, to): (f64, f64)| if from > 0.0 { 1.0 - to / from } else { 0.0 };
     let mut random = Gauss::new(seed);
     let mut shares: Vec<f64> =
-        (0..DRAWS).map(|_| share(both(&all.iter().map(|_| random.below(names.len().max(1))).collect::<Vec<_>>()))).collect();
+        (0..RESAMPLES).map(|_| share(both(&all.iter().map(|_| random.below(names.len().max(1))).collect::<Vec<_>>()))).collect();
     shares.sort_by(f64::total_cmp);
-    let at = |share: f64| shares[((DRAWS - 1) as f64 * share) as usize];
+    let at = |share: f64| shares[((RESAMPLES - 1) as f64 * share) as usize];
     let (from, to) = both(&all);
     Touched {
         quantities: quantities.iter().map(|at| before.quantities[*at].id.clone()).collect(),

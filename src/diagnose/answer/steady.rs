@@ -1,22 +1,22 @@
 //! Test whether an operation on the signals has the same size over the whole campaign.
 
 use nalgebra::{DMatrix, DVector};
-
-use super::causes::short;
-use crate::diagnose::allowed::whiten::Covariance;
-use crate::diagnose::gap::trends::{CERTAIN, Covariate, NINETY, covariates};
-use crate::diagnose::observe::features::Kind;
-use crate::diagnose::run::Found;
-use crate::diagnose::search::candidates::Candidate;
-use crate::diagnose::search::fit::Fitted;
-use crate::diagnose::search::lack::{left, with_room};
-use crate::diagnose::settings::Settings;
-use crate::effects::{CHANNEL, Catalogue};
-use crate::result::diagnosis::Drift;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
-/// Share of a squared length below which it counts as rounding error.
-const NOTHING: f64 = 1e-9;
+use super::causes::short;
+use crate::diagnose::features::layout::Kind;
+use crate::diagnose::inference::fit::Fitted;
+use crate::diagnose::levels::common::NINETY;
+use crate::diagnose::levels::steady::NOTHING;
+use crate::diagnose::levels::trends::CERTAIN;
+use crate::diagnose::localisation::trends::{Covariate, covariates};
+use crate::diagnose::response::candidate::Candidate;
+use crate::diagnose::run::Found;
+use crate::diagnose::selection::lack::{left, with_room};
+use crate::diagnose::settings::Settings;
+use crate::diagnose::uncertainty::whiten::Covariance;
+use crate::effects::{CHANNEL, Catalogue};
+use crate::result::diagnosis::Drift;
 
 /// Covariate name for a size that varies between sections without order.
 const SECTION: &str = "the section alone";

@@ -1,7 +1,9 @@
 //! The verdict of a diagnosis: one table of rules over what was found, of which the first that applies decides.
 
+use crate::diagnose::levels::common::NINETY;
+use crate::diagnose::levels::verdict::{MISFIT, ROOMY};
 use crate::diagnose::run::Found;
-use crate::diagnose::search::lack::{left, with_room};
+use crate::diagnose::selection::lack::{left, with_room};
 use crate::result::Verdict as OfProtocol;
 use crate::result::diagnosis::{Fit, Shrink};
 
@@ -48,11 +50,6 @@ pub struct Facts {
     /// What is left, in units of what is allowed.
     pub misfit: f64,
 }
-
-/// Ratio of chi-squared to the number of features from which the fit is refuted: what is left is then on average 1.4 times as large as
-/// noise, tolerances and model discrepancy together. Below a quarter, they are more than twice as large as what is left.
-pub const MISFIT: f64 = 2.0;
-pub const ROOMY: f64 = 0.25;
 
 /// A rule: its condition, its verdict, and its reason where the answer does not state it elsewhere.
 struct Rule {
@@ -138,7 +135,7 @@ pub fn fit(found: &Found) -> Fit {
 #[must_use]
 pub fn remark(fit: &Fit) -> Option<String> {
     let Fit { chi2_per_feature, allowance_scale, allowance_scale_sd, .. } = fit;
-    let scale = format!("{allowance_scale:.2} \u{b1} {:.2}", 1.645 * allowance_scale_sd);
+    let scale = format!("{allowance_scale:.2} \u{b1} {:.2}", NINETY * allowance_scale_sd);
     if *chi2_per_feature > MISFIT {
         Some(format!(
             "chi-squared per feature is {chi2_per_feature:.2}: noise, tolerances and model discrepancy would have to be {scale} times as large"

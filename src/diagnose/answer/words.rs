@@ -4,19 +4,18 @@ use super::causes::cause;
 use super::detectable::detectable;
 use super::rivals::{ambiguity, discriminating, neither, probabilities};
 use super::verdict::{self, Facts, Verdict};
+use crate::diagnose::features::layout::Kind;
+use crate::diagnose::inference::fit::Fitted;
 use crate::diagnose::inputs::Inputs;
-use crate::diagnose::observe::features::Kind;
+use crate::diagnose::levels::chosen::TOLERANCE_SD;
+use crate::diagnose::levels::lack::LACK;
+use crate::diagnose::levels::words::TOLD;
 use crate::diagnose::run::{Found, chi, deviations};
-use crate::diagnose::search::choose::TOLERANCE_SD;
-use crate::diagnose::search::fit::Fitted;
-use crate::diagnose::search::lack::{LACK, unexplained};
-use crate::diagnose::search::suspects::Suspect;
+use crate::diagnose::selection::lack::unexplained;
+use crate::diagnose::selection::suspects::Suspect;
 use crate::result::Verdict as OfProtocol;
 use crate::result::diagnosis::{Cause, Diagnosis, Fault, How, Nearest, Shrink, Vetoed};
 use crate::simulate::Units;
-
-/// Trends with a probability below this are reported, whether significant or not.
-const TOLD: f64 = 0.05;
 
 /// The verdict of the protocol without the effects and, where effects are named, with them.
 pub type Protocol = (OfProtocol, Option<OfProtocol>);
@@ -30,13 +29,13 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, protocol: Pr
     let lacking = found.lack_after.iter().any(|lack| lack.sigma_with_them > LACK);
     let ambiguous = ambiguity(inputs, found);
     let named = !found.chosen.members.is_empty();
-    let invariants = crate::diagnose::gap::invariants::invariants(inputs.settings, found, units);
-    let (mut trends, together) = crate::diagnose::gap::trends::trends(inputs.settings, found, units);
+    let invariants = crate::diagnose::localisation::invariants::invariants(inputs.settings, found, units);
+    let (mut trends, together) = crate::diagnose::localisation::trends::trends(inputs.settings, found, units);
     let drifts = super::steady::drifts(inputs.settings, found);
     // A trend that is certain, however small its share of the gap.
-    let left = crate::diagnose::gap::trends::certain(&trends)
+    let left = crate::diagnose::localisation::trends::certain(&trends)
         || super::steady::certain(&drifts).is_some()
-        || crate::diagnose::gap::invariants::stays(&invariants).is_some();
+        || crate::diagnose::localisation::invariants::stays(&invariants).is_some();
     // The smallest share of resamples in which a member has the most evidence, where that share is too small.
     let least = found.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
     let fit = verdict::fit(found);
@@ -63,15 +62,15 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, protocol: Pr
     probabilities(&mut causes, verdict, found.suspect.is_some(), least);
     let discriminating_measurement = discriminating(inputs, found, &causes, verdict);
     let radius = |key: &str| crate::diagnose::inputs::value_of(inputs.campaign, key);
-    let shapes = crate::diagnose::gap::shapes::shapes(inputs.settings, &found.seen, &radius, inputs.seed);
+    let shapes = crate::diagnose::localisation::shapes::shapes(inputs.settings, &found.seen, &radius, inputs.seed);
     let mut says = says(inputs, found, (verdict, left, reason), &causes, shrink.as_ref(), unexplained_share);
     let trends_tested = trends.len();
     trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
     if verdict == Verdict::Unexplained {
         says.extend(super::steady::worth_a_word(inputs.catalogue, &drifts));
-        says.extend(crate::diagnose::gap::trends::worth_a_word(&trends));
-        says.extend(crate::diagnose::gap::invariants::worst(&invariants));
-        says.extend(crate::diagnose::gap::shapes::worth_a_word(&shapes));
+        says.extend(crate::diagnose::localisation::trends::worth_a_word(&trends));
+        says.extend(crate::diagnose::localisation::invariants::worst(&invariants));
+        says.extend(crate::diagnose::localisation::shapes::worth_a_word(&shapes));
     }
     says.extend(neither(inputs, found, &causes, verdict));
     let noted = found.runs.failed.iter().map(|failed| format!("a simulation failed and was excluded: {failed}"));
@@ -106,7 +105,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, protocol: Pr
         protocol_before: protocol.0,
         protocol_after: protocol.1,
         faults: found.seen.faults.clone(),
-        r#where: crate::diagnose::gap::locate::locate(inputs.settings, found, units),
+        r#where: crate::diagnose::localisation::locate::locate(inputs.settings, found, units),
         invariants,
         trends,
         trends_tested,
@@ -159,7 +158,7 @@ fn alone(found: &Found) -> Option<String> {
 }
 
 fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
-    let one = |refused: &crate::diagnose::search::choose::Refused| {
+    let one = |refused: &crate::diagnose::inference::chosen::Refused| {
         let of = &found.candidates[refused.fitted.candidate];
         let title = inputs.catalogue.effect(&of.effect).map_or(of.effect.as_str(), |effect| effect.title.as_str());
         let on = if of.channels.is_empty() || of.channels.len() > 2 { String::new() } else { format!(" ({})", of.channels.join(", ")) };

@@ -1,0 +1,169 @@
+//! Comparison sample by sample: the difference of the two records of a channel, regressed on the changes that the effects cause.
+//!
+//! The change of a simulated channel with each candidate effect is a function of time. The difference of the records is projected on an
+//! orthonormal basis of these changes, section by section; both are prewhitened by an autoregressive filter of what the changes leave,
+//! so that the coordinates have independent errors of one variance. The features of a section are these coordinates.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::diagnose::levels::increments::{NEW, ORDER, SAMPLES};
+
+/// The basis of one channel in one section.
+#[derive(Clone, Debug)]
+pub struct Increments {
+    /// Coefficients of the autoregressive filter.
+    filter: Vec<f64>,
+    /// The simulated record.
+    reference: Vec<f64>,
+    /// Orthonormal, prewhitened; as many as there are changes, zero where a change adds no direction.
+    basis: Vec<Vec<f64>>,
+    /// Variance of each coordinate, in the square of the channel's unit.
+    pub variance: f64,
+    /// Coordinates of the simulated record, for a gain, and of one unit, for an offset.
+    pub signal: Vec<f64>,
+    pub one: Vec<f64>,
+}
+
+impl Increments {
+    /// From the changes of a channel with the effects, and both records of it. Nothing where the section is too short.
+    #[must_use]
+    pub fn new(changes: &[Vec<f64>], simulated: &[f64], measured: &[f64]) -> Option<Self> {
+        let n = simulated.len();
+        if n < SAMPLES * (changes.len() + ORDER) || measured.len() != n || changes.iter().any(|change| change.len() != n) {
+            return None;
+        }
+        let difference: Vec<f64> = measured.iter().zip(simulated).map(|(a, b)| a - b).collect();
+        let left = across(&orthonormal(changes), &difference);
+        let filter = autoregression(&left);
+        let changes: Vec<Vec<f64>> = changes.iter().map(|change| prewhitened(&filter, change)).collect();
+        let basis = orthonormal(&changes);
+        let left = across(&basis, &prewhitened(&filter, &difference));
+        let freedom = left.len() - basis.iter().filter(|direction| direction.iter().any(|x| *x != 0.0)).count() - filter.len();
+        let variance = left.iter().map(|x| x * x).sum::<f64>() / freedom.max(1) as f64;
+        let mut made = Self { filter, reference: vec![0.0; n], basis, variance, signal: Vec::new(), one: Vec::new() };
+        (made.signal, made.one) = (made.of(simulated)?, made.of(&vec![1.0; n])?);
+        made.reference = simulated.to_vec();
+        Some(made)
+    }
+
+    /// The coordinates of a record of the channel relative to the simulated record; nothing for another number of samples.
+    #[must_use]
+    pub fn of(&self, values: &[f64]) -> Option<Vec<f64>> {
+        if values.len() != self.reference.len() {
+            return None;
+        }
+        let difference: Vec<f64> = values.iter().zip(&self.reference).map(|(value, reference)| value - reference).collect();
+        let white = prewhitened(&self.filter, &difference);
+        Some(self.basis.iter().map(|direction| dot(direction, &white)).collect())
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// What is left of a series across all directions.
+fn across(basis: &[Vec<f64>], series: &[f64]) -> Vec<f64> {
+    basis.iter().fold(series.to_vec(), |mut left, direction| {
+        let along = dot(direction, &left);
+        left.iter_mut().zip(direction).for_each(|(left, x)| *left -= along * x);
+        left
+    })
+}
+
+/// Gram-Schmidt, with a second pass for accuracy; zero where a series adds no direction.
+fn orthonormal(series: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for one in series {
+        let length = dot(one, one).sqrt();
+        let mut own = across(&basis, &across(&basis, one));
+        let left = dot(&own, &own).sqrt();
+        let scale = if left > NEW * length { 1.0 / left } else { 0.0 };
+        own.iter_mut().for_each(|x| *x *= scale);
+        basis.push(own);
+    }
+    basis
+}
+
+/// Coefficients of the autoregressive model of a series, by the Yule-Walker equations.
+fn autoregression(series: &[f64]) -> Vec<f64> {
+    let n = series.len();
+    let lagged = |lag: usize| dot(&series[lag..], &series[..n - lag]) / n as f64;
+    let lags: Vec<f64> = (0..=ORDER).map(lagged).collect();
+    if lags[0] <= 0.0 {
+        return Vec::new();
+    }
+    let mut best = (n as f64 * lags[0].ln(), Vec::new());
+    for order in 1..=ORDER {
+        let matrix = DMatrix::from_fn(order, order, |i, j| lags[i.abs_diff(j)]);
+        let right = DVector::from_fn(order, |i, _| lags[i + 1]);
+        let Some(found) = matrix.cholesky().map(|cholesky| cholesky.solve(&right)) else { break };
+        let variance = lags[0] - found.dot(&right);
+        if variance <= 0.0 {
+            break;
+        }
+        let criterion = n as f64 * variance.ln() + 2.0 * order as f64;
+        if criterion < best.0 {
+            best = (criterion, found.iter().copied().collect());
+        }
+    }
+    best.1
+}
+
+/// A series less its prediction; the first samples, which have no full past, are left out.
+fn prewhitened(filter: &[f64], series: &[f64]) -> Vec<f64> {
+    let order = filter.len();
+    let innovation = |at: usize| series[at] - filter.iter().enumerate().map(|(lag, a)| a * series[at - 1 - lag]).sum::<f64>();
+    (order..series.len()).map(innovation).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::Gauss;
+
+    /// A series with the coefficients 0.6 and -0.3: they are found, and the innovations are white.
+    #[test]
+    fn an_autoregressive_series_is_made_white() {
+        let mut random = Gauss::new(5);
+        let mut series = vec![0.0, 0.0];
+        for at in 2..20_000 {
+            let next = 0.6 * series[at - 1] - 0.3 * series[at - 2] + random.next();
+            series.push(next);
+        }
+        let filter = autoregression(&series);
+        assert!((filter[0] - 0.6).abs() < 0.02 && (filter[1] + 0.3).abs() < 0.02, "{filter:?}");
+        let white = prewhitened(&filter, &series);
+        let (zero, one) = (dot(&white, &white), dot(&white[1..], &white[..white.len() - 1]));
+        assert!((zero / white.len() as f64 - 1.0).abs() < 0.03 && (one / zero).abs() < 0.02);
+    }
+
+    /// Two changes and noise of variance 0.01 in 400 samples. The coordinates of the measured record give back the sizes of the changes by
+    /// least squares, within four standard errors; a third change that is the sum of both adds no direction.
+    #[test]
+    fn coordinates_are_those_of_least_squares() {
+        let n = 400;
+        let wave = |period: f64| (0..n).map(move |at| (std::f64::consts::TAU * f64::from(at) / period).sin()).collect::<Vec<f64>>();
+        let (a, b) = (wave(37.0), wave(90.0));
+        let sum: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a + b).collect();
+        let simulated = wave(11.0);
+        let mut random = Gauss::new(3);
+        let measured: Vec<f64> = (0..n as usize).map(|at| simulated[at] + 2.0 * a[at] - 0.5 * b[at] + 0.1 * random.next()).collect();
+        let made = Increments::new(&[a.clone(), b.clone(), sum], &simulated, &measured).expect("long enough");
+        assert!((made.variance / 0.01 - 1.0).abs() < 0.25, "{}", made.variance);
+        let found = made.of(&measured).expect("the same length");
+        assert_eq!(found[2], 0.0);
+        let with = |sizes: [f64; 2]| {
+            let values: Vec<f64> = (0..n as usize).map(|at| simulated[at] + sizes[0] * a[at] + sizes[1] * b[at]).collect();
+            made.of(&values).expect("the same length")
+        };
+        for (found, wanted) in found.iter().zip(with([2.0, -0.5])) {
+            assert!((found - wanted).abs() < 4.0 * made.variance.sqrt(), "{found} for {wanted}");
+        }
+        // One per cent of gain is one hundredth of the simulated record.
+        let louder: Vec<f64> = simulated.iter().map(|x| 1.01 * x).collect();
+        let of_gain = made.of(&louder).expect("the same length");
+        assert!(of_gain.iter().zip(&made.signal).all(|(found, signal)| (found - 0.01 * signal).abs() < 1e-9));
+        assert!(made.of(&measured[1..]).is_none() && Increments::new(&[a], &simulated[..50], &measured[..50]).is_none());
+    }
+}

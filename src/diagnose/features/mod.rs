@@ -1,0 +1,12 @@
+//! Measurement and simulation as features.
+
+pub mod bench;
+pub mod cache;
+pub(super) mod columns;
+pub(super) mod faults;
+pub mod increments;
+pub mod layout;
+pub mod observations;
+pub mod observed;
+pub mod scatter;
+pub mod strata;

@@ -1,0 +1,239 @@
+//! Factorisation of the covariance, and whitening of differences.
+//!
+//! `C = blockdiag(C_i) + G G'`: one block per section, and columns `G` common to all sections. A difference `r` is whitened to
+//! `z = (I - U (1 - 1/sqrt(1 + S^2)) U') L^-1 r` with `C_i = L_i L_i'` and `L^-1 G = U S V'`, so that `z'z = r' C^-1 r`.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use crate::diagnose::uncertainty::response::ResponseError;
+
+/// The factored covariance.
+#[derive(Clone, Debug)]
+pub struct Whitener {
+    blocks: Vec<Cholesky<f64, Dyn>>,
+    /// Orthonormal columns, and `1 - 1/sqrt(1 + s^2)` of each.
+    shared: DMatrix<f64>,
+    shrink: DVector<f64>,
+    size: usize,
+    response: ResponseError,
+}
+
+/// The components of a covariance.
+#[derive(Clone, Debug)]
+pub struct Covariance {
+    /// Variances of the features of all sections.
+    pub diagonal: Vec<f64>,
+    /// Columns of single sections: section, values of its features.
+    pub inside: Vec<(usize, Vec<f64>)>,
+    /// Columns over all sections.
+    pub shared: Vec<Vec<f64>>,
+    /// Features per section.
+    pub size: usize,
+    /// The model error of simulated effects, which depends on the effects that are fitted.
+    pub response: ResponseError,
+}
+
+impl Covariance {
+    /// Factors the covariance.
+    ///
+    /// Variances are kept above a small share of the largest one, so that the blocks are positive definite.
+    #[must_use]
+    pub fn whitener(&self) -> Whitener {
+        let sections = self.diagonal.len() / self.size;
+        let blocks = (0..sections).map(|section| self.block(section)).collect();
+        let (shared, shrink) = (DMatrix::zeros(self.diagonal.len(), 0), DVector::zeros(0));
+        let mut whitener = Whitener { blocks, shared, shrink, size: self.size, response: self.response.clone() };
+        let columns: Vec<DVector<f64>> = self.shared.iter().map(|column| DVector::from_vec(whitener.apply(column))).collect();
+        if !columns.is_empty() {
+            let all = DMatrix::from_columns(&columns);
+            // Eigenvectors of the small Gram matrix give the left singular vectors.
+            let eigen = (all.transpose() * &all).symmetric_eigen();
+            let largest = eigen.eigenvalues.max();
+            let kept: Vec<usize> = (0..columns.len()).filter(|i| eigen.eigenvalues[*i] > largest * 1e-12).collect();
+            let scaled: Vec<DVector<f64>> = kept.iter().map(|i| eigen.eigenvectors.column(*i) / eigen.eigenvalues[*i].sqrt()).collect();
+            whitener.shrink = DVector::from_iterator(kept.len(), kept.iter().map(|i| 1.0 - 1.0 / (1.0 + eigen.eigenvalues[*i]).sqrt()));
+            whitener.shared = if kept.is_empty() { whitener.shared } else { all * DMatrix::from_columns(&scaled) };
+        }
+        whitener
+    }
+}
+
+impl Covariance {
+    /// The covariance of one section, without the common columns.
+    fn block(&self, section: usize) -> Cholesky<f64, Dyn> {
+        let range = section * self.size..(section + 1) * self.size;
+        let columns: Vec<&[f64]> = self.inside.iter().filter(|(of, _)| *of == section).map(|(_, values)| values.as_slice()).collect();
+        let mut block = DMatrix::from_diagonal(&DVector::from_iterator(self.size, self.diagonal[range].iter().map(|v| v.max(1e-12))));
+        if !columns.is_empty() {
+            let all = DMatrix::from_fn(self.size, columns.len(), |i, j| columns[j][i]);
+            block += &all * all.transpose();
+        }
+        Cholesky::new_with_substitute(block, 1e-9).expect("a substitute makes every pivot positive")
+    }
+
+    /// For inner products alone, over all sections or all but one: cheaper than a [`Whitener`].
+    #[must_use]
+    pub fn products(&self) -> Products {
+        let one = |section: usize| {
+            let block = self.block(section);
+            let range = section * self.size..(section + 1) * self.size;
+            let mut shared = DMatrix::from_fn(self.size, self.shared.len(), |i, j| self.shared[j][range.start + i]);
+            block.l_dirty().solve_lower_triangular_mut(&mut shared);
+            let gram = shared.tr_mul(&shared);
+            Inside { block, shared, gram }
+        };
+        let sections: Vec<Inside> = (0..self.diagonal.len() / self.size).map(one).collect();
+        let none = DMatrix::identity(self.shared.len(), self.shared.len());
+        let gram = sections.iter().fold(none, |sum, inside| sum + &inside.gram);
+        Products { sections, gram, size: self.size }
+    }
+}
+
+/// One section: its factored block, the common columns whitened by it, and their Gram matrix.
+#[derive(Debug)]
+struct Inside {
+    block: Cholesky<f64, Dyn>,
+    shared: DMatrix<f64>,
+    gram: DMatrix<f64>,
+}
+
+/// Inner products `a' C^-1 b` by the matrix inversion lemma.
+#[derive(Debug)]
+pub struct Products {
+    sections: Vec<Inside>,
+    /// The identity plus the Gram matrices of all sections.
+    gram: DMatrix<f64>,
+    size: usize,
+}
+
+impl Products {
+    /// A column, split by section and whitened by each block.
+    fn inside(&self, column: &[f64]) -> Vec<DVector<f64>> {
+        let one = |(section, inside): (usize, &Inside)| {
+            let mut part = DVector::from_column_slice(&column[section * self.size..(section + 1) * self.size]);
+            inside.block.l_dirty().solve_lower_triangular_mut(&mut part);
+            part
+        };
+        self.sections.iter().enumerate().map(one).collect()
+    }
+
+    /// `(a' C^-1 a, a' C^-1 b)` over all sections; with `one_out`, then over all but each section in turn.
+    #[must_use]
+    pub fn of(&self, a: &[f64], b: &[f64], one_out: bool) -> Vec<(f64, f64)> {
+        let (a, b) = (self.inside(a), self.inside(b));
+        let along = |parts: &[DVector<f64>]| -> Vec<DVector<f64>> {
+            self.sections.iter().zip(parts).map(|(inside, part)| inside.shared.tr_mul(part)).collect()
+        };
+        let (ga, gb) = (along(&a), along(&b));
+        let product = |without: Option<usize>| {
+            let kept = || (0..self.sections.len()).filter(move |at| Some(*at) != without);
+            let mut gram = self.gram.clone();
+            if let Some(without) = without {
+                gram -= &self.sections[without].gram;
+            }
+            let (aa, ab) = kept().fold((0.0, 0.0), |(aa, ab), at| (aa + a[at].dot(&a[at]), ab + a[at].dot(&b[at])));
+            let sum = |parts: &[DVector<f64>]| kept().fold(DVector::zeros(gram.nrows()), |sum, at| sum + &parts[at]);
+            let (ga, gb) = (sum(&ga), sum(&gb));
+            let solved = Cholesky::new_with_substitute(gram, 1e-9).expect("a substitute makes every pivot positive").solve(&ga);
+            (aa - solved.dot(&ga), ab - solved.dot(&gb))
+        };
+        let mut all = vec![product(None)];
+        if one_out {
+            all.extend((0..self.sections.len()).map(|at| product(Some(at))));
+        }
+        all
+    }
+}
+
+impl Whitener {
+    /// Number of features of all sections.
+    #[must_use]
+    pub fn features(&self) -> usize {
+        self.blocks.len() * self.size
+    }
+
+    /// Columns of the model error of a simulated change, not whitened.
+    #[must_use]
+    pub fn response_error(&self, change: &[f64]) -> Vec<Vec<f64>> {
+        self.response.columns(change, self.size)
+    }
+
+    /// The whitened difference; of the same length as `difference`.
+    #[must_use]
+    pub fn apply(&self, difference: &[f64]) -> Vec<f64> {
+        let mut z = DVector::zeros(difference.len());
+        for (section, block) in self.blocks.iter().enumerate() {
+            let at = section * self.size;
+            if difference[at..at + self.size].iter().all(|x| *x == 0.0) {
+                continue;
+            }
+            let mut part = DVector::from_column_slice(&difference[at..at + self.size]);
+            block.l_dirty().solve_lower_triangular_mut(&mut part);
+            z.rows_mut(at, self.size).copy_from(&part);
+        }
+        if self.shared.ncols() > 0 {
+            let weights = self.shared.tr_mul(&z).component_mul(&self.shrink);
+            z.gemv(-1.0, &self.shared, &weights, 1.0);
+        }
+        z.data.into()
+    }
+}
+
+/// `a - b`.
+#[must_use]
+pub fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+/// `a + b`.
+#[must_use]
+pub fn plus(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
+}
+
+/// Inner product.
+#[inline]
+#[must_use]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    // Eight partial sums, always in the same order, so that the result is reproducible.
+    let mut sums = [0.0; 8];
+    let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = a8.remainder().iter().zip(b8.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in a8.zip(b8) {
+        for i in 0..8 {
+            sums[i] += x[i] * y[i];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The whitened length is r' C^-1 r with the covariance written out in full.
+    #[test]
+    fn whitened_length_is_that_of_the_full_covariance() {
+        let covariance = Covariance {
+            diagonal: vec![1.0, 2.0, 0.5, 3.0],
+            inside: vec![(0, vec![0.5, -1.0]), (1, vec![2.0, 0.3])],
+            shared: vec![vec![1.0, 0.0, 1.0, 0.5], vec![0.2, 0.4, -0.3, 1.0]],
+            size: 2,
+            response: ResponseError::default(),
+        };
+        let r = [1.0, -2.0, 0.5, 0.7];
+        let mut full = DMatrix::from_diagonal(&DVector::from_row_slice(&covariance.diagonal));
+        let mut add = |column: Vec<f64>| full += DVector::from_vec(column.clone()) * DVector::from_vec(column).transpose();
+        add(vec![0.5, -1.0, 0.0, 0.0]);
+        add(vec![0.0, 0.0, 2.0, 0.3]);
+        covariance.shared.iter().for_each(|column| add(column.clone()));
+        let direct = (DVector::from_row_slice(&r).transpose() * full.try_inverse().expect("regular") * DVector::from_row_slice(&r))[0];
+        let z = covariance.whitener().apply(&r);
+        assert!((dot(&z, &z) - direct).abs() < 1e-10 * direct);
+        let products = covariance.products().of(&r, &r, true);
+        assert!((products[0].0 - direct).abs() < 1e-10 * direct && products[0].0 == products[0].1);
+        // Without the first section: the covariance of the second alone.
+        let rest = covariance.part(&[1], &[0, 1]).whitener().apply(&r[2..]);
+        assert!((products[1].0 - dot(&rest, &rest)).abs() < 1e-10 * direct);
+    }
+}
