@@ -1,6 +1,8 @@
 //! Diagnosis of a campaign: identification of effects, the corrected simulation, and the protocol evaluated again.
 
-use super::answer::shrink::{applied, compare, folds, improved, shares, trained};
+use crate::diagnose::features::observations::Observations;
+use super::answer::shrink::{applied, compare, folds, improved, of_sections, shares, trained, within};
+use super::held_out::HeldOut;
 use super::inputs::Inputs;
 use super::run::{Found, find};
 use super::settings::Settings;
@@ -17,7 +19,7 @@ use crate::disk::{self, SetKind};
 use crate::effects::{Applied, Catalogue, Gauss, Signals};
 use crate::problem::{Problem, Problems};
 use crate::result::Certification;
-use crate::result::diagnosis::Diagnosis;
+use crate::result::diagnosis::{Diagnosis, HeldOut as OnHeldOut};
 use crate::run::Settings as RunSettings;
 use crate::simulate::{Made, Section, Simulator, Units, effects_of_origin, record_file, recorded, write_campaign};
 use crate::units::Unit;
@@ -33,6 +35,8 @@ pub struct Outcome {
     pub after: Option<Certification>,
     /// Records with the effects at the sizes fitted to all sections, one per section of `found`.
     pub improved: Vec<Signals>,
+    /// Sections that the fit did not see, and their records with the same effects.
+    pub held: Vec<(Observed, Signals)>,
     /// Units of the channels of `improved`.
     pub units: Units,
     /// The effects in `improved` and their sizes.
@@ -58,7 +62,14 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     if let Some(simulator) = inputs.simulator {
         units.iter_mut().for_each(|(name, unit)| *unit = simulator.unit(name).unwrap_or_else(|| unit.clone()));
     }
+    let (sections, held) = HeldOut::split(inputs.campaign, sections).map_err(|problem| Problems(vec![problem]))?;
     let Some(mut found) = find(inputs, sections, &mut problems) else { return Err(problems) };
+    let (what, held) = match held {
+        Some((held, sections)) => (Some(held), unseen_sections(inputs, &found, sections, &mut problems)?),
+        None => (None, Vec::new()),
+    };
+    let fitted: Vec<String> = found.seen.sections.iter().map(|observed| observed.section.name().to_string()).collect();
+    let fitted: Vec<&str> = fitted.iter().map(String::as_str).collect();
     (inputs.trying)("the protocol");
     let quiet = |_: &str| {};
     let one = |problem: Problem| Problems(vec![problem]);
@@ -74,31 +85,69 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     let mut shrink = None;
     let mut records = Vec::new();
     let mut added = Vec::new();
-    let evaluate = |found: &Found, records: &[Signals]| evaluated(inputs.campaign, compiled, found, records, &units, settings);
+    let mut held_records: Vec<Signals> = held.iter().map(|observed| observed.simulated.clone()).collect();
+    let with = |found: &Found, records: &[Signals], held_records: &[Signals]| {
+        let named = named(found, records).chain(held.iter().map(|observed| observed.section.name()).zip(held_records));
+        evaluated(inputs.campaign, compiled, named, &units, settings)
+    };
+    let as_recorded = held_records.clone();
+    let evaluate = |found: &Found, records: &[Signals]| with(found, records, &as_recorded);
+    let mut held_out = OnHeldOut {
+        named: what.is_some(),
+        what: what.map_or("cross-validation".into(), |what| what.to_string()),
+        sections: held.iter().map(|observed| observed.section.name().to_string()).collect(),
+        before: None,
+        after: None,
+        fraction_removed: None,
+        low: None,
+        high: None,
+    };
     while !found.chosen.members.is_empty() {
         if let Some((either, reason)) = super::answer::causes::nothing_out_of_the_ordinary(&found, inputs.settings) {
             found.refuse(either, reason, inputs);
             continue;
         }
         (inputs.trying)("the protocol with the effects");
-        let made = evaluate(&found, &unseen(inputs, &found, None)?)?;
-        if let Some((idle, reason)) = idle(inputs, &found, &before, &made, &evaluate)? {
+        let all = applied(&found, &found.chosen.members);
+        held_records = improved(&held, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
+        let made = with(&found, &unseen(inputs, &found, None)?, &held_records)?;
+        let fit_before = of_sections(&before, &fitted);
+        if let Some((idle, reason)) = idle(inputs, &found, &fit_before, &of_sections(&made, &fitted), &evaluate)? {
             found.refuse(idle, reason, inputs);
             continue;
         }
         let noise = noisy(&found, inputs.seed).map(|records| evaluate(&found, &records)).transpose()?;
-        shrink = Some(compare(&before, &made, noise.as_ref(), inputs.seed, shares(&found)));
+        if held_out.named {
+            let names: Vec<&str> = held_out.sections.iter().map(String::as_str).collect();
+            let there = within(&before, &made, &names, inputs.seed);
+            (held_out.before, held_out.after) = (Some(there.before), Some(there.after));
+            (held_out.fraction_removed, held_out.low, held_out.high) = (Some(there.fraction_removed), Some(there.low), Some(there.high));
+        }
+        shrink = Some(compare(&fit_before, &of_sections(&made, &fitted), noise.as_ref(), inputs.seed, shares(&found)));
         after = Some(made);
-        let all = applied(&found, &found.chosen.members);
-        records = improved(&found, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
+        records = improved(&found.seen.sections, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
         added = effects_of_origin(&all, inputs.catalogue);
         break;
     }
     let protocol = (before.verdict, after.as_ref().map(|after: &Certification| after.verdict));
-    let mut diagnosis = super::answer::words::diagnosis(inputs, &found, &units, protocol, shrink);
+    let mut diagnosis = super::answer::words::diagnosis(inputs, &found, &units, protocol, (shrink, held_out));
     diagnosis.pictures = super::answer::pictures::pictures(inputs.settings, &found, &records, &units);
     let simulator = inputs.simulator.map(|simulator| simulator.name().to_string());
-    Ok(Outcome { diagnosis, found, before, after, improved: records, units, added, simulator, warnings: problems })
+    let held = held.into_iter().zip(held_records).collect();
+    Ok(Outcome { diagnosis, found, before, after, improved: records, held, units, added, simulator, warnings: problems })
+}
+
+/// Reads the held-out sections.
+fn unseen_sections(inputs: &Inputs<'_>, found: &Found, sections: Vec<Section>, problems: &mut Problems) -> Result<Vec<Observed>, Problems> {
+    let declared = |name: &str| found.declared.get(name);
+    let unit = |channel: &str| inputs.simulator?.unit(channel);
+    let read = Observations::read(inputs.campaign, sections, inputs.catalogue, inputs.settings, &declared, &unit, problems);
+    read.map(|seen| seen.sections).ok_or_else(|| Problems(std::mem::take(&mut problems.0)))
+}
+
+/// Records by the name of their section.
+fn named<'a>(found: &'a Found, records: &'a [Signals]) -> impl Iterator<Item = (&'a str, &'a Signals)> {
+    found.seen.sections.iter().map(|observed| observed.section.name()).zip(records)
 }
 
 /// Records with the effects. The sizes for a section are fitted to the other folds. `without` excludes one member.
@@ -111,7 +160,7 @@ fn unseen(inputs: &Inputs<'_>, found: &Found, without: Option<usize>) -> Result<
     };
     let fitted: Vec<Vec<Applied>> = folds.iter().map(effects).collect();
     let of = |at: usize| folds.iter().position(|fold| fold.contains(&at)).map_or_else(Vec::new, |fold| fitted[fold].clone());
-    improved(found, inputs.catalogue, inputs.simulator, &of).map_err(|problem| Problems(vec![problem]))
+    improved(&found.seen.sections, inputs.catalogue, inputs.simulator, &of).map_err(|problem| Problems(vec![problem]))
 }
 
 /// The measured records with the declared white noise added once more; nothing where no noise is declared.
@@ -189,7 +238,7 @@ pub fn effect_of_truth(
     let found = &outcome.found;
     let model = crate::simulate::Builtin::new(campaign, &mut Problems::default());
     let simulator = model.as_ref().map(|model| model as &dyn Simulator);
-    let records = improved(found, catalogue, simulator, &|_| effects.to_vec()).ok()?;
+    let records = improved(&found.seen.sections, catalogue, simulator, &|_| effects.to_vec()).ok()?;
     let changed = |records: &[Signals]| -> Vec<f64> {
         let features: Vec<f64> = records.iter().enumerate().flat_map(|(at, signals)| found.seen.of(at, signals, true)).collect();
         less(&features, &found.ground.simulated)
@@ -197,17 +246,21 @@ pub fn effect_of_truth(
     let change = changed(&records);
     let beside = |at: usize| {
         let others: Vec<Applied> = effects.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, one)| one.clone()).collect();
-        let records = improved(found, catalogue, simulator, &|_| others.clone()).ok()?;
+        let records = improved(&found.seen.sections, catalogue, simulator, &|_| others.clone()).ok()?;
         let others = changed(&records);
         Some(across(&found.alone.whitener.apply(&less(&change, &others)), &found.alone.whitener.apply(&others)))
     };
     let several = if effects.len() > 1 { 0..effects.len() } else { 0..0 };
-    let made = evaluated(campaign, &compiled.only_telling(), found, &records, &outcome.units, RunSettings { traces: 0 }).ok()?;
+    let held = outcome.held.iter().map(|(observed, _)| (observed.section.name(), &observed.simulated));
+    let made = named(found, &records).chain(held);
+    let made = evaluated(campaign, &compiled.only_telling(), made, &outcome.units, RunSettings { traces: 0 }).ok()?;
+    let fitted: Vec<&str> = found.seen.sections.iter().map(|observed| observed.section.name()).collect();
+    let (before, made) = (of_sections(&outcome.before, &fitted), of_sections(&made, &fitted));
     let settings = Settings::read(catalogue, &mut Problems::default())?;
     Some(Really {
         detectability: super::run::length(&found.alone.whitener, &change),
         weakest: several.filter_map(beside).reduce(f64::min),
-        removed: compare(&outcome.before, &made, None, 1, Vec::new()).fraction_removed,
+        removed: compare(&before, &made, None, 1, Vec::new()).fraction_removed,
         cells: crate::diagnose::localisation::locate::moved(&settings, found, &change),
     })
 }
@@ -219,18 +272,17 @@ fn across(change: &[f64], other: &[f64]) -> f64 {
 }
 
 /// The protocol evaluated on a copy of the campaign with other simulated records.
-fn evaluated(
+fn evaluated<'a>(
     campaign: &Campaign,
     compiled: &Compiled,
-    found: &Found,
-    records: &[Signals],
+    records: impl Iterator<Item = (&'a str, &'a Signals)>,
     units: &Units,
     settings: RunSettings,
 ) -> Result<Certification, Problems> {
     let one = |problem: Problem| Problems(vec![problem]);
     let folder = disk::scratch().map_err(|error| one(Problem::error("unwritable", format!("no temporary folder: {error}"))))?;
     let mut outputs = Outputs::of(SetKind::Campaign, folder.path()).for_this_run();
-    write_records(&mut outputs, campaign, found, (Format::Csv, records, units), None).and_then(|()| outputs.commit()).map_err(one)?;
+    write_records(&mut outputs, campaign, (Format::Csv, records, units), None).and_then(|()| outputs.commit()).map_err(one)?;
     let mut problems = Problems::default();
     let Some(copy) = Campaign::open(folder.path(), &mut problems) else { return Err(problems) };
     certify(compiled, &copy, settings, &|_| {})
@@ -243,7 +295,9 @@ fn evaluated(
 /// A file cannot be written.
 pub fn write_improved(outputs: &mut Outputs, campaign: &Campaign, outcome: &Outcome, format: Format) -> Result<(), Problem> {
     let as_read = || outcome.found.seen.sections.iter().map(|observed| observed.simulated.clone()).collect();
-    let records = if outcome.improved.is_empty() { as_read() } else { outcome.improved.clone() };
+    let records: Vec<Signals> = if outcome.improved.is_empty() { as_read() } else { outcome.improved.clone() };
+    let held = outcome.held.iter().map(|(observed, signals)| (observed.section.name(), signals));
+    let records = named(&outcome.found, &records).chain(held);
     let made = Made {
         command: "diagnose",
         simulator: outcome.simulator.as_deref().filter(|_| !outcome.added.is_empty()),
@@ -251,25 +305,19 @@ pub fn write_improved(outputs: &mut Outputs, campaign: &Campaign, outcome: &Outc
         added: true,
         fitted: !outcome.added.is_empty(),
     };
-    write_records(outputs, campaign, &outcome.found, (format, &records, &outcome.units), Some(&made))
+    write_records(outputs, campaign, (format, records, &outcome.units), Some(&made))
 }
 
 /// Writes a copy of a campaign with other simulated records.
-fn write_records(
+fn write_records<'a>(
     outputs: &mut Outputs,
     campaign: &Campaign,
-    found: &Found,
-    (format, records, units): (Format, &[Signals], &Units),
+    (format, records, units): (Format, impl Iterator<Item = (&'a str, &'a Signals)>, &Units),
     made: Option<&Made<'_>>,
 ) -> Result<(), Problem> {
     let unit = |name: &str| units.iter().find(|(known, _)| known == name).map_or_else(Unit::one, |(_, unit)| unit.clone());
-    let files: Result<Vec<(&str, Vec<u8>)>, Problem> = found
-        .seen
-        .sections
-        .iter()
-        .zip(records)
-        .map(|(observed, signals)| Ok((observed.section.name(), record_file(format, signals, &unit)?)))
-        .collect();
+    let files: Result<Vec<(&str, Vec<u8>)>, Problem> =
+        records.map(|(section, signals)| Ok((section, record_file(format, signals, &unit)?))).collect();
     write_campaign(outputs, campaign, (format, files?.into_iter()), made)
 }
 

@@ -9,6 +9,11 @@ pub mod common {
     pub const RESAMPLES: usize = 400;
 }
 
+pub mod settings {
+    /// Default of the largest lag in m. A larger lag means that the records belong to different places.
+    pub const FURTHEST: f64 = 50.0;
+}
+
 pub mod cache {
     /// Largest entry in bytes: a million features.
     pub const LARGEST: u64 = 8 << 20;

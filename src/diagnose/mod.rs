@@ -5,6 +5,7 @@
 pub mod answer;
 mod campaign;
 pub mod features;
+mod held_out;
 pub mod inference;
 pub mod inputs;
 pub mod levels;

@@ -36,6 +36,7 @@ pub struct Diagnosis {
     pub causes: Vec<Cause>,
     pub vetoed: Vec<Vetoed>,
     pub shrink: Option<Shrink>,
+    pub held_out: HeldOut,
     /// Share of the excess of the gap that remains with the answer.
     pub unexplained_share: f64,
     pub discriminating_measurement: Option<String>,
@@ -364,6 +365,22 @@ pub struct Shrink {
     pub touched: Option<Touched>,
     /// Share of the whitened excess that each effect removes, if there are several.
     pub shares: Vec<(String, f64)>,
+}
+
+/// Data that the fit did not see.
+#[derive(Clone, Debug, Serialize)]
+pub struct HeldOut {
+    /// Whether the campaign names them; otherwise the gap is told by cross-validation alone.
+    pub named: bool,
+    /// `run = P`, or `cross-validation`.
+    pub what: String,
+    pub sections: Vec<String>,
+    /// The gap on these sections before and after, and the removed share with its 90 % interval; nothing where no effect is named.
+    pub before: Option<f64>,
+    pub after: Option<f64>,
+    pub fraction_removed: Option<f64>,
+    pub low: Option<f64>,
+    pub high: Option<f64>,
 }
 
 /// Reduction of the gap in the quantities that the effects change.

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::diagnose::features::observed::Observed;
 use crate::diagnose::inference::fit::{Fitted, Fitter};
 use crate::diagnose::levels::common::RESAMPLES;
 use crate::diagnose::levels::shrink::{FOLDS, TOUCHED};
@@ -83,13 +84,13 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
 /// # Errors
 /// The error of the first section whose simulation fails.
 pub fn improved(
-    found: &Found,
+    sections: &[Observed],
     catalogue: &Catalogue,
     simulator: Option<&dyn Simulator>,
     members: &(dyn Fn(usize) -> Vec<Applied> + Sync),
 ) -> Result<Vec<Signals>, Problem> {
     let each = |at: usize| {
-        let observed = &found.seen.sections[at];
+        let observed = &sections[at];
         let effects = members(at);
         match simulator {
             Some(simulator) => Ok(simulate(simulator, catalogue, &effects, &observed.section, Some(&observed.simulated))?.signals),
@@ -100,7 +101,25 @@ pub fn improved(
             }
         }
     };
-    (0..found.seen.sections.len()).into_par_iter().map(each).collect()
+    (0..sections.len()).into_par_iter().map(each).collect()
+}
+
+/// The gap of some sections before and after, over all quantities.
+#[must_use]
+pub fn within(before: &Certification, after: &Certification, sections: &[&str], seed: u64) -> Touched {
+    let (before, after) = (of_sections(before, sections), of_sections(after, sections));
+    removed(&before, &after, &(0..before.quantities.len()).collect::<Vec<_>>(), seed)
+}
+
+/// The values of some sections only.
+#[must_use]
+pub fn of_sections(of: &Certification, sections: &[&str]) -> Certification {
+    let mut part = of.clone();
+    part.sections.retain(|section| sections.contains(&section.section.as_str()));
+    for quantity in &mut part.quantities {
+        quantity.values.retain(|value| sections.contains(&value.section.as_str()));
+    }
+    part
 }
 
 /// Quantities before and after, with the interval of the removed share. `noise` is the protocol evaluated on records that differ only by

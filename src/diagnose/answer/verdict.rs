@@ -47,6 +47,8 @@ pub struct Facts {
     pub protocol_fails: bool,
     /// The gap on sections excluded from the fit that the effects remove, as a share; nothing where no quantity of the protocol feels them.
     pub removed: Option<f64>,
+    /// The same on the sections that the campaign holds out.
+    pub held_out: Option<f64>,
     /// What is left, in units of what is allowed.
     pub misfit: f64,
 }
@@ -63,7 +65,7 @@ const fn rule(applies: fn(&Facts) -> bool, verdict: Verdict, reason: Option<&'st
 }
 
 /// In this order.
-const RULES: [Rule; 9] = [
+const RULES: [Rule; 10] = [
     rule(|of| !of.named && (of.faulty || of.lacking || of.systematic), Verdict::Unexplained, None),
     rule(
         |of| !of.named && of.protocol_fails,
@@ -83,6 +85,11 @@ const RULES: [Rule; 9] = [
         |of| of.removed.is_some_and(|removed| removed <= 0.0),
         Verdict::Unexplained,
         Some("The named effects improve the fit, but do not decrease the gap on sections excluded from the fit."),
+    ),
+    rule(
+        |of| of.held_out.is_some_and(|removed| removed <= 0.0),
+        Verdict::Unexplained,
+        Some("The named effects improve the fit, but do not decrease the gap on the sections that the campaign holds out."),
     ),
     rule(|of| of.tied, Verdict::Ambiguous, None),
     rule(
@@ -167,6 +174,7 @@ mod tests {
             Facts { much_left: true, ..answer },
             Facts { misfit: 7.8, ..answer },
             Facts { removed: Some(-0.11), ..answer },
+            Facts { held_out: Some(-0.11), ..answer },
             Facts { removed: Some(0.0), tied: true, ..answer },
         ] {
             assert_eq!(of(facts), Verdict::Unexplained, "{facts:?}");

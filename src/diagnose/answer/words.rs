@@ -14,15 +14,33 @@ use crate::diagnose::run::{Found, chi, deviations};
 use crate::diagnose::selection::lack::unexplained;
 use crate::diagnose::selection::suspects::Suspect;
 use crate::result::Verdict as OfProtocol;
-use crate::result::diagnosis::{Cause, Diagnosis, Fault, How, Nearest, Shrink, Vetoed};
+use crate::result::diagnosis::{Cause, Diagnosis, Fault, HeldOut, How, Nearest, Shrink, Vetoed};
 use crate::simulate::Units;
 
 /// The verdict of the protocol without the effects and, where effects are named, with them.
 pub type Protocol = (OfProtocol, Option<OfProtocol>);
 
+/// The gap on held-out sections, in a sentence.
+fn on_held_out(held: &HeldOut) -> Option<String> {
+    let (before, after, removed) = (held.before?, held.after?, 100.0 * held.fraction_removed?);
+    let interval = held.low.zip(held.high).map_or(String::new(), |(low, high)| format!(" ({:.0} to {:.0} %)", 100.0 * low, 100.0 * high));
+    let changes = if after <= before { "decreases" } else { "increases" };
+    Some(format!(
+        "On the {} sections held out by the campaign ({}) the gap {changes} from {before:.3} to {after:.3}: {removed:.0} % is removed{interval}.",
+        held.sections.len(),
+        held.what
+    ))
+}
+
 /// Converts the results into the diagnosis of the report.
 #[must_use]
-pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, protocol: Protocol, shrink: Option<Shrink>) -> Diagnosis {
+pub fn diagnosis(
+    inputs: &Inputs<'_>,
+    found: &Found,
+    units: &Units,
+    protocol: Protocol,
+    (shrink, held_out): (Option<Shrink>, HeldOut),
+) -> Diagnosis {
     let (before, after) = chi(found);
     let (unexplained_share, too_much) = unexplained(&found.lack_before, &found.lack_after);
     // An outlying section does not refute an answer, but without an answer it is a significant difference.
@@ -48,6 +66,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, protocol: Pr
         tied: found.suspect.is_some() || least.is_some() || ambiguous.iter().any(|rival| rival.in_ambiguity_set),
         protocol_fails: verdict::fails(protocol.0),
         removed: verdict::removed(shrink.as_ref()),
+        held_out: held_out.fraction_removed,
         misfit: fit.chi2_per_feature,
     };
     let (verdict, reason) = verdict::verdict(&facts);
@@ -64,6 +83,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, protocol: Pr
     let radius = |key: &str| crate::diagnose::inputs::value_of(inputs.campaign, key);
     let shapes = crate::diagnose::localisation::shapes::shapes(inputs.settings, &found.seen, &radius, inputs.seed);
     let mut says = says(inputs, found, (verdict, left, reason), &causes, shrink.as_ref(), unexplained_share);
+    says.extend(on_held_out(&held_out));
     let trends_tested = trends.len();
     trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
     if verdict == Verdict::Unexplained {
@@ -115,6 +135,7 @@ pub fn diagnosis(inputs: &Inputs<'_>, found: &Found, units: &Units, protocol: Pr
         causes,
         vetoed: vetoed(inputs, found),
         shrink,
+        held_out,
         unexplained_share,
         discriminating_measurement,
         detectable: detectable(found),

@@ -1,14 +1,12 @@
 //! Reads the `diagnosis` part of a catalogue.
 
 use super::{Discrepancy, FeatureKind, GroupFeatures, INVERSE, Moves, Over, Position, Response, Settings, Shape, Times, Tolerance};
+use crate::diagnose::levels::settings::FURTHEST;
 use crate::effects::Catalogue;
 use crate::problem::{Problem, Problems};
 use crate::source::Span;
 use crate::units::Unit;
 use crate::yaml::{Key, Node, Value};
-
-/// Default of the largest lag in m. A larger lag means that the records belong to different places.
-const FURTHEST: f64 = 50.0;
 
 const TOP: [&str; 14] = [
     "bands",
