@@ -29,7 +29,7 @@ quantity {channel}_history "{title}, difference of the time histories"
             (Q, Vertical wheel force, wheelsets evaluated_wheelsets and each side, force_tolerance),
             (ay, Car body lateral acceleration, running gears evaluated_gears, acceleration_tolerance),
             (az, Car body vertical acceleration, running gears evaluated_gears, acceleration_tolerance)
-  symbol    "{channel} history"
+  symbol    "{channel}_history"
   of        {channel} at {place}
   filter    LP20
   metric    root-mean-square difference

@@ -78,7 +78,7 @@ filter LP20 "Low-pass filter 20 Hz"
 
 quantity {force}_qst "{title}, quasi-static value: spread"
   for each    force, title in (Y, Guiding force), (Q, Vertical wheel force)
-  symbol      "{force}qst"
+  symbol      "{force}_qst"
   of          {force} at wheelsets evaluated_wheelsets and each side
   filter      LP20
   value       median
@@ -89,7 +89,7 @@ quantity {force}_qst "{title}, quasi-static value: spread"
 
 quantity {force}_max "{title}, maximum: spread"
   for each    force, title in (Y, Guiding force), (Q, Vertical wheel force)
-  symbol      "{force}max"
+  symbol      "{force}_max"
   of          {force} at wheelsets evaluated_wheelsets and each side
   filter      LP20
   value       larger of |p0.15|, |p99.85|
@@ -100,7 +100,7 @@ quantity {force}_max "{title}, maximum: spread"
 quantity {acceleration}_{what} "{title}, {what}: spread"
   for each    acceleration, title in (ay, Car body lateral acceleration), (az, Car body vertical acceleration)
   for each    what, value in (rms, rms), (max, (larger of |p0.15|, |p99.85|))
-  symbol      "{acceleration}{what}"
+  symbol      "{acceleration}_{what}"
   of          {acceleration} at running gears evaluated_gears
   filter      LP20
   value       {value}

@@ -76,7 +76,7 @@ sections
 
 quantity unloading_{gear}_largest "Simulated wheel unloading of running gear {gear}, largest value"
   for each  gear in I, II
-  symbol    "ΔQ_{gear}/Q_0"
+  symbol    "(ΔQ/Q)_{gear}"
   of        unloading_{gear}
   filter    LP2
   from      simulated
@@ -85,7 +85,7 @@ quantity unloading_{gear}_largest "Simulated wheel unloading of running gear {ge
 
 quantity unloading_{gear}_compared "Wheel unloading of running gear {gear} in curves, quasi-static"
   for each    gear in I, II
-  symbol      "ΔQ_{gear}/Q_0,qst"
+  symbol      "(ΔQ/Q)_{gear},qst"
   of          unloading_{gear}
   filter      LP2
   value       median
@@ -94,7 +94,7 @@ quantity unloading_{gear}_compared "Wheel unloading of running gear {gear} in cu
   where       direction is not straight
 
 quantity wheelset_force_compared "Vertical force of a wheelset, quasi-static"
-  symbol      "Q_R + Q_L"
+  symbol      "ΣQ_qst"
   of          axle_force
   filter      LP2
   value       median

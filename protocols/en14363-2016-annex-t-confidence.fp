@@ -1,10 +1,9 @@
 protocol en14363-2016-annex-t-confidence "EN 14363:2016 Annex T with 95 % confidence"
   extends  en14363-2016-annex-t
-  source   "Goetz & Polach, Table 1, for the limits; the confidence is a proposal"
   author   "Fishplate, as an example of a proposal"
-  scope    "The limits of Annex T hold with 95 % confidence, not only for the sections tested: the bounds"
-           "come from a bootstrap that draws whole sites, so that repeats of a section do not count as"
-           "further tests."
+  scope    "A proposal: the limits of Annex T hold with 95 % confidence, not only for the sections tested."
+           "The bounds come from a bootstrap that draws whole sites, so that repeats of a section do not"
+           "count as further tests."
   note     "With the twelve sites of Annex T the bounds are too small: in trials, 95 % bounds by bootstrap"
            "held in 76 to 90 % of the cases."
 
