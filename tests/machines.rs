@@ -104,6 +104,13 @@ impl Machine {
         fs::write(self.path(name), text.replacen(from, to, 1)).expect("written");
     }
 
+    /// The sections of a record.
+    fn sections_of(&self, record: &str) -> Vec<String> {
+        let table = self.text("sections.csv");
+        let rows = table.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
+        rows.filter(|cells| cells[1] == record).map(|cells| cells[0].to_string()).collect()
+    }
+
     /// Fills in the stub.
     fn fill(&self, body: &str) {
         self.change(
@@ -180,6 +187,40 @@ fn a_filled_stub_is_diagnosed() {
         assert!((size(name) / truth - 1.0).abs() < 0.05, "{name} {}\n{}", size(name), done.stdout);
     }
     assert_eq!(effects.len(), 2, "{}", done.stdout);
+    assert_eq!(found["held_out"]["named"], false);
+    on_held_out(&machine, found["how"]["sections"].as_u64().expect("a number"));
+}
+
+/// The second record is held out: the fit has the sections of the first one, and the frictions remove most of the gap on the others.
+fn on_held_out(machine: &Machine, all: u64) {
+    let campaign = machine.text("campaign.yaml");
+    let says = |text: &str| fs::write(machine.path("campaign.yaml"), format!("{campaign}\n{text}\n")).expect("written");
+    let out = machine.sections_of("R2");
+    says("held out: record = R2");
+    let done = machine.diagnose(&["--out", "out2", "--write-improved", "improved"]);
+    assert!(matches!(done.code, 0 | 1), "{}{}", done.stdout, done.stderr);
+    let found: Value = serde_json::from_str(&machine.text("out2/diagnosis.json")).expect("JSON");
+    let held = &found["held_out"];
+    assert_eq!((&held["named"], &held["what"]), (&true.into(), &"record = R2".into()));
+    assert_eq!(held["sections"], Value::from(out.clone()));
+    assert_eq!(found["how"]["sections"].as_u64(), Some(all - out.len() as u64));
+    assert!(held["fraction_removed"].as_f64().is_some_and(|removed| removed > 0.8), "{held}");
+    assert!(done.stdout.contains("held out by the campaign (record = R2) the gap decreases"), "{}", done.stdout);
+    // The improved campaign has all sections.
+    let certified = machine.run(&["certify", "improved", "--only", "results", "--out", "again"]);
+    assert!(certified.code < 2 && !certified.stdout.contains(" not used"), "{}{}", certified.stdout, certified.stderr);
+    for (text, says_so) in [
+        ("held out: record is R2", "must name a column of the section table and its values"),
+        ("held out: recrd = R2", "did you mean `record`?"),
+        ("held out: record = R7", "no section has `R7` in the column `record`"),
+        ("held out: record = R1, R2", "leaves no section for the fit"),
+    ] {
+        says(text);
+        let refused = machine.diagnose(&["--out", "out3"]);
+        assert_eq!(refused.code, 3, "{text}: {}", refused.stdout);
+        assert!(refused.stderr.contains(says_so) && refused.stderr.contains("campaign.yaml:"), "{text}: {}", refused.stderr);
+        assert!(!machine.path("out3").exists());
+    }
 }
 
 #[test]

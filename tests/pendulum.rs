@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -41,28 +42,33 @@ fn diagnosed(folder: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(folder.join("out/diagnosis.json")).unwrap()).unwrap()
 }
 
-/// What docs/double-pendulum.md says: friction and rotors at the elbow, as the source of the data identified, and a shoulder that stays
-/// unexplained.
+/// What docs/double-pendulum.md says: friction and rotors at the elbow as the source of the data identified them, 0.123 N m (0.078 N m,
+/// which its equations multiply by the arctangent of a large number) and 0.000077 kg m², both inside the intervals; a shoulder that stays
+/// uncertain.
 #[test]
-fn the_elbow_is_named_and_the_shoulder_stays_open() {
+fn friction_and_rotors_are_those_of_the_source() {
     let folder = tempfile::tempdir().unwrap();
     let found = diagnosed(folder.path());
-    assert_eq!(found["verdict"], "unexplained");
+    assert_eq!(found["verdict"], "ambiguous");
     let effects = found["causes"][0]["effects"].as_array().unwrap();
     let size = |name: &str, parameter: &str| {
         let effect = effects.iter().find(|effect| effect["name"] == name).unwrap_or_else(|| panic!("no {name}: {effects:#?}"));
-        effect["parameters"][parameter]["value"].as_f64().unwrap()
+        let number = |key: &str| effect["parameters"][parameter][key].as_f64().unwrap();
+        [number("low"), number("value"), number("high")]
     };
-    let (friction, rotors) = (size("elbow_friction", "elbow.coulomb"), size("motor_inertia", "motor.inertia"));
-    assert!((0.09..0.14).contains(&friction), "{friction}");
-    assert!((3e-5..7e-5).contains(&rotors), "{rotors}");
-    assert_eq!(effects.len(), 2, "{effects:#?}");
-    assert!(found["says"][0].as_str().unwrap().contains("tau_1"));
+    for (effect, parameter, source) in [("elbow_friction", "elbow.coulomb", 0.078 * FRAC_PI_2), ("motor_inertia", "motor.inertia", 7.7e-5)]
+    {
+        let [low, value, high] = size(effect, parameter);
+        assert!((value / source - 1.0).abs() < 0.1 && (low..high).contains(&source), "{effect}: {low} {value} {high}");
+    }
+    // The third one is at the shoulder, and the answer says that the data do not decide about it.
+    assert_eq!(effects.len(), 3, "{effects:#?}");
+    assert!(found["says"][1].as_str().unwrap().starts_with("Friction at the shoulder: when the sections are resampled"));
     let shrink = &found["shrink"];
     let removed = shrink["fraction_removed"].as_f64().unwrap();
-    assert!((0.35..0.45).contains(&removed), "{removed}");
+    assert!((0.65..0.75).contains(&removed), "{removed}");
     for quantity in shrink["quantities"].as_array().unwrap() {
-        let least = if quantity["id"].as_str().unwrap().starts_with("elbow") { 0.7 } else { 0.0 };
+        let least = if quantity["id"].as_str().unwrap().starts_with("elbow") { 0.95 } else { 0.5 };
         assert!(quantity["variance_explained"].as_f64().unwrap() > least, "{quantity}");
     }
     improved_campaign_runs_over_time(folder.path());

@@ -1,6 +1,5 @@
 //! Diagnosis of a campaign: identification of effects, the corrected simulation, and the protocol evaluated again.
 
-use crate::diagnose::features::observations::Observations;
 use super::answer::shrink::{applied, compare, folds, improved, of_sections, shares, trained, within};
 use super::held_out::HeldOut;
 use super::inputs::Inputs;
@@ -12,6 +11,7 @@ use crate::data::origin::OriginEffect;
 use crate::data::record::Format;
 use crate::data::text::UNREADABLE;
 use crate::data::write::Outputs;
+use crate::diagnose::features::observations::Observations;
 use crate::diagnose::features::observed::Observed;
 use crate::diagnose::levels::campaign::{EARNED, STRONG};
 use crate::diagnose::uncertainty::whiten::{dot, less};

@@ -40,12 +40,14 @@ pub mod features {
 }
 
 pub mod increments {
+    /// Order of the low-pass, in each of two directions, that limits the frequencies compared.
+    pub const LIMIT_ORDER: usize = 4;
     /// Largest order of the autoregressive filter; the order is that of the least AIC (Akaike 1974).
     pub const ORDER: usize = 12;
     /// A change that is to this share of its length a combination of the changes before it adds no direction.
     pub const NEW: f64 = 1e-3;
     /// Least number of samples per direction and coefficient of the filter.
-    pub const SAMPLES: usize = 8;
+    pub const SAMPLES: usize = 4;
 }
 
 pub mod observations {

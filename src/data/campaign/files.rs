@@ -77,6 +77,14 @@ impl Campaign {
                 inside.push(place.inside);
             }
         }
+        // The protocol that the campaign brings along; a shipped one is a name.
+        if let Some(protocol) = self.protocol.as_ref().filter(|_| self.folder.on_disk())
+            && let Ok(place) = self.folder.place(&protocol.value, &protocol.span)
+            && disk::is_file(&place.path).is_ok_and(|there| there)
+            && !inside.contains(&place.inside)
+        {
+            inside.push(place.inside);
+        }
         let read = |inside: String| {
             let place = self.folder.place(&inside, &self.tree.span.part(0..0))?;
             let bytes = self.folder.read_any(&place)?;

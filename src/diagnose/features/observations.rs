@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::data::checks::whole;
 use crate::data::{Campaign, RecordKind};
 use crate::diagnose::features::faults::faults;
-use crate::diagnose::features::increments::Increments;
+use crate::diagnose::features::increments::{Increments, Limit};
 use crate::diagnose::features::layout::{ChannelFeatures, Feature, Kind, Layout, Spectrum, of_channel};
 use crate::diagnose::features::observed::{Observed, piece};
 use crate::diagnose::features::scatter::{Scatter, scatter};
@@ -135,7 +135,7 @@ impl Observations {
     pub fn compare_samples(&mut self, groups: &[bool], with: &[Vec<Signals>]) {
         let channels = &mut self.layout.channels;
         channels.iter_mut().filter(|channel| groups[channel.group]).for_each(|channel| channel.increments = with.len());
-        let channels = &self.layout.channels;
+        let (channels, edges) = (&self.layout.channels, &self.layout.edges);
         self.sections.par_iter_mut().enumerate().for_each(|(at, observed)| {
             let of = |channel: &ChannelFeatures| {
                 if channel.increments == 0 {
@@ -144,7 +144,9 @@ impl Observations {
                 let values = |signals: &Signals| on_axis(observed, signals, &channel.name);
                 let (simulated, measured) = (values(&observed.simulated), values(&observed.measured));
                 let change = |with: &Vec<Signals>| values(&with[at]).iter().zip(&simulated).map(|(with, base)| with - base).collect();
-                Increments::new(&with.iter().map(change).collect::<Vec<_>>(), &simulated, &measured)
+                let highest = if channel.bands > 0 { edges.get(channel.bands) } else { None };
+                let limit = highest.and_then(|edge| Limit::new(observed.simulated.rate, *edge));
+                Increments::new(&with.iter().map(change).collect::<Vec<_>>(), &simulated, &measured, limit)
             };
             observed.increments = channels.iter().map(of).collect();
         });
