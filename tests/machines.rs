@@ -217,7 +217,7 @@ fn on_held_out(machine: &Machine, all: u64) {
     ] {
         says(text);
         let refused = machine.diagnose(&["--out", "out3"]);
-        assert_eq!(refused.code, 3, "{text}: {}", refused.stdout);
+        assert_eq!(refused.code, 2, "{text}: {}", refused.stdout);
         assert!(refused.stderr.contains(says_so) && refused.stderr.contains("campaign.yaml:"), "{text}: {}", refused.stderr);
         assert!(!machine.path("out3").exists());
     }

@@ -15,6 +15,9 @@ pub struct HeldOut {
     pub values: Vec<String>,
 }
 
+/// Sections of the fit, and those that are held out.
+pub type Split = (Vec<Section>, Option<(HeldOut, Vec<Section>)>);
+
 impl std::fmt::Display for HeldOut {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} = {}", self.column, self.values.join(", "))
@@ -26,7 +29,7 @@ impl HeldOut {
     ///
     /// # Errors
     /// `wrong-kind` for a text of another form; `unknown-column`; `no-sections` where no section is held out, or none is left.
-    pub fn split(campaign: &Campaign, sections: Vec<Section>) -> Result<(Vec<Section>, Option<(Self, Vec<Section>)>), Problem> {
+    pub fn split(campaign: &Campaign, sections: Vec<Section>) -> Result<Split, Problem> {
         let named = |fact: &&Fact| fact.group.is_empty() && fact.name.replace('_', " ") == KEY;
         let Some(fact) = campaign.facts.iter().find(named) else { return Ok((sections, None)) };
         let held = Self::read(&fact.text).ok_or_else(|| {
@@ -37,7 +40,7 @@ impl HeldOut {
         if held.column != "section" && !columns().any(|column| column == held.column) {
             let says = format!("the section table has no column `{}`, by which data are held out", held.column);
             let known = columns().collect::<std::collections::BTreeSet<_>>();
-            return Err(Problem::error("unknown-column", says).at(&fact.span).suggest(&held.column, known.into_iter()));
+            return Err(Problem::error("unknown-column", says).at(&fact.span).suggest(&held.column, known));
         }
         let inside = |section: &Section| section.fact(&held.column).is_some_and(|value| held.values.iter().any(|one| one == value));
         let missing = held.values.iter().find(|value| sections.iter().all(|section| section.fact(&held.column) != Some(value)));

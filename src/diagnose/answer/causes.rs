@@ -45,11 +45,17 @@ pub fn short(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// The 90 % interval of a size: uncertainty of the fit, of the interpolation between simulated sizes, and of the choice of sections.
-/// Nothing for an effect without a size.
+/// The 90 % interval of a size: uncertainty of the fit, of the interpolation between simulated sizes, of the choice of sections, and of
+/// the response of the simulator as a whole. Nothing for an effect without a size.
 #[must_use]
 pub fn interval(found: &Found, member: &Fitted) -> Option<(f64, f64)> {
-    around(found, member, stability_of(found, member).map(|stability| stability.sizes))
+    let of = &found.candidates[member.candidate];
+    let (low, high) = around(found, member, stability_of(found, member).map(|stability| stability.sizes))?;
+    // An error of the response that all features share is another size: it is not seen in the residual.
+    let change = of.neutral().filter(|neutral| neutral.is_finite()).map_or(member.size, |neutral| member.size - neutral).abs();
+    let common = if of.exact { 0.0 } else { NINETY * found.beside.covariance.response.common * change };
+    let (below, above) = ((member.size - low).hypot(common), (high - member.size).hypot(common));
+    Some(((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)))
 }
 
 /// Combines the standard error of the fit with the spread of the resampled sizes around the fitted one.

@@ -47,12 +47,14 @@ pub struct Response {
     pub others: f64,
     /// In addition for a group of channels, and for a group in one stratum.
     pub groups: f64,
+    /// Common to all features. It cannot be distinguished from another size of the effect: it widens the interval of the size only.
+    pub common: f64,
 }
 
 impl Default for Response {
-    /// For a vehicle model (judgement): levels follow from equilibrium, dynamic content from contact and dampers as well.
+    /// For a vehicle model (judgement; `common` from campaigns of another code, see the catalogue): levels follow from equilibrium, dynamic content from contact and dampers as well.
     fn default() -> Self {
-        Self { levels: 0.05, others: 0.2, groups: 0.1 }
+        Self { levels: 0.05, others: 0.2, groups: 0.1, common: 0.15 }
     }
 }
 

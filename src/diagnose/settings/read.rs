@@ -28,7 +28,7 @@ const GROUP: [&str; 14] =
     ["level", "bands", "alike", "samples", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says", "unit"];
 const SHAPE: [&str; 3] = ["range", "percentile", "wheel radius"];
 const TOLERANCE: [&str; 10] = ["default", "unit", "expected", "scales", "adds", "sets", "each section", "shared", "besides", "suspects"];
-const RESPONSE: [&str; 3] = ["levels", "others", "groups"];
+const RESPONSE: [&str; 4] = ["levels", "others", "groups", "common"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
 impl Settings {
@@ -216,7 +216,8 @@ impl Reader<'_> {
         let usual = Response::default();
         let [levels, others, groups] = [("levels", usual.levels), ("others", usual.others), ("groups", usual.groups)]
             .map(|(key, usual)| self.spread(node, key, usual));
-        Response { levels, others, groups }
+        let common = self.spread(node, "common", levels.max(others).max(groups));
+        Response { levels, others, groups, common }
     }
 
     fn settings(&mut self, node: &Node) -> Settings {

@@ -24,6 +24,8 @@ pub struct ResponseError {
     parts: Vec<Part>,
     /// A further relative error of each feature by itself, for the test of what is left.
     pub each: f64,
+    /// A further relative error common to all features, for the interval of a size.
+    pub common: f64,
 }
 
 impl ResponseError {
@@ -35,7 +37,7 @@ impl ResponseError {
         let mut groups: Vec<usize> = seen.layout.channels.iter().map(|channel| channel.group).collect();
         groups.sort_unstable();
         groups.dedup();
-        let Response { levels, others, groups: further } = settings.response;
+        let Response { levels, others, groups: further, common: of_all } = settings.response;
         let mut parts = Vec::new();
         for (level, common) in [(true, levels), (false, others)] {
             let features = |group: Option<usize>| -> Vec<usize> {
@@ -51,7 +53,7 @@ impl ResponseError {
             }
         }
         parts.retain(|part| !part.features.is_empty() && !part.sections.is_empty());
-        Self { parts, each: others }
+        Self { parts, each: others, common: of_all }
     }
 
     /// One error common to the features in each list, for tests.
@@ -59,7 +61,7 @@ impl ResponseError {
     #[must_use]
     pub fn of(parts: &[(&[usize], f64)], sections: usize) -> Self {
         let part = |(features, sd): &(&[usize], f64)| Part { features: features.to_vec(), sections: (0..sections).collect(), sd: *sd };
-        Self { parts: parts.iter().map(part).collect(), each: 0.0 }
+        Self { parts: parts.iter().map(part).collect(), each: 0.0, common: 0.0 }
     }
 
     /// Columns of the covariance for the change of all features, `size` of them per section.
@@ -85,7 +87,7 @@ impl ResponseError {
             |part: &Part| Part { features: places(&part.features, features), sections: places(&part.sections, sections), sd: part.sd };
         let mut parts: Vec<Part> = self.parts.iter().map(part).collect();
         parts.retain(|part| !part.features.is_empty() && !part.sections.is_empty());
-        Self { parts, each: self.each }
+        Self { parts, each: self.each, common: self.common }
     }
 }
 
