@@ -229,7 +229,9 @@ pub fn diagnosed(
     // A campaign, its simulator, and the cache of its simulations.
     let mut with_all = |campaign| {
         let chosen = simulating(asked.simulator, campaign, &catalogue, problems)?;
-        let cache = asked.resume.map(|folder| kept(folder, campaign, &settings)).transpose();
+        // Another simulator keeps its records itself, by the content of its program.
+        let own = chosen.as_ref().is_none_or(|chosen| !chosen.is_external());
+        let cache = asked.resume.filter(|_| own).map(|folder| kept(folder, campaign)).transpose();
         Some((chosen, cache.map_err(|problem| problems.push(problem)).ok()?))
     };
     let (chosen, cache) = with_all(campaign)?;
@@ -305,16 +307,11 @@ fn simulating<'a>(
     (problems.errors() == 0).then_some(chosen)
 }
 
-/// The cache in a folder, keyed by everything the simulations and their features depend on.
-fn kept(folder: &Path, campaign: &Campaign, settings: &Settings) -> Result<Cache, Problem> {
+/// The cache in a folder, keyed by everything the simulations depend on.
+fn kept(folder: &Path, campaign: &Campaign) -> Result<Cache, Problem> {
     let files: Vec<String> =
         campaign.other_files(RecordKind::Measurement)?.iter().map(|(path, bytes)| format!("{path} {}", sha256(bytes))).collect();
-    let Settings { edges, alike, groups, furthest, .. } = settings;
-    let groups: Vec<_> =
-        groups.iter().map(|group| (&group.name, group.level, group.bands, group.alike, group.samples, &group.noise)).collect();
-    // To be changed whenever the definition of the features changes.
-    const FEATURES: &str = "levels are means";
-    let of = format!("{} {FEATURES} {} {edges:?} {alike:?} {groups:?} {furthest}", env!("CARGO_PKG_VERSION"), files.join(" "));
+    let of = format!("{} {}", env!("CARGO_PKG_VERSION"), files.join(" "));
     Ok(Cache::new(folder, of))
 }
 

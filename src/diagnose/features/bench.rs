@@ -100,7 +100,7 @@ impl Bench<'_> {
         };
         let made_by: Vec<Vec<(String, f64)>> =
             each.iter().zip(&chains).map(|(settings, chain)| [settings.clone(), operated(chain)].concat()).collect();
-        if let Some(known) = self.cache.as_ref().and_then(|cache| cache.get(&made_by, self.seen.len())) {
+        if let Some(known) = self.cache.as_ref().and_then(|cache| cache.get(self.seen.identity(), &made_by, self.seen.len())) {
             return Ok(known);
         }
         let run = |at: usize| {
@@ -113,7 +113,7 @@ impl Bench<'_> {
         let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.seen.sections.len()).into_par_iter().map(run).collect();
         let features = parts?.concat();
         if let Some(cache) = &self.cache {
-            cache.put(&made_by, &features);
+            cache.put(self.seen.identity(), &made_by, &features);
         }
         Ok(features)
     }

@@ -13,22 +13,22 @@ use crate::problem::Problem;
 #[derive(Clone, Debug)]
 pub struct Cache {
     folder: PathBuf,
-    /// Hash of everything the features depend on apart from the settings.
+    /// What the simulations depend on apart from the settings.
     of: String,
     /// Entries whose checksum does not match.
     damaged: Arc<Mutex<Vec<PathBuf>>>,
 }
 
 impl Cache {
-    /// A cache in `folder` for one campaign, layout and simulator.
+    /// A cache in `folder` for one campaign and simulator.
     #[must_use]
     pub fn new(folder: &Path, of: String) -> Self {
         Self { folder: folder.to_path_buf(), of, damaged: Arc::default() }
     }
 
-    /// The key of an entry; `settings` by section.
-    fn key(&self, settings: &[Vec<(String, f64)>]) -> String {
-        let mut key = self.of.clone();
+    /// The key of an entry: what the features depend on, and the settings by section.
+    fn key(&self, identity: &str, settings: &[Vec<(String, f64)>]) -> String {
+        let mut key = format!("{}\n{identity}", self.of);
         for (name, value) in settings.iter().flat_map(|of| of.iter().map(|(name, value)| (name.as_str(), *value)).chain([("", 0.0)])) {
             key += &format!("\n{name}={:016x}", value.to_bits());
         }
@@ -41,8 +41,8 @@ impl Cache {
 
     /// The cached features of a simulation, if present; `wanted` is their number.
     #[must_use]
-    pub fn get(&self, settings: &[Vec<(String, f64)>], wanted: usize) -> Option<Vec<f64>> {
-        let key = self.key(settings);
+    pub fn get(&self, identity: &str, settings: &[Vec<(String, f64)>], wanted: usize) -> Option<Vec<f64>> {
+        let key = self.key(identity, settings);
         let path = self.path(&key);
         if let Ok(None) = disk::kind(&path) {
             return None;
@@ -73,8 +73,8 @@ impl Cache {
     }
 
     /// Stores the features of a simulation. A write error is ignored: the simulation is then repeated.
-    pub fn put(&self, settings: &[Vec<(String, f64)>], features: &[f64]) {
-        let key = self.key(settings);
+    pub fn put(&self, identity: &str, settings: &[Vec<(String, f64)>], features: &[f64]) {
+        let key = self.key(identity, settings);
         let bytes: Vec<u8> = features.iter().flat_map(|value| value.to_le_bytes()).collect();
         let _ = keep(&self.path(&key), &[seal(&key, &bytes).as_bytes(), &bytes].concat());
     }
@@ -94,23 +94,24 @@ mod tests {
         let temp = tempfile::tempdir().expect("a temporary folder");
         let cache = Cache::new(temp.path(), "campaign".into());
         let settings = [1.0, 2.0].map(|value| vec![vec![("friction".to_string(), value)]]);
-        assert_eq!((cache.get(&settings[0], 2), cache.warning()), (None, None));
-        cache.put(&settings[0], &[1.5, -2.0]);
-        cache.put(&settings[1], &[3.5, 4.0]);
-        assert_eq!(cache.get(&settings[0], 2), Some(vec![1.5, -2.0]));
-        let paths = settings.each_ref().map(|settings| cache.path(&cache.key(settings)));
+        assert_eq!((cache.get("A", &settings[0], 2), cache.warning()), (None, None));
+        cache.put("A", &settings[0], &[1.5, -2.0]);
+        cache.put("A", &settings[1], &[3.5, 4.0]);
+        assert_eq!(cache.get("A", &settings[0], 2), Some(vec![1.5, -2.0]));
+        assert_eq!((cache.get("B", &settings[0], 2), cache.warning()), (None, None));
+        let paths = settings.each_ref().map(|settings| cache.path(&cache.key("A", settings)));
         let first = std::fs::read(&paths[0]).expect("read");
         for at in 0..first.len() {
             let mut bytes = first.clone();
             bytes[at] ^= 1;
             std::fs::write(&paths[0], &bytes).expect("written");
-            assert_eq!(cache.get(&settings[0], 2), None, "byte {at}");
+            assert_eq!(cache.get("A", &settings[0], 2), None, "byte {at}");
             std::fs::write(&paths[0], &first[..at]).expect("written");
-            assert_eq!(cache.get(&settings[0], 2), None, "{at} bytes");
+            assert_eq!(cache.get("A", &settings[0], 2), None, "{at} bytes");
         }
         std::fs::copy(&paths[1], &paths[0]).expect("copied");
-        assert_eq!(cache.get(&settings[0], 2), None);
-        assert_eq!(cache.get(&settings[1], 2), Some(vec![3.5, 4.0]));
+        assert_eq!(cache.get("A", &settings[0], 2), None);
+        assert_eq!(cache.get("A", &settings[1], 2), Some(vec![3.5, 4.0]));
         assert_eq!(cache.warning().map(|warning| warning.code), Some("cache-damaged"));
     }
 }

@@ -9,6 +9,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::data::hash::sha256;
 use crate::diagnose::levels::increments::{LIMIT_ORDER, NEW, ORDER, SAMPLES};
 use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
 
@@ -86,6 +87,13 @@ impl Increments {
         (made.signal, made.one) = (made.along(&simulated), made.along(&vec![1.0; n]));
         made.reference = simulated;
         Some(made)
+    }
+
+    /// A hash of the basis and of the record it refers to.
+    #[must_use]
+    pub fn identity(&self) -> String {
+        let numbers = self.basis.iter().flatten().chain(&self.filter).chain(&self.reference);
+        sha256(&numbers.flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>())
     }
 
     /// The coordinates of a record of the channel relative to the simulated record; nothing for another number of samples.

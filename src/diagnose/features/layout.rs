@@ -20,6 +20,9 @@ pub struct Layout {
     pub furthest: f64,
 }
 
+/// To be changed whenever the definition of a feature changes: features in caches are then computed again.
+pub const VERSION: &str = "levels are means; samples up to the highest band";
+
 /// The features of one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelFeatures {

@@ -1,12 +1,15 @@
 //! A campaign as features: measured and simulated, section by section.
 
+use std::sync::OnceLock;
+
 use rayon::prelude::*;
 
 use crate::data::checks::whole;
+use crate::data::hash::sha256;
 use crate::data::{Campaign, RecordKind};
 use crate::diagnose::features::faults::faults;
 use crate::diagnose::features::increments::{Increments, Limit};
-use crate::diagnose::features::layout::{ChannelFeatures, Feature, Kind, Layout, Spectrum, of_channel};
+use crate::diagnose::features::layout::{ChannelFeatures, Feature, Kind, Layout, Spectrum, VERSION, of_channel};
 use crate::diagnose::features::observed::{Observed, piece};
 use crate::diagnose::features::scatter::{Scatter, scatter};
 use crate::diagnose::levels::observations::ROUNDED;
@@ -29,6 +32,8 @@ pub struct Observations {
     pub left_out: Vec<(String, String)>,
     /// Faulty channels.
     pub faults: Vec<Fault>,
+    /// See [`Observations::identity`].
+    pub hashed: OnceLock<String>,
 }
 
 impl Observations {
@@ -128,7 +133,7 @@ impl Observations {
             let both = layout.channels.iter().zip(&observed.references);
             observed.scatter = both.map(|both| scatter(both).unwrap_or(Scatter { level: 0.0, has_lag: false })).collect();
         });
-        Some(Self { layout, features, sections, noise, left_out, faults })
+        Some(Self { layout, features, sections, noise, left_out, faults, hashed: OnceLock::new() })
     }
 
     /// Adds the comparison sample by sample, for the channels of some groups. `with` are the signals of each section with each effect.
@@ -151,6 +156,20 @@ impl Observations {
             observed.increments = channels.iter().map(of).collect();
         });
         self.features = self.layout.features();
+        self.hashed = OnceLock::new();
+    }
+
+    /// What the features of a simulated record depend on besides the record: under another identity, kept features are not valid.
+    #[must_use]
+    pub fn identity(&self) -> &str {
+        self.hashed.get_or_init(|| {
+            let named =
+                |observed: &Observed| format!("{} {:?} {:?}", observed.section.name(), observed.section.start, observed.section.end);
+            let sections: Vec<String> = self.sections.iter().map(named).collect();
+            let of = |increments: &Option<Increments>| increments.as_ref().map_or(String::new(), Increments::identity);
+            let samples: Vec<String> = self.sections.iter().flat_map(|observed| observed.increments.iter().map(of)).collect();
+            sha256(format!("{VERSION}\n{:?}\n{:?}\n{sections:?}\n{samples:?}", self.layout, self.noise).as_bytes())
+        })
     }
 
     /// Sections that do not repeat an earlier one.

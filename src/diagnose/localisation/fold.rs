@@ -100,6 +100,7 @@ mod tests {
             noise: Vec::new(),
             left_out: Vec::new(),
             faults: Vec::new(),
+            hashed: std::sync::OnceLock::new(),
         };
         let names = |names: [&str; 2]| names.map(str::to_string).to_vec();
         let position =

@@ -328,6 +328,7 @@ fn combinations(axes: &[(usize, Vec<f64>)]) -> Vec<Vec<(usize, f64)>> {
 mod tests {
     use super::*;
     use crate::units::Unit;
+    use std::sync::OnceLock;
 
     /// A fifth beyond the range: a gain of 0.5 to 1.6, a shift of ±50 m, and a frequency that cannot be negative.
     #[test]
@@ -371,7 +372,7 @@ mod tests {
             ChannelFeatures { name: "Y".into(), group: 0, unit: Unit::one(), level: false, bands: 3, alike: false, increments: 0 };
         let layout = Layout { channels: vec![channel], edges: vec![1.0, 9.5, 10.5, 20.0], alike: (0.5, 8.0), furthest: 1.0 };
         let (features, sections, noise) = (layout.features(), vec![observed], vec![0.5]);
-        let seen = Observations { layout, features, sections, noise, left_out: Vec::new(), faults: Vec::new() };
+        let seen = Observations { layout, features, sections, noise, left_out: Vec::new(), faults: Vec::new(), hashed: OnceLock::new() };
         let (title, groups, units, effects) = (String::new(), Vec::new(), Vec::new(), Vec::new());
         let catalogue = Catalogue { name: title.clone(), title, source: Source::new("", ""), groups, units, effects, diagnosis: None };
         let recorded = as_recorded(&seen, None, &Settings::default(), &|_| None, &|_| None, &mut Runs::default());

@@ -158,6 +158,7 @@ mod tests {
     use crate::diagnose::uncertainty::whiten::Covariance;
     use crate::effects::Catalogue;
     use crate::source::Source;
+    use std::sync::OnceLock;
 
     const SECTIONS: usize = 10;
 
@@ -165,7 +166,7 @@ mod tests {
     fn at_place<R>(place: &Place, families: &[Vec<View>], work: impl FnOnce(&Converging<'_>) -> R) -> R {
         let layout = Layout { channels: Vec::new(), edges: Vec::new(), alike: (0.0, 1.0), furthest: 1.0 };
         let (noise, left_out, faults) = (Vec::new(), Vec::new(), Vec::new());
-        let seen = Observations { layout, features: Vec::new(), sections: Vec::new(), noise, left_out, faults };
+        let seen = Observations { layout, features: Vec::new(), sections: Vec::new(), noise, left_out, faults, hashed: OnceLock::new() };
         let (groups, units, effects) = (Vec::new(), Vec::new(), Vec::new());
         let source = Source::new("", "");
         let catalogue = Catalogue { name: String::new(), title: String::new(), source, groups, units, effects, diagnosis: None };
