@@ -37,10 +37,11 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 fn main() -> Outcome<()> {
     let rounds = env::var("FISHPLATE_ROUNDS").ok().map_or(Ok(7), |text| text.parse())?;
     let mut campaigns: Vec<PathBuf> = env::args().skip(1).filter(|word| !word.starts_with("--")).map(PathBuf::from).collect();
-    if campaigns.is_empty() {
+    let mut peer = env::var_os("FISHPLATE_PEER").map(|script| Peer::start(&script)).transpose()?;
+    // The peer does not read the units in the file of the coach.
+    if campaigns.is_empty() && peer.is_none() {
         campaigns.push(Path::new(ROOT).join("examples/coach"));
     }
-    let mut peer = env::var_os("FISHPLATE_PEER").map(|script| Peer::start(&script)).transpose()?;
     if let Some(peer) = &peer {
         campaigns.push(peer.synthetic_campaign()?);
     }
