@@ -103,6 +103,16 @@ impl Campaign {
         Self::in_folder(at.with(memory), folder.unwrap_or(Path::new("the campaign")), problems)
     }
 
+    /// The same campaign with some of its files and records replaced by those in memory.
+    ///
+    /// Problems: as [`Campaign::open`].
+    pub fn replaced(&self, with: Memory, problems: &mut Problems) -> Option<Self> {
+        let mut memory = self.folder.memory().clone();
+        memory.texts.extend(with.texts);
+        memory.records.extend(with.records);
+        Self::in_folder(self.folder.clone().with(memory), self.folder.shown(), problems)
+    }
+
     fn in_folder(folder: Folder, path: &Path, problems: &mut Problems) -> Option<Self> {
         let before = problems.errors();
         let nowhere = Source::new(path.display().to_string(), "").whole();

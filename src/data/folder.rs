@@ -66,6 +66,11 @@ impl Folder {
         self.real != Path::new(NOWHERE)
     }
 
+    /// As given by the user.
+    pub fn shown(&self) -> &Path {
+        &self.shown
+    }
+
     pub fn memory(&self) -> &Memory {
         &self.memory
     }

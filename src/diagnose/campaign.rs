@@ -15,13 +15,12 @@ use crate::diagnose::features::observations::Observations;
 use crate::diagnose::features::observed::Observed;
 use crate::diagnose::levels::campaign::{EARNED, STRONG};
 use crate::diagnose::uncertainty::whiten::{dot, less};
-use crate::disk::{self, SetKind};
 use crate::effects::{Applied, Catalogue, Gauss, Signals};
 use crate::problem::{Problem, Problems};
 use crate::result::Certification;
 use crate::result::diagnosis::{Diagnosis, HeldOut as OnHeldOut};
 use crate::run::Settings as RunSettings;
-use crate::simulate::{Made, Section, Simulator, Units, effects_of_origin, record_file, recorded, write_campaign};
+use crate::simulate::{Made, Section, Simulator, Units, effects_of_origin, record_file, recorded, with_records, write_campaign};
 use crate::units::Unit;
 
 /// The diagnosis and the data it was derived from.
@@ -271,7 +270,7 @@ fn across(change: &[f64], other: &[f64]) -> f64 {
     change.iter().zip(other).map(|(change, other)| (change - along * other).powi(2)).sum::<f64>().sqrt()
 }
 
-/// The protocol evaluated on a copy of the campaign with other simulated records.
+/// The protocol evaluated on the campaign with other simulated records, in memory.
 fn evaluated<'a>(
     campaign: &Campaign,
     compiled: &Compiled,
@@ -279,12 +278,8 @@ fn evaluated<'a>(
     units: &Units,
     settings: RunSettings,
 ) -> Result<Certification, Problems> {
-    let one = |problem: Problem| Problems(vec![problem]);
-    let folder = disk::scratch().map_err(|error| one(Problem::error("unwritable", format!("no temporary folder: {error}"))))?;
-    let mut outputs = Outputs::of(SetKind::Campaign, folder.path()).for_this_run();
-    write_records(&mut outputs, campaign, (Format::Csv, records, units), None).and_then(|()| outputs.commit()).map_err(one)?;
-    let mut problems = Problems::default();
-    let Some(copy) = Campaign::open(folder.path(), &mut problems) else { return Err(problems) };
+    let unit = |name: &str| units.iter().find(|(known, _)| known == name).map_or_else(Unit::one, |(_, unit)| unit.clone());
+    let copy = with_records(campaign, records, &unit)?;
     certify(compiled, &copy, settings, &|_| {})
 }
 

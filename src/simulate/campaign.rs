@@ -1,9 +1,14 @@
 //! Records of a campaign as signals, and signals as records of a campaign.
 
+use std::sync::Arc;
+
+use arrow_array::{ArrayRef, Float64Array, RecordBatch};
+use arrow_schema::{DataType, Field, Schema};
+
 use super::section::Section;
 use crate::data::campaign::ReadFile;
 use crate::data::checks;
-use crate::data::record::{Format, Record, RecordSource, Wanted};
+use crate::data::record::{Format, Frame, Record, RecordSource, Wanted};
 use crate::data::write::{OutColumn, record};
 use crate::data::{Campaign, RecordKind};
 use crate::effects::{Channel, Signals};
@@ -100,6 +105,27 @@ pub fn in_units(signals: &mut Signals, units: &Units, to: &dyn Fn(&str) -> Optio
         }
     }
     Ok(())
+}
+
+/// A record in memory, with the columns that [`record_file`] writes. Nothing is rounded.
+///
+/// # Errors
+/// A value is not finite, which is a fault of the simulator.
+pub fn frame(name: &str, signals: &Signals, units: &dyn Fn(&str) -> Unit) -> Result<Frame, Problem> {
+    let time = || (0..signals.axis.len()).map(|n| n as f64 / signals.rate).collect::<Vec<f64>>();
+    let mut columns = match signals.over_time {
+        true => vec![(format!("{TIME} [s]"), signals.axis.clone())],
+        false => vec![(format!("{TIME} [s]"), time()), (format!("{AXIS} [m]"), signals.axis.clone())],
+    };
+    columns.extend(signals.channels.iter().map(|channel| (format!("{} [{}]", channel.name, units(&channel.name)), channel.values.clone())));
+    if let Some((column, _)) = columns.iter().find(|(_, values)| values.iter().any(|value| !value.is_finite())) {
+        return Err(Problem::error("not-finite", format!("`{column}` of `{name}` has a value that is not finite")));
+    }
+    let schema = Schema::new(columns.iter().map(|(name, _)| Field::new(name, DataType::Float64, false)).collect::<Vec<_>>());
+    let arrays: Vec<ArrayRef> = columns.into_iter().map(|(_, values)| Arc::new(Float64Array::from(values)) as ArrayRef).collect();
+    let batch = RecordBatch::try_new(Arc::new(schema.clone()), arrays)
+        .map_err(|error| Problem::error("record-invalid", format!("`{name}`: {error}")))?;
+    Frame::new(name, &schema, vec![batch])
 }
 
 /// A record as a file: time from 0 and distance, or the time alone if it is the axis; forces in kN to 0.01, accelerations in m/s^2 to

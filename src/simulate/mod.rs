@@ -23,7 +23,7 @@ pub use function::{Call, Function};
 pub use origin::{Made, effects_of_origin};
 pub use section::{Fact, Section, sections};
 pub use strict::Strict;
-pub use write::write_campaign;
+pub use write::{with_records, write_campaign};
 
 use crate::effects::Signals;
 use crate::problem::Problem;

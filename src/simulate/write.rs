@@ -1,14 +1,55 @@
 //! Writes a simulated campaign.
 
+use std::sync::Arc;
+
+use super::campaign::frame;
 use super::origin::Made;
+use crate::data::campaign::{CAMPAIGN_FILE, Memory};
 use crate::data::origin::{ORIGIN_FILE, ORIGIN_KEY};
 use crate::data::record::Format;
 use crate::data::write::{Entry, Outputs, campaign_yaml};
 use crate::data::{Campaign, RecordKind};
-use crate::problem::Problem;
+use crate::effects::Signals;
+use crate::problem::{Problem, Problems};
+use crate::units::Unit;
 
+/// The folder of the simulated records.
+const FOLDER: &str = "simulation";
 /// Keys of `campaign.yaml` that are not copied.
 const OWN: [&str; 4] = ["name", "simulation", "simulation_ran_on", ORIGIN_KEY];
+
+/// A campaign whose simulated records are these, by section; nothing is written.
+///
+/// # Errors
+/// A value is not finite; problems of opening a campaign.
+pub fn with_records<'a>(
+    campaign: &Campaign,
+    records: impl Iterator<Item = (&'a str, &'a Signals)>,
+    units: &dyn Fn(&str) -> Unit,
+) -> Result<Campaign, Problems> {
+    let mut memory = Memory::default();
+    for (section, signals) in records {
+        let name = format!("{FOLDER}/{section}");
+        let frame = frame(&name, signals, units).map_err(|problem| Problems(vec![problem]))?;
+        memory.records.insert(name, Arc::new(frame));
+    }
+    memory.texts.insert(CAMPAIGN_FILE.to_string(), text_of(campaign, &campaign.name, false).into_bytes());
+    let mut problems = Problems::default();
+    campaign.replaced(memory, &mut problems).ok_or(problems)
+}
+
+/// `campaign.yaml` of a campaign with other simulated records.
+fn text_of(campaign: &Campaign, name: &str, origin: bool) -> String {
+    let entries = campaign.tree.entries().iter().filter(|(key, _)| !OWN.contains(&key.text.as_str()));
+    let mut lines: Vec<(&str, Entry<'_>)> = vec![("name", Entry::Text(name))];
+    lines.extend(entries.map(|(key, node)| (key.text.as_str(), Entry::Node(node))));
+    lines.push(("simulation", Entry::Text(FOLDER)));
+    lines.push(("simulation_ran_on", Entry::Text("measured track")));
+    if origin {
+        lines.push((ORIGIN_KEY, Entry::Text(ORIGIN_FILE)));
+    }
+    campaign_yaml(&lines)
+}
 
 /// Writes a copy of a campaign with other simulated records. All other files are copied, and an origin is added; none for temporary copies.
 ///
@@ -21,7 +62,7 @@ pub fn write_campaign(
     made: Option<&Made<'_>>,
 ) -> Result<(), Problem> {
     for (name, bytes) in records {
-        outputs.add(&format!("simulation/{}.{}", name.as_ref(), format.ending()), &bytes)?;
+        outputs.add(&format!("{FOLDER}/{}.{}", name.as_ref(), format.ending()), &bytes)?;
     }
     let copied = campaign.other_files(RecordKind::Simulation)?;
     let mut name = campaign.name.clone();
@@ -35,16 +76,10 @@ pub fn write_campaign(
         }
         origin = Some(whole);
     }
-    let entries = campaign.tree.entries().iter().filter(|(key, _)| !OWN.contains(&key.text.as_str()));
-    let mut lines: Vec<(&str, Entry<'_>)> = vec![("name", Entry::Text(&name))];
-    lines.extend(entries.map(|(key, node)| (key.text.as_str(), Entry::Node(node))));
-    lines.push(("simulation", Entry::Text("simulation")));
-    lines.push(("simulation_ran_on", Entry::Text("measured track")));
     if let Some(origin) = &origin {
-        lines.push((ORIGIN_KEY, Entry::Text(ORIGIN_FILE)));
         outputs.add(ORIGIN_FILE, origin.text().as_bytes())?;
     }
-    outputs.add("campaign.yaml", campaign_yaml(&lines).as_bytes())?;
+    outputs.add(CAMPAIGN_FILE, text_of(campaign, &name, origin.is_some()).as_bytes())?;
     for (inside, bytes) in copied.iter().filter(|(inside, _)| inside != ORIGIN_FILE) {
         outputs.add(inside, bytes)?;
     }
