@@ -303,7 +303,9 @@ fn ranges_are_from_all_records() {
     let ranges = |name: &str, pairs: &[&[PathBuf; 2]]| -> Vec<String> {
         let mut command = program();
         command.current_dir(folder.path()).args(["new", name, "--domain", "drive"]);
-        pairs.iter().for_each(|pair| drop(command.arg("--from").args(*pair)));
+        for pair in pairs {
+            command.arg("--from").args(*pair);
+        }
         let done = ran(&mut command);
         assert_eq!(done.code, 0, "{}{}", done.stdout, done.stderr);
         let text = fs::read_to_string(folder.path().join(name).join("effects.yaml")).expect("read");
