@@ -107,8 +107,8 @@ fn what_a_person_decides_is_no_lack_of_data() {
         word: outcome.word(&["sufficient".into(), "not sufficient".into()]).into(),
         words: ["sufficient".into(), "not sufficient".into()],
         criterion: String::new(),
-        reasons: Vec::new(),
-        judged_by: None,
+        reasons: vec![if outcome == Outcome::NotAssessable { "no section is used" } else { "to be judged by the engineer" }.into()],
+        judged_by: (outcome == Outcome::Open).then(|| "the engineer".into()),
         clause: None,
         source: None,
         notes: Vec::new(),
@@ -119,15 +119,22 @@ fn what_a_person_decides_is_no_lack_of_data() {
         found.verdict = Verdict::NotAssessable;
         found.own_word = Some(overall.word(&["sufficient".into(), "not sufficient".into()]).into());
         found.verdicts = vec![verdict("model", overall), verdict("part", part)];
-        view(&found)
+        found.reasons = found.verdicts[0].reasons.clone();
+        found
     };
-    let open = of(Outcome::Open, Outcome::Open);
+    let viewed = |overall: Outcome, part: Outcome| view(&of(overall, part));
+    // A verdict over others that is not assessable only since one of them is open.
+    let mut over = of(Outcome::NotAssessable, Outcome::Open);
+    over.verdicts[0].reasons = vec!["part: to be judged by the engineer".into()];
+    over.reasons = over.verdicts[0].reasons.clone();
+    assert_eq!(view(&over).verdict.word, "to be judged");
+    let open = viewed(Outcome::Open, Outcome::Open);
     assert_eq!((open.verdict.sign, open.verdict.word.as_str(), open.verdicts[1].finding.sign), ("○", "to be judged", "○"));
     assert!(open.verdict_sentence.contains("a person has yet to judge") && open.notation.findings.len() == 4);
-    let lacking = of(Outcome::NotAssessable, Outcome::NotAssessable);
+    let lacking = viewed(Outcome::NotAssessable, Outcome::NotAssessable);
     assert_eq!((lacking.verdict.sign, lacking.verdict.word.as_str()), ("?", "not assessable"));
     assert!(lacking.verdict_sentence.ends_with("are missing.") && lacking.notation.findings.len() == 3);
-    assert!(of(Outcome::NotAssessable, Outcome::Open).verdict_sentence.ends_with("Judgements are open as well."));
+    assert!(viewed(Outcome::NotAssessable, Outcome::Open).verdict_sentence.ends_with("Judgements are open as well."));
 }
 
 /// Units, signs and limits read the same in sentences and in tables.
@@ -245,7 +252,7 @@ fn words_follow_what_the_quantities_are() {
         let data = view(found);
         (data.words.report, data.verdict.word, data.key_facts.iter().map(|fact| fact.name.clone()).collect::<Vec<_>>().join(", "))
     };
-    let facts = |rows: &str| format!("Criteria by quantity, Sections, {rows}, Test zones");
+    let facts = |rows: &str| format!("Criteria by quantity, Sections, {rows}, Wanted operation, Test zones");
     assert_eq!(word(&found), ("Validation report", "not validated".into(), facts("Compared pairs")));
     found.quantities.extend(assessment::certification().quantities);
     assert_eq!(word(&found), ("Validation and assessment report", "requirements not met".into(), facts("Compared pairs, Assessed values")));

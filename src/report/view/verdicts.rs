@@ -39,13 +39,21 @@ pub(super) fn finding(outcome: Outcome, word: &str) -> Finding {
 /// Sign and word of a judgement that is open.
 pub(super) const TO_BE_JUDGED: (&str, &str) = ("\u{25cb}", "to be judged");
 
-/// What the overall verdict came to, where it can be told from its name or from the verdicts that it consists of.
+/// What the overall verdict came to. One that is not assessable only since a judgement is open, its own or one that it is about, is open.
 pub(super) fn overall(found: &Certification) -> Option<Outcome> {
-    if let Some(verdict) = found.verdicts.iter().find(|verdict| verdict.overall) {
-        return Some(verdict.outcome);
+    let open = found.verdict == Verdict::NotAssessable && found.verdicts.iter().any(|verdict| verdict.outcome == Outcome::Open);
+    if open && !lacks_data(found) {
+        return Some(Outcome::Open);
     }
-    let some = |outcome: Outcome| found.verdicts.iter().any(|verdict| verdict.outcome == outcome);
-    (some(Outcome::Open) && !some(Outcome::NotAssessable) && found.verdict == Verdict::NotAssessable).then_some(Outcome::Open)
+    found.verdicts.iter().find(|verdict| verdict.overall).map(|verdict| verdict.outcome)
+}
+
+/// Whether a verdict is not assessable for another reason than an open judgement.
+fn lacks_data(found: &Certification) -> bool {
+    let judged: Vec<&str> = found.verdicts.iter().filter_map(|verdict| verdict.judged_by.as_deref()).collect();
+    let of_judgement = |reason: &String| judged.iter().any(|person| own(reason, found).ends_with(&format!("judged by {person}")));
+    let lacking = found.verdicts.iter().filter(|verdict| verdict.outcome == Outcome::NotAssessable);
+    lacking.flat_map(|verdict| &verdict.reasons).chain(&found.reasons).any(|reason| !of_judgement(reason))
 }
 
 /// The reasons of the overall verdict.
