@@ -186,7 +186,10 @@ pub fn raised(text: &str) -> String {
 fn reciprocal(text: &str) -> Option<&str> {
     let unit = text.strip_prefix("1/")?;
     let end = unit.find(|c: char| !c.is_alphabetic()).unwrap_or(unit.len());
-    (end > 0 && !unit[end..].starts_with(['^', '/', '*', '.', '_', '(', '²', '³'])).then_some(&unit[..end])
+    let after = &unit[end..];
+    // A point ends a sentence, or joins units.
+    let goes_on = after.strip_prefix('.').is_some_and(|rest| rest.starts_with(char::is_alphabetic));
+    (end > 0 && !goes_on && !after.starts_with(['^', '/', '*', '_', '(', '²', '³'])).then_some(&unit[..end])
 }
 
 /// Text that is a number gets a true minus sign; other text is unchanged.
