@@ -191,7 +191,8 @@ fn unconfirmed(plan: &Plan) -> Vec<String> {
     for (what, why) in plan.parameters.iter().filter_map(of_parameter).chain(others) {
         by_reason.entry(why).or_default().push(what);
     }
-    let one = |(why, what): (&String, &Vec<String>)| format!("To be confirmed against the standard: {}. {why}", what.join(", "));
+    let against = if plan.source.is_some() { " against the standard" } else { "" };
+    let one = |(why, what): (&String, &Vec<String>)| format!("To be confirmed{against}: {}. {why}", what.join(", "));
     by_reason.iter().map(one).collect()
 }
 

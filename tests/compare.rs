@@ -120,6 +120,7 @@ fn each_difference_is_applied_alone() {
         one.unwrap_or_else(|| panic!("{rule}: {all:?}"))["verdict_after"].clone()
     };
     assert_eq!((after("Y_max"), after("Q_max"), after("all rules")), ("not validated".into(), "validated".into(), "not validated".into()));
+    assert!(found["unrelated"].is_null());
     // Thirteen sections, each with a score of both protocols.
     let agreement = &found["agreement"][0];
     let cells: Vec<u64> = agreement["contingency"]
@@ -164,6 +165,11 @@ fn cells_without_a_verdict_and_bytes() {
     let of = |at: usize| (cells[at]["verdict"].as_str().expect("a word"), cells[at]["reasons"][0].as_str().unwrap_or_default().to_string());
     assert_eq!((of(0).0, of(1).0, of(2).0, of(3).0), ("validated", "not assessable", "not assessable", "validated"));
     assert!(of(2).1.contains("no table of sections"), "{}", of(2).1);
+    // The two have nothing in common: no rule of one makes sense in the other.
+    let count = found["unrelated"].as_u64().expect("a number");
+    assert!(count > 50 && found["differences"].as_array().is_some_and(Vec::is_empty), "{count}");
+    let page = fs::read_to_string(one.join("report.html")).expect("a page");
+    assert!(page.contains("are unrelated") && page.contains(&format!("{count} rules")));
 }
 
 /// More protocols than stand side by side in a table, with titles that must not act.

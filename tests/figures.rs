@@ -289,9 +289,11 @@ fn what_lies_far_beyond_has_an_arrow_and_its_number() {
         holds: Some(false),
         ..template.statistics[0].clone()
     };
-    let quantity = QuantityResult { statistics: vec![far(-37.5), far(1234.0)], holds: Some(false), ..template.clone() };
+    let quantity = QuantityResult { statistics: vec![far(-37.5), far(934.0), far(1234.0)], holds: Some(false), ..template.clone() };
     let svg = figure::overview(&[quantity]);
-    assert!(svg.contains(">−37.5</text>") && svg.contains(">1234</text>"), "{svg}");
+    assert!(svg.contains(">−37.5</text>") && svg.contains(">934</text>"), "{svg}");
+    // How far beyond a thousand it is says no more.
+    assert!(svg.contains("\u{a0}1000</text>") && !svg.contains("1234</text>"), "{svg}");
     assert_eq!(svg.matches("<circle").count(), 1, "only the legend has the mark");
 }
 

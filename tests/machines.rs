@@ -173,7 +173,7 @@ fn a_filled_stub_is_diagnosed() {
     let line = |title: &str| first.stdout.lines().find(|line| line.contains(title)).unwrap_or_else(|| panic!("{title}: {}", first.stdout));
     assert!(line("Viscous friction").contains("force") && line("Viscous friction").contains(" sd"), "{}", first.stdout);
     // This function knows no backlash.
-    assert!(line("Backlash").contains("changes no feature"), "{}", first.stdout);
+    assert!(line("Backlash").contains("changes no feature by one sd") && line("Backlash").contains("does not use"), "{}", first.stdout);
     let done = machine.diagnose(&["--out", "out"]);
     assert!(matches!(done.code, 0 | 1), "{}{}", done.stdout, done.stderr);
     let found: Value = serde_json::from_str(&machine.text("out/diagnosis.json")).expect("JSON");
@@ -322,6 +322,40 @@ fn bands_and_sections_that_the_records_do_not_have_are_told() {
     let diagnosed = only(&["--out", "out"]);
     let (certified, diagnosed) = (told(&certified).expect("told"), told(&diagnosed).expect("told"));
     assert!(certified.starts_with(&diagnosed), "{certified}\n{diagnosed}");
+}
+
+/// A run with three times the motion and force of another: the ranges are from both, whichever is given first.
+#[test]
+fn ranges_are_from_all_records() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let small = pair(folder.path(), 0, 40.0);
+    let large = pair(folder.path(), 1, 40.0);
+    for path in &large {
+        let text = fs::read_to_string(path).expect("read");
+        let mut lines = text.lines().map(str::to_string);
+        let mut out = lines.next().expect("a head") + "\n";
+        for line in lines {
+            let (time, values) = line.split_once(',').expect("columns");
+            let values = values.split(',').map(|value| (3.0 * value.parse::<f64>().expect("a number")).to_string());
+            let _ = writeln!(out, "{time},{}", values.collect::<Vec<_>>().join(","));
+        }
+        fs::write(path, out).expect("written");
+    }
+    let ranges = |name: &str, pairs: &[&[PathBuf; 2]]| -> Vec<String> {
+        let mut command = program();
+        command.current_dir(folder.path()).args(["new", name, "--domain", "drive"]);
+        for pair in pairs {
+            command.arg("--from").args(*pair);
+        }
+        let done = ran(&mut command);
+        assert_eq!(done.code, 0, "{}{}", done.stdout, done.stderr);
+        let text = fs::read_to_string(folder.path().join(name).join("effects.yaml")).expect("read");
+        text.lines().filter(|line| line.contains("range:")).map(str::to_string).collect()
+    };
+    let both = ranges("both", &[&small, &large]);
+    assert!(!both.is_empty());
+    assert_eq!(both, ranges("turned", &[&large, &small]));
+    assert_ne!(both, ranges("small", &[&small]));
 }
 
 #[test]

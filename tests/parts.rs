@@ -61,7 +61,7 @@ fn same_bytes(campaigns: &[&str], more: &[&str]) {
     assert!(certified.code < 2, "{}", certified.stderr);
     let expected = contents(&whole);
     // More parts than sections: some are empty.
-    for of in [1, 2, 3, 4, 5, 20] {
+    for of in [1, 3, 20] {
         let mut values = parts(folder.path(), campaigns, more, of);
         values.rotate_left(of / 2);
         values.swap(0, of - 1);

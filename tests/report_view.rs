@@ -12,7 +12,7 @@ use common::{assessment, certification};
 use fishplate::report::figure::figures;
 use fishplate::report::html::html;
 use fishplate::report::view::{ReportData, view};
-use fishplate::result::{Certification, Kind};
+use fishplate::result::{Certification, Kind, Outcome, RulePlace, Verdict, VerdictResult};
 
 fn data() -> ReportData {
     view(&certification::certification())
@@ -94,6 +94,62 @@ fn sections_are_gathered_by_zone() {
     let radius = straight.columns.iter().position(|column| column.title == "radius").expect("the column");
     assert_eq!(straight.rows[0].values[radius], "–", "straight track has no radius");
     assert!(data.section_tables[1].columns[radius].numeric);
+}
+
+/// A judgement that is open is told apart from data that are missing, by sign, word and sentence.
+#[test]
+fn what_a_person_decides_is_no_lack_of_data() {
+    let verdict = |name: &str, outcome: Outcome| VerdictResult {
+        name: name.into(),
+        title: name.into(),
+        overall: name == "model",
+        outcome,
+        word: outcome.word(&["sufficient".into(), "not sufficient".into()]).into(),
+        words: ["sufficient".into(), "not sufficient".into()],
+        criterion: String::new(),
+        reasons: vec![if outcome == Outcome::NotAssessable { "no section is used" } else { "to be judged by the engineer" }.into()],
+        judged_by: (outcome == Outcome::Open).then(|| "the engineer".into()),
+        clause: None,
+        source: None,
+        notes: Vec::new(),
+        rule: RulePlace { file: "protocol.fp".into(), line: 7 },
+    };
+    let of = |overall: Outcome, part: Outcome| {
+        let mut found = certification::certification();
+        found.verdict = Verdict::NotAssessable;
+        found.own_word = Some(overall.word(&["sufficient".into(), "not sufficient".into()]).into());
+        found.verdicts = vec![verdict("model", overall), verdict("part", part)];
+        found.reasons = found.verdicts[0].reasons.clone();
+        found
+    };
+    let viewed = |overall: Outcome, part: Outcome| view(&of(overall, part));
+    // A verdict over others that is not assessable only since one of them is open.
+    let mut over = of(Outcome::NotAssessable, Outcome::Open);
+    over.verdicts[0].reasons = vec!["part: to be judged by the engineer".into()];
+    over.reasons = over.verdicts[0].reasons.clone();
+    assert_eq!(view(&over).verdict.word, "to be judged");
+    let open = viewed(Outcome::Open, Outcome::Open);
+    assert_eq!((open.verdict.sign, open.verdict.word.as_str(), open.verdicts[1].finding.sign), ("○", "to be judged", "○"));
+    assert!(open.verdict_sentence.contains("a person has yet to judge") && open.notation.findings.len() == 4);
+    let lacking = viewed(Outcome::NotAssessable, Outcome::NotAssessable);
+    assert_eq!((lacking.verdict.sign, lacking.verdict.word.as_str()), ("?", "not assessable"));
+    assert!(lacking.verdict_sentence.ends_with("are missing.") && lacking.notation.findings.len() == 3);
+    assert!(viewed(Outcome::NotAssessable, Outcome::Open).verdict_sentence.ends_with("Judgements are open as well."));
+}
+
+/// Units, signs and limits read the same in sentences and in tables.
+#[test]
+fn sentences_are_printed_as_tables_are() {
+    let mut found = certification::certification();
+    found.notes = vec!["0.2 m/s^2 where -3 1/m <= x".into()];
+    found.quantities[0].statistics[0].normalised = Some(3e40);
+    let data = view(&found);
+    assert_eq!(data.notes, ["0.2 m/s² where −3 m⁻¹ ≤ x"]);
+    let statistics = &data.quantities[0].statistics;
+    assert_eq!(statistics[0].normalised, ">\u{a0}1000");
+    assert!(statistics.iter().any(|one| one.limit_text == "2/3 of the limit of std"));
+    // Of wanted operation, the cover tells how much is covered.
+    assert!(data.key_facts.iter().any(|fact| fact.name == "Wanted operation" && fact.value == "1 of 4 points inside"));
 }
 
 #[test]
@@ -196,7 +252,7 @@ fn words_follow_what_the_quantities_are() {
         let data = view(found);
         (data.words.report, data.verdict.word, data.key_facts.iter().map(|fact| fact.name.clone()).collect::<Vec<_>>().join(", "))
     };
-    let facts = |rows: &str| format!("Criteria by quantity, Sections, {rows}, Test zones");
+    let facts = |rows: &str| format!("Criteria by quantity, Sections, {rows}, Wanted operation, Test zones");
     assert_eq!(word(&found), ("Validation report", "not validated".into(), facts("Compared pairs")));
     found.quantities.extend(assessment::certification().quantities);
     assert_eq!(word(&found), ("Validation and assessment report", "requirements not met".into(), facts("Compared pairs, Assessed values")));

@@ -39,6 +39,19 @@ pub fn changes(before: &Document, after: &Document) -> Vec<Change> {
     found
 }
 
+/// Number of blocks of the first document that the second has with the same meaning.
+#[must_use]
+pub fn kept(before: &Document, after: &Document) -> usize {
+    let unchanged = |old: &&Block| {
+        after.blocks.iter().find(|new| same(old, new)).is_some_and(|new| {
+            let mut found = Vec::new();
+            fields(old, new, &mut found);
+            found.is_empty()
+        })
+    };
+    before.blocks.iter().filter(unchanged).count()
+}
+
 /// A difference of two documents and how it is made.
 #[derive(Clone, Debug)]
 pub struct Change {

@@ -16,9 +16,6 @@ use crate::syntax::from_pest;
 use crate::syntax::phrase::Limit as Written;
 use crate::units::{Dimension, Unit};
 
-/// Behind a number that is not from a checked source.
-pub(super) const TO_BE_CONFIRMED: &str = ", to be confirmed against the standard";
-
 /// What all limits of a quantity have in common.
 struct Common<'a> {
     block: &'a Block,
@@ -31,6 +28,12 @@ struct Common<'a> {
 }
 
 impl Checker<'_> {
+    /// Behind a number that is not from a checked source: against the standard, if the protocol names its source.
+    pub(super) fn to_be_confirmed(&self) -> &'static str {
+        let named = self.blocks.iter().any(|block| block.kind.text == "protocol" && block.field("source").is_some());
+        if named { ", to be confirmed against the standard" } else { ", to be confirmed" }
+    }
+
     /// The limits of a quantity. Where the values have an error (no `unit`), everything but the dimension is checked.
     pub(super) fn limits(
         &mut self,
@@ -57,7 +60,7 @@ impl Checker<'_> {
                 None => ok = false,
             }
         }
-        say_unconfirmed(&mut limits);
+        say_unconfirmed(&mut limits, self.to_be_confirmed());
         let zone = self.zone.clone();
         overlap::find(&limits, zone.as_ref(), block, self.problems);
         if ok {
@@ -320,7 +323,7 @@ impl Checker<'_> {
 }
 
 /// Says so behind each limit with a number that is to be confirmed, and behind each that refers to such a limit.
-fn say_unconfirmed(limits: &mut [Limit]) {
+fn say_unconfirmed(limits: &mut [Limit], words: &str) {
     // As often as there are limits, since one may refer to another by way of all others.
     for _ in 0..limits.len() {
         let sources: Vec<String> = limits.iter().filter(|limit| limit.unconfirmed).map(|limit| limit.estimate.name.clone()).collect();
@@ -331,7 +334,7 @@ fn say_unconfirmed(limits: &mut [Limit]) {
         }
     }
     for limit in limits.iter_mut().filter(|limit| limit.unconfirmed) {
-        limit.words += TO_BE_CONFIRMED;
+        limit.words += words;
     }
 }
 

@@ -3,7 +3,6 @@
 use super::Checker;
 use super::estimates::bare;
 use super::groups::Grouped;
-use super::limits::TO_BE_CONFIRMED;
 use super::names::normalised;
 use super::plan::{Estimate, Report};
 use super::scalars::Scope;
@@ -84,7 +83,7 @@ impl Checker<'_> {
                 estimate.unit = Some(self.unit_of_report(&estimate, unit, values, text)?);
             }
             if self.unconfirmed {
-                estimate.title += TO_BE_CONFIRMED;
+                estimate.title += self.to_be_confirmed();
             }
             reports.push(Report { estimate, scope, words: self.with_values(&normalised(&text.text)), span: text.span.clone() });
         }

@@ -2,7 +2,6 @@
 
 use super::Checker;
 use super::find::FOUND_SECTIONS;
-use super::limits::TO_BE_CONFIRMED;
 use super::names::normalised;
 use super::plan::{Axis, Check, DatumKind, Expr, Independent, Input, Kind, OnFault, Origin, SectionRules, Type, Zone};
 use super::scalars::Scope;
@@ -31,7 +30,7 @@ impl Checker<'_> {
     pub(super) fn zone(&mut self, block: &Block) -> Option<Zone> {
         let (condition, condition_words) = match block.field("where") {
             Some(field) => {
-                let unconfirmed = if block.field("unconfirmed").is_some() { TO_BE_CONFIRMED } else { "" };
+                let unconfirmed = if block.field("unconfirmed").is_some() { self.to_be_confirmed() } else { "" };
                 (Some(self.section_condition(field)?), normalised(&field.value.text) + unconfirmed)
             }
             None => (None, String::new()),

@@ -23,7 +23,7 @@ pub struct Compare {
     /// Folders of the campaigns; each is evaluated by itself.
     #[arg(required = true, value_name = "CAMPAIGN")]
     campaigns: Vec<PathBuf>,
-    /// Path of a protocol, or name of a shipped one; repeated for each. With two, every rule that differs is applied alone too.
+    /// Path of a protocol, or name of a shipped one; repeated for each. With two related ones, each changed rule is applied alone too.
     #[arg(long, short, required = true)]
     protocol: Vec<String>,
     /// Output folder; created if missing.

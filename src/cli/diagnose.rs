@@ -18,6 +18,7 @@ use crate::data::write::Outputs;
 use crate::data::{Campaign, RecordKind};
 pub use crate::deliver::diagnosis_json as json;
 use crate::deliver::{self, Reports};
+use crate::diagnose::answer::verdict::remark;
 use crate::diagnose::inputs::{Inputs, Reference};
 use crate::diagnose::preflight::{Preflight, preflight};
 use crate::diagnose::settings::Settings;
@@ -320,6 +321,9 @@ fn summary(diagnosis: &Diagnosis) -> String {
     let mut out = format!("{}\n\nVerdict: {}\n", diagnosis.campaign, diagnosis.verdict);
     for line in &diagnosis.says {
         let _ = writeln!(out, "  {line}");
+    }
+    if let Some(remark) = remark(&diagnosis.fit) {
+        let _ = writeln!(out, "  Remark: {remark}");
     }
     out += "\nLocation of the gap:\n";
     for place in diagnosis.r#where.iter().take(6) {

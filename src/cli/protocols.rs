@@ -20,15 +20,19 @@ pub fn check(names: &[String], console: &Console) -> Exit {
         console.problems(&problems);
         match plan {
             Some(plan) => console.say(&format!(
-                "{name}: {} quantities, {} limits, {} zones: no errors",
-                plan.quantities.len(),
-                plan.quantities.iter().map(|quantity| quantity.limits.len()).sum::<usize>(),
-                plan.zones.len()
+                "{name}: {}, {}, {}: no errors",
+                counted(plan.quantities.len(), "quantity", "quantities"),
+                counted(plan.quantities.iter().map(|quantity| quantity.limits.len()).sum(), "limit", "limits"),
+                counted(plan.zones.len(), "zone", "zones")
             )),
             None => exit = Exit::Wrong,
         }
     }
     exit
+}
+
+fn counted(count: usize, one: &str, several: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { several })
 }
 
 /// Writes nothing before all texts have been read.

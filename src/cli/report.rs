@@ -13,7 +13,7 @@ use crate::provenance::carried::REPORT_PDF;
 use crate::provenance::signature::{self, SecretKey, secret_key};
 use crate::provenance::statement;
 use crate::report::{estimates, findings, number};
-use crate::result::{Certification, StatisticResult, Verdict};
+use crate::result::{Certification, QuantityResult, StatisticResult, Verdict};
 use crate::run::Settings;
 
 /// Default number of distance plots of a report.
@@ -99,8 +99,10 @@ impl Report {
 fn summary(found: &Certification, console: &Console) -> String {
     let paint = |text: String, holds: Option<bool>| holds.map_or(text.clone(), |holds| console.paint(&text, holds));
     let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
-    out += &statistics(found, console);
-    out += &estimated(found, console);
+    let table = statistics(found, console);
+    let further = estimated(found, console);
+    let between = if table.is_empty() || further.is_empty() { "" } else { "\n" };
+    out += &format!("{table}{between}{further}");
     out.push('\n');
     let used = found.sections.iter().filter(|section| section.used).count();
     out += &format!("{used} of {} sections used\n", found.sections.len());
@@ -143,13 +145,16 @@ fn shown(value: Option<f64>) -> String {
 }
 
 fn ratio(statistic: &StatisticResult) -> String {
-    statistic.normalised.map_or("-".to_string(), |share| format!("{share:.3}"))
+    let share = |share: f64| if share < 1000.0 { format!("{share:.3}") } else { "> 1000".into() };
+    statistic.normalised.map_or("-".to_string(), share)
 }
 
 /// Statistics that are told one by one: those of comparisons.
 fn statistics(found: &Certification, console: &Console) -> String {
     let told: Vec<_> = found.quantities.iter().filter(|quantity| quantity.from.is_none() || quantity.statistics.is_empty()).collect();
-    if told.is_empty() && !found.quantities.is_empty() {
+    let has_row =
+        |quantity: &&QuantityResult| !estimates::single(quantity).is_empty() || quantity.statistics.is_empty() && quantity.reason.is_some();
+    if !told.iter().any(|quantity| has_row(&quantity)) && !found.quantities.is_empty() {
         return String::new();
     }
     let width = told.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);
@@ -194,17 +199,9 @@ fn estimated(found: &Certification, console: &Console) -> String {
     let ids = longest(&mut limits.iter().map(|(quantity, _)| quantity.id.chars().count()), 8);
     let titles = longest(&mut limits.iter().map(|(_, limit)| limit.results[0].title.chars().count()), 8);
     let places = longest(&mut limits.iter().map(|(_, limit)| limit.decisive().scope.chars().count()), 10);
-    let compared = found.quantities.iter().any(|quantity| quantity.from.is_none());
     let mut out = format!(
-        "{}{:ids$}  {:>8}  {:titles$}  {:>12}  {:>12}  {:>9}  {:places$}  groups met\n",
-        if compared { "\n" } else { "" },
-        "quantity",
-        "unit",
-        "estimate",
-        "largest",
-        "limit",
-        "|v|/limit",
-        "where"
+        "{:ids$}  {:>8}  {:titles$}  {:>12}  {:>12}  {:>9}  {:places$}  groups met\n",
+        "quantity", "unit", "estimate", "largest", "limit", "|v|/limit", "where"
     );
     let mut before = "";
     for (quantity, limit) in &limits {

@@ -33,7 +33,8 @@
 //!
 //! **A rule by itself.** A difference is a block or a field of the protocols as merged with their ancestors (`check::diff`). It is made to
 //! the merged first protocol, which is then checked and evaluated as any other; so nothing is approximated. Where the result is no
-//! protocol, since the rule needs another one, that is said with the first problem.
+//! protocol, since the rule needs another one, that is said with the first problem. Protocols are compared rule by rule only if one extends
+//! the other, both extend the same, or half of the rules of the first stand in the second (`rules::related`).
 
 mod agreement;
 mod applicability;
@@ -104,6 +105,8 @@ pub struct Prepared {
     protocols: Vec<Subject>,
     campaigns: Vec<(String, Campaign)>,
     changes: Vec<Change>,
+    /// Number of differences of two protocols that have nothing in common; none of them is applied alone.
+    unrelated: Option<usize>,
     compiled: Vec<Arc<CompiledAll>>,
     settings: Settings,
 }
@@ -118,13 +121,14 @@ impl Prepared {
         if problems.any_error() {
             return None;
         }
-        let changes = match protocols.as_slice() {
-            [before, after] => rules::changes(before, after),
-            _ => Vec::new(),
+        let (changes, unrelated) = match protocols.as_slice() {
+            [before, after] if rules::related(before, after) => (rules::changes(before, after), None),
+            [before, after] => (Vec::new(), Some(rules::changes(before, after).len())),
+            _ => (Vec::new(), None),
         };
         let compiled = subject::compiled(&protocols, &campaigns, &changes, &settings, problems)?;
         let campaigns = with_found_sections(campaigns, &compiled, problems)?;
-        Some(Self { protocols, campaigns, changes, compiled, settings })
+        Some(Self { protocols, campaigns, changes, unrelated, compiled, settings })
     }
 
     /// Number of times that progress is told.
@@ -136,7 +140,7 @@ impl Prepared {
 
     /// Compares the protocols.
     pub fn compare(&self, progress: Progress<'_>) -> Comparison {
-        let Self { protocols, campaigns, changes, compiled, settings } = self;
+        let Self { protocols, campaigns, changes, unrelated, compiled, settings } = self;
         let trials = trials(&settings.sizes);
         let names: Vec<&str> = protocols.iter().map(|subject| subject.name.as_str()).collect();
         let found: Vec<campaign::Found> = campaigns
@@ -165,6 +169,7 @@ impl Prepared {
             sensitivity: sensitivity::curves(&names, &found, &settings.sizes),
             applicability: applicability::put_together(&found),
             differences: rules::differences(changes, compiled, &found),
+            unrelated: *unrelated,
             scores: found.iter().flat_map(|found| found.scores.clone()).collect(),
             work: Work {
                 records_read: counts.records_read,

@@ -17,6 +17,14 @@ pub fn changes(before: &Subject, after: &Subject) -> Vec<Change> {
     diff::changes(&before.family.merged, &after.family.merged)
 }
 
+/// Whether two protocols are variants of each other: they have a protocol in common that they are or extend, or half of the rules of the
+/// first stand in the second. Of others, no rule makes sense in the place of another.
+pub fn related(before: &Subject, after: &Subject) -> bool {
+    let (a, b) = (&before.family, &after.family);
+    let common = a.sources.iter().any(|source| b.sources.iter().any(|other| other.text == source.text));
+    common || 2 * diff::kept(&a.merged, &b.merged) >= a.merged.blocks.len()
+}
+
 /// The protocol with one change.
 ///
 /// # Errors
@@ -33,7 +41,7 @@ pub fn alone(family: &Family, change: &Change, overrides: impl Fn(&Family) -> Ov
     })
 }
 
-/// Every difference by itself on every campaign, then all of them together.
+/// Every difference by itself on every campaign, then all of them together. None of unrelated protocols.
 pub fn differences(changes: &[Change], compiled: &[Arc<CompiledAll>], found: &[Found]) -> Vec<Difference> {
     let mut all = Vec::new();
     for (at, change) in changes.iter().enumerate() {

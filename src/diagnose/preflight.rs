@@ -1,5 +1,6 @@
 //! Before a diagnosis: each effect once on one section. It shows which features an effect changes, and stops at a simulator that fails.
 
+use indexmap::IndexSet;
 use rayon::prelude::*;
 
 use super::settings::Settings;
@@ -7,7 +8,7 @@ use crate::data::Campaign;
 use crate::diagnose::features::layout::Kind;
 use crate::diagnose::features::observations::Observations;
 use crate::diagnose::levels::preflight::{LISTED, SEEN};
-use crate::effects::{Action, Applied, Catalogue, Effect, Fit};
+use crate::effects::{Action, Applied, Catalogue, Effect, Fit, Parameter};
 use crate::problem::{Problem, Problems};
 use crate::simulate::{Plan, Section, Simulator, Task};
 
@@ -29,6 +30,15 @@ pub struct Moved {
     pub title: String,
     /// `coulomb 0.1 N m`
     pub size: String,
+    /// How it was tested: once, or on each of its channels.
+    pub tries: Vec<Try>,
+}
+
+/// An effect on some channels.
+#[derive(Debug)]
+pub struct Try {
+    /// Empty for an effect of the simulator.
+    pub channels: Vec<String>,
     /// Features that change by a standard deviation or more, the largest change first: what it is, and the change in standard deviations.
     pub features: Vec<(String, f64)>,
 }
@@ -72,18 +82,28 @@ pub fn preflight(
     };
     let without = run(&[]).map_err(one)?;
     let before = seen.of(0, &without, true);
-    let each = |(effect, fit): &(&Effect, &Fit)| -> Result<Moved, Problem> {
-        let (applied, size) = applied(effect, fit);
+    let each = |(effect, fit, channels): &(&Effect, &Fit, Vec<String>)| -> Result<Try, Problem> {
+        let applied = applied(effect, fit, channels);
         let plan = Plan::new(catalogue, &applied, &observed.section, name)?;
         let mut signals = if plan.settings.is_empty() { without.clone() } else { run(&plan.settings)? };
         plan.operate(&mut signals, &observed.section)?;
         let after = seen.of(0, &signals, true);
-        Ok(Moved { title: effect.title.clone(), size, features: moved(&seen, settings, &before, &after) })
+        let on = if effect.action == Action::Simulator { Vec::new() } else { channels.clone() };
+        // A channel of several groups is named once.
+        let on: Vec<String> = on.into_iter().collect::<IndexSet<_>>().into_iter().collect();
+        Ok(Try { channels: on, features: moved(&seen, settings, &before, &after) })
     };
-    let fits: Vec<(&Effect, &Fit)> =
-        candidates().filter(reached).flat_map(|effect| effect.fits.iter().map(move |fit| (effect, fit))).collect();
-    let made: Vec<Result<Moved, Problem>> = fits.par_iter().map(each).collect();
-    let effects = made.into_iter().collect::<Result<Vec<Moved>, Problem>>().map_err(one)?;
+    let fits = || candidates().filter(reached).flat_map(|effect| effect.fits.iter().map(move |fit| (effect, fit)));
+    let tries: Vec<(&Effect, &Fit, Vec<String>)> =
+        fits().flat_map(|(effect, fit)| on(effect, fit).into_iter().map(move |channels| (effect, fit, channels))).collect();
+    let made: Vec<Result<Try, Problem>> = tries.par_iter().map(each).collect();
+    let mut made = made.into_iter().collect::<Result<Vec<Try>, Problem>>().map_err(one)?.into_iter();
+    let moved = |(effect, fit): (&Effect, &Fit)| Moved {
+        title: effect.title.clone(),
+        size: size(fit, effect),
+        tries: made.by_ref().take(on(effect, fit).len()).collect(),
+    };
+    let effects = fits().map(moved).collect();
     let left_out = candidates().filter(|effect| !reached(effect)).map(|effect| effect.title.clone()).collect();
     Ok(Preflight { section: observed.section.name().to_string(), features: seen.features.len(), effects, left_out })
 }
@@ -110,24 +130,34 @@ fn other_name(catalogue: &Catalogue, name: &str) -> Problem {
     problem.suggest(name, known)
 }
 
-/// A candidate at its default size, or at its largest trial if the default changes nothing, on its first channels.
-fn applied(effect: &Effect, fit: &Fit) -> (Vec<Applied>, String) {
+/// The sets of channels that a candidate is tested on: each that it may act on.
+fn on(effect: &Effect, fit: &Fit) -> Vec<Vec<String>> {
+    if effect.action == Action::Simulator || fit.channels.is_empty() {
+        return vec![fit.channels.first().cloned().unwrap_or_default()];
+    }
+    fit.channels.clone()
+}
+
+/// The parameters of a candidate at their default sizes, or at their largest trials if the defaults change nothing.
+fn sizes<'a>(effect: &'a Effect, fit: &Fit) -> Vec<(&'a Parameter, f64)> {
     let size = |(at, trials): &(usize, Vec<f64>)| {
         let parameter = &effect.parameters[*at];
         let changes = parameter.neutral != Some(parameter.default);
         (parameter, if changes { parameter.default } else { trials.last().copied().unwrap_or(parameter.default) })
     };
-    let sizes: Vec<_> = fit.axes.iter().map(size).collect();
-    let channels = fit.channels.first().cloned().unwrap_or_default();
-    let mut words: Vec<String> = sizes
-        .iter()
-        .map(|(parameter, value)| format!("{} {value}{}", parameter.name.trim_end_matches(".<channel>"), parameter.unit.suffix()))
-        .collect();
-    if effect.action != Action::Simulator && !channels.is_empty() {
-        words.push(format!("on {}", channels.join(", ")));
-    }
-    let values = sizes.iter().map(|(parameter, value)| (parameter.name.clone(), *value)).collect();
-    (vec![Applied { effect: effect.name.clone(), values, channels, confined: None }], words.join(", "))
+    fit.axes.iter().map(size).collect()
+}
+
+fn size(fit: &Fit, effect: &Effect) -> String {
+    let one = |(parameter, value): &(&Parameter, f64)| {
+        format!("{} {value}{}", parameter.name.trim_end_matches(".<channel>"), parameter.unit.suffix())
+    };
+    sizes(effect, fit).iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+fn applied(effect: &Effect, fit: &Fit, channels: &[String]) -> Vec<Applied> {
+    let values = sizes(effect, fit).iter().map(|(parameter, value)| (parameter.name.clone(), *value)).collect();
+    vec![Applied { effect: effect.name.clone(), values, channels: channels.to_vec(), confined: None }]
 }
 
 /// Features that change by a standard deviation or more. The standard deviation is that of one feature in one section, from the catalogue
@@ -157,6 +187,45 @@ fn moved(seen: &Observations, settings: &Settings, before: &[f64], after: &[f64]
     found
 }
 
+impl Moved {
+    /// ` on x: x level +3.2 sd`; of several sets of channels the largest change, and the channels without one.
+    fn in_words(&self) -> String {
+        let on = |of: &Try| if of.channels.is_empty() { String::new() } else { format!(" on {}", of.channels.join(", ")) };
+        let Some(largest) = self.tries.iter().max_by(|a, b| a.largest().total_cmp(&b.largest())) else { return String::new() };
+        let unseen: Vec<String> = self.tries.iter().filter(|of| of.features.is_empty()).map(|of| of.channels.join(", ")).collect();
+        let each = if self.tries.len() > 1 { format!(" on each of {}, the largest change", self.tries.len()) } else { String::new() };
+        if largest.features.is_empty() {
+            let on = if self.tries.len() > 1 { format!(" on each of {}", self.tries.len()) } else { on(largest) };
+            // The preflight cannot tell a parameter without effect from one that the simulator does not read.
+            let why = if largest.channels.is_empty() {
+                "it cannot be seen in this section, or the simulator does not use the parameter"
+            } else {
+                "it cannot be seen in this section"
+            };
+            return format!("{on}: changes no feature by one sd; {why}");
+        }
+        let rest = match unseen.len() {
+            0 => String::new(),
+            1..=LISTED => format!("; it cannot be seen on {}", unseen.join("; ")),
+            many => format!("; it cannot be seen on {many} of them: {}, ...", unseen[..LISTED].join("; ")),
+        };
+        format!("{each}{}: {}{rest}", on(largest), largest.in_words())
+    }
+}
+
+impl Try {
+    fn largest(&self) -> f64 {
+        self.features.first().map_or(0.0, |(_, by)| by.abs())
+    }
+
+    fn in_words(&self) -> String {
+        let mut parts: Vec<String> = self.features.iter().take(LISTED).map(|(what, by)| format!("{what} {by:+.1} sd")).collect();
+        let more = self.features.len() - parts.len();
+        parts.extend((more > 0).then(|| format!("and {more} more")));
+        parts.join(", ")
+    }
+}
+
 impl Preflight {
     /// One line for each effect.
     #[must_use]
@@ -165,15 +234,7 @@ impl Preflight {
         let mut out =
             format!("Preflight on section {}, {} features; sd: one standard deviation of a feature\n", self.section, self.features);
         for effect in &self.effects {
-            let _ = write!(out, "  {}, {}: ", effect.title, effect.size);
-            if effect.features.is_empty() {
-                out += "changes no feature by one sd; it cannot be seen in this section\n";
-                continue;
-            }
-            let listed = effect.features.iter().take(LISTED).map(|(what, by)| format!("{what} {by:+.1} sd"));
-            out += &listed.collect::<Vec<_>>().join(", ");
-            let more = effect.features.len().saturating_sub(LISTED);
-            out += &if more > 0 { format!(", and {more} more\n") } else { "\n".to_string() };
+            let _ = writeln!(out, "  {}, {}{}", effect.title, effect.size, effect.in_words());
         }
         for title in &self.left_out {
             let _ = writeln!(out, "  {title}: the simulator has no parameter for it; it is not tested");

@@ -58,7 +58,7 @@ pub fn scales(pairs: &[Pair], roles: &Roles, cut: &Cut) -> Vec<Scales> {
         Some(Scales {
             suffix: if several { format!("_{}", identifier(name)) } else { String::new() },
             channel: (*name).clone(),
-            force: (channel.unit.text.clone(), rms(&channel.values)),
+            force: (channel.unit.text.clone(), rms(pairs, name, &channel.unit)),
             position: (unit, sizes[0]),
             speed: sizes[1],
             acceleration: sizes[2],
@@ -90,21 +90,32 @@ pub fn motion(pairs: &[Pair], roles: &Roles, force: Option<&str>) -> Option<Moti
     all.min_by_key(|(other, order, _)| (*other, *order)).map(|(.., motion)| motion)
 }
 
-/// The unit of the position, and rms values of position, speed and acceleration, from the spectrum of a motion.
+/// The unit of the position, and rms values of position, speed and acceleration, from the spectra of a motion in all records.
 fn sizes(pairs: &[Pair], cut: &Cut, motion: &Motion) -> Option<(String, [f64; 3])> {
-    let pair = &pairs[0];
-    let (from, to) = pair.common(false);
-    let spectrum = Spectrum::new(&piece(&pair.measured, &motion.column, false, from, to)?);
     let (low, high) = cut.content;
     let edge = |n: usize| low * (high / low).powf(n as f64 / PARTS as f64);
     let mut squares = [0.0; 3];
-    for n in 0..PARTS {
-        let (a, b) = (edge(n), edge(n + 1));
-        let power = spectrum.power(a, b);
-        for (of, square) in squares.iter_mut().enumerate() {
-            *square += power * (2.0 * std::f64::consts::PI * (a * b).sqrt()).powi(2 * (of as Order - motion.order));
+    let mut lasts = 0.0;
+    for pair in pairs {
+        let (from, to) = pair.common(false);
+        let Some(piece) = piece(&pair.measured, &motion.column, false, from, to) else { continue };
+        // A long record counts as much more as it is longer. Records may be in different units.
+        let weight = piece.values.len() as f64 / piece.rate;
+        let factor = pair.measured.channel(&motion.column).map_or(1.0, |channel| channel.unit.factor / motion.unit.factor);
+        let spectrum = Spectrum::new(&piece);
+        lasts += weight;
+        for n in 0..PARTS {
+            let (a, b) = (edge(n), edge(n + 1));
+            let power = weight * factor * factor * spectrum.power(a, b);
+            for (of, square) in squares.iter_mut().enumerate() {
+                *square += power * (2.0 * std::f64::consts::PI * (a * b).sqrt()).powi(2 * (of as Order - motion.order));
+            }
         }
     }
+    if lasts == 0.0 {
+        return None;
+    }
+    let squares = squares.map(|square| square / lasts);
     // A speed in km/h integrates to km/h s: positions of speeds and accelerations are in SI.
     let si = motion.unit.factor;
     let turns = matches!(motion.unit.dimension, Dimension::ONE | Dimension::FREQUENCY | TURN_ACCELERATION);
@@ -115,8 +126,12 @@ fn sizes(pairs: &[Pair], cut: &Cut, motion: &Motion) -> Option<(String, [f64; 3]
     Some((unit, squares.map(|square: f64| factor * square.sqrt())))
 }
 
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
+/// The rms value of a measured channel over all records, in a unit.
+fn rms(pairs: &[Pair], name: &str, unit: &Unit) -> f64 {
+    let channels = || pairs.iter().filter_map(|pair| pair.measured.channel(name));
+    let square = |channel: &Channel| -> f64 { channel.values.iter().map(|value| unit.from_si(channel.unit.to_si(*value)).powi(2)).sum() };
+    let count: usize = channels().map(|channel| channel.values.len()).sum();
+    (channels().map(square).sum::<f64>() / count.max(1) as f64).sqrt()
 }
 
 /// What a parameter multiplies, as `of` in the list of effects.

@@ -79,10 +79,13 @@ pub fn cut(pairs: &[Pair], roles: &Roles) -> Cut {
         }
     }
     let edges = edges(content, LINES / shortest);
-    let (first, last) = pairs[0].common(over_distance);
-    let per_second = (last - first) / lasts[0].max(f64::MIN_POSITIVE);
+    let long = |pair: &Pair| {
+        let (first, last) = pair.common(over_distance);
+        last - first
+    };
+    let per_second = pairs.iter().map(long).sum::<f64>() / total;
     let furthest = two_digits((0.1 * shortest).min(0.25 / content.0) * per_second);
-    Cut { over_distance, windows, edges, content, furthest, step: pairs[0].measured.step() * per_second }
+    Cut { over_distance, windows, edges, content, furthest, step: fastest * per_second }
 }
 
 /// Duration of the common range of a pair in s.

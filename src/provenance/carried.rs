@@ -26,6 +26,9 @@ const VALUES: usize = 8_000_000;
 /// Maximum size of a file of a protocol in bytes.
 const PROTOCOL: usize = 16 << 20;
 
+/// The numbers of other reports, and the commands that write them.
+const BY: [(&str, &str); 3] = [("comparison.json", "compare"), ("diagnosis.json", "diagnose"), ("study.json", "study")];
+
 /// File name of the report in an output folder.
 pub const REPORT_PDF: &str = "report.pdf";
 
@@ -60,7 +63,11 @@ pub fn open(path: &Path) -> Result<Carried, Problem> {
         let results = path.join(attached::RESULTS);
         if !disk::may_be_file(&pdf) && !disk::may_be_file(&results) {
             let says = format!("there is neither `{REPORT_PDF}` nor `{}` in `{shown}`", attached::RESULTS);
-            return Err(Problem::error("no-results", says).help("give the output folder of `certify`, a report, or results.json"));
+            let by = BY.iter().find(|(file, _)| disk::may_be_file(&path.join(file)));
+            let by = by.map_or_else(String::new, |(_, command)| format!("it was written by `{command}`; "));
+            return Err(
+                Problem::error("no-results", says).help(format!("{by}give the output folder of `certify`, a report, or results.json"))
+            );
         }
         if !disk::may_be_file(&pdf) {
             return beside(&results, &shown, Some(path));
@@ -110,7 +117,11 @@ fn of_pdf(path: &Path, shown: &str) -> Result<Carried, Problem> {
         let problem = Problem::error("no-results", format!("`{shown}` has no attachment `{}`", attached::RESULTS));
         return Err(match names.as_slice() {
             [] => problem.help("only a report written by `certify` can be checked; printing or saving it again may remove its attachments"),
-            names => problem.help(format!("its attachments are {}; only reports of `certify` can be checked", names.join(", "))),
+            names => {
+                let by = BY.iter().find(|(file, _)| names.contains(file)).map(|(_, command)| format!("it was written by `{command}`; "));
+                let by = by.unwrap_or_default();
+                problem.help(format!("{by}its attachments are {}; only reports of `certify` can be checked", names.join(", ")))
+            }
         });
     };
     let (text, value, results) = read(&bytes, &format!("{shown}: {}", attached::RESULTS))?;

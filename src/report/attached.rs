@@ -18,13 +18,17 @@ pub fn protocol_name(at: usize, name: &str) -> String {
 pub fn attachments<'a>(found: &'a Certification, results: &'a str, names: &'a [String]) -> Vec<Attachment<'a>> {
     let numbers =
         Attachment { name: RESULTS, mime: "application/json", bytes: results.as_bytes(), description: "Every number of this report" };
-    let protocol = |(name, file): (&'a String, &'a ProtocolFile)| Attachment {
+    let protocol = |(at, (name, file)): (usize, (&'a String, &'a ProtocolFile))| Attachment {
         name,
         mime: if file.name.ends_with(".fp") { "text/plain" } else { "application/yaml" },
         bytes: file.text.as_bytes(),
-        description: "The protocol that was evaluated",
+        description: match at {
+            0 => "The protocol that was evaluated",
+            1 => "The protocol that it extends",
+            _ => "A protocol that its parent extends",
+        },
     };
-    std::iter::once(numbers).chain(names.iter().zip(&found.protocol.files).map(protocol)).collect()
+    std::iter::once(numbers).chain(names.iter().zip(&found.protocol.files).enumerate().map(protocol)).collect()
 }
 
 /// The names of the protocol's files for [`attachments`].

@@ -91,13 +91,14 @@ fn chapter(id: &str, title: &str, items: Vec<Item>) -> Chapter {
 }
 
 fn answer(found: &Diagnosis) -> Chapter {
-    let mut items = vec![Item::List { entries: found.says.clone() }];
+    let printed = |texts: &[String]| texts.iter().map(|text| number::raised(text)).collect();
+    let mut items = vec![Item::List { entries: printed(&found.says) }];
     if let Some(measure) = &found.discriminating_measurement {
         items.push(Item::text(format!("The causes can be distinguished by: {measure}.")));
     }
     if !found.notes.is_empty() {
         items.push(Item::Heading { text: "Remarks".into() });
-        items.push(Item::List { entries: found.notes.clone() });
+        items.push(Item::List { entries: printed(&found.notes) });
     }
     chapter("answer", "Answer", items)
 }
@@ -132,7 +133,7 @@ fn places(found: &Diagnosis) -> Chapter {
         Head::number("p"),
     ];
     let caption = "Cells by their share of the gap, tested against noise, declared tolerances and the allowed model discrepancy; \
-                   * significant at a false discovery rate of 5 %. Mean and rms are over the sections and wheels \
+                   * significant at a false discovery rate of 5 %. Mean and rms are over the sections and channels \
                    of a cell: of sign(measured) (simulated - measured) for quasi-static values, of rms simulated / measured - 1 for bands";
     let table = Table { caption: caption.into(), head, rows: rows.collect() };
     let significant = found.r#where.iter().filter(|place| place.significant).count();
@@ -222,8 +223,9 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
     };
     let caption = format!(
         "Change of simulated - measured over the range of a column of the section table, by generalised least squares on that column \
-         alone, with a 90 % interval; * significant at a false discovery rate of 5 %. Levels that change sign with the curve are turned \
-         to one direction. r is the correlation of the differences as simulated{}",
+         alone, with a 90 % interval; * significant at a false discovery rate of 5 %. {}r is the correlation of the differences as simulated{}",
+        // A machine without left and right curves has none.
+        if found.mirrored { "Levels that change sign with the curve are turned to one direction. " } else { "" },
         if named { ", with the effects" } else { "" }
     );
     let mut head = vec![Head::text("Quantity"), Head::short("Band"), Head::text("Over"), Head::number("As simulated")];

@@ -50,7 +50,7 @@ fn row(first: &Finding, sections: &[&str]) -> Row {
         code: first.code.clone(),
         subject: subject.into_iter().flatten().collect::<Vec<_>>().join(", "),
         sections: named(sections),
-        says: first.says.clone(),
+        says: number::raised(&first.says),
         cause: first.cause.clone().unwrap_or_default(),
         consequence: first.consequence.in_words(),
         class: if first.consequence == Consequence::Note { "open" } else { "bad" },

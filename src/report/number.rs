@@ -79,6 +79,14 @@ pub fn beside(value: f64, limit: f64, decimals: usize) -> String {
     fixed(value, places.unwrap_or(decimals))
 }
 
+/// Ratios of a value and its limit beyond this tell no more than that: a least value divided by a number near zero, for instance.
+const FAR: f64 = 1000.0;
+
+/// A ratio of a value and its limit, which is met up to 1.
+pub fn ratio(value: f64) -> String {
+    if value > FAR { format!(">\u{a0}{FAR}") } else { beside(value, 1.0, 2) }
+}
+
 /// A count; a large one is printed with a power of ten.
 pub fn large(number: f64) -> String {
     if number < 1e12 { count(number as u64) } else { significant(number, 3) }
@@ -110,6 +118,10 @@ pub fn unit(text: &str) -> String {
     if text.is_empty() || text == "-" {
         return NONE.to_owned();
     }
+    // `m^-1` of a computed number is the same unit.
+    if let Some(unit) = reciprocal(text).filter(|unit| unit.len() + 2 == text.len()) {
+        return format!("{unit}⁻¹");
+    }
     let mut printed = String::with_capacity(text.len());
     let mut raised = false;
     for c in text.chars() {
@@ -128,20 +140,56 @@ pub fn unit(text: &str) -> String {
 
 /// A formula or condition as printed: `|a| - 2 * b >= 0.1 m^-1` becomes `|a| − 2 · b ≥ 0.1 m⁻¹`.
 pub fn formula(text: &str) -> String {
-    let text = text.replace(" - ", " \u{2212} ").replace(" * ", " · ").replace("<=", "≤").replace(">=", "≥");
+    raised(&text.replace(" - ", " \u{2212} ").replace(" * ", " · "))
+}
+
+/// A sentence with its numbers and units as in the tables: `-2e-5 m/s^2 <= 1 1/m` becomes `−2·10⁻⁵ m/s² ≤ 1 m⁻¹`.
+pub fn raised(text: &str) -> String {
+    let text = text.replace("<=", "≤").replace(">=", "≥");
     let mut printed = String::with_capacity(text.len());
-    let mut letters = text.chars().peekable();
-    while let Some(letter) = letters.next() {
-        let mut raised = letters.clone().skip_while(|c| *c == '-');
-        if letter != '^' || !raised.next().is_some_and(|c| c.is_ascii_digit()) {
-            printed.push(letter);
-            continue;
+    let mut before = None;
+    let mut rest = text.as_str();
+    while let Some(letter) = rest.chars().next() {
+        let after = &rest[letter.len_utf8()..];
+        let starts_number = |text: &str| text.starts_with(|c: char| c.is_ascii_digit());
+        let behind_digit = before.is_some_and(|c: char| c.is_ascii_digit());
+        let mut taken = letter.len_utf8();
+        match letter {
+            '^' if starts_number(after.trim_start_matches('-')) => {
+                let exponent = &after[..after.find(|c: char| c != '-' && !c.is_ascii_digit()).unwrap_or(after.len())];
+                printed.extend(exponent.chars().map(|c| if c == '-' { '⁻' } else { superscript(c) }));
+                taken += exponent.len();
+            }
+            'e' if behind_digit && after.strip_prefix(['-', MINUS]).is_some_and(starts_number) => {
+                let digits = after.trim_start_matches(['-', MINUS]);
+                let digits = &digits[..digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len())];
+                printed.push_str("·10⁻");
+                printed.extend(digits.chars().map(superscript));
+                taken += after.find(|c: char| c.is_ascii_digit()).unwrap_or(0) + digits.len();
+            }
+            ' ' | '\u{a0}' if behind_digit && reciprocal(after).is_some() => {
+                let unit = reciprocal(after).unwrap_or_default();
+                printed.push(letter);
+                printed.push_str(&format!("{unit}⁻¹"));
+                taken += 2 + unit.len();
+            }
+            '-' if starts_number(after) && before.is_none_or(|c| matches!(c, ' ' | '\u{a0}' | '(')) => printed.push(MINUS),
+            _ => printed.push(letter),
         }
-        while let Some(c) = letters.next_if(|c| *c == '-' || c.is_ascii_digit()) {
-            printed.push(if c == '-' { '⁻' } else { superscript(c) });
-        }
+        before = rest[..taken].chars().last();
+        rest = &rest[taken..];
     }
     printed
+}
+
+/// The unit whose reciprocal a text starts with: `m` of `1/m`, not of `1/m^2`.
+fn reciprocal(text: &str) -> Option<&str> {
+    let unit = text.strip_prefix("1/")?;
+    let end = unit.find(|c: char| !c.is_alphabetic()).unwrap_or(unit.len());
+    let after = &unit[end..];
+    // A point ends a sentence, or joins units.
+    let goes_on = after.strip_prefix('.').is_some_and(|rest| rest.starts_with(char::is_alphabetic));
+    (end > 0 && !goes_on && !after.starts_with(['^', '/', '*', '_', '(', '²', '³'])).then_some(&unit[..end])
 }
 
 /// Text that is a number gets a true minus sign; other text is unchanged.
@@ -195,6 +243,12 @@ mod tests {
         assert_eq!(formula("sign(measured) * (simulated - measured)"), "sign(measured) · (simulated \u{2212} measured)");
         assert_eq!(formula("a <= 0.1 m^-1; b >= 2 m/s^2"), "a ≤ 0.1 m⁻¹; b ≥ 2 m/s²");
         assert_eq!(formula("a^b 3-4 ^"), "a^b 3-4 ^");
+        assert_eq!(raised("-2e-5 m/s^2 (-1 1/m), 1.6e\u{2212}41, 3 1/m."), "\u{2212}2·10⁻⁵ m/s² (\u{2212}1 m⁻¹), 1.6·10⁻⁴¹, 3 m⁻¹.");
+        assert_eq!(raised("T-1 2026-04-20, 1 / m, 1/m, 2 1/m^2, S1e"), "T-1 2026-04-20, 1 / m, 1/m, 2 1/m², S1e");
+        assert_eq!(
+            (unit("1/m"), unit("1/m/s"), ratio(3e40), ratio(1.004)),
+            ("m⁻¹".into(), "1/m/s".into(), ">\u{a0}1000".into(), "1.004".into())
+        );
     }
 
     #[test]

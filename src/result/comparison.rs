@@ -16,8 +16,10 @@ pub struct Comparison {
     pub agreement: Vec<Agreement>,
     pub sensitivity: Vec<Sensitivity>,
     pub applicability: Vec<Applicability>,
-    /// Of exactly two protocols: what differs, and what each difference does; empty otherwise.
+    /// Of exactly two related protocols: what differs, and what each difference does; empty otherwise.
     pub differences: Vec<Difference>,
+    /// Of two protocols that are no variants of each other: the number of rules that differ.
+    pub unrelated: Option<usize>,
     /// The scores of single sections that agreement is computed from.
     pub scores: Vec<Score>,
     pub work: Work,

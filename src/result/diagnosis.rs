@@ -49,6 +49,9 @@ pub struct Diagnosis {
     pub simulations_run: usize,
     /// Simulated time of all runs in s, inside the sections. Not wall-clock time, so that the same input gives the same bytes.
     pub seconds: f64,
+    /// Whether sections may be mirrored: left and right curves.
+    #[serde(skip)]
+    pub mirrored: bool,
     /// Signals of the sections with the largest gap, for figures.
     #[serde(skip)]
     pub pictures: Vec<Picture>,

@@ -122,7 +122,7 @@ pub struct ParameterInfo {
     pub default: String,
     /// `default`, `campaign` or `command line`.
     pub set_by: String,
-    /// Why the value is to be confirmed against the standard.
+    /// Why the value is to be confirmed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unconfirmed: Option<String>,
 }

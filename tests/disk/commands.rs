@@ -192,7 +192,7 @@ fn certify_with_the_report() {
     if alone("commands::certify_with_the_report") {
         let before = ["certify", "IN", "-q", "-j", "1", "--out", "OUT", "--only", "html", "--set", "lowpass_frequency=15 Hz"];
         let now = ["certify", "IN", "-q", "-j", "1", "--out", "OUT"];
-        every_point("certify with the report", &Case { before: &before, now: &now, most: 12, inputs: small, set: true });
+        every_point("certify with the report", &Case { before: &before, now: &now, most: 5, inputs: small, set: true });
     }
 }
 

@@ -140,9 +140,9 @@ fn formats_that_are_not_read_name_an_export() {
 /// Numbers that headers declare when they are damaged: every word of four bytes at both ends of each file is set to them.
 const WORDS: [u32; 3] = [0x7fff_ffff, 0xffff_ffff, 0x0001_0000];
 /// Bytes at each end of a file that are tried: headers and footers.
-const ENDS: usize = 1024;
+const ENDS: usize = 512;
 /// Changes at random that are tried with each file.
-const CHANGES: usize = 300;
+const CHANGES: usize = 100;
 
 /// Run by the next test in a process of its own with bounded memory.
 #[test]

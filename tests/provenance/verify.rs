@@ -264,5 +264,5 @@ fn what_is_no_report_is_refused_with_help() {
     let study = fishplate(&["study", "sections", &text(&example("coach")), "--out", &out, "-q"]);
     assert!(study.code <= 1, "{}", study.stderr);
     let ran = verify(&folder.path().join("study/report.pdf"), None, &[]);
-    assert!(ran.code == 2 && ran.stderr.contains("its attachments are study.json"), "{}", ran.stderr);
+    assert!(ran.code == 2 && ran.stderr.contains("written by `study`; its attachments are study.json; only"), "{}", ran.stderr);
 }

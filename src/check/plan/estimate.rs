@@ -16,7 +16,7 @@ pub struct Limit {
     pub scope: Scope,
     /// As written: `2/3 of std`.
     pub words: String,
-    /// A number in it is to be confirmed against the standard.
+    /// A number in it is to be confirmed.
     pub unconfirmed: bool,
     pub span: Span,
 }

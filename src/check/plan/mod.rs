@@ -35,7 +35,7 @@ pub struct Plan {
     pub axis: Axis,
     pub time: Option<Axis>,
     pub parameters: Vec<Parameter>,
-    /// Definitions and quantities with numbers that are to be confirmed against the standard, and why.
+    /// Definitions and quantities with numbers that are to be confirmed, and why.
     pub unconfirmed: Vec<(String, String)>,
     pub vehicle: Vec<Datum>,
     pub columns: Vec<Datum>,
@@ -103,7 +103,7 @@ pub struct Parameter {
     pub value: String,
     pub default: String,
     pub set_by: SetBy,
-    /// Why its value is to be confirmed against the standard.
+    /// Why its value is to be confirmed.
     pub unconfirmed: Option<String>,
     /// The words of a choice; empty otherwise.
     pub choices: Vec<String>,

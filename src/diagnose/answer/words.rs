@@ -121,6 +121,7 @@ pub fn diagnosis(
         verdict: verdict.word(),
         says,
         fit,
+        mirrored: inputs.settings.mirror.is_some(),
         false_name_rate: found.false_name_rate,
         protocol_before: protocol.0,
         protocol_after: protocol.1,

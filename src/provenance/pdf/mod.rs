@@ -50,8 +50,10 @@ impl<'a> Attachments<'a> {
         Ok(Self { document, found, shown: shown.to_string() })
     }
 
+    /// Each name once: a file is listed by its name and as an associated file.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.found.iter().map(|(name, _)| name.as_str())
+        let first = |at: usize| self.found[..at].iter().all(|(name, _)| *name != self.found[at].0);
+        self.found.iter().enumerate().filter(move |(at, _)| first(*at)).map(|(_, (name, _))| name.as_str())
     }
 
     /// The data of the first attachment with a name; `None` if there is none.

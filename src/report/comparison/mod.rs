@@ -122,6 +122,7 @@ pub fn json(found: &Comparison) -> String {
 }
 
 fn table(caption: &str, head: Vec<crate::report::study::Head>, rows: Vec<Vec<String>>) -> Item {
+    let rows = rows.into_iter().map(|row| row.iter().map(|cell| number::raised(cell)).collect()).collect();
     Item::Table { table: Table { caption: caption.into(), head, rows } }
 }
 

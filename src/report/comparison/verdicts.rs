@@ -108,7 +108,15 @@ pub fn differences(found: &Comparison) -> Option<Chapter> {
             one.limits_changed.map_or_else(|| number::NONE.to_owned(), |count| count.to_string()),
         ]
     };
-    let items = if found.differences.is_empty() {
+    let items = if let Some(count) = found.unrelated {
+        vec![Item::text(format!(
+            "{} and {} are unrelated: neither extends the other and they extend no common protocol. They differ in {}, none of which is \
+             applied alone.",
+            before.name,
+            after.name,
+            if count == 1 { "one rule".into() } else { format!("{count} rules") }
+        ))]
+    } else if found.differences.is_empty() {
         vec![Item::text("The protocols do not differ in any rule.")]
     } else {
         vec![

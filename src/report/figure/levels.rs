@@ -3,12 +3,12 @@
 use plotters::style::RGBColor;
 
 use super::legend::Entry;
-use super::style::{self, BLUE, DASH_DOT, DASHED, DOTTED, Dash, INK, SHADE, SOLID, VERMILION};
+use super::style::{self, BLUE, DASH_DOT, DASHED, DOTTED, Dash, INK, LIMITS, SHADE, SOLID, VERMILION};
 use crate::report::{estimates, number};
 use crate::result::{QuantityResult, StatisticResult};
 
-/// Most limits that the legend names one by one.
-const NAMED: usize = 4;
+/// Most limits that are told apart by their dashes, each with an entry of the legend.
+const NAMED: usize = LIMITS.len();
 
 /// A horizontal line over some of the sections.
 #[derive(Clone, Debug)]
@@ -47,11 +47,16 @@ impl Levels {
         }
         let mut levels = Self::default();
         let two_sided = quantity.has_sides || quantity.values.iter().any(|pair| pair.difference < 0.0);
-        for statistic in quantity.statistics.iter().filter(|statistic| statistic.unit == quantity.unit && statistic.divided_at.is_none()) {
-            match statistic.name.as_str() {
-                "mean" => levels.mean(statistic, two_sided),
-                "std" => levels.deviation(statistic, center(quantity, &statistic.scope)),
-                _ => levels.other(statistic, two_sided),
+        for limit in estimates::limits(quantity) {
+            let first = limit.results[0];
+            let same = limit.results.iter().all(|one| one.limit == first.limit);
+            for statistic in limit.results.into_iter().filter(|one| one.unit == quantity.unit && one.divided_at.is_none()) {
+                let shown = Shown { two_sided, same };
+                match statistic.name.as_str() {
+                    "mean" => levels.mean(statistic, shown),
+                    "std" => levels.deviation(statistic, center(quantity, statistic), shown),
+                    _ => levels.other(statistic, shown),
+                }
             }
         }
         levels
@@ -65,9 +70,7 @@ impl Levels {
             let zones = estimates::zones(statistic);
             for scope in if zones.is_empty() { vec!["all"] } else { zones } {
                 for value in statistic.limit.iter().flat_map(|limit| both(0.0, *limit, two_sided)) {
-                    if !levels.lines.iter().any(|line| line.scope == scope && line.value == value) {
-                        levels.lines.push(Level { value, color: INK, width: 0.9, dash: DASHED, scope: scope.to_owned() });
-                    }
+                    levels.draw(Level { value, color: INK, width: 0.9, dash: DASHED, scope: scope.to_owned() });
                 }
             }
         }
@@ -77,12 +80,21 @@ impl Levels {
             all.dedup();
             let decimals = number::decimals(&quantity.unit, all.iter().copied());
             let texts: Vec<String> = all.iter().map(|limit| number::fixed(*limit, decimals)).collect();
-            let says = match texts.as_slice() {
-                [one] => format!("limit {}{one}", sign(two_sided)),
-                [first, .., last] if texts.len() > NAMED => format!("limits {}{first} to {last}", sign(two_sided)),
-                several => format!("limits {}{}", sign(two_sided), several.join(", ")),
-            };
-            levels.explain(Entry::line(INK, 0.9, DASHED, says));
+            match texts.as_slice() {
+                [first, .., last] if texts.len() > NAMED => {
+                    levels.explain(Entry::line(INK, 0.9, DASHED, format!("limits {}{first} to {last}", sign(two_sided))));
+                }
+                // Each limit has a dash of its own, or the lines could not be told apart.
+                several => {
+                    for (text, dash) in several.iter().zip(LIMITS) {
+                        levels.explain(Entry::line(INK, 0.9, dash, format!("limit {}{text}", sign(two_sided))));
+                    }
+                    for line in &mut levels.lines {
+                        let nth = all.iter().position(|limit| *limit == line.value.abs());
+                        line.dash = nth.and_then(|nth| LIMITS.get(nth).copied()).unwrap_or(DASHED);
+                    }
+                }
+            }
         }
         levels
     }
@@ -93,9 +105,20 @@ impl Levels {
     }
 
     fn line(&mut self, statistic: &StatisticResult, values: &[f64], (color, width, dash): (RGBColor, f64, Dash), text: String) {
-        let scope = statistic.scope.clone();
-        self.lines.extend(values.iter().map(|value| Level { value: *value, color, width, dash, scope: scope.clone() }));
+        for scope in scopes(statistic) {
+            for value in values {
+                self.draw(Level { value: *value, color, width, dash, scope: scope.to_owned() });
+            }
+        }
         self.explain(Entry::line(color, width, dash, text));
+    }
+
+    /// Adds a line once: groups of other things than zones often have the same limit over all sections.
+    fn draw(&mut self, level: Level) {
+        let same = |line: &Level| (line.value, line.color, line.dash, &line.scope) == (level.value, level.color, level.dash, &level.scope);
+        if !self.lines.iter().any(same) {
+            self.lines.push(level);
+        }
     }
 
     /// Adds an entry once for the same level of several zones.
@@ -105,44 +128,72 @@ impl Levels {
         }
     }
 
-    fn mean(&mut self, statistic: &StatisticResult, two_sided: bool) {
-        if let Some(value) = statistic.value {
+    fn mean(&mut self, statistic: &StatisticResult, with: Shown) {
+        if let Some(value) = statistic.value.filter(|_| over_sections(statistic)) {
             self.line(statistic, &[value], (BLUE, 1.3, SOLID), says(statistic, &shown(statistic, value)));
         }
         if let Some(limit) = statistic.limit {
-            let text = says_of_limit(statistic, &format!("{}{}", sign(two_sided), shown(statistic, limit)));
-            self.line(statistic, &both(0.0, limit, two_sided), (BLUE, 0.9, DASHED), text);
+            let text = says_of_limit(statistic, with);
+            self.line(statistic, &both(0.0, limit, with.two_sided), (BLUE, 0.9, DASHED), text);
         }
     }
 
-    fn deviation(&mut self, statistic: &StatisticResult, center: f64) {
-        if let Some(value) = statistic.value {
-            self.bands.push(Band { low: center - value, high: center + value, scope: statistic.scope.clone() });
+    fn deviation(&mut self, statistic: &StatisticResult, center: f64, with: Shown) {
+        if let Some(value) = statistic.value.filter(|_| over_sections(statistic)) {
+            let band = |scope: &str| Band { low: center - value, high: center + value, scope: scope.to_owned() };
+            self.bands.extend(scopes(statistic).into_iter().map(band));
             self.explain(Entry::ground(SHADE, format!("mean ± {}", says(statistic, &shown(statistic, value)))));
         }
         if let Some(limit) = statistic.limit {
-            let text = format!("mean ± {}", says_of_limit(statistic, &shown(statistic, limit)));
+            let text = format!("mean ± {}", says_of_limit(statistic, Shown { two_sided: false, ..with }));
             self.line(statistic, &both(center, limit, true), (VERMILION, 0.9, DOTTED), text);
         }
     }
 
-    fn other(&mut self, statistic: &StatisticResult, two_sided: bool) {
+    fn other(&mut self, statistic: &StatisticResult, with: Shown) {
         let color = style::color(2);
-        if let Some(value) = statistic.value.filter(|_| statistic.name != "each") {
+        if let Some(value) = statistic.value.filter(|_| statistic.name != "each" && over_sections(statistic)) {
             self.line(statistic, &[value], (color, 1.1, DASH_DOT), says(statistic, &shown(statistic, value)));
         }
         if let Some(limit) = statistic.limit {
-            let text = says_of_limit(statistic, &format!("{}{}", sign(two_sided), shown(statistic, limit)));
-            self.line(statistic, &both(0.0, limit, two_sided), (INK, 0.9, DASHED), text);
+            let text = says_of_limit(statistic, with);
+            // Limits of several estimates have a dash each.
+            let known: Vec<&Entry> = self.legend.iter().filter(|entry| entry.text.starts_with(LIMIT)).collect();
+            let nth = known.iter().position(|entry| entry.text == text).unwrap_or(known.len());
+            self.line(statistic, &both(0.0, limit, with.two_sided), (INK, 0.9, LIMITS[nth % NAMED]), text);
         }
     }
 }
 
+/// How the limits of one rule are drawn and told.
+#[derive(Clone, Copy, Debug)]
+struct Shown {
+    two_sided: bool,
+    /// Whether all groups have the same limit.
+    same: bool,
+}
+
+/// First words of a limit in the legend.
+const LIMIT: &str = "limit of ";
+
+/// The sections that a result is drawn over: its zones, or all.
+fn scopes(statistic: &StatisticResult) -> Vec<&str> {
+    let zones = estimates::zones(statistic);
+    if zones.is_empty() { vec!["all"] } else { zones }
+}
+
+/// Whether the values of a result are all those of its sections. The result of a record or of a position is not drawn: there is one for
+/// each in the same place.
+fn over_sections(statistic: &StatisticResult) -> bool {
+    statistic.scope == "all" || statistic.group.iter().all(|(key, _)| key == "zone") && !estimates::zones(statistic).is_empty()
+}
+
 /// The mean of the same scope, around which a standard deviation is drawn.
-fn center(quantity: &QuantityResult, scope: &str) -> f64 {
-    let stated = quantity.statistics.iter().find(|one| one.name == "mean" && one.scope == scope).and_then(|one| one.value);
-    stated.unwrap_or_else(|| {
-        let within = quantity.values.iter().filter(|pair| speaks_of(scope, pair.zone.as_deref()));
+fn center(quantity: &QuantityResult, of: &StatisticResult) -> f64 {
+    let stated = quantity.statistics.iter().find(|one| one.name == "mean" && one.scope == of.scope && over_sections(of));
+    stated.and_then(|one| one.value).unwrap_or_else(|| {
+        let scopes = scopes(of);
+        let within = quantity.values.iter().filter(|pair| scopes.iter().any(|scope| speaks_of(scope, pair.zone.as_deref())));
         let (sum, count) = within.fold((0.0, 0_u32), |(sum, count), pair| (sum + pair.difference, count + 1));
         if count == 0 { 0.0 } else { sum / f64::from(count) }
     })
@@ -169,9 +220,67 @@ fn shown(statistic: &StatisticResult, value: f64) -> String {
 
 /// A statistic and its value; without value if it differs between zones.
 fn says(statistic: &StatisticResult, value: &str) -> String {
-    if statistic.scope == "all" { format!("{} {value}", statistic.title) } else { format!("{} by zone", statistic.title) }
+    if statistic.scope == "all" { format!("{} {value}", statistic.title) } else { format!("{} by {}", statistic.title, by(statistic)) }
 }
 
-fn says_of_limit(statistic: &StatisticResult, limit: &str) -> String {
-    if statistic.scope == "all" { format!("limit of {} {limit}", statistic.title) } else { format!("limit of {} by zone", statistic.title) }
+/// The limit of a statistic; without its number if it differs between groups.
+fn says_of_limit(statistic: &StatisticResult, Shown { two_sided, same }: Shown) -> String {
+    let one = statistic.scope == "all" || same && !statistic.group.is_empty();
+    let limit = statistic.limit.filter(|_| one).map(|limit| format!("{}{}", sign(two_sided), shown(statistic, limit)));
+    format!("{LIMIT}{} {}", statistic.title, limit.unwrap_or_else(|| format!("by {}", by(statistic))))
+}
+
+/// What the groups of a statistic are: `zone`, `record`, `record and wheelset`.
+fn by(statistic: &StatisticResult) -> String {
+    let keys: Vec<&str> = statistic.group.iter().map(|(key, _)| key.as_str()).collect();
+    match (keys.as_slice(), estimates::zones(statistic).is_empty()) {
+        ([], true) => "condition".into(),
+        ([], false) => "zone".into(),
+        ([all @ .., last], _) if !all.is_empty() => format!("{} and {last}", all.join(", ")),
+        ([one, ..], _) => (*one).into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::result::{RulePlace, Sample};
+
+    fn of_record(record: &str, limit: f64) -> StatisticResult {
+        StatisticResult {
+            name: "each".into(),
+            title: "each value".into(),
+            scope: format!("record {record}"),
+            group: vec![("record".into(), record.into())],
+            count: 1,
+            n: 1,
+            unit: "kN".into(),
+            value: Some(0.5),
+            interval: None,
+            marginal: false,
+            limit: Some(limit),
+            normalised: None,
+            sample: Sample::default(),
+            regression: None,
+            divided_at: None,
+            outside: Vec::new(),
+            holds: Some(true),
+            factors: Vec::new(),
+            limit_text: "1 kN".into(),
+            reason: None,
+            rule: RulePlace { file: "a.fp".into(), line: 1 },
+        }
+    }
+
+    /// There are no zones: the limit is one line over all sections, with its number where all records have the same.
+    #[test]
+    fn the_limit_of_each_record_is_drawn() {
+        let with = |same| Shown { two_sided: true, same };
+        let mut levels = Levels::default();
+        [of_record("A", 2.0), of_record("B", 2.0)].iter().for_each(|one| levels.other(one, with(true)));
+        let drawn: Vec<(f64, &str)> = levels.lines.iter().map(|line| (line.value, line.scope.as_str())).collect();
+        assert_eq!(drawn, [(-2.0, "all"), (2.0, "all")]);
+        assert_eq!(levels.legend.iter().map(|entry| entry.text.as_str()).collect::<Vec<_>>(), ["limit of each value ±2.00"]);
+        assert_eq!(says_of_limit(&of_record("A", 2.0), with(false)), "limit of each value by record");
+    }
 }

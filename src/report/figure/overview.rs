@@ -87,9 +87,9 @@ impl Series {
         Self(quantities.iter().flat_map(of).collect())
     }
 
-    /// An estimate of groups is one series, wherever its decisive group is.
+    /// An estimate of all values, or of groups, is one series, wherever its decisive group is.
     fn key(quantity: &QuantityResult, statistic: &StatisticResult) -> (String, String) {
-        let grouped = quantity.from.is_some() || !statistic.group.is_empty();
+        let grouped = quantity.from.is_some() || !statistic.group.is_empty() || statistic.scope == "all";
         (statistic.title.clone(), if grouped { String::new() } else { statistic.scope.clone() })
     }
 
@@ -98,9 +98,9 @@ impl Series {
     }
 
     fn legend(&self) -> Vec<Entry> {
-        let one_scope = self.0.iter().all(|(_, scope)| scope == "all");
-        let bare = |scope: &str| one_scope || scope.is_empty();
-        let text = |(title, scope): &(String, String)| if bare(scope) { title.clone() } else { format!("{title}, {scope}") };
+        let text = |(title, scope): &(String, String)| {
+            number::formula(&if scope.is_empty() { title.clone() } else { format!("{title}, {scope}") })
+        };
         self.0.iter().enumerate().map(|(n, key)| Entry::mark(Mark::nth(n), style::color(n), text(key))).collect()
     }
 }
@@ -213,7 +213,11 @@ struct Look {
 }
 
 fn value_mark(canvas: &mut Canvas, frame: &Frame, (symbol, statistic): (&str, &StatisticResult), (value, y): (f64, f64), look: &Look) {
-    let says = if value.abs() < 10.0 { number::beside(value, 1.0, 2) } else { number::significant(value, 3) };
+    let says = match value.abs() {
+        size if size < 10.0 => number::beside(value, 1.0, 2),
+        size if size > 1000.0 => number::ratio(size),
+        _ => number::significant(value, 3),
+    };
     let title = format!("{symbol}, {} ({}): {says} of the limit", statistic.title, statistic.scope);
     let color = style::color(look.n);
     let clipped = !frame.x.contains(value);

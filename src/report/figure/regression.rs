@@ -4,7 +4,9 @@ use super::axis::{self, Scale};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{self, BLUE, DASH_DOT, DASHED, DOTTED, INK, MUTED, Mark, SMALL, SOLID, TEXT, TICK, VERMILION, WIDTH, cut};
+use super::style::{
+    self, BLUE, DASH_DOT, DASHED, DOTTED, INK, MUTED, Mark, SMALL, SOLID, TEXT, TICK, VERMILION, WIDTH, cut_apart, text_width,
+};
 use super::zones::Zones;
 use crate::report::estimates::OfLimit;
 use crate::report::number;
@@ -16,10 +18,13 @@ pub const MOST: usize = 16;
 /// Height of a diagram, in points: one alone, and of several.
 const TALL: f64 = 158.0;
 const LOW: f64 = 88.0;
-/// Space of the name above a diagram and of the axis below, in points.
+/// Space of a line of the name above a diagram, of two, and of the axis below, in points.
 const HEAD: f64 = 12.0;
+const HEADS: f64 = 20.0;
 const FOOT: f64 = 13.0;
 const GUTTER: f64 = 9.0;
+/// Share of an axis in the width of a diagram, about, in points.
+const AXIS: f64 = 10.0;
 const TICKS: (usize, usize) = (5, 5);
 
 /// The groups of a limit that have a regression to draw, in order; of many those with the largest ratio.
@@ -54,28 +59,49 @@ pub fn regression(quantity: &QuantityResult, groups: &[(&StatisticResult, &Regre
     let abreast = groups.len().clamp(1, ABREAST);
     let rows = groups.len().div_ceil(abreast);
     let top = legend.height() + 6.0;
-    let row = HEAD + tall + FOOT;
+    let narrow = (WIDTH - 4.0) / abreast as f64 - GUTTER;
+    let scopes: Vec<&str> = groups.iter().map(|(statistic, _)| statistic.scope.as_str()).collect();
+    let head = if scopes.iter().all(|scope| text_width(scope, TICK) <= narrow - AXIS) { HEAD } else { HEADS };
+    let row = head + tall + FOOT;
     let of_row = |at: usize| {
         let ys = groups.iter().skip(at * abreast).take(abreast).flat_map(|(one, figure)| heights(one, figure));
-        Scale::over(ys, top + at as f64 * row + HEAD + tall, top + at as f64 * row + HEAD)
+        Scale::over(ys, top + at as f64 * row + head + tall, top + at as f64 * row + head)
     };
     let left = (0..rows).map(|at| Frame::axis_room(&of_row(at).ticks(TICKS.1))).fold(0.0, f64::max);
     let wide = (WIDTH - 4.0 - left - GUTTER * (abreast as f64 - 1.0)) / abreast as f64;
     let mut canvas = Canvas::new(WIDTH, top + rows as f64 * row + 13.0);
     legend.draw(&mut canvas, (left, 0.0));
+    let names = names(&scopes, wide);
     for (at, (statistic, figure)) in groups.iter().enumerate() {
         let from = left + (at % abreast) as f64 * (wide + GUTTER);
         let frame = Frame { x: Scale::over(xs.iter().copied(), from, from + wide), y: of_row(at / abreast) };
         axes(&mut canvas, &frame, (at % abreast == 0).then(|| axis::title(&quantity.symbol, &quantity.unit)).as_deref());
         canvas.draw(|layer| {
-            let name = cut(&statistic.scope, TICK, wide);
-            layer.text(&name, (f64::midpoint(frame.left(), frame.right()), frame.top() - 6.0), &Font::middle(TICK));
+            for (up, line) in names[at].iter().rev().filter(|line| !line.is_empty()).enumerate() {
+                let y = frame.top() - 6.0 - 8.0 * up as f64;
+                layer.text(line, (f64::midpoint(frame.left(), frame.right()), y), &Font::middle(TICK));
+            }
         });
         panel(&mut canvas, &frame, quantity, (statistic, figure), zones);
     }
     let title = groups.first().map_or_else(String::new, |(_, one)| axis::title(&one.regressor, &one.regressor_unit));
     canvas.draw(|layer| layer.text(&title, (f64::midpoint(left, WIDTH - 4.0), top + rows as f64 * row + 6.0), &Font::middle(TEXT)));
     canvas.finish()
+}
+
+/// The name of each diagram in two lines of a width; the first holds as many parts as fit.
+fn names(scopes: &[&str], wide: f64) -> Vec<[String; 2]> {
+    let split = |scope: &str| -> [String; 2] {
+        if text_width(scope, TICK) <= wide {
+            return [String::new(), scope.to_owned()];
+        }
+        let places: Vec<usize> = scope.match_indices(", ").map(|(at, _)| at).collect();
+        let fits = places.iter().rev().find(|at| text_width(&scope[..=**at], TICK) <= wide).or(places.first());
+        fits.map_or_else(|| [String::new(), scope.to_owned()], |at| [scope[..=*at].to_owned(), scope[at + 2..].to_owned()])
+    };
+    let all: Vec<[String; 2]> = scopes.iter().map(|scope| split(scope)).collect();
+    let line = |nth: usize| cut_apart(&all.iter().map(|lines| lines[nth].as_str()).collect::<Vec<_>>(), TICK, wide);
+    std::iter::zip(line(0), line(1)).map(|(one, other)| [one, other]).collect()
 }
 
 /// All that a diagram shows, for its scale.

@@ -4,7 +4,7 @@ use super::axis::Scale;
 use super::canvas::{Canvas, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{Mark, WIDTH, color, cut};
+use super::style::{Mark, TEXT, WIDTH, color, cut_apart};
 use crate::report::number;
 
 /// Height of the drawing area, in points.
@@ -32,8 +32,10 @@ fn highest(curves: &[Curve]) -> f64 {
 pub fn sensitivity(disturbance: &str, curves: &[Curve]) -> String {
     let curves = &curves[..curves.len().min(MOST)];
     let high = highest(curves);
-    let entry = |(n, (name, points)): (usize, &Curve)| {
-        let name = cut(name, 8.0, 0.35 * WIDTH);
+    let names: Vec<&str> = curves.iter().map(|(name, _)| name.as_str()).collect();
+    let names = cut_apart(&names, TEXT, 0.44 * WIDTH);
+    let entry = |(n, (_, points)): (usize, &Curve)| {
+        let name = names[n].clone();
         let beyond = points.iter().any(|(_, value)| *value > high);
         Entry::mark(Mark::nth(n), color(n), if beyond { format!("{name} (beyond the axis)") } else { name })
     };

@@ -4,13 +4,13 @@ use super::axis::{self, Scale};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{BEYOND, BLUE, DASHED, GRID, INK, MEASURED, Mark, SHADE, SMALL, SOLID, TEXT, VERMILION, WIDTH, cut};
+use super::style::{BEYOND, BLUE, DASHED, GRID, INK, MEASURED, Mark, SHADE, SMALL, SOLID, TEXT, VERMILION, WIDTH, cut_apart};
 use crate::report::number;
 use crate::result::Curve;
 use crate::result::diagnosis::{Panel, Picture, Shrink};
 
 const ROW: f64 = 19.0;
-const NAMES: f64 = 84.0;
+const NAMES: f64 = 108.0;
 
 /// For each quantity the normalised mean and standard deviation, before and with the effects, joined by a line; the limit is at 1.
 pub fn before_after(shrink: &Shrink) -> String {
@@ -33,11 +33,13 @@ pub fn before_after(shrink: &Shrink) -> String {
     legend.draw(&mut canvas, (NAMES, 0.0));
     canvas.draw(|layer| layer.rect((x.at(1.0), top), (frame.right(), bottom), BEYOND));
     frame.x_axis(&mut canvas, &x.ticks(8), "statistic / limit");
+    let ids: Vec<&str> = shrink.quantities.iter().map(|quantity| quantity.id.as_str()).collect();
+    let ids = cut_apart(&ids, TEXT, NAMES - 34.0);
     for (at, quantity) in shrink.quantities.iter().enumerate() {
         let y = top + ROW * at as f64;
         canvas.draw(|layer| {
             layer.line((0.0, y), (frame.right(), y), GRID, 0.4);
-            layer.text(&cut(&quantity.id, TEXT, NAMES - 34.0), (2.0, y + 0.5 * ROW), &Font::left(TEXT));
+            layer.text(&ids[at], (2.0, y + 0.5 * ROW), &Font::left(TEXT));
         });
         let pairs = [
             ("std", quantity.normalised_std_before, quantity.normalised_std_after, 0.3),

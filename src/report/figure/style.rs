@@ -78,6 +78,10 @@ pub const SOLID: Dash = None;
 pub const DASHED: Dash = Some(&[5.0, 2.5]);
 pub const DOTTED: Dash = Some(&[1.2, 2.0]);
 pub const DASH_DOT: Dash = Some(&[6.0, 2.0, 1.2, 2.0]);
+const LONG_DASH: Dash = Some(&[10.0, 2.5]);
+
+/// Dashes of several limits in one diagram.
+pub const LIMITS: [Dash; 4] = [DASHED, DOTTED, DASH_DOT, LONG_DASH];
 
 /// Approximate width of a text in points, for layout without font metrics: advance widths of a humanist sans by kind of character,
 /// slightly overestimated.
@@ -115,9 +119,51 @@ pub fn cut(text: &str, size: f64, width: f64) -> String {
     kept
 }
 
+/// Several texts cut to a width. Texts that would look alike keep the part in which they differ, and lose a part of what they share.
+pub fn cut_apart(texts: &[&str], size: f64, width: f64) -> Vec<String> {
+    let mut shown: Vec<String> = texts.iter().map(|text| cut(text, size, width)).collect();
+    let alike = |shown: &[String], at: usize| -> Vec<usize> {
+        (0..texts.len()).filter(|other| shown[*other] == shown[at] && (*other == at || texts[*other] != texts[at])).collect()
+    };
+    for at in 0..texts.len() {
+        let same = alike(&shown, at);
+        if same.len() < 2 {
+            continue;
+        }
+        let letters: Vec<Vec<char>> = same.iter().map(|nth| visible(texts[*nth]).chars().collect()).collect();
+        let common = (0..letters[0].len()).take_while(|n| letters.iter().all(|one| one.get(*n) == letters[0].get(*n))).count();
+        for (nth, own) in same.iter().zip(&letters) {
+            // At least half of the width is for what differs.
+            let mut rest: String = own[common..].iter().collect();
+            let mut kept = String::new();
+            for c in &own[..common] {
+                kept.push(*c);
+                if text_width(&kept, size) + text_width(&rest, size).min(0.5 * width) + 1.0 * size > width {
+                    kept.pop();
+                    break;
+                }
+            }
+            rest = cut(&rest, size, width - text_width(&kept, size) - size);
+            shown[*nth] = format!("{}…{rest}", kept.trim_end());
+        }
+    }
+    shown
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_that_differ_are_cut_to_texts_that_differ() {
+        let long = "a-protocol-with-a-long-name";
+        let texts = [format!("{long}: mean"), format!("{long}-and-a-variant: mean"), format!("{long}: standard deviation"), "b".into()];
+        let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+        let shown = cut_apart(&texts, TEXT, 100.0);
+        assert!(shown[0].ends_with("…: mean") && shown[1].contains("…-and-a-v") && shown[2].contains("…: standard"), "{shown:?}");
+        assert!(shown.iter().all(|text| text_width(text, TEXT) < 108.0), "{shown:?}");
+        assert_eq!(cut_apart(&["b", "b", long], TEXT, 200.0), ["b", "b", long]);
+    }
 
     #[test]
     fn cut_texts_fit_and_short_ones_stay() {

@@ -72,7 +72,7 @@ fn view((at, result): (usize, &DomainResult)) -> ApplicationView {
         says: number::formula(&format!("{counted}{left_out}")),
         clause: result.clause.clone(),
         source: result.source.clone(),
-        notes: result.notes.clone(),
+        notes: result.notes.iter().map(|note| number::raised(note)).collect(),
         coordinates: result.coordinates.iter().map(|of| CoordinateHead { name: of.name.clone(), unit: number::unit(&of.unit) }).collect(),
         figure: drawn(result).then(|| FigureView {
             name: format!("application-{at}"),

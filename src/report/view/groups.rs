@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::quantity::limit_in_words;
 use super::summary::Limited;
 use super::{Finding, name, summary};
 use crate::report::estimates::{self, OfLimit};
@@ -99,7 +100,7 @@ fn table(quantity: &QuantityResult, limit: &OfLimit<'_>) -> GroupTable {
     };
     GroupTable {
         estimate: number::formula(&first.title),
-        limit_text: number::formula(&first.limit_text),
+        limit_text: limit_in_words(first, quantity),
         unit: number::unit(&first.unit),
         intervals: limit.results.iter().any(|one| one.interval.is_some()),
         rows: limit.results.iter().map(row).collect(),

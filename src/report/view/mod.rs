@@ -188,7 +188,10 @@ pub fn view(found: &Certification) -> ReportData {
         title: title(found),
         program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned(),
         words: wording::wording(found),
-        verdict: Finding::new(verdict_holds, found.verdict_word(), found.verdict_word(), found.verdict_word()),
+        verdict: match verdicts::overall(found) {
+            Some(outcome) => verdicts::finding(outcome, found.verdict_word()),
+            None => Finding::new(verdict_holds, found.verdict_word(), found.verdict_word(), found.verdict_word()),
+        },
         verdict_title: verdicts::title(found),
         verdicts: verdicts::rows(found),
         verdict_note: found.verdict_note.clone(),
@@ -227,7 +230,7 @@ pub fn view(found: &Certification) -> ReportData {
         }),
         application: application::views(found),
         findings: findings::rows(&found.findings),
-        notes: found.notes.clone(),
+        notes: found.notes.iter().map(|note| number::raised(note)).collect(),
     }
 }
 
@@ -275,6 +278,12 @@ fn key_facts(found: &Certification) -> Vec<Fact> {
             facts.push(fact("Compared pairs", number::count(rows(false) as u64)));
             facts.push(fact("Assessed values", number::count(rows(true) as u64)));
         }
+    }
+    // Of wanted operation, which the verdict does not speak of.
+    let wanted = || found.application.iter().flat_map(|domain| &domain.points);
+    if wanted().next().is_some() {
+        let inside = wanted().filter(|point| point.inside == Some(true)).count();
+        facts.push(fact("Wanted operation", format!("{inside} of {} points inside", wanted().count())));
     }
     if !found.zones.is_empty() {
         let filled = found.zones.iter().filter(|zone| zone.holds).count();

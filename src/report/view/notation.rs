@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::Finding;
 use crate::report::brief::in_full;
 use crate::report::number;
-use crate::result::{Certification, QuantityResult};
+use crate::result::{Certification, Outcome, QuantityResult};
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct NotationView {
@@ -113,12 +113,35 @@ const REPEATED: [(&str, &str); 4] = [
 /// Terms explained in every report.
 const WORDS: [(&str, &str); 4] = [
     ("95 % interval", "Confidence interval of the statistic. The mean: Student's t; the standard deviation: chi-square."),
-    ("|Value| / limit", "Magnitude of the statistic divided by its limit; the criterion is met up to 1."),
+    (
+        "|Value| / limit",
+        "Magnitude of the statistic divided by its limit, or the limit divided by it where the limit is a least value; the criterion is met \
+         up to 1. Ratios above 1000 are not printed.",
+    ),
     ("p0.15, p99.85", "Value below which 0.15 % or 99.85 % of the samples of a section lie; other percentiles likewise."),
     ("rms", "Root of the mean of the squares of the samples."),
 ];
 
+/// Terms explained where a metric, an estimate or a limit uses them: what they are known by in its words.
+const WHERE_USED: [(&str, &str, &str); 3] = [
+    ("misfit", "Misfit", "Sum of the squared differences of both signals, divided by the smaller of the sums of their squares."),
+    ("share where", "Share where …", "The part of the values of a group that satisfy the condition, from 0 to 1."),
+    (
+        "bootstrap",
+        "By bootstrap",
+        "A bound from 2000 draws of the independent units of a group, with repetition. Of fewer than about ten units it lies too near to the \
+         value.",
+    ),
+];
+
 fn terms(found: &Certification) -> Vec<(&'static str, &'static str)> {
+    let words = |quantity: &QuantityResult| {
+        let estimates = quantity.statistics.iter().flat_map(|one| [one.title.clone(), one.limit_text.clone()]);
+        let reported = quantity.reported.iter().map(|one| one.title.clone());
+        estimates.chain(reported).chain([quantity.comparison.clone()]).collect::<Vec<String>>()
+    };
+    let words: Vec<String> = found.quantities.iter().flat_map(words).collect();
+    let special = WHERE_USED.iter().filter(|(part, ..)| words.iter().any(|text| text.contains(part)));
     let some = |of: fn(&QuantityResult) -> bool| found.quantities.iter().any(of);
     let compared = some(|quantity| quantity.from.is_none() && quantity.among.is_none() && !quantity.repeats);
     let kinds: [(bool, &[_]); 4] = [
@@ -128,10 +151,11 @@ fn terms(found: &Certification) -> Vec<(&'static str, &'static str)> {
         (some(|quantity| quantity.repeats), &REPEATED),
     ];
     let used = kinds.into_iter().filter(|(used, _)| *used).flat_map(|(_, terms)| terms).chain(&WORDS);
+    let used = used.copied().chain(special.map(|(_, word, meaning)| (*word, *meaning)));
     // A word that two kinds explain stands once, as the first explains it.
     let mut all: Vec<(&str, &str)> = Vec::new();
     for (word, meaning) in used {
-        if !all.iter().any(|(known, _)| known == word) {
+        if !all.iter().any(|(known, _)| *known == word) {
             all.push((word, meaning));
         }
     }
@@ -167,10 +191,19 @@ pub(super) fn view(found: &Certification) -> NotationView {
             .collect(),
         comparisons: comparisons(found),
         words: if found.quantities.is_empty() { Vec::new() } else { terms(found).iter().map(term).collect() },
-        findings: vec![
+        findings: [
             finding(Some(true), "The acceptance criterion or requirement is met."),
             finding(Some(false), "It is not met."),
             finding(None, "It could not be assessed; the reason is stated."),
-        ],
+        ]
+        .into_iter()
+        .chain(
+            found
+                .verdicts
+                .iter()
+                .any(|verdict| verdict.outcome == Outcome::Open)
+                .then(|| (super::verdicts::finding(Outcome::Open, ""), "A person decides it, whom the protocol names.".to_owned())),
+        )
+        .collect(),
     }
 }

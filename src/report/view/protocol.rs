@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::FigureView;
+use crate::report::number;
 use crate::result::{Deviation, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo};
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -75,7 +76,7 @@ pub fn view(protocol: &ProtocolInfo) -> ProtocolView {
         edition: protocol.edition.clone(),
         source: protocol.source.clone(),
         scope: protocol.scope.clone(),
-        notes: protocol.notes.clone(),
+        notes: protocol.notes.iter().map(|note| number::raised(note)).collect(),
         sha256: protocol.sha256.clone(),
         verdict_rule: protocol.verdict_rule.clone(),
         files: protocol.files.iter().map(source_file).collect(),

@@ -141,15 +141,15 @@ pub(super) fn view(at: usize, quantity: &QuantityResult, work: Option<&str>) -> 
         clause: quantity.clause.clone(),
         source: quantity.source.as_deref().map(|source| super::with_work(source, work)),
         rule: format!("{}, line {}", quantity.rule.file, quantity.rule.line),
-        notes: quantity.notes.clone(),
+        notes: quantity.notes.iter().map(|note| number::raised(note)).collect(),
         holds: Finding::of_quantity(quantity),
-        reason: quantity.reason.clone(),
+        reason: quantity.reason.as_deref().map(number::raised),
         has_sides: quantity.has_sides,
         rows: if sides_apart(quantity) { "Pairs" } else { "Values" },
         assessed: quantity.from.is_some(),
         sides: sides.heads(),
         short_sides: sides.short,
-        statistics: stated(quantity).into_iter().map(statistic).collect(),
+        statistics: stated(quantity).into_iter().map(|one| statistic(one, quantity)).collect(),
         groups: groups::tables(quantity),
         reported: reports::tables(&quantity.reported),
         spreads: spread::tables(quantity),
@@ -176,22 +176,36 @@ fn stated(quantity: &QuantityResult) -> Vec<&StatisticResult> {
     quantity.statistics.iter().filter(|one| !among(one)).collect()
 }
 
-fn statistic(found: &StatisticResult) -> StatisticView {
+fn statistic(found: &StatisticResult, quantity: &QuantityResult) -> StatisticView {
     let decimals = summary::decimals(found);
     StatisticView {
-        title: found.title.clone(),
-        scope: found.scope.clone(),
+        title: number::formula(&found.title),
+        scope: number::formula(&found.scope),
         unit: number::unit(&found.unit),
         count: summary::pairs_and_n(found.count, found.n),
         value: summary::value(Some(found)),
         low: number::optional(found.interval.map(|interval| interval.0), decimals),
         high: number::optional(found.interval.map(|interval| interval.1), decimals),
         limit: summary::limit(Some(found)),
-        limit_text: number::formula(&found.limit_text),
+        limit_text: limit_in_words(found, quantity),
         normalised: summary::normalised(Some(found)),
         holds: Finding::of_statistic(Some(found)),
-        reason: found.reason.clone(),
+        reason: found.reason.as_deref().map(number::raised),
     }
+}
+
+/// A limit as worded. Where the name of another statistic stands for the limit of that one, so it says.
+pub(super) fn limit_in_words(found: &StatisticResult, quantity: &QuantityResult) -> String {
+    let (limit, rest) = found.limit_text.split_once(", ").map_or((found.limit_text.as_str(), None), |(limit, rest)| (limit, Some(rest)));
+    let of = |name: &str| -> Option<String> {
+        match limit.strip_suffix(name)? {
+            "" => Some(format!("limit of {name}")),
+            share => share.strip_suffix("of ").map(|share| format!("{share}of the limit of {name}")),
+        }
+    };
+    let mut others = quantity.statistics.iter().map(|other| other.name.as_str()).filter(|name| *name != found.name);
+    let words = others.find_map(of).unwrap_or_else(|| limit.to_owned());
+    number::formula(&rest.map_or_else(|| words.clone(), |rest| format!("{words}, {rest}")))
 }
 
 /// The pairs with the largest |difference|; equal ones in the order of the campaign.
@@ -343,12 +357,17 @@ fn regressions(at: usize, quantity: &QuantityResult) -> Vec<FigureView> {
 }
 
 fn frequency(at: usize, quantity: &QuantityResult) -> FigureView {
-    let by = if quantity.values.iter().any(|value| value.record.is_some()) { "record" } else { "zone" };
+    let some = |of: fn(&PairValue) -> bool| quantity.values.iter().any(of);
+    let by = match (some(|value| value.record.is_some()), some(|value| value.zone.is_some())) {
+        (true, _) => " by record",
+        (false, true) => " by zone",
+        (false, false) => "",
+    };
     FigureView {
         name: format!("frequency-{at}"),
-        caption: format!("{}: cumulative frequency of the values by {by}, with the limits", super::symbol(&quantity.symbol)),
+        caption: format!("{}: cumulative frequency of the values{by}, with the limits", super::symbol(&quantity.symbol)),
         alt: format!(
-            "{}: cumulative frequency of {} values in {} by {by}. The values are in the table of all values.",
+            "{}: cumulative frequency of {} values in {}{by}. The values are in the table of all values.",
             quantity.title,
             quantity.values.len(),
             number::unit(&quantity.unit)

@@ -77,8 +77,9 @@ fn table(keys: &[&str], columns: &[Column<'_>], all: &[&Reported]) -> ReportTabl
         let title = condition.map_or_else(|| title.clone(), |condition| format!("{title}, {}", number::formula(condition)));
         ColumnHead { title, unit: number::unit(unit), numeric: true }
     };
-    let reason =
-        |one: &&Reported| one.reason.as_ref().map(|reason| format!("{}, {}: {reason}", capital(&number::formula(&one.title)), one.scope));
+    let reason = |one: &&Reported| {
+        one.reason.as_ref().map(|reason| number::raised(&format!("{}, {}: {reason}", capital(&number::formula(&one.title)), one.scope)))
+    };
     ReportTable {
         keys: keys.iter().map(|key| capital(key)).collect(),
         columns: columns.iter().map(head).collect(),

@@ -186,7 +186,7 @@ fn table(zone: Option<&str>, known: Option<&ZoneResult>, sections: &[&SectionRes
                     })
                     .collect(),
                 used: Finding::new(Some(section.used), "used", "not used", ""),
-                reason: section.reason.clone(),
+                reason: section.reason.as_deref().map(number::raised),
             })
             .collect(),
         checks: checks(sections),

@@ -135,7 +135,7 @@ fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> Furthe
         filter: quantity.filter.clone(),
         processing: quantity.processing.clone(),
         comparison: quantity.comparison.clone(),
-        statistic: statistic.title.clone(),
+        statistic: number::formula(&statistic.title),
         scope: statistic.scope.clone(),
     }
 }
@@ -168,5 +168,5 @@ pub(super) fn value(statistic: Option<&StatisticResult>) -> String {
 
 /// |value| / limit with two decimals, or more close to 1.
 pub(super) fn normalised(statistic: Option<&StatisticResult>) -> String {
-    statistic.and_then(|statistic| statistic.normalised).map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 2))
+    statistic.and_then(|statistic| statistic.normalised).map_or_else(|| number::NONE.to_owned(), number::ratio)
 }

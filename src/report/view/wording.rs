@@ -65,7 +65,7 @@ fn over(found: &Certification) -> String {
 /// The verdict as a sentence.
 pub(super) fn sentence(found: &Certification) -> &'static str {
     if found.own_word.is_some() {
-        return super::verdicts::sentence(found.verdict);
+        return super::verdicts::sentence(found);
     }
     if found.kind() == Kind::Validation {
         return match found.verdict {

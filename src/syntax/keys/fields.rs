@@ -27,7 +27,7 @@ pub(super) const CLAUSE: Key = text("clause", "Clause of the standard for the ru
 pub(super) const SOURCE: Key = text("source", "Publication of the rule or number.", "Goetz & Polach, Table 1");
 pub(super) const UNCONFIRMED: Key = text(
     "unconfirmed",
-    "Why its number is not from a checked source. The report prints \"to be confirmed against the standard\" beside it.",
+    "Why its number is not from a checked source. The report prints \"to be confirmed\" beside it, \"against the standard\" if the protocol has a `source`.",
     "Read in a secondary source; the standard was not to hand.",
 );
 pub(super) const WORDS: Key =
