@@ -154,7 +154,7 @@ fn statistics(found: &Certification, console: &Console) -> String {
     let told: Vec<_> = found.quantities.iter().filter(|quantity| quantity.from.is_none() || quantity.statistics.is_empty()).collect();
     let has_row =
         |quantity: &&QuantityResult| !estimates::single(quantity).is_empty() || quantity.statistics.is_empty() && quantity.reason.is_some();
-    if !told.iter().any(|quantity| has_row(&quantity)) && !found.quantities.is_empty() {
+    if !told.iter().any(has_row) && !found.quantities.is_empty() {
         return String::new();
     }
     let width = told.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);
