@@ -1,5 +1,8 @@
 //! The files that a result is delivered as: numbers, tables, and the report as PDF and HTML. Each has its path inside the output folder.
 
+use std::panic::resume_unwind;
+use std::thread;
+
 use crate::diagnose::Outcome;
 use crate::problem::{Problem, Problems};
 use crate::provenance::carried::REPORT_PDF;
@@ -37,14 +40,12 @@ pub fn certification(found: &Certification, reports: Reports) -> Result<Files, P
     if reports.pdf || reports.html {
         let data = view::view(found);
         let figures = figure::figures(found);
-        if reports.pdf {
+        let pdf = || {
             let names = attached::protocol_names(found);
             let attachments = attached::attachments(found, &results, &names);
-            files.push((REPORT_PDF.into(), typst::typeset(&data, &figures, &attachments)?.bytes));
-        }
-        if reports.html {
-            files.push((REPORT_HTML.into(), html::html(&data, &figures)?.into_bytes()));
-        }
+            Ok(typst::typeset(&data, &figures, &attachments)?.bytes)
+        };
+        files.extend(both(reports, pdf, || html::html(&data, &figures))?);
     }
     files.push((attached::RESULTS.into(), results.into_bytes()));
     files.push((statement::FILE.into(), statement::statement(found, &files).into_bytes()));
@@ -101,16 +102,28 @@ pub fn document(
     figures: &[(String, String)],
     reports: Reports,
 ) -> Result<Files, Problems> {
-    let mut files = Files::new();
-    if reports.pdf {
+    let pdf = || {
         let attachment = Attachment { name, mime: "application/json", bytes: numbers.as_bytes(), description };
-        files.push((REPORT_PDF.into(), typst::typeset_study(data, figures, &[attachment])?.bytes));
-    }
-    if reports.html {
-        files.push((REPORT_HTML.into(), html::study_html(data, figures)?.into_bytes()));
-    }
+        Ok(typst::typeset_study(data, figures, &[attachment])?.bytes)
+    };
+    let mut files = both(reports, pdf, || html::study_html(data, figures))?;
     files.push((name.into(), numbers.into_bytes()));
     Ok(files)
+}
+
+/// The reports that are wanted, PDF and HTML at the same time: typesetting keeps one processor busy.
+fn both(
+    reports: Reports,
+    pdf: impl FnOnce() -> Result<Vec<u8>, Problems>,
+    html: impl FnOnce() -> Result<String, Problems> + Send,
+) -> Result<Files, Problems> {
+    thread::scope(|scope| {
+        let html = reports.html.then(|| scope.spawn(html));
+        let pdf = reports.pdf.then(pdf).transpose();
+        let html = html.map(|html| html.join().unwrap_or_else(|panic| resume_unwind(panic))).transpose();
+        let pdf = pdf?.map(|bytes| (REPORT_PDF.into(), bytes));
+        Ok(pdf.into_iter().chain(html?.map(|text| (REPORT_HTML.into(), text.into_bytes()))).collect())
+    })
 }
 
 /// Tables in the folder `tables`.
