@@ -1,6 +1,6 @@
 //! Effects as expressions of the protocol language: a channel is computed sample by sample from channels of the same record.
 
-use super::operators::Signals;
+use super::signals::Signals;
 use crate::catalog::{FUNCTIONS, Function, Signature};
 use crate::problem::{Problem, Problems};
 use crate::source::Span;

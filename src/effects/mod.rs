@@ -8,9 +8,11 @@ mod expression;
 mod formulas;
 pub mod operators;
 mod read;
+mod signals;
 
 pub use catalogue::{Action, Acts, Catalogue, Effect, Fit, Group, Parameter};
 pub use choose::{Applied, Confined, choose};
 pub use expression::Formula;
-pub use operators::{Channel, Gauss, Operator, Signals};
+pub use operators::{Gauss, Operator};
 pub use read::{CHANNEL, Find, ModelParameters, read};
+pub use signals::{Channel, Signals};

@@ -1,25 +1,8 @@
 //! Effects of the measuring chain: exact operations on recorded signals.
 
 use super::expression::Formula;
+use super::signals::Signals;
 use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
-
-/// The signals of a record. Values are in the unit of their channel.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Signals {
-    /// Position on the axis, in m for a record over distance.
-    pub axis: Vec<f64>,
-    /// Whether the axis is the time itself, in s.
-    pub over_time: bool,
-    /// Samples per second.
-    pub rate: f64,
-    pub channels: Vec<Channel>,
-}
-
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Channel {
-    pub name: String,
-    pub values: Vec<f64>,
-}
 
 /// An operation on channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -77,11 +60,6 @@ impl Operator {
 const LOW_PASS_ORDER: usize = 2;
 
 impl Signals {
-    #[must_use]
-    pub fn channel(&self, name: &str) -> Option<&Channel> {
-        self.channels.iter().find(|channel| channel.name == name)
-    }
-
     /// Replaces channels by formulas of the original channels; formulas with a channel that the record does not have are skipped.
     ///
     /// # Errors
@@ -99,10 +77,6 @@ impl Signals {
             }
         }
         Ok(())
-    }
-
-    fn position(&self, name: &str) -> Option<usize> {
-        self.channels.iter().position(|channel| channel.name == name)
     }
 
     /// Applies an operator with its value to channels; channels that the record does not have are skipped.
@@ -199,6 +173,7 @@ impl Gauss {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::signals::Channel;
 
     fn two() -> Signals {
         let channel = |name: &str, values: &[f64]| Channel { name: name.into(), values: values.to_vec() };

@@ -5,6 +5,7 @@
 //! [`signature`] signs files.
 
 pub mod carried;
+pub mod check;
 pub mod compare;
 mod pdf;
 pub mod results;

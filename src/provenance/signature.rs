@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use minisign::{KeyPair, PublicKeyBox, SecretKeyBox, SignatureBox};
 pub use minisign::{PublicKey, SecretKey};
 
-use super::verify::Check;
+use super::check::Check;
 use crate::data::hash::sha256;
 use crate::data::text::read_bytes;
 use crate::disk;

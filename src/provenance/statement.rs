@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::verify::Check;
+use super::check::Check;
 use crate::data::fingerprint::fingerprint;
 use crate::data::hash::sha256;
 use crate::disk;

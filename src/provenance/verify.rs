@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::carried::Carried;
+pub use super::check::{Check, Outcome};
 use super::compare::{Compared, Difference, compare};
 use crate::certify::{Compiled, certify, protocol_info};
 use crate::check::family::Family;
@@ -18,51 +19,6 @@ use crate::result::Kind;
 use crate::run::find;
 use crate::run::replay::replay;
 use crate::run::{Progress, Settings};
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    Agrees,
-    Differs,
-    /// Not requested, or without relevance.
-    NotChecked,
-    /// Requested, but not possible.
-    NotPossible,
-}
-
-/// A single check.
-#[derive(Clone, Debug)]
-pub struct Check {
-    /// `protocol text`, `input files`, ...
-    pub name: &'static str,
-    pub outcome: Outcome,
-    /// The result, one line.
-    pub says: String,
-    /// All differences, one line each.
-    pub details: Vec<String>,
-}
-
-impl Check {
-    pub fn agrees(name: &'static str, says: impl Into<String>) -> Self {
-        Self { name, outcome: Outcome::Agrees, says: says.into(), details: Vec::new() }
-    }
-
-    pub fn not_checked(name: &'static str, says: impl Into<String>) -> Self {
-        Self { name, outcome: Outcome::NotChecked, says: says.into(), details: Vec::new() }
-    }
-
-    pub fn not_possible(name: &'static str, says: impl Into<String>) -> Self {
-        Self { name, outcome: Outcome::NotPossible, says: says.into(), details: Vec::new() }
-    }
-
-    pub fn differs(name: &'static str, says: impl Into<String>, details: Vec<String>) -> Self {
-        Self { name, outcome: Outcome::Differs, says: says.into(), details }
-    }
-
-    /// Agrees if there are no differences.
-    fn of(name: &'static str, agrees: impl Into<String>, differs: impl Into<String>, details: Vec<String>) -> Self {
-        if details.is_empty() { Self::agrees(name, agrees) } else { Self::differs(name, differs, details) }
-    }
-}
 
 /// Version of this program in messages.
 const THIS: &str = env!("CARGO_PKG_VERSION");

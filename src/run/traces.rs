@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::record::{Found, Work, needed, open};
-use super::reduce::Numbered;
 use super::requirements;
 use super::section::SectionValues;
 use super::sections::Unit as Section;
@@ -94,7 +93,7 @@ pub fn traces(
 }
 
 /// The signals that plots of the whole campaign may need from these sections: of each quantity the worst ones.
-pub fn kept(work: &Work<'_>, sections: &[Numbered]) -> Vec<Kept> {
+pub fn kept(work: &Work<'_>, sections: &[(usize, SectionValues)]) -> Vec<Kept> {
     let mut units: Vec<Section> = sections.iter().filter_map(|(number, _)| work.units.get(*number).cloned()).collect();
     let values: Vec<SectionValues> = sections.iter().map(|(_, values)| values.clone()).collect();
     // What stops a run stops it when the sections are judged.

@@ -5,7 +5,7 @@ use super::extremes;
 use super::fails::Fails;
 use super::halves::{Half, Halves, Parts};
 use super::listed::Listed;
-use super::pooled::Pooled;
+use super::pooled::{Ends, Pooled};
 use super::spread::{Limit, Memory, order};
 
 /// A statistic over all selections.
@@ -78,8 +78,6 @@ fn with_worst(measure: &Measure, listed: Option<Listed>, ends: Ends, failing: u6
     });
     OverAll { spread: listed, failing, worst }
 }
-
-pub(super) type Ends = Option<((u32, u32), (u32, u32))>;
 
 /// Positions of the minimum and the maximum of the larger of two.
 fn extreme_ends(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -> Ends {

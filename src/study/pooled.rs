@@ -9,7 +9,6 @@ use super::case::{Case, Kind, Measure, Stratum, choose};
 use super::fails::Fails;
 use super::halves::{Half, Halves};
 use super::listed::{Listed, weighted};
-use super::overall::Ends;
 use crate::run::pool::Sums;
 
 /// Largest number of selections that are evaluated from their values.
@@ -61,6 +60,8 @@ impl Measure {
         Pooled::over(self, &Halves::of(&case)).listed(times)
     }
 }
+
+pub(super) type Ends = Option<((u32, u32), (u32, u32))>;
 
 /// The values of a statistic for each different choice of rows and of columns.
 pub struct Pooled {

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::marks::CHUNK;
+/// Bytes compared at a time.
+pub(super) const CHUNK: usize = 64;
 use super::number;
 
 /// How the bytes of a record are looked at.

@@ -1,11 +1,9 @@
 //! Index of the cells of a block of text.
 
-use super::lanes::Lanes;
+use super::lanes::{CHUNK, Lanes};
 
 /// Bytes indexed at a time; the index fits the first-level cache.
 const STRETCH: usize = 1 << 14;
-/// Bytes compared at a time.
-pub(super) const CHUNK: usize = 64;
 /// Marks written at a time. A chunk has seldom more than eight; a loop over exactly those would be mispredicted in most chunks.
 const AT_ONCE: usize = 8;
 

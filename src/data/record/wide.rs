@@ -9,8 +9,8 @@ use std::ops::Range;
 use pulp::cast;
 use pulp::x86::V3;
 
+use super::lanes::CHUNK;
 use super::lanes::Lanes;
-use super::marks::CHUNK;
 use super::number;
 
 /// Maximum length of a number that is read here, with its point and without its sign.

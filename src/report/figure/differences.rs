@@ -6,7 +6,7 @@ use super::axis::{self, Scale};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::levels::{Levels, speaks_of};
-use super::pairs::{pair_group, tooltip};
+use super::pair_mark::{pair_group, tooltip};
 use super::style::{GRID, MUTED, SHADE, SMALL, TEXT, TICK, WIDTH, cut, text_width};
 use super::zones::Marks;
 use crate::report::number;

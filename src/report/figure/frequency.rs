@@ -7,7 +7,7 @@ use super::axis::{self, Scale};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::pairs::{pair_group, tooltip};
+use super::pair_mark::{pair_group, tooltip};
 use super::style::{self, DASHED, INK, MUTED, Mark, TICK, WIDTH};
 use super::zones::Zones;
 use crate::report::number;

@@ -18,6 +18,7 @@ mod map;
 mod multiples;
 mod offsets;
 mod overview;
+mod pair_mark;
 mod pairs;
 mod regression;
 mod sensitivity;

@@ -4,7 +4,7 @@ use super::axis::Scale;
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::pairs::{pair_group, tooltip};
+use super::pair_mark::{pair_group, tooltip};
 use super::style::{DASHED, GRID, INK, MUTED, SMALL, TEXT, WIDTH, cut, text_width};
 use super::zones::{Marks, Zones};
 use crate::report::brief::{Line, Matrix, Numbered};
