@@ -1,7 +1,6 @@
 //! Facts: what `campaign.yaml` says beyond the layout of the folder. They are printed.
 
 use super::RecordKind;
-use super::opening::APPLICATION;
 use super::runs::RUNS;
 use crate::data::cells::name_and_unit;
 use crate::data::identification::REPORT_KEY;
@@ -26,6 +25,8 @@ pub struct Fact {
 /// Keys of `campaign.yaml` beside those of the records.
 pub(super) const LAYOUT: [&str; 10] =
     ["name", SHORT_NAME, "vehicle", "sections", APPLICATION, "parameters", "protocol", ORIGIN_KEY, REPORT_KEY, RUNS];
+/// The key of the table of wanted operation.
+pub(super) const APPLICATION: &str = "application";
 /// What the campaign is called where it stands beside others.
 pub(super) const SHORT_NAME: &str = "short name";
 

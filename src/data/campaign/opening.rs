@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::facts::LAYOUT;
+use super::facts::{APPLICATION, LAYOUT};
 use super::{Parameter, ReadFile, RecordKind, VehicleState};
 use crate::data::folder::{Folder, Place};
 use crate::data::origin::{ORIGIN_KEY, Origin};
@@ -14,8 +14,6 @@ use crate::yaml::{self, Node, Value};
 /// The column of the section table that names the sections; without it, the first column does.
 const SECTION_KEY: &str = "section";
 
-/// The key of the table of wanted operation.
-pub(super) const APPLICATION: &str = "application";
 /// The column of that table that names the points of operation.
 pub const POINT_KEY: &str = "point";
 

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::quantity::limit_in_words;
 use super::summary::Limited;
+use super::wording::limit_in_words;
 use super::{Finding, name, summary};
 use crate::report::estimates::{self, OfLimit};
 use crate::report::number;

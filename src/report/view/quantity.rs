@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::groups::{self, GroupTable};
 use super::reports::{self, ReportTable};
 use super::spread::{self, SpreadTable};
+use super::wording::limit_in_words;
 use super::{FigureView, Finding, name, summary};
 use crate::report::sides::Sides;
 use crate::report::{estimates, figure, number};
@@ -192,20 +193,6 @@ fn statistic(found: &StatisticResult, quantity: &QuantityResult) -> StatisticVie
         holds: Finding::of_statistic(Some(found)),
         reason: found.reason.as_deref().map(number::raised),
     }
-}
-
-/// A limit as worded. Where the name of another statistic stands for the limit of that one, so it says.
-pub(super) fn limit_in_words(found: &StatisticResult, quantity: &QuantityResult) -> String {
-    let (limit, rest) = found.limit_text.split_once(", ").map_or((found.limit_text.as_str(), None), |(limit, rest)| (limit, Some(rest)));
-    let of = |name: &str| -> Option<String> {
-        match limit.strip_suffix(name)? {
-            "" => Some(format!("limit of {name}")),
-            share => share.strip_suffix("of ").map(|share| format!("{share}of the limit of {name}")),
-        }
-    };
-    let mut others = quantity.statistics.iter().map(|other| other.name.as_str()).filter(|name| *name != found.name);
-    let words = others.find_map(of).unwrap_or_else(|| limit.to_owned());
-    number::formula(&rest.map_or_else(|| words.clone(), |rest| format!("{words}, {rest}")))
 }
 
 /// The pairs with the largest |difference|; equal ones in the order of the campaign.
