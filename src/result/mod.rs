@@ -12,6 +12,7 @@ mod kind;
 pub mod origin;
 mod quantity;
 pub mod report;
+mod shrink;
 mod spread;
 pub mod study;
 pub mod verdict;
