@@ -6,6 +6,7 @@
 
 use std::collections::HashMap;
 use std::fmt;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -24,12 +25,14 @@ pub const REPLICATES: usize = 2000;
 /// Seed of the draws: an arbitrary number, the same for all results that are compared.
 pub const SEED: u64 = 14363;
 
+/// Numbers of sites whose draws are kept: zones differ in theirs. Draws of 100 sites are 1.6 MB.
+const MOST_KEPT: usize = 16;
+
 /// Confidence bounds of a statistic.
 pub trait Bounds {
     /// The bound that the true value is below with this probability (0 to 1), in the unit of the statistic.
     ///
     /// # Errors
-    /// A probability not between 0 and 1; a bound that overflows.
     /// A probability not between 0 and 1; a bound beyond the range of numbers.
     fn bound(&self, probability: f64) -> Result<f64, ClusterError>;
 
@@ -87,6 +90,25 @@ impl Draws {
         Ok(Self { sites, drawn })
     }
 
+    /// [`REPLICATES`] draws of `sites` sites from [`SEED`], made once for all statistics of as many sites.
+    ///
+    /// # Errors
+    /// Fewer than two sites.
+    pub fn usual(sites: usize) -> Result<Arc<Self>, ClusterError> {
+        static MADE: LazyLock<Mutex<HashMap<usize, Arc<Draws>>>> = LazyLock::new(Mutex::default);
+        let made = || MADE.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(draws) = made().get(&sites) {
+            return Ok(Arc::clone(draws));
+        }
+        let draws = Arc::new(Self::new(sites, REPLICATES, SEED)?);
+        let mut made = made();
+        if made.len() >= MOST_KEPT {
+            made.clear();
+        }
+        made.insert(sites, Arc::clone(&draws));
+        Ok(draws)
+    }
+
     /// The sites of each draw.
     pub fn iter(&self) -> impl Iterator<Item = &[usize]> {
         self.drawn.chunks(self.sites)
@@ -108,12 +130,12 @@ impl SplitMix64 {
     }
 }
 
-/// The statistic of each draw, sorted. Bounds are its percentiles (type 7).
+/// The statistic of each draw. Bounds are its percentiles (type 7).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replicates(Vec<f64>);
 
 impl Replicates {
-    pub fn sorted(&self) -> &[f64] {
+    pub fn values(&self) -> &[f64] {
         &self.0
     }
 }
@@ -142,7 +164,6 @@ pub fn bootstrap<T: Copy>(sites: &[Vec<T>], draws: &Draws, statistic: impl Fn(&[
         let of = || ClusterError::Undefined { of: Part::Draw(number + 1) };
         replicates.push(statistic(&values).filter(|value| value.is_finite()).ok_or_else(of)?);
     }
-    replicates.sort_unstable_by(f64::total_cmp);
     Ok(Replicates(replicates))
 }
 

@@ -173,12 +173,11 @@ impl Group<'_> {
                 cluster::by_site(values, &units).and_then(|sites| StandardDeviation::of(&sites)?.bound(probability))
             }
             _ => {
-                let draws = |sites: usize| Draws::new(sites, cluster::REPLICATES, cluster::SEED);
                 // A statistic alone depends on the values only, and the draws are many.
                 if let (Kind::Input(0), [Taking::Statistic(statistic, ddof)]) = (&of_group.expr.kind, of_group.taken.as_slice()) {
                     let found = cluster::by_site(values, &units).and_then(|sites| {
                         let estimate = |values: &[f64]| statistic_of(*statistic, *ddof, values).ok();
-                        cluster::bootstrap(&sites, &draws(sites.len())?, estimate)?.bound(probability)
+                        cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?.bound(probability)
                     });
                     return found.map_err(|error| error.to_string());
                 }
@@ -189,7 +188,7 @@ impl Group<'_> {
                     Group { members: &members, ..*self }.over(of_group, &values).ok()
                 };
                 cluster::by_site(&rows, &units)
-                    .and_then(|sites| cluster::bootstrap(&sites, &draws(sites.len())?, estimate)?.bound(probability))
+                    .and_then(|sites| cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?.bound(probability))
             }
         };
         found.map_err(|error| error.to_string())
