@@ -1,4 +1,4 @@
-//! A line: sixteen sections of four zones, with irregularities drawn from the spectra of ORE B 176.
+//! A line: sections of four zones, with irregularities drawn from the spectra of ORE B 176.
 
 use fishplate::effects::Gauss;
 use fishplate::model::TrackTable;
@@ -49,12 +49,12 @@ impl Stretch {
     }
 }
 
-/// Sixteen sections for a vehicle.
-pub fn stretches(design: &Design, random: &mut Gauss) -> Vec<Stretch> {
+/// Sections for a vehicle, as many in each of four zones.
+pub fn stretches(design: &Design, per_zone: usize, random: &mut Gauss) -> Vec<Stretch> {
     let mut all = Vec::new();
     for zone in 1..=4 {
         let radii = [(0.0, 0.0), (800.0, 2000.0), (405.0, 595.0), (255.0, 395.0)][zone - 1];
-        for n in 0..4 {
+        for n in 0..per_zone {
             let name = format!("S{:02}", all.len() + 1);
             let between = |random: &mut Gauss, (low, high): (f64, f64)| low + (high - low) * random.uniform();
             if zone == 1 {

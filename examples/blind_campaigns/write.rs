@@ -43,7 +43,7 @@ fn make(out: &Path, set: &Set, case: &Case, draw: u64) -> Result<(), String> {
     let mut outputs = Outputs::of(SetKind::Campaign, out.join(&name));
     let mut add = |inside: &str, bytes: &[u8]| outputs.add(inside, bytes).map_err(|problem| problem.says);
     let mut table = String::from("section,zone [-],start [m],end [m],radius [m],direction,cant [mm],cant deficiency [mm],speed [km/h]\n");
-    for (at, stretch) in stretches(case.design, &mut random).iter().enumerate() {
+    for (at, stretch) in stretches(case.design, set.sections_per_zone, &mut random).iter().enumerate() {
         let irregularities = Irregularities::draw(&mut random);
         let track = measured(stretch, &irregularities);
         let plan = Plan::new(&catalogue, &effects, &section(stretch), None).map_err(|problem| problem.says)?;

@@ -8,13 +8,14 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
-use super::{NOISE, copy, fishplate, folder};
+use super::{campaign, copy, fishplate, folder};
 
 /// The catalogue that ships, with fewer effects so that the test is short.
 const CATALOGUE: &str = "catalogue: few\ntitle: A few effects\nextends: bogie-vehicle\neffects:\n  worn_profile: remove\n  \
     body_bending: remove\n  bumpstop_gap: remove\n  yaw_damper_loss: remove\n  centre_friction: remove\n  anti_roll_bar: remove\n  \
     primary_yaw_stiffness: remove\n  vertical_damper_loss: remove\n  lateral_damper_loss: remove\n  out_of_roundness: remove\n  \
     payload: remove\n  payload_offset: remove\n";
+
 const SECTIONS: [&str; 8] = ["S01", "S03", "S05", "S06", "S09", "S10", "S13", "S14"];
 
 struct Answer {
@@ -50,18 +51,7 @@ fn answer(campaign: &Path, catalogue: &str) -> Answer {
 fn base() -> &'static (PathBuf, Answer) {
     static BASE: OnceLock<(PathBuf, Answer)> = OnceLock::new();
     BASE.get_or_init(|| {
-        let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good");
-        let (small, made, to) = (folder().join("slippery-nominal"), folder().join("slippery-made"), folder().join("slippery"));
-        copy(&example, &small);
-        let table = fs::read_to_string(small.join("sections.csv")).unwrap();
-        let kept = table.lines().enumerate().filter(|(at, line)| *at == 0 || SECTIONS.iter().any(|name| line.starts_with(name)));
-        fs::write(small.join("sections.csv"), kept.map(|(_, line)| format!("{line}\n")).collect::<String>()).unwrap();
-        let paths = [&small, &made].map(|path| path.to_str().unwrap().to_string());
-        let mut arguments = vec!["simulate", &paths[0], "--out", &paths[1], "--quiet", "--effect", "friction=0.2"];
-        NOISE.iter().for_each(|noise| arguments.extend(["--effect", noise]));
-        assert!(fishplate(&arguments).status.success());
-        copy(&small, &to);
-        copy(&made.join("simulation"), &to.join("measurement"));
+        let to = campaign("slippery", &["friction=0.2"], &SECTIONS);
         let answer = answer(&to, CATALOGUE);
         assert_eq!((answer.verdict.as_str(), answer.name.as_str()), ("explained", "friction"));
         assert!((answer.friction / 0.2 - 1.0).abs() < 0.08, "{}", answer.friction);
@@ -245,7 +235,7 @@ fn one_effect_under_two_names_is_ambiguous() {
         unit: \"-\"\n        neutral: vehicle\n        default: 0.2\n        range: [0.05, 0.70]\n        \
         trials: [0.10, 0.16, 0.22, 0.28, 0.32, 0.40, 0.48, 0.56, 0.65]\n        means: friction coefficient\n        model: friction\n"
     );
-    let campaign = changed("slippery-twice", |_, _| None);
+    let campaign = changed("slippery-twin", |_, _| None);
     assert_eq!(answer(&campaign, &twin).verdict, "ambiguous");
     let text = fs::read_to_string(campaign.with_extension("few").join("diagnosis.json")).unwrap();
     let found: Value = serde_json::from_str(&text).unwrap();
