@@ -1,6 +1,6 @@
 //! Values of one signal in one section, and statistics over all section x signal pairs.
 
-use crate::metrics::interval::{mean_interval, standard_deviation_interval};
+use crate::metrics::cluster::{mean_interval, standard_deviation_interval};
 use crate::metrics::percentile::{Method, percentile};
 use crate::metrics::sampling;
 use crate::metrics::statistics::{self, Divisor};

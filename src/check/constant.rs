@@ -1,9 +1,10 @@
 //! Values that are the same whatever the records are: `0 * correlation`.
 
 use super::Checker;
-use super::evaluate::{Nothing, Values, number};
+use super::evaluate::number;
 use super::names::normalised;
 use super::plan::{Expr, Input, InputSide, Kind, Operator, Scalar, Side, Signal, SignalKind, Taken};
+use super::values::{Nothing, Values};
 use crate::catalog::Function;
 use crate::metrics::rounded;
 use crate::problem::Problem;

@@ -8,8 +8,8 @@ use crate::syntax::keys::{self, Sort};
 use crate::syntax::phrase::{Phrase, Pick};
 use crate::units::Unit;
 
-use super::family::slot;
 use super::names::normalised;
+use super::overlay::slot;
 
 /// Rules added, removed or changed from the first document to the second, in the order of the second.
 pub fn diff(before: &Document, after: &Document) -> Vec<Deviation> {

@@ -1,90 +1,8 @@
 //! Evaluates a checked expression, given the values of its names.
 
-use std::cell::RefCell;
-
 use super::plan::{Expr, Kind, Operator, Scalar};
 use super::possible::possible;
-
-/// Values of the names in an expression. Each method may return an error that states why the value is missing; by default it is
-/// missing.
-pub trait Values {
-    fn vehicle(&self, _: usize) -> Result<Scalar, String> {
-        Err("vehicle data are not known here".into())
-    }
-    fn column(&self, _: usize) -> Result<Scalar, String> {
-        Err("section data are not known here".into())
-    }
-    /// Start and end of the section on the axis, SI.
-    fn extent(&self) -> Result<(f64, f64), String> {
-        Err("there is no section here".into())
-    }
-    fn input(&self, _: usize) -> Result<f64, String> {
-        Err("there is no signal here".into())
-    }
-    /// Simulated and measured value of a pair, in this order.
-    fn sides(&self) -> Result<(f64, f64), String> {
-        Err("there is no pair of values here".into())
-    }
-    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
-        Err(format!("the limit of {statistic} is not known here"))
-    }
-    /// By what share of the right side `<=` and `>=` may be missed: the rounding of numbers that were converted to SI and subtracted.
-    fn rounding(&self) -> f64 {
-        0.0
-    }
-}
-
-/// No name has a value: only constants can be evaluated.
-#[derive(Clone, Copy, Debug)]
-pub struct Nothing;
-
-impl Values for Nothing {}
-
-/// Passes values on and records which section columns were used.
-#[derive(Debug)]
-pub struct Watched<'a, V: Values> {
-    values: &'a V,
-    columns: RefCell<Vec<usize>>,
-}
-
-impl<'a, V: Values> Watched<'a, V> {
-    pub fn new(values: &'a V) -> Self {
-        Self { values, columns: RefCell::default() }
-    }
-
-    /// Indices of the columns used, in the order of first use.
-    pub fn columns(&self) -> Vec<usize> {
-        self.columns.borrow().clone()
-    }
-}
-
-impl<V: Values> Values for Watched<'_, V> {
-    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
-        self.values.vehicle(index)
-    }
-    fn column(&self, index: usize) -> Result<Scalar, String> {
-        let mut columns = self.columns.borrow_mut();
-        if !columns.contains(&index) {
-            columns.push(index);
-        }
-        self.values.column(index)
-    }
-    fn extent(&self) -> Result<(f64, f64), String> {
-        self.values.extent()
-    }
-    fn input(&self, index: usize) -> Result<f64, String> {
-        self.values.input(index)
-    }
-    fn sides(&self) -> Result<(f64, f64), String> {
-        self.values.sides()
-    }
-    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
-        self.values.limit_of(statistic)
-    }
-    fn rounding(&self) -> f64 {
-        self.values.rounding()
-    }
-}
+use super::values::{Values, leaf};
 
 /// The value of an expression. Where names have no value, the result is the value that the expression has for every value of them,
 /// if there is one.
@@ -101,15 +19,6 @@ pub fn evaluate(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
 
 fn exactly(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
     let result = match &expr.kind {
-        Kind::Constant(value) => value.clone(),
-        Kind::Vehicle(index) => values.vehicle(*index)?,
-        Kind::Column(index) => values.column(*index)?,
-        Kind::Start => Scalar::Number(values.extent()?.0),
-        Kind::End => Scalar::Number(values.extent()?.1),
-        Kind::Input(index) => Scalar::Number(values.input(*index)?),
-        Kind::Simulated => Scalar::Number(values.sides()?.0),
-        Kind::Measured => Scalar::Number(values.sides()?.1),
-        Kind::LimitOf(statistic) => Scalar::Number(values.limit_of(statistic)?),
         Kind::Negative(inner) => Scalar::Number(-number(inner, values)?),
         Kind::Not(inner) => Scalar::Flag(!flag(inner, values)?),
         Kind::Power(inner, exponent) => Scalar::Number(number(inner, values)?.powi(i32::from(*exponent))),
@@ -129,6 +38,7 @@ fn exactly(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
                 None => return Err(format!("no case of `{}` applies", words(expr))),
             }
         }
+        name => leaf(name, values)?,
     };
     match result {
         Scalar::Number(value) if !value.is_finite() => Err(format!("`{}` is not a finite number", words(expr))),

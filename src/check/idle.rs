@@ -1,8 +1,9 @@
 //! Limits that are not what they seem: they hold, or fail, whatever the values are.
 
 use super::Checker;
-use super::evaluate::{Values, number, words};
+use super::evaluate::{number, words};
 use super::plan::{Estimate, EstimateKind, Expr, InputSide, Kind, OfGroup, Operator, Scalar, Taking, Valued};
+use super::values::Values;
 use crate::catalog::Statistic;
 use crate::metrics::rounded;
 use crate::problem::Problem;

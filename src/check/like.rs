@@ -1,6 +1,6 @@
 //! A quantity that is like another: its fields are those of the other, with its own over them.
 
-use super::family::overlay;
+use super::overlay::overlay;
 use crate::problem::{Problem, Problems};
 use crate::syntax::document::{Block, Document};
 

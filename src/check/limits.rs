@@ -1,11 +1,12 @@
 //! Checks limits: statistic, bound, factors, conditions and scope.
 
-use super::evaluate::{Values, number, words};
+use super::evaluate::{number, words};
 use super::groups::Grouped;
 use super::names::normalised;
 use super::plan::{Estimate, EstimateKind, Expr, Kind, Limit, OfGroup, Scalar, Scope as LimitScope, Type};
 use super::scalar_names::LIMITS_NOT_VALUES;
 use super::scalars::{Scope, in_words};
+use super::values::Values;
 use super::{Checker, overlap};
 use crate::catalog::Best;
 use crate::metrics::rounded;

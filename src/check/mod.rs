@@ -22,6 +22,7 @@ mod minima;
 mod names;
 mod near;
 mod overlap;
+mod overlay;
 mod parameters;
 pub mod plan;
 mod plausibility;
@@ -37,6 +38,7 @@ mod scalars;
 mod signals;
 mod steps;
 mod transfer;
+pub mod values;
 mod verdicts;
 mod weights;
 

@@ -4,8 +4,8 @@
 //! Numbers are bounded by intervals (interval arithmetic); conditions have three truth values (Kleene logic). The bounds are never
 //! too narrow. They may be too wide where an unknown name occurs twice.
 
-use super::evaluate::{Values, evaluate};
 use super::plan::{Expr, Kind, Operator, Scalar, Type};
+use super::values::{Values, leaf};
 use crate::catalog::Function;
 
 /// All values that an expression may have.
@@ -129,7 +129,11 @@ pub fn possible(expr: &Expr, values: &dyn Values) -> Possible {
             }
             all.unwrap_or_else(|| Possible::anything(&expr.ty))
         }
-        _ => evaluate(expr, values).map_or_else(|_| Possible::anything(&expr.ty), Possible::of),
+        name => match leaf(name, values) {
+            Ok(Scalar::Number(value)) if !value.is_finite() => Possible::anything(&expr.ty),
+            Ok(value) => Possible::of(value),
+            Err(_) => Possible::anything(&expr.ty),
+        },
     }
 }
 
@@ -204,8 +208,8 @@ fn equal(left: &Possible, right: &Possible) -> (bool, bool) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::evaluate::Nothing;
     use super::super::plan::Origin;
+    use super::super::values::Nothing;
     use super::*;
     use crate::source::Source;
     use crate::units::Dimension;

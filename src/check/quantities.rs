@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use super::Checker;
 use super::conditions::impossible;
-use super::evaluate::{Values, number, words};
+use super::evaluate::{number, words};
 use super::names::{Assignment, bare_word, normalised};
 use super::plan::{Evaluation, Expr, InputSide, Pairing, Position, Quantity, QuantityWords, Records, Side, Signal, Step, Valued};
 use super::records::Compare;
 use super::scalars::Scope;
 use super::steps::after;
+use super::values::Values;
 use crate::catalog::{Best, DIFFERENCES, NOT_CHECKED};
 use crate::problem::Problem;
 use crate::source::Span;

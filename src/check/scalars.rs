@@ -3,10 +3,11 @@
 use super::Checker;
 use super::conditions::impossible;
 use super::estimates::Group;
-use super::evaluate::{Nothing, evaluate, words};
+use super::evaluate::{evaluate, words};
 use super::names::Assignment;
 use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Taking, Type};
 use super::signals::is_signal_function;
+use super::values::Nothing;
 use crate::catalog::{FUNCTIONS, Function, MetricEntry, Reducer, SIGNAL_FUNCTIONS, Signature};
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};

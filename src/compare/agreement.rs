@@ -1,6 +1,6 @@
 //! Agreement of protocols and of metrics, section by section.
 
-use super::campaign::Found;
+use super::found::Found;
 use crate::metrics::rank::spearman;
 use crate::result::comparison::{Agreement, Cell, Score};
 

@@ -1,7 +1,7 @@
 //! What a metric can be applied to, found by trying: one quantity, one section, doubled and exchanged records.
 
-use super::campaign::{Base, Found};
-use super::metric;
+use super::found::Found;
+use super::metric::{self, Base};
 use crate::check::plan::Plan;
 use crate::result::comparison::{Applicability, Tried};
 use crate::result::{PairValue, QuantityResult, Verdict};

@@ -3,8 +3,9 @@
 use rayon::prelude::*;
 
 use super::applicability;
-use super::metric::{self, Number};
-use super::sensitivity::{self, Moved};
+use super::found::{Found, Judgement, Moved};
+use super::metric::{self, Base};
+use super::sensitivity;
 use super::subject::CompiledAll;
 use super::{KINDS, Settings};
 use crate::certify::Compiled;
@@ -15,39 +16,7 @@ use crate::result::comparison::{Applicability, Cell, Ratio, Score};
 use crate::result::{FileHash, Outcome, Verdict};
 use crate::run::several::{Rules, several};
 use crate::run::trial::Trial;
-use crate::run::{Counts, Evaluated, Judged, Progress};
-
-/// What all protocols made of a campaign.
-#[derive(Debug)]
-pub struct Found {
-    pub campaign: String,
-    pub files: Vec<FileHash>,
-    /// One for each protocol.
-    pub judgements: Vec<Judgement>,
-    /// The first protocol with each changed rule, where that is a protocol.
-    pub changed: Vec<Option<Judgement>>,
-    pub scores: Vec<Score>,
-    /// For each protocol, each disturbance and each size what its metrics did.
-    pub moved: Vec<Vec<Vec<Moved>>>,
-    /// For each protocol; none where it cannot be evaluated.
-    pub applicability: Vec<Vec<Applicability>>,
-    pub counts: Counts,
-}
-
-/// A verdict with the ratios it rests on.
-#[derive(Clone, Debug)]
-pub struct Judgement {
-    pub cell: Cell,
-    pub ratios: Vec<Ratio>,
-}
-
-/// A protocol on the records as they are.
-pub struct Base<'a> {
-    pub compiled: &'a Compiled,
-    pub evaluated: &'a Evaluated,
-    pub judged: &'a Judged,
-    pub numbers: &'a [Number],
-}
+use crate::run::{Evaluated, Judged, Progress};
 
 pub fn found(
     (name, campaign): (&str, &Campaign),

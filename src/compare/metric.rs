@@ -1,8 +1,9 @@
 //! The metrics of a protocol: limits about the same kind of number.
 
+use crate::certify::Compiled;
 use crate::check::plan::{EstimateKind, Evaluation, Limit, Plan, Quantity, Records};
 use crate::result::{QuantityResult, StatisticResult};
-use crate::run::Judged;
+use crate::run::{Evaluated, Judged};
 
 /// The metric of a limit, or of a quantity without one.
 pub fn name(quantity: &Quantity, limit: Option<&Limit>) -> String {
@@ -89,4 +90,12 @@ fn signed(statistic: &StatisticResult) -> Option<f64> {
 fn mean(quantity: &QuantityResult) -> Option<f64> {
     let sum: f64 = quantity.values.iter().map(|value| value.difference).sum();
     (!quantity.values.is_empty()).then(|| sum / quantity.values.len() as f64)
+}
+
+/// A protocol on the records as they are.
+pub struct Base<'a> {
+    pub compiled: &'a Compiled,
+    pub evaluated: &'a Evaluated,
+    pub judged: &'a Judged,
+    pub numbers: &'a [Number],
 }

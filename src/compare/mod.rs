@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `subject` | the protocols and campaigns of a comparison; compiling with the parameters of each campaign |
 //! | `metric` | the metrics of a protocol, and their numbers |
+//! | `found` | what the protocols made of a campaign |
 //! | `campaign` | one campaign by all protocols: `run::several`, reduced to plain numbers |
 //! | `agreement` | contingency tables and rank correlations |
 //! | `sensitivity` | change of each metric over the size of each disturbance |
@@ -39,6 +40,7 @@
 mod agreement;
 mod applicability;
 mod campaign;
+mod found;
 mod metric;
 mod rules;
 mod sensitivity;
@@ -143,7 +145,7 @@ impl Prepared {
         let Self { protocols, campaigns, changes, unrelated, compiled, settings } = self;
         let trials = trials(&settings.sizes);
         let names: Vec<&str> = protocols.iter().map(|subject| subject.name.as_str()).collect();
-        let found: Vec<campaign::Found> = campaigns
+        let found: Vec<found::Found> = campaigns
             .iter()
             .zip(compiled)
             .map(|((name, campaign), compiled)| campaign::found((name, campaign), &names, compiled, &trials, settings, progress))

@@ -3,13 +3,9 @@
 use std::sync::Arc;
 
 use super::Subject;
-use super::campaign::{Found, Judgement};
+use super::found::{Found, Judgement};
 use super::subject::CompiledAll;
-use crate::certify::{Compiled, compile};
-use crate::check::Overrides;
 use crate::check::diff::{self, Change};
-use crate::check::family::Family;
-use crate::problem::{Problems, Severity};
 use crate::result::comparison::{Difference, Ratio};
 
 /// The differences from one protocol to another.
@@ -23,22 +19,6 @@ pub fn related(before: &Subject, after: &Subject) -> bool {
     let (a, b) = (&before.family, &after.family);
     let common = a.sources.iter().any(|source| b.sources.iter().any(|other| other.text == source.text));
     common || 2 * diff::kept(&a.merged, &b.merged) >= a.merged.blocks.len()
-}
-
-/// The protocol with one change.
-///
-/// # Errors
-/// It is then no valid protocol: the first problem, which tells what the rule needs.
-pub fn alone(family: &Family, change: &Change, overrides: impl Fn(&Family) -> Overrides) -> Result<Compiled, String> {
-    let family = Family { merged: change.applied(&family.merged), ..family.clone() };
-    let mut problems = Problems::default();
-    let overrides = overrides(&family);
-    let compiled = compile(family, &overrides, &mut problems).filter(|_| !problems.any_error());
-    compiled.ok_or_else(|| {
-        let first = problems.0.iter().find(|problem| problem.severity == Severity::Error);
-        let says = first.map_or("the protocol is then not valid", |problem| problem.says.as_str());
-        format!("cannot be applied alone: {says}")
-    })
 }
 
 /// Every difference by itself on every campaign, then all of them together. None of unrelated protocols.

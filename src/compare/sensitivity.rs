@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::campaign::{Base, Found};
-use super::metric::{self, Number};
+use super::found::{Found, Moved, OfMetric};
+use super::metric::{self, Base, Number};
 use super::{KINDS, Settings};
 use crate::metrics::disturb::{mixed, stream};
 use crate::result::comparison::{OfCampaign, Sensitivity};
@@ -14,26 +14,6 @@ pub const DRAWS: usize = 8;
 
 /// Beside the disturbances of records.
 const SECTIONS: &str = "choice of sections";
-
-/// What the metrics of a protocol did at one size of one disturbance, in one campaign.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Moved {
-    pub metrics: Vec<OfMetric>,
-    pub verdicts: usize,
-    pub verdicts_changed: usize,
-    /// Why nothing is known.
-    pub reason: Option<String>,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct OfMetric {
-    pub metric: String,
-    pub limited: bool,
-    /// Sum of squared changes of its numbers.
-    pub squares: f64,
-    pub count: usize,
-    pub largest: Option<f64>,
-}
 
 impl Moved {
     fn add(&mut self, base: &[Number], now: &[Number]) {

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::Settings;
-use super::rules;
 use crate::certify::{Compiled, compile};
 use crate::check::diff::Change;
 use crate::check::family::Family;
@@ -131,7 +130,7 @@ fn compiled_with(protocols: &[Subject], changes: &[Change], overrides: &Override
         return None;
     }
     let changed = protocols.first().map_or_else(Vec::new, |first| {
-        let one = |change: &Change| rules::alone(&first.family, change, |family| of_protocol(family, overrides));
+        let one = |change: &Change| alone(&first.family, change, |family| of_protocol(family, overrides));
         changes.iter().map(one).collect()
     });
     Some(CompiledAll { protocols: all, changed })
@@ -162,4 +161,20 @@ fn overrides(campaign: &Campaign, settings: &Settings) -> Overrides {
         overrides.insert(name.clone(), Override { text, set_by: SetBy::CommandLine });
     }
     overrides
+}
+
+/// The protocol with one change.
+///
+/// # Errors
+/// It is then no valid protocol: the first problem, which tells what the rule needs.
+fn alone(family: &Family, change: &Change, overrides: impl Fn(&Family) -> Overrides) -> Result<Compiled, String> {
+    let family = Family { merged: change.applied(&family.merged), ..family.clone() };
+    let mut problems = Problems::default();
+    let overrides = overrides(&family);
+    let compiled = compile(family, &overrides, &mut problems).filter(|_| !problems.any_error());
+    compiled.ok_or_else(|| {
+        let first = problems.0.iter().find(|problem| problem.severity == Severity::Error);
+        let says = first.map_or("the protocol is then not valid", |problem| problem.says.as_str());
+        format!("cannot be applied alone: {says}")
+    })
 }

@@ -362,3 +362,22 @@ impl fmt::Display for ClusterError {
 }
 
 impl std::error::Error for ClusterError {}
+
+/// Interval of the mean of values that are independent between sites, but not within a site; see [`Mean`].
+///
+/// `site` is the site of each value. `None` for fewer than two sites, lists of different length, a value that is not finite, or a
+/// confidence not between 0 and 1.
+pub fn mean_interval(values: &[f64], site: &[usize], confidence: f64) -> Option<Interval> {
+    Mean::of(&by_site(values, site).ok()?).ok()?.interval(confidence).ok()
+}
+
+/// Interval of the standard deviation, with equal tails: chi-square with G - 1 degrees of freedom for G sites. The values of one
+/// site count as one value, as their dependence is not known. With one value per site, this is the usual interval.
+/// [`StandardDeviation::of`] is narrower, but its coverage is below the stated confidence.
+///
+/// `site` and `None` as in [`mean_interval`].
+pub fn standard_deviation_interval(values: &[f64], site: &[usize], confidence: f64) -> Option<Interval> {
+    let value = statistics::standard_deviation(values, Divisor::Sample)?;
+    let degrees = by_site(values, site).ok()?.len() as f64 - 1.0;
+    StandardDeviation { value, degrees: Some(degrees) }.interval(confidence).ok()
+}

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::facts::Facts;
-use super::section::SectionValues;
-use super::sections::Unit;
+use super::section_values::SectionValues;
+use super::unit::Unit;
 use super::wanted::Point;
 use super::{Evaluated, copies, domain, keep, nothing_usable, requirements, stop_on_fault};
 use crate::check::plan::Plan;

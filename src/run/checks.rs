@@ -4,11 +4,12 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::facts::Known;
+use super::one_record::one_record;
 use super::plausibility::Questions;
 use super::record::{Fault, Work};
-use super::section::{SectionValues, one_record};
-use super::sections::Unit;
+use super::section_values::SectionValues;
 use super::sides::{Evaluated, Sides, Two, number_of, section};
+use super::unit::Unit;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Check, Input, InputSide, Side};
 use crate::data::RecordKind;

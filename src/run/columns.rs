@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::facts::Facts;
 use super::record::needed;
-use super::sections::Unit;
+use super::unit::Unit;
 use crate::check::plan::{Plan, Side};
 use crate::data::{Campaign, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};

@@ -3,10 +3,10 @@
 use indexmap::IndexMap;
 
 use super::facts::Facts;
-use super::judge::count;
 use super::limits::rule_place;
-use super::sections::Unit;
+use super::unit::Unit;
 use super::wanted::{Point, value, word};
+use super::words::count;
 use crate::check::plan::{Coordinate, DatumKind, Domain, OnFault, Plan, Scalar};
 use crate::metrics::hull::{self, Nearest};
 use crate::result::{Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Finding, WantedPoint};

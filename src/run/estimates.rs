@@ -6,13 +6,14 @@ use indexmap::IndexMap;
 
 use super::facts::{Facts, Known, Vehicle};
 use super::groups::of_key;
-use super::sections::Unit;
 use super::table::{Member, Table, independent};
+use super::unit::Unit;
 use crate::catalog::Statistic;
-use crate::check::evaluate::{Values, flag, number, words};
+use crate::check::evaluate::{flag, number, words};
 use crate::check::plan::{
     DataReducer, DatumKind, Estimate, EstimateKind, Expr, Fit, Key, Kind, OfGroup, Operator, Plan, Position, Scalar, Taking, Type,
 };
+use crate::check::values::Values;
 use crate::metrics::cluster::{self, Bounds, Draws, Mean, StandardDeviation};
 use crate::metrics::percentile::{Method, percentile};
 use crate::metrics::regression::{self, Regression, Tails};

@@ -3,10 +3,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::plausibility::consequence;
+use super::consequence::consequence;
 use super::record::Work;
-use super::sections::Unit;
 use super::sides::{RecordOfSide, Sides, samples_of};
+use super::unit::Unit;
 use crate::check::plan::{Exchanged, Plausibility};
 use crate::graph::NodeId;
 use crate::metrics::resample::Located;

@@ -4,16 +4,15 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::sections::Unit;
 use super::table::Member;
-use super::told::is_dimensioned;
-use crate::check::evaluate::Values;
+use super::unit::Unit;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
+use crate::check::values::Values;
 use crate::data::Campaigns;
 use crate::data::campaign::VehicleState;
 use crate::problem::{Problem, Problems};
 use crate::result::DataItem;
-use crate::units::{self, number::Refused};
+use crate::units::{self, Dimension, number::Refused};
 use crate::yaml::Value;
 
 /// Values of one vehicle, one for each [`Plan::vehicle`].
@@ -95,6 +94,13 @@ impl Facts {
     }
 }
 
+impl Unit {
+    /// The values of names in the section.
+    pub fn known<'a>(&'a self, facts: &'a Facts) -> Known<'a> {
+        Known { columns: Some(&self.columns), extent: self.extent, ..Known::vehicle(facts.of(self)) }
+    }
+}
+
 impl Vehicle {
     /// The values as a report prints them.
     fn items(&self, plan: &Plan) -> Vec<DataItem> {
@@ -109,6 +115,11 @@ impl Vehicle {
     fn told(&self, reason: String) -> String {
         self.of.as_ref().map_or(reason.clone(), |of| format!("{reason} ({of})"))
     }
+}
+
+/// Whether the size of such a number depends on its unit.
+pub fn is_dimensioned(kind: &DatumKind) -> bool {
+    matches!(kind, DatumKind::Number(unit) if unit.dimension != Dimension::ONE)
 }
 
 /// A value as printed in a report, in the unit declared in the protocol.

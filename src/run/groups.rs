@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use indexmap::IndexSet;
 
 use super::facts::Facts;
-use super::sections::Unit;
 use super::table::Member;
+use super::unit::Unit;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Key, Limit, Plan, Position, Quantity, Scalar, Scope};
 

@@ -3,18 +3,19 @@
 use std::collections::BTreeSet;
 
 use super::facts::Facts;
-use super::limits::{self, Compared, Judging};
+use super::limits::{self, Judging, compared};
 use super::minima::{self, TooFew};
 use super::reports;
-use super::section::SectionValues;
-use super::sections::Unit;
+use super::section_values::SectionValues;
 use super::spreads;
 use super::table::{Member, count_independent};
 use super::together;
+use super::unit::Unit;
 use super::verdicts;
+use super::words::count;
 use crate::check::constant;
 use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Valued, Zone};
-use crate::graph::{Graph, Operation, QuantityNodes};
+use crate::graph::Graph;
 use crate::metrics::rounded;
 use crate::result::{Consequence, Finding, PairValue, QuantityResult, Reported, Verdict, VerdictResult, ZoneResult, usable_sections};
 
@@ -159,18 +160,6 @@ pub fn members<'a>(quantity: &'a Quantity, index: usize, used: &[(&'a Unit, &'a 
     members
 }
 
-/// Evaluates the estimates and limits of a quantity, group by group.
-pub fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Vec<Compared> {
-    let of_limit = |nodes: &crate::graph::LimitNodes| match (&graph.nodes[nodes.estimate].operation, &graph.nodes[nodes.limit].operation) {
-        (Operation::Estimate(estimate), Operation::Limit(limit)) => {
-            let judging = *judging;
-            judging.against(limit, judging.estimate(estimate))
-        }
-        _ => Vec::new(),
-    };
-    nodes.limits.iter().flat_map(of_limit).collect()
-}
-
 /// The rows of a quantity, or the reason why they are not sufficient.
 pub struct Rows<'a> {
     members: Vec<Member<'a>>,
@@ -305,14 +294,4 @@ fn quantity_result(graph: &Graph, index: usize, judging: &Judging<'_>, reason: O
         rule: limits::rule_place(&quantity.span),
     };
     (result, fails.into_iter().flatten().collect())
-}
-
-/// A number with its noun: `1 section`, `2 sections`, `no quantities`.
-pub fn count(number: usize, noun: &str) -> String {
-    let plural = noun.strip_suffix('y').map_or_else(|| format!("{noun}s"), |stem| format!("{stem}ies"));
-    match number {
-        0 => format!("no {plural}"),
-        1 => format!("1 {noun}"),
-        _ => format!("{number} {plural}"),
-    }
 }

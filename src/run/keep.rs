@@ -2,8 +2,8 @@
 
 use super::facts::Facts;
 use super::pool::{Pool, Pooled, PooledLimit, PooledQuantity, pool};
-use super::section::SectionValues;
-use super::sections::Unit;
+use super::section_values::SectionValues;
+use super::unit::Unit;
 use crate::catalog::Statistic;
 use crate::check::plan::{Keep, Plan, Scalar};
 use crate::metrics::reduction::reduced;

@@ -7,8 +7,10 @@ use super::minima::TooFew;
 use super::table::{Member, Table, count_independent};
 use super::told::factors;
 use crate::catalog::Statistic;
-use crate::check::evaluate::{Values, flag, number};
+use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Estimate, EstimateKind, Limit, Plan, Quantity, Report, Scalar};
+use crate::check::values::Values;
+use crate::graph::{Graph, LimitNodes, Operation, QuantityNodes};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
 use crate::result::{Outside, RegressionFigure, RulePlace, Sample, StatisticResult};
 use crate::source::Span;
@@ -437,6 +439,18 @@ impl Values for Named<'_> {
     fn limit_of(&self, statistic: &str) -> Result<f64, String> {
         self.bounds.of_statistic(statistic, self.depth + 1)
     }
+}
+
+/// Evaluates the estimates and limits of a quantity, group by group.
+pub fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Vec<Compared> {
+    let of_limit = |nodes: &LimitNodes| match (&graph.nodes[nodes.estimate].operation, &graph.nodes[nodes.limit].operation) {
+        (Operation::Estimate(estimate), Operation::Limit(limit)) => {
+            let judging = *judging;
+            judging.against(limit, judging.estimate(estimate))
+        }
+        _ => Vec::new(),
+    };
+    nodes.limits.iter().flat_map(of_limit).collect()
 }
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::record::{Opened, Work};
-use super::section::SectionValues;
-use super::sections::Unit;
+use super::section_values::SectionValues;
+use super::unit::Unit;
 use crate::check::plan::StepSpec;
 use crate::graph::{NodeId, Operation};
 use crate::metrics::filter::{Band, Roots};

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use super::facts::Facts;
 use super::groups::{Grouped, parts};
-use super::judge::count;
 use super::table::{Member, Row, independent};
+use super::words::count;
 use crate::check::plan::{Plan, Quantity};
 
 /// A group with too few pairs.

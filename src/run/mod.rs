@@ -5,6 +5,7 @@ mod causes;
 mod checks;
 mod columns;
 mod common;
+mod consequence;
 mod copies;
 mod domain;
 mod estimates;
@@ -20,14 +21,17 @@ mod margins;
 mod minima;
 pub mod needs;
 mod not_asked;
+mod one_record;
 mod plausibility;
 pub mod pool;
+mod print;
 mod record;
 mod reduce;
 pub mod replay;
 mod reports;
 mod requirements;
 mod section;
+mod section_values;
 mod sections;
 pub mod several;
 mod shared;
@@ -41,8 +45,10 @@ mod together;
 mod told;
 mod traces;
 pub mod trial;
+mod unit;
 mod verdicts;
 mod wanted;
+mod words;
 
 use indexmap::IndexMap;
 
@@ -57,18 +63,18 @@ use crate::result::{
 };
 
 pub use basis::Basis;
-pub use copies::Print;
 pub use facts::{Facts, scalar};
 pub use judge::Judged;
 use pool::Pool;
+pub use print::Print;
 use record::Found;
 pub use reduce::{Numbered, Reduced, Shard, reduce};
-pub use section::SectionValues;
-pub use sections::Unit;
+pub use section_values::SectionValues;
 pub use shared::Counts;
 pub use synchronisation::{Offset, Shifts};
 pub use table::Row;
 pub use traces::{Kept, Signals};
+pub use unit::Unit;
 
 /// The results of a run. The report adds the descriptions of protocol and campaign.
 #[derive(Debug)]

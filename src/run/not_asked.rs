@@ -3,7 +3,7 @@
 
 use super::facts::{Facts, Known};
 use super::requirements::sections_in_words;
-use super::sections::Unit;
+use super::unit::Unit;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Plan, Plausibility, Test};
 use crate::result::Finding;

@@ -3,17 +3,18 @@
 use std::collections::BTreeSet;
 
 use super::causes;
-use super::copies::Print;
+use super::consequence::consequence;
 use super::exchanged;
 use super::facts::{Known, trimmed};
+use super::print::Print;
 use super::record::{Work, needed};
-use super::section::SectionValues;
-use super::sections::Unit;
+use super::section_values::SectionValues;
 use super::sides::{Evaluated, RecordOfSide, Sides, number_of, samples_of, section};
+use super::unit::Unit;
 use crate::check::evaluate::{flag, number, words};
-use crate::check::plan::{Exchanged, InputSide, Looks, OnFault, Plausibility, Requirement, Test};
+use crate::check::plan::{Exchanged, InputSide, Looks, Plausibility, Requirement, Test};
 use crate::graph::{InputNode, NodeId, PositionNodes};
-use crate::result::{Consequence, Finding};
+use crate::result::Finding;
 use crate::units::Dimension;
 
 /// Significant digits of a number in the sentence of a finding; the result file has all digits.
@@ -160,15 +161,6 @@ impl Position<'_> {
             cause: (!cause.is_empty()).then(|| cause.join("; ")),
             consequence: consequence(self.rule.otherwise),
         })
-    }
-}
-
-/// The consequence of a finding, from the rule's `otherwise`. For `stop`, the run ends elsewhere.
-pub fn consequence(otherwise: OnFault) -> Consequence {
-    match otherwise {
-        OnFault::Note => Consequence::Note,
-        OnFault::NotUsed => Consequence::NotUsed,
-        OnFault::NotAssessable | OnFault::Stop => Consequence::NotAssessable,
     }
 }
 

@@ -10,9 +10,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::facts::{Facts, Known};
-use super::sections::Unit;
 use super::shared::{Keys, Memo, Sharing};
 use super::signal::{Along, Extent, Rate, Samples};
+use super::unit::Unit;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Plan, Side};
 use crate::data::campaign::{Part, ReadFile};

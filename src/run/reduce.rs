@@ -6,7 +6,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::basis::Basis;
-use super::section::{self, SectionValues};
+use super::section;
+use super::section_values::SectionValues;
 use super::synchronisation::Shifts;
 use super::traces::{self, Kept};
 use super::{Prepared, Progress};

@@ -1,11 +1,12 @@
 //! Requirements on the data and records of sections, and the consequences of those that are not met.
 
 use super::facts::{Facts, Vehicle, item, trimmed};
-use super::section::SectionValues;
-use super::sections::Unit;
-use crate::check::evaluate::{Watched, flag, number};
+use super::section_values::SectionValues;
+use super::unit::Unit;
+use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Expr, Kind, OnFault, Plan, Zone};
 use crate::check::possible::{Possible, possible};
+use crate::check::values::Watched;
 use crate::problem::{Problem, Problems};
 use crate::result::{CheckResult, Consequence, Finding};
 

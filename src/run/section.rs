@@ -3,51 +3,22 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
 use super::checks::{record_checks, track_checks};
 use super::common::Meetings;
-use super::copies::Print;
 use super::facts::Known;
 use super::margins::note_margins;
+use super::one_record::one_record;
 use super::plausibility::{self, Questions};
 use super::record::{Fault, Found, Opened, Work, needed, open};
-use super::sections::Unit;
+use super::section_values::SectionValues;
 use super::sides::{Evaluated, Original, RecordOfSide, Sides};
-use super::signal::Extent;
-use super::synchronisation::{self, Offset, Shifts};
+use super::synchronisation::{self, Shifts};
 use super::table::Row;
+use super::unit::Unit;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Evaluation, Expr, Position, Quantity, Side};
 use crate::data::{RecordKind, WhichRecord};
 use crate::graph::{InputNode, NodeId, SignalNodes};
-use crate::problem::Problem;
-use crate::result::{CheckResult, FileHash, Finding};
-
-/// Results of one section.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct SectionValues {
-    /// The rows of the section for each quantity; empty where the position was not recorded or the quantity excludes the section.
-    /// A file of values has them as its rows.
-    #[serde(skip)]
-    pub rows: Vec<Vec<Row>>,
-    /// Quantities that cannot be evaluated in this section, with the signal and the reason.
-    pub impossible: Vec<(usize, String)>,
-    pub checks: Vec<CheckResult>,
-    /// Plausibility findings within this section.
-    pub findings: Vec<Finding>,
-    /// Marks of the signals that are compared with others to find copies.
-    pub prints: Vec<Print>,
-    pub files: Vec<FileHash>,
-    /// The measured range of a whole record.
-    pub extent: Option<Extent>,
-    /// Record beyond the section, in s, where it is too short for a slow filter to settle.
-    pub short_margin: Option<f64>,
-    /// Shift of the measurement against the simulation, where it was requested.
-    pub offset: Option<Offset>,
-    pub fault: Option<String>,
-    pub problems: Vec<Problem>,
-}
 
 impl Side {
     pub fn kind(self) -> RecordKind {
@@ -304,24 +275,4 @@ pub fn single(work: &Work<'_>, unit: &Unit, index: usize, signal: usize) -> Resu
     let sides = Sides::of_section(work, unit, (&simulated, &measured), original.as_ref(), (&known, &meetings));
     let rows = sides.rows(work, signal, nodes).map_err(Fault::new)?;
     Ok(Computed { rows, records: all })
-}
-
-/// One record of a section through the graph.
-pub fn one_record(
-    work: &Work<'_>,
-    unit: &Unit,
-    which: WhichRecord,
-    wanted: &BTreeSet<NodeId>,
-    known: &Known<'_>,
-    values: &mut SectionValues,
-) -> Result<(Vec<(NodeId, Found)>, Opened), Fault> {
-    let needed = needed(work.graph, wanted, known).map_err(Fault::new)?;
-    let opened = open(work, unit, which, &needed)?;
-    values.files.push(opened.file.clone());
-    let keys = work.sharing(unit).map(|sharing| sharing.keys);
-    let found = opened
-        .evaluate(work.graph, &needed, wanted, known, work.plan.sections.percentiles, keys)
-        .map_err(|says| Fault::new(format!("{}: {says}", opened.file.path)))?;
-    note_margins(work, unit, &needed, &opened, values);
-    Ok((found, opened))
 }

@@ -2,67 +2,16 @@
 
 use std::collections::HashMap;
 
-use serde::{Deserialize, Serialize};
-
-use super::facts::{Facts, Known, item, scalar};
-use super::signal::Extent;
+use super::facts::{Facts, item, scalar};
+use super::unit::Unit;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
 use crate::data::campaign::Run;
 use crate::data::sites::{originals, site_text, sites};
 use crate::data::table::{Cell, Table};
 use crate::data::{Campaign, Campaigns, qualified};
 use crate::problem::{Problem, Problems};
-use crate::result::{CheckResult, SectionResult};
-use crate::source::Span;
+use crate::result::SectionResult;
 use crate::units::Unit as OfMeasure;
-
-/// A section, or a whole record where there are no sections.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Unit {
-    /// Of its own; in a pool with the campaign's: `series 2/S01`.
-    pub name: String,
-    /// Number of its campaign, and what that is called where there are several.
-    pub campaign: usize,
-    pub campaign_name: Option<String>,
-    /// Number of its vehicle in [`Facts::vehicles`].
-    pub vehicle: usize,
-    /// The section name with its place in the table; it is also the name of the records.
-    pub cell: Cell,
-    pub zone: Option<String>,
-    /// Index of its site: sections of the same stretch of track have the same.
-    pub site: usize,
-    /// Name of the first section of the site.
-    pub site_name: String,
-    /// Index of the section that it repeats.
-    pub original: Option<usize>,
-    /// `None` for a whole record.
-    pub extent: Option<Extent>,
-    /// The range that a report states: that of the section, or of the measured record.
-    pub covered: Option<Extent>,
-    /// One for each [`Plan::columns`].
-    pub columns: Vec<Result<Scalar, String>>,
-    pub checks: Vec<CheckResult>,
-    /// Why it is not used.
-    pub fault: Option<String>,
-    /// Whether the fault is in the data and not in a requirement.
-    pub faulty: bool,
-    /// Row of the table of sections.
-    pub span: Option<Span>,
-}
-
-impl Unit {
-    pub fn known<'a>(&'a self, facts: &'a Facts) -> Known<'a> {
-        Known { columns: Some(&self.columns), extent: self.extent, ..Known::vehicle(facts.of(self)) }
-    }
-
-    /// Records the first reason not to use it.
-    pub fn refuse(&mut self, reason: String, faulty: bool) {
-        if self.fault.is_none() {
-            self.fault = Some(reason);
-            self.faulty = faulty;
-        }
-    }
-}
 
 /// The sections of all campaigns, one campaign after the other.
 pub fn units(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> Vec<Unit> {

@@ -11,9 +11,9 @@ use indexmap::IndexMap;
 
 use super::facts::Known;
 use super::record::{Fault, Opened, Work, chosen, opened, part_of_run};
-use super::sections::Unit;
 use super::signal::{Extent, Signal};
 use super::trial::Trial;
+use super::unit::Unit;
 use crate::check::evaluate::number;
 use crate::check::plan::AxisOperation;
 use crate::data::campaign::{Part, ReadFile};

@@ -3,8 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::check::evaluate::{Values, number};
+use crate::check::evaluate::number;
 use crate::check::plan::{AxisOperation, Operator, StepSpec};
+use crate::check::values::Values;
 use crate::metrics::filter::Filter;
 use crate::metrics::window::{Kind, Sliding};
 use crate::metrics::{along, resample, rounded};

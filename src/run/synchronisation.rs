@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use super::record::{Found, Held, Work};
-use super::sections::Unit;
 use super::sides::Evaluated;
+use super::unit::Unit;
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::synchronise::{self, Estimate, Search};
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::sections::Unit;
+use super::unit::Unit;
 use crate::check::plan::{Independent, Plan, Scalar};
 
 /// One value of a section.

@@ -2,8 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::judge::compared;
-use super::limits::Judging;
+use super::limits::{Judging, compared};
 use super::table::{Member, Table};
 use crate::check::plan::{Chosen, Evaluation, Key, Limit, Pairing, Plan, Records, Side};
 use crate::graph::{Graph, QuantityNodes};

@@ -1,10 +1,9 @@
 //! Findings about the vehicle data: assumed units, and limits with factors that depend on these data.
 
-use super::facts::{Facts, Known, Vehicle, vehicle_item};
+use super::facts::{Facts, Known, Vehicle, is_dimensioned, vehicle_item};
 use crate::check::evaluate::{flag, number};
-use crate::check::plan::{DatumKind, Expr, Kind, Limit, Operator, Plan};
+use crate::check::plan::{Expr, Kind, Limit, Operator, Plan};
 use crate::result::{Finding, LimitFactor, QuantityResult};
-use crate::units::Dimension;
 
 /// Code of the finding about units that the vehicle file does not state.
 const UNIT_ASSUMED: &str = "unit-assumed";
@@ -33,11 +32,6 @@ fn assumed(plan: &Plan, vehicle: &Vehicle) -> Option<Finding> {
         let says = format!("the vehicle file{of} states no unit; read in the unit of the protocol: {}", bare.join(", "));
         Finding::note(UNIT_ASSUMED, says)
     })
-}
-
-/// Whether the size of such a number depends on its unit.
-pub fn is_dimensioned(kind: &DatumKind) -> bool {
-    matches!(kind, DatumKind::Number(unit) if unit.dimension != Dimension::ONE)
 }
 
 /// One finding for each factor and its reason, with the quantities whose limits it multiplies.

@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use super::record::{Found, Work, needed, open};
 use super::requirements;
-use super::section::SectionValues;
-use super::sections::Unit as Section;
+use super::section_values::SectionValues;
 use super::signal::{Extent, Samples};
 use super::table::Row;
+use super::unit::Unit as Section;
 use crate::check::plan::{Evaluation, Plan, Records, Side};
 use crate::data::WhichRecord;
 use crate::graph::{Graph, NodeId};

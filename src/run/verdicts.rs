@@ -1,7 +1,7 @@
 //! Verdicts: from limits of quantities, from other verdicts, or left to a person.
 
-use super::judge::count;
 use super::limits::rule_place;
+use super::words::count;
 use crate::check::plan::{Decision, Over, Plan, Rule};
 use crate::graph::{Graph, Operation};
 use crate::result::{Outcome, QuantityResult, VerdictResult};

@@ -2,7 +2,7 @@
 
 use fishplate::metrics::{
     cluster::*,
-    interval::{CONFIDENCE, Interval, standard_deviation_interval},
+    interval::{CONFIDENCE, Interval},
     statistics::{Divisor, mean, standard_deviation},
 };
 use serde_json::Value;

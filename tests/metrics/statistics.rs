@@ -1,5 +1,6 @@
 use fishplate::metrics::{
-    interval::{CONFIDENCE, mean_interval, standard_deviation_interval, wilson},
+    cluster::{mean_interval, standard_deviation_interval},
+    interval::{CONFIDENCE, wilson},
     statistics::*,
 };
 

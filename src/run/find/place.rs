@@ -1,9 +1,10 @@
 //! One place of a run: the length of a section there, its data, its zone, and the conditions.
 
 use super::signals::Signals;
-use crate::check::evaluate::{Values, evaluate, flag, number};
+use crate::check::evaluate::{evaluate, flag, number};
 use crate::check::plan::{Datum, DatumKind, Expr, Find, FindCondition, Plan, Scalar, Zone};
 use crate::check::possible::{Possible, possible};
+use crate::check::values::Values;
 use crate::data::Campaign;
 use crate::data::campaign::Run;
 use crate::graph::{Graph, InputNode};

@@ -1,0 +1,107 @@
+//! Values of the names in an expression.
+
+use std::cell::RefCell;
+
+use super::plan::{Kind, Scalar};
+
+/// Values of the names in an expression. Each method may return an error that states why the value is missing; by default it is
+/// missing.
+pub trait Values {
+    fn vehicle(&self, _: usize) -> Result<Scalar, String> {
+        Err("vehicle data are not known here".into())
+    }
+    fn column(&self, _: usize) -> Result<Scalar, String> {
+        Err("section data are not known here".into())
+    }
+    /// Start and end of the section on the axis, SI.
+    fn extent(&self) -> Result<(f64, f64), String> {
+        Err("there is no section here".into())
+    }
+    fn input(&self, _: usize) -> Result<f64, String> {
+        Err("there is no signal here".into())
+    }
+    /// Simulated and measured value of a pair, in this order.
+    fn sides(&self) -> Result<(f64, f64), String> {
+        Err("there is no pair of values here".into())
+    }
+    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
+        Err(format!("the limit of {statistic} is not known here"))
+    }
+    /// By what share of the right side `<=` and `>=` may be missed: the rounding of numbers that were converted to SI and subtracted.
+    fn rounding(&self) -> f64 {
+        0.0
+    }
+}
+
+/// No name has a value: only constants can be evaluated.
+#[derive(Clone, Copy, Debug)]
+pub struct Nothing;
+
+impl Values for Nothing {}
+
+/// Passes values on and records which section columns were used.
+#[derive(Debug)]
+pub struct Watched<'a, V: Values> {
+    values: &'a V,
+    columns: RefCell<Vec<usize>>,
+}
+
+impl<'a, V: Values> Watched<'a, V> {
+    pub fn new(values: &'a V) -> Self {
+        Self { values, columns: RefCell::default() }
+    }
+
+    /// Indices of the columns used, in the order of first use.
+    pub fn columns(&self) -> Vec<usize> {
+        self.columns.borrow().clone()
+    }
+}
+
+impl<V: Values> Values for Watched<'_, V> {
+    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
+        self.values.vehicle(index)
+    }
+    fn column(&self, index: usize) -> Result<Scalar, String> {
+        let mut columns = self.columns.borrow_mut();
+        if !columns.contains(&index) {
+            columns.push(index);
+        }
+        self.values.column(index)
+    }
+    fn extent(&self) -> Result<(f64, f64), String> {
+        self.values.extent()
+    }
+    fn input(&self, index: usize) -> Result<f64, String> {
+        self.values.input(index)
+    }
+    fn sides(&self) -> Result<(f64, f64), String> {
+        self.values.sides()
+    }
+    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
+        self.values.limit_of(statistic)
+    }
+    fn rounding(&self) -> f64 {
+        self.values.rounding()
+    }
+}
+
+/// The value of a constant or a name.
+///
+/// # Errors
+/// The name has no value; an expression of parts is not evaluated here.
+pub fn leaf(kind: &Kind, values: &dyn Values) -> Result<Scalar, String> {
+    match kind {
+        Kind::Constant(value) => Ok(value.clone()),
+        Kind::Vehicle(index) => values.vehicle(*index),
+        Kind::Column(index) => values.column(*index),
+        Kind::Start => values.extent().map(|(start, _)| Scalar::Number(start)),
+        Kind::End => values.extent().map(|(_, end)| Scalar::Number(end)),
+        Kind::Input(index) => values.input(*index).map(Scalar::Number),
+        Kind::Simulated => values.sides().map(|(simulated, _)| Scalar::Number(simulated)),
+        Kind::Measured => values.sides().map(|(_, measured)| Scalar::Number(measured)),
+        Kind::LimitOf(statistic) => values.limit_of(statistic).map(Scalar::Number),
+        Kind::Negative(_) | Kind::Not(_) | Kind::Power(..) | Kind::Binary(..) | Kind::Call(..) | Kind::Cases(..) => {
+            Err("an expression of several parts is no name".into())
+        }
+    }
+}
