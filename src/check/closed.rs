@@ -3,10 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::Checker;
-use super::estimates::Group;
+use super::functions::is_signal_function;
 use super::names::Assignment;
-use super::scalars::Scope;
-use super::signals::is_signal_function;
+use super::scope::{Group, Scope};
 use crate::catalog::{MetricEntry, Reducer, Statistic};
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};

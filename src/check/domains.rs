@@ -3,7 +3,7 @@
 use super::Checker;
 use super::names::normalised;
 use super::plan::{Coordinate, DatumKind, Domain, Expr, Kind, OnFault};
-use super::scalars::Scope;
+use super::scope::Scope;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};

@@ -3,8 +3,8 @@
 use super::Checker;
 use super::names::normalised;
 use super::plan::{DataReducer, Estimate, EstimateKind, Expr, Fit, Kind, OfGroup, Origin, Taking, Type};
-use super::scalars::{Scope, in_words};
-use super::weights::{has_weights, is_mean};
+use super::scalars::in_words;
+use super::scope::{Group, Scope};
 use crate::catalog::{STATISTICS, Statistic};
 use crate::metrics::rounded;
 use crate::problem::Problem;
@@ -26,19 +26,20 @@ const LEAST_CONFIDENCE: f64 = 0.5;
 /// Name of the number of independent units of a group.
 const COUNT: &str = "n";
 
-/// What an expression over a group can use.
-#[derive(Clone, Debug)]
-pub(super) struct Group {
-    /// Dimension of the values; `None` where only data of the sections are available.
-    pub values: Option<Dimension>,
-    pub taken: Vec<Taking>,
+/// Statistics that depend on weights, beside percentiles.
+const WITH_WEIGHTS: [&str; 4] = ["mean", "std", "rms", "median"];
+
+/// Whether values can count by a weight in a statistic.
+pub(super) fn has_weights(statistic: Statistic) -> bool {
+    match statistic {
+        Statistic::Each => false,
+        Statistic::Percentile(_) => true,
+        Statistic::Named(entry) => WITH_WEIGHTS.contains(&entry.name),
+    }
 }
 
-impl Group {
-    pub fn take(&mut self, taking: Taking) -> Kind {
-        self.taken.push(taking);
-        Kind::Input(self.taken.len() - 1)
-    }
+pub(super) fn is_mean(statistic: Statistic) -> bool {
+    matches!(statistic, Statistic::Named(entry) if entry.name == "mean")
 }
 
 /// The name of a statistic as written: `p95`, `mean`.

@@ -6,7 +6,8 @@ use super::plan::{
     AxisOperation, Datum, DatumKind, Expr, Find, FindCondition, FoundDatum, Input, Keep, Kind, OfSignals, SectionRules, Signal, SignalKind,
     Taken, Type,
 };
-use super::scalars::{Scope, in_words};
+use super::scalars::in_words;
+use super::scope::Scope;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};

@@ -3,7 +3,7 @@
 use super::Checker;
 use super::names::normalised;
 use super::plan::{DatumKind, Key, Kind, Scope};
-use super::scalars::Scope as Names;
+use super::scope::Scope as Names;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::{Block, Text};

@@ -7,7 +7,7 @@ use super::names::{Assignment, Written, bare_word, normalised};
 use super::plan::{Axis, Evaluation, Expr, Input, InputSide, Kind, Origin, Pairing, Position, Side, Signal, SignalKind, Step, Taken, Type};
 use super::quantities::Compared;
 use super::scalar_names::add_input;
-use super::scalars::{Reduce, Scope};
+use super::scope::{Reduce, Scope};
 use super::steps::{after, fits, item_phrase, show_number};
 use crate::catalog::{Asked, METRICS, Metric, MetricEntry, Part, Reducer};
 use crate::problem::{Problem, Problems};

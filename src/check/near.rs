@@ -1,8 +1,10 @@
 //! Conditions of nearness: `a near b within c` as a comparison, and the two numbers that it compares.
 
 use super::Checker;
+use super::functions::function;
 use super::plan::{Expr, Kind, Operator, Scalar, Type};
-use super::scalars::{Scope, function, origin};
+use super::scalars::origin;
+use super::scope::Scope;
 use crate::problem::Problem;
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{Node, Phrase};

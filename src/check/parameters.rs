@@ -3,7 +3,7 @@
 use super::evaluate::words;
 use super::names::{ParameterDef, normalised};
 use super::plan::{Kind, Scalar, SetBy, Type};
-use super::scalars::Scope;
+use super::scope::Scope;
 use super::{Checker, Override};
 use crate::problem::Problem;
 use crate::syntax::document::{Block, Field, Text};

@@ -3,7 +3,7 @@
 use super::Checker;
 use super::names::normalised;
 use super::plan::{Distinct, Exchanged, Expr, Input, InputSide, Looks, OnFault, Plausibility, Requirement, Signal, Step, Taken, Test};
-use super::scalars::Scope;
+use super::scope::Scope;
 use super::steps::after;
 use crate::problem::Problem;
 use crate::syntax::document::{Block, Field};

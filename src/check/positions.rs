@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use super::Checker;
 use super::names::{Assignment, Place};
 use super::plan::{Expr, Kind, Operator, Signal, Type};
-use super::scalars::Scope;
+use super::scope::Scope;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::Text;

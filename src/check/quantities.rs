@@ -8,7 +8,7 @@ use super::evaluate::{number, words};
 use super::names::{Assignment, bare_word, normalised};
 use super::plan::{Evaluation, Expr, InputSide, Pairing, Position, Quantity, QuantityWords, Records, Side, Signal, Step, Valued};
 use super::records::Compare;
-use super::scalars::Scope;
+use super::scope::Scope;
 use super::steps::after;
 use super::values::Values;
 use crate::catalog::{Best, DIFFERENCES, NOT_CHECKED};

@@ -5,7 +5,7 @@ use super::estimates::bare;
 use super::groups::Grouped;
 use super::names::normalised;
 use super::plan::{Estimate, Report};
-use super::scalars::Scope;
+use super::scope::Scope;
 use crate::catalog::Statistic;
 use crate::problem::Problem;
 use crate::source::Span;

@@ -4,7 +4,7 @@ use super::Checker;
 use super::find::FOUND_SECTIONS;
 use super::names::normalised;
 use super::plan::{Axis, Check, DatumKind, Expr, Independent, Input, Kind, OnFault, Origin, SectionRules, Type, Zone};
-use super::scalars::Scope;
+use super::scope::Scope;
 use crate::metrics::percentile::Method;
 use crate::problem::Problem;
 use crate::syntax::document::{Block, Field, Text};

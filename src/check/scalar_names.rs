@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::Checker;
 use super::names::bare_word;
 use super::plan::{Datum, DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Step, Taken, Type};
-use super::scalars::{Reduce, Scope};
+use super::scope::{Reduce, Scope};
 use super::steps::after;
 use crate::catalog::{METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
 use crate::problem::Problem;

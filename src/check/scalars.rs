@@ -2,11 +2,10 @@
 
 use super::Checker;
 use super::conditions::impossible;
-use super::estimates::Group;
 use super::evaluate::{evaluate, words};
-use super::names::Assignment;
-use super::plan::{DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Taking, Type};
-use super::signals::is_signal_function;
+use super::functions::{function, is_signal_function};
+use super::plan::{DatumKind, Expr, Kind, Operator, Origin, Scalar, Type};
+use super::scope::Scope;
 use super::values::Nothing;
 use crate::catalog::{FUNCTIONS, Function, MetricEntry, Reducer, SIGNAL_FUNCTIONS, Signature};
 use crate::problem::Problem;
@@ -14,103 +13,6 @@ use crate::source::{Span, Spanned};
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Dimension;
-
-/// The names that an expression can use, and the values taken from signals that it contains.
-#[derive(Debug)]
-pub(super) struct Scope {
-    pub vehicle: bool,
-    pub section: bool,
-    /// Whether, and from what, values of signals can be taken.
-    pub reduce: Option<Reduce>,
-    /// Dimension of `simulated` and `measured`, where they can be used.
-    pub pair: Option<Dimension>,
-    /// Dimension of the limits of other statistics, and the names of these.
-    pub limits: Option<(Dimension, Vec<String>)>,
-    /// The zone of the sections, where it is a single one.
-    pub zone: Option<String>,
-    /// The rows of a group.
-    pub group: Option<Group>,
-    /// Dimension of `value`, the value of one row, where it can be used.
-    pub value: Option<Dimension>,
-    /// Statistics of other quantities that can be used beside `value`.
-    pub others: Vec<Taking>,
-    /// The position at which named signals are taken.
-    pub at: Assignment,
-    /// Dimension of the own signal after its filter divided by that before.
-    pub factor: Dimension,
-    pub inputs: Vec<Input>,
-    /// Words that stand for themselves, where the value is one of them.
-    pub words: Vec<String>,
-}
-
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reduce {
-    /// Dimension of the own processed signal of the quantity; `None` where there is no such signal.
-    pub own: Option<Dimension>,
-    pub axis: Dimension,
-    pub side: InputSide,
-    /// Whether metrics of the own signal can be used by name.
-    pub metrics: bool,
-}
-
-impl Scope {
-    fn new(vehicle: bool, section: bool) -> Self {
-        Self {
-            vehicle,
-            section,
-            reduce: None,
-            pair: None,
-            limits: None,
-            zone: None,
-            group: None,
-            value: None,
-            others: Vec::new(),
-            at: Assignment::new(),
-            factor: Dimension::ONE,
-            inputs: Vec::new(),
-            words: Vec::new(),
-        }
-    }
-
-    /// Parameters and numbers only.
-    pub fn constant() -> Self {
-        Self::new(false, false)
-    }
-
-    pub fn vehicle() -> Self {
-        Self::new(true, false)
-    }
-
-    pub fn section() -> Self {
-        Self::new(true, true)
-    }
-
-    pub fn reducing(own: Option<Dimension>, axis: Dimension) -> Self {
-        Self { reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: false }), ..Self::new(true, true) }
-    }
-
-    /// As [`Self::reducing`], with metrics of the own signal.
-    pub fn comparing(own: Option<Dimension>, axis: Dimension) -> Self {
-        Self { reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: own.is_some() }), ..Self::new(true, true) }
-    }
-
-    pub fn pair(dimension: Dimension) -> Self {
-        Self { pair: Some(dimension), ..Self::new(true, true) }
-    }
-
-    /// How much is asked of the records and of the group so far.
-    fn asked(&self) -> (usize, usize) {
-        (self.inputs.len(), self.group.as_ref().map_or(0, |group| group.taken.len()))
-    }
-
-    /// Takes back what was asked since.
-    fn forget(&mut self, (inputs, taken): (usize, usize)) {
-        self.inputs.truncate(inputs);
-        if let Some(group) = &mut self.group {
-            group.taken.truncate(taken);
-        }
-    }
-}
 
 impl Checker<'_> {
     /// A typed expression; `None` after a problem.
@@ -548,10 +450,6 @@ impl Checker<'_> {
             ),
         }
     }
-}
-
-pub(super) fn function(name: &str) -> Option<&'static Function> {
-    FUNCTIONS.iter().find(|function| function.name == name)
 }
 
 /// Whether all direct parts are constants. They were folded before.

@@ -1,11 +1,11 @@
 //! Determines types of expressions over signals: channels at positions, arithmetic sample by sample, filters inside expressions.
 
 use super::Checker;
+use super::functions::{function, is_signal_function};
 use super::names::{Assignment, Channel, SignalDef};
 use super::plan::{AxisOperation, Expr, Kind, Operator, Scalar, Side, Signal, SignalKind};
-use super::scalars::{Scope, function};
+use super::scope::Scope;
 use super::steps::after;
-use crate::catalog::SIGNAL_FUNCTIONS;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::Text;
@@ -397,8 +397,4 @@ fn constant(signal: &Signal) -> Option<f64> {
         }
         _ => None,
     }
-}
-
-pub(super) fn is_signal_function(name: &str) -> bool {
-    SIGNAL_FUNCTIONS.iter().any(|(known, ..)| *known == name)
 }

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::plan::{Kind, Scalar, Step, StepSpec};
-use super::scalars::Scope;
+use super::scope::Scope;
 use crate::catalog::{Form, METRICS, Part, STEPS, StepEntry, StepKind};
 use crate::metrics::filter::{Band, Cutoff, Phase};
 use crate::metrics::window::Ends;

@@ -1,30 +1,13 @@
 //! Checks weights, and numbers of several groups: `mean weighted by length`, `mean of (mean for each zone)`.
 
 use super::Checker;
-use super::estimates::{Group, reducer_name};
+use super::estimates::{has_weights, reducer_name};
 use super::plan::{Expr, Kind, Origin, Scalar, Taking, Type};
-use super::scalars::Scope;
-use crate::catalog::Statistic;
+use super::scope::{Group, Scope};
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
-
-/// Statistics that depend on weights, beside percentiles.
-const WITH_WEIGHTS: [&str; 4] = ["mean", "std", "rms", "median"];
-
-/// Whether values can count by a weight in a statistic.
-pub(super) fn has_weights(statistic: Statistic) -> bool {
-    match statistic {
-        Statistic::Each => false,
-        Statistic::Percentile(_) => true,
-        Statistic::Named(entry) => WITH_WEIGHTS.contains(&entry.name),
-    }
-}
-
-pub(super) fn is_mean(statistic: Statistic) -> bool {
-    matches!(statistic, Statistic::Named(entry) if entry.name == "mean")
-}
 
 impl Checker<'_> {
     /// `mean weighted by length`, `share weighted by length where value <= 60 kN`.

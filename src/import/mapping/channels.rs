@@ -1,6 +1,6 @@
 //! One channel of the campaign, and what it is made of.
 
-use super::read::Reader;
+use super::reader::Reader;
 use crate::problem::Problem;
 use crate::source::Spanned;
 use crate::units::{Unit, number};

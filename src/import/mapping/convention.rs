@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::read::{Reader, at};
+use super::reader::{Reader, at};
 use crate::data::text::read_text;
 use crate::library;
 use crate::problem::{Problem, Problems};

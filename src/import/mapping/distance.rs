@@ -1,7 +1,7 @@
 //! Time and distance of a record: where they are from.
 
 use super::channels::{ChannelMap, channel_map};
-use super::read::{Reader, hertz, metre, second};
+use super::reader::{Reader, hertz, metre, second};
 use super::sections::Sections;
 use super::stated::{self, Stated};
 use crate::problem::Problem;

@@ -1,6 +1,6 @@
 //! What a mapping says of the form of its files; the rest is detected.
 
-use super::read::Reader;
+use super::reader::Reader;
 use crate::foreign::{DateOrder, Format, Options, Separator};
 use crate::problem::Problem;
 use crate::source::Spanned;

@@ -6,6 +6,7 @@ mod convention;
 mod distance;
 mod format;
 mod read;
+mod reader;
 mod runs;
 mod sections;
 mod side;

@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::reader::{Reader, at, metre};
 use super::{Mapping, Sections, convention, runs, sections, side};
 use crate::data::RecordKind;
 use crate::data::text::read_text;
 use crate::problem::{Problem, Problems};
-use crate::source::{Source, Span, Spanned};
-use crate::units::{Unit, number};
+use crate::source::{Source, Spanned};
 use crate::yaml::{self, Key, Node, Value};
 
 const TOP: [&str; 12] =
@@ -24,7 +24,7 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
     let before = problems.errors();
     let tree = yaml::load(source, problems)?;
     let mut reader = Reader { problems };
-    reader.open_places(&tree);
+    open_places(&tree, reader.problems);
     if reader.problems.errors() > before {
         return None;
     }
@@ -34,7 +34,7 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
     }
     let name = reader.need_text(&tree, "name", "the name of the campaign");
     let protocol = reader.text(&tree, "protocol");
-    let campaign = reader.campaign(&tree);
+    let campaign = campaign(&tree, &mut reader);
     let vehicle = reader.text(&tree, "vehicle").and_then(|written| {
         let path = folder.join(&written.value);
         let read = read_text(&path, &path.display().to_string()).map_err(|problem| reader.problems.push(at(problem, &written.span)));
@@ -58,7 +58,7 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
     });
     let known = sections.clone().unwrap_or_else(|| Sections::none(source));
     if let Some(track) = &track {
-        reader.pattern(track, &known);
+        known.check_placeholders(track, &mut reader);
     }
     let sides: Vec<_> = [RecordKind::Measurement, RecordKind::Simulation]
         .into_iter()
@@ -111,172 +111,37 @@ fn turned(mapping: &Mapping, problems: &mut Problems) {
     }
 }
 
-pub(super) fn at(problem: Problem, span: &Span) -> Problem {
-    if problem.at.is_some() { problem } else { problem.at(span) }
-}
-
-pub(super) fn metre() -> Unit {
-    Unit { text: "m".into(), factor: 1.0, dimension: crate::units::Dimension::LENGTH }
-}
-
-pub(super) fn second() -> Unit {
-    Unit { text: "s".into(), factor: 1.0, dimension: crate::units::Dimension::TIME }
-}
-
-pub(super) fn hertz() -> Unit {
-    Unit { text: "Hz".into(), factor: 1.0, dimension: crate::units::Dimension::FREQUENCY }
-}
-
-pub(super) struct Reader<'a> {
-    pub problems: &'a mut Problems,
-}
-
-impl Reader<'_> {
-    /// A draft marks what is to be decided by `?`.
-    fn open_places(&mut self, node: &Node) {
-        let open = |text: &str| !text.is_empty() && text.trim_matches('?').trim().is_empty();
-        if node.scalar_text().is_some_and(open) {
-            let problem = Problem::error("open-place", "this place of the draft is open").at(&node.span);
-            self.problems.push(problem.help("decide it, or remove the line; the comments beside it say what was found"));
-        }
-        node.items().iter().for_each(|item| self.open_places(item));
-        for (key, value) in node.entries() {
-            if open(&key.text) {
-                let problem = Problem::error("open-place", "this place of the draft is open").at(&key.span);
-                self.problems.push(problem.help("write the name of the channel, or remove the line"));
-            }
-            self.open_places(value);
-        }
+/// A draft marks what is to be decided by `?`.
+fn open_places(node: &Node, problems: &mut Problems) {
+    let open = |text: &str| !text.is_empty() && text.trim_matches('?').trim().is_empty();
+    if node.scalar_text().is_some_and(open) {
+        let problem = Problem::error("open-place", "this place of the draft is open").at(&node.span);
+        problems.push(problem.help("decide it, or remove the line; the comments beside it say what was found"));
     }
-
-    pub fn fault(&mut self, code: &'static str, says: impl Into<String>, span: &Span) {
-        self.problems.push(Problem::error(code, says).at(span));
-    }
-
-    /// Whether the node is a map; unknown keys are reported.
-    pub fn keys(&mut self, node: &Node, known: &[&str], what: &str) -> bool {
-        if !matches!(node.value, Value::Map(_)) {
-            self.fault("wrong-kind", format!("{what} must be a map of keys and values, not {}", node.kind_in_words()), &node.span);
-            return false;
+    node.items().iter().for_each(|item| open_places(item, problems));
+    for (key, value) in node.entries() {
+        if open(&key.text) {
+            let problem = Problem::error("open-place", "this place of the draft is open").at(&key.span);
+            problems.push(problem.help("write the name of the channel, or remove the line"));
         }
-        for (key, _) in node.entries() {
-            if !known.contains(&key.text.as_str()) {
-                let problem = Problem::error("unknown-key", format!("{what} has no key `{}`", key.text)).at(&key.span);
-                self.problems.push(problem.suggest(&key.text, known.iter().copied()));
-            }
-        }
-        true
-    }
-
-    pub fn text_of(&mut self, node: &Node, key: &str) -> Option<Spanned<String>> {
-        match node.scalar_text().map(str::trim) {
-            Some(text) if !text.is_empty() => Some(Spanned::new(text.to_string(), node.span.clone())),
-            _ => {
-                self.fault("wrong-kind", format!("`{key}` must be text, not {}", node.kind_in_words()), &node.span);
-                None
-            }
-        }
-    }
-
-    pub fn text(&mut self, node: &Node, key: &str) -> Option<Spanned<String>> {
-        let found = node.get(key)?;
-        self.text_of(found, key)
-    }
-
-    pub fn need_text(&mut self, node: &Node, key: &str, means: &str) -> Option<Spanned<String>> {
-        if node.get(key).is_none() {
-            let problem = Problem::error("key-missing", format!("`{key}` is missing: {means}")).at(&node.span.part(0..0));
-            self.problems.push(problem.help(format!("write `{key}: ...`")));
-            return None;
-        }
-        self.text(node, key)
-    }
-
-    /// A text or a list of texts.
-    pub fn texts(&mut self, node: &Node, key: &str) -> Vec<Spanned<String>> {
-        let Some(found) = node.get(key) else { return Vec::new() };
-        match &found.value {
-            Value::List(items) => items.iter().filter_map(|item| self.text_of(item, key)).collect(),
-            _ => self.text_of(found, key).into_iter().collect(),
-        }
-    }
-
-    /// A number with its unit, in SI.
-    pub fn number(&mut self, node: &Node, key: &str, unit: &Unit) -> Option<f64> {
-        let found = node.get(key)?;
-        self.number_of(found, key, unit)
-    }
-
-    pub fn number_of(&mut self, node: &Node, key: &str, unit: &Unit) -> Option<f64> {
-        let written = self.text_of(node, key)?;
-        match number::read(&written.value, unit) {
-            Ok(read) if read.unit_stated || unit.dimension == Unit::one().dimension => Some(read.si),
-            Ok(_) => {
-                let problem = Problem::error("unit-missing", format!("`{key}` has no unit; it is {}", unit.dimension.in_words()));
-                self.problems.push(problem.at(&written.span).help(format!("write `{} {unit}`, if that is meant", written.value)));
-                None
-            }
-            Err(refused) => {
-                let problem = Problem::error("wrong-number", format!("`{key}`: {}", refused.says)).at(&written.span);
-                self.problems.push(match refused.help {
-                    Some(help) => problem.help(help),
-                    None => problem,
-                });
-                None
-            }
-        }
-    }
-
-    pub fn unit(&mut self, written: &Spanned<String>) -> Option<Unit> {
-        Unit::parse(&written.value)
-            .map_err(|unknown| {
-                let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&written.span);
-                self.problems.push(match unknown.near {
-                    Some(near) => problem.help(format!("did you mean `{near}`?")),
-                    None => problem,
-                });
-            })
-            .ok()
-    }
-
-    /// Placeholders of a path must be known: `{section}`, of runs `{run}`, or a column of the table of sections.
-    pub fn pattern(&mut self, written: &Spanned<String>, sections: &Sections) {
-        for name in placeholders(&written.value) {
-            if name != sections.word && !sections.has_column(name) {
-                let says = match sections.word {
-                    "run" => format!("`{{{name}}}` is not `{{run}}`"),
-                    word => format!("`{{{name}}}` is neither `{{{word}}}` nor a column of the table of sections"),
-                };
-                let problem = Problem::error("unknown-placeholder", says);
-                let known = std::iter::once(sections.word).chain(sections.columns());
-                self.problems.push(problem.at(&written.span).suggest(name, known));
-            }
-        }
-    }
-
-    fn campaign(&mut self, tree: &Node) -> Vec<(Key, Node)> {
-        let Some(node) = tree.get("campaign") else { return Vec::new() };
-        if !matches!(node.value, Value::Map(_)) {
-            self.fault(
-                "wrong-kind",
-                format!("`campaign` must be a map of keys for campaign.yaml, not {}", node.kind_in_words()),
-                &node.span,
-            );
-        }
-        for (key, _) in node.entries().iter().filter(|(key, _)| OWN.contains(&key.text.as_str())) {
-            let says = format!("`{}` of the campaign is written by the import", key.text);
-            let help = if TOP.contains(&key.text.as_str()) {
-                format!("`{}` stands at the left margin of the mapping", key.text)
-            } else {
-                "remove it".into()
-            };
-            self.problems.push(Problem::error("unknown-key", says).at(&key.span).help(help));
-        }
-        node.entries().to_vec()
+        open_places(value, problems);
     }
 }
 
-/// The names in braces of a text.
-pub(super) fn placeholders(text: &str) -> Vec<&str> {
-    text.split('{').skip(1).filter_map(|rest| rest.split_once('}').map(|(name, _)| name)).collect()
+/// Further keys of campaign.yaml.
+fn campaign(tree: &Node, reader: &mut Reader<'_>) -> Vec<(Key, Node)> {
+    let Some(node) = tree.get("campaign") else { return Vec::new() };
+    if !matches!(node.value, Value::Map(_)) {
+        reader.fault("wrong-kind", format!("`campaign` must be a map of keys for campaign.yaml, not {}", node.kind_in_words()), &node.span);
+    }
+    for (key, _) in node.entries().iter().filter(|(key, _)| OWN.contains(&key.text.as_str())) {
+        let says = format!("`{}` of the campaign is written by the import", key.text);
+        let help = if TOP.contains(&key.text.as_str()) {
+            format!("`{}` stands at the left margin of the mapping", key.text)
+        } else {
+            "remove it".into()
+        };
+        reader.problems.push(Problem::error("unknown-key", says).at(&key.span).help(help));
+    }
+    node.entries().to_vec()
 }

@@ -1,6 +1,6 @@
 //! Whole runs as sources: their names, what the campaign says of them, and what is done with a drift of the distance.
 
-use super::read::{Reader, metre};
+use super::reader::{Reader, metre};
 use super::sections::{self, Sections};
 use super::stated::place;
 use crate::data::campaign::{CORRECT, RUNS, TELL};

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::read::{Reader, at, metre};
+use super::reader::{Reader, at, metre, placeholders};
 use crate::data::RecordKind;
 use crate::data::Table;
 use crate::data::table::Cell;
@@ -32,6 +32,21 @@ impl Sections {
 
     pub fn columns(&self) -> impl Iterator<Item = &str> {
         self.table.iter().flat_map(|(_, table)| table.columns.iter().map(|column| column.name.as_str()))
+    }
+
+    /// Placeholders of a path must be known: `{section}`, of runs `{run}`, or a column of the table of sections.
+    pub(super) fn check_placeholders(&self, written: &Spanned<String>, reader: &mut Reader<'_>) {
+        for name in placeholders(&written.value) {
+            if name != self.word && !self.has_column(name) {
+                let says = match self.word {
+                    "run" => format!("`{{{name}}}` is not `{{run}}`"),
+                    word => format!("`{{{name}}}` is neither `{{{word}}}` nor a column of the table of sections"),
+                };
+                let problem = Problem::error("unknown-placeholder", says);
+                let known = std::iter::once(self.word).chain(self.columns());
+                reader.problems.push(problem.at(&written.span).suggest(name, known));
+            }
+        }
     }
 
     pub fn has_column(&self, name: &str) -> bool {

@@ -3,7 +3,7 @@
 use super::channels::{self, Channels};
 use super::distance::{self, Distance, Match, Time};
 use super::format;
-use super::read::{Reader, hertz, metre};
+use super::reader::{Reader, hertz, metre};
 use super::runs::{self, Drift};
 use super::sections::{self, Sections};
 use super::stated::{self, Stated};
@@ -76,7 +76,7 @@ pub(super) fn read(reader: &mut Reader<'_>, kind: RecordKind, key: &Key, node: &
     let files = reader.need_text(node, "files", &format!("the path of the records, with `{{{}}}`", sections.word));
     let table = reader.text(node, "table");
     for pattern in files.iter().chain(&table) {
-        reader.pattern(pattern, sections);
+        sections.check_placeholders(pattern, reader);
     }
     if let Some(files) =
         files.as_ref().filter(|files| !files.value.contains('{') && table.as_ref().is_none_or(|table| !table.value.contains('{')))

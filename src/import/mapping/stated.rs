@@ -1,6 +1,6 @@
 //! A number that a mapping states once, for each section, or where it is to be found.
 
-use super::read::Reader;
+use super::reader::Reader;
 use super::sections::{self, Sections};
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};

@@ -11,20 +11,12 @@ use std::time::Duration;
 use serde_json::{Map, Value, json};
 
 use super::process::{Printed, end, last_lines, launched};
-use super::read::Program;
+use super::read::{Program, Python};
 use super::started::{self, Mark};
 use crate::disk;
 
 /// The script that calls the function.
 const WORKER: &str = include_str!("worker.py");
-
-/// Where and how the function runs.
-#[derive(Clone, Debug)]
-pub struct Python {
-    pub interpreter: PathBuf,
-    /// The file with the function.
-    pub file: PathBuf,
-}
 
 /// Failure of a call.
 #[derive(Debug)]

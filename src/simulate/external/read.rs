@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::python::Python;
 use super::words::{Hole, Word};
 use crate::disk;
 use crate::problem::{Problem, Problems};
@@ -42,6 +41,14 @@ pub struct Program {
     pub tolerance: f64,
     /// The place of the command or of the function's file.
     pub span: Span,
+}
+
+/// Where and how a Python function runs.
+#[derive(Clone, Debug)]
+pub struct Python {
+    pub interpreter: PathBuf,
+    /// The file with the function.
+    pub file: PathBuf,
 }
 
 const KEYS: [&str; 13] = [
