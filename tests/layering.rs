@@ -98,34 +98,90 @@ fn the_diagnosis_goes_one_way() {
     compare(&found, PARTS);
 }
 
-/// Paths of the diagnosis that a file names, such as `features::layout`, in single and grouped imports.
-fn paths(code: &str) -> BTreeSet<String> {
-    let path = |rest: &str| rest.chars().take_while(|c| c.is_ascii_lowercase() || *c == '_' || *c == ':').collect::<String>();
-    code.split("crate::diagnose::").skip(1).map(|rest| path(rest).trim_end_matches(':').to_string()).collect()
+/// The paths of an import such as `super::{a, b::{C, D}}`.
+fn spread(before: &str, tree: &str, found: &mut Vec<String>) {
+    let Some((path, inside)) = tree.split_once('{') else {
+        found.push(format!("{before}{}", tree.split(" as ").next().unwrap_or_default().trim()));
+        return;
+    };
+    let before = format!("{before}{}", path.trim());
+    let (mut depth, mut from) = (0, 0);
+    let inside = inside.trim_end().strip_suffix('}').unwrap_or(inside);
+    for (at, letter) in inside.char_indices().chain([(inside.len(), ',')]) {
+        match letter {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                let part = inside[from..at].trim();
+                if !part.is_empty() {
+                    spread(&before, part, found);
+                }
+                from = at + 1;
+            }
+            _ => {}
+        }
+    }
 }
 
-/// A file may be read after those that it imports, down to files that import none.
-#[test]
-fn files_of_the_diagnosis_make_no_circle() {
-    let folder = root().join("src/diagnose");
-    let mut left: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for (_, path) in sources().into_iter().filter(|(module, _)| module == "diagnose") {
-        let inside = path.strip_prefix(&folder).expect("below it").with_extension("");
-        let parts: Vec<String> = inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
-        if parts.last().is_some_and(|part| part == "mod") {
-            continue;
+/// The paths that a file names, from the crate's root. `module` is the file's own.
+fn paths(code: &str, module: &[String]) -> BTreeSet<String> {
+    let mut found = Vec::new();
+    let mut rest = String::new();
+    for statement in code.split_inclusive(';') {
+        match statement.rfind("use ").filter(|at| statement[..*at].trim_end().is_empty() || statement[..*at].ends_with(['\n', ' '])) {
+            Some(at) => {
+                rest.push_str(&statement[..at]);
+                spread("", statement[at + 4..].trim_end_matches(';').trim(), &mut found);
+            }
+            None => rest.push_str(statement),
         }
-        let parent = parts[..parts.len() - 1].join("::");
-        let code = code(&path);
-        let mut uses = paths(&code);
-        let beside = |name: String| if parent.is_empty() { name } else { format!("{parent}::{name}") };
-        uses.extend(imports(&code, "super::").into_iter().map(beside));
-        left.insert(parts.join("::"), uses);
     }
-    assert!(left.len() > 30, "the files were not found");
+    for root in ["crate::", "super::"] {
+        for (at, _) in rest.match_indices(root) {
+            found.push(rest[at..].chars().take_while(|letter| letter.is_ascii_alphanumeric() || "_:".contains(*letter)).collect());
+        }
+    }
+    let absolute = |path: &String| {
+        let mut parts: Vec<&str> = path.split("::").filter(|part| !part.is_empty()).collect();
+        let ups = parts.iter().take_while(|part| **part == "super").count();
+        if ups > 0 {
+            parts.drain(..ups);
+            let above = module.get(..module.len().checked_sub(ups)?)?;
+            return Some(above.iter().map(String::as_str).chain(parts).collect::<Vec<_>>().join("::"));
+        }
+        (parts.first() == Some(&"crate")).then(|| parts[1..].join("::"))
+    };
+    found.iter().filter_map(absolute).collect()
+}
+
+#[test]
+fn imports_are_spread() {
+    let module = ["a", "b"].map(str::to_string);
+    let code = "pub use super::{c, d::{E, f::G as H}};\nuse crate::i;\nfn j() { super::k::l(crate::m::N) }\n";
+    let wanted = ["a::c", "a::d::E", "a::d::f::G", "i", "a::k::l", "m::N"].map(str::to_string);
+    assert_eq!(paths(code, &module), BTreeSet::from(wanted));
+}
+
+/// A file may be read after those that it imports, down to files that import none. The front of a folder (`mod.rs`, or the file with
+/// the folder's name) holds what its files have in common and names them, so it is left out.
+#[test]
+fn files_make_no_circle() {
+    let mut left: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for (_, path) in sources() {
+        let inside = path.strip_prefix(root().join("src")).expect("below it").with_extension("");
+        let parts: Vec<String> = inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        let front = path.with_extension("").is_dir() || ["mod", "lib", "main"].iter().any(|name| parts[parts.len() - 1] == *name);
+        if !front {
+            left.insert(parts.join("::"), paths(&code(&path), &parts));
+        }
+    }
+    assert!(left.len() > 300, "the files were not found");
     let names: BTreeSet<String> = left.keys().cloned().collect();
     // A path may go on to what a file holds.
-    let file = |path: &String| names.iter().find(|name| *path == **name || path.starts_with(&format!("{name}::"))).cloned();
+    let file = |path: &String| {
+        let ends = path.match_indices("::").map(|(at, _)| at).chain([path.len()]).collect::<Vec<_>>();
+        ends.into_iter().rev().map(|end| &path[..end]).find(|path| names.contains(*path)).map(str::to_string)
+    };
     for (name, uses) in &mut left {
         *uses = uses.iter().filter_map(file).filter(|used| used != name).collect();
     }

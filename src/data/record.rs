@@ -16,6 +16,7 @@ mod number;
 mod raw;
 mod rows;
 mod runs;
+mod sink;
 mod source;
 #[cfg(target_arch = "x86_64")]
 mod wide;

@@ -1,6 +1,6 @@
 //! Slow parsing of an irregular row, with a description of its fault.
 
-use super::rows::Sink;
+use super::sink::Sink;
 use crate::data::cells::{self, StrayQuote};
 use crate::data::faults::Faults;
 use crate::problem::Problem;

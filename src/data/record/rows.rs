@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::lanes::{self, Lanes, Work};
+use super::sink::Sink;
 use super::{Column, fault, marks::Marks};
 use crate::data::faults::Faults;
 use crate::data::hash::{self, Hasher};
@@ -157,15 +158,6 @@ impl<'a> Work for Reading<'a, '_> {
         hashed.finish();
         (rows, sinks, faults)
     }
-}
-
-/// Destination of the numbers of a column.
-pub(super) struct Sink {
-    pub name: String,
-    /// Index of the cell in a row.
-    pub position: usize,
-    pub factor: f64,
-    pub values: Vec<f64>,
 }
 
 /// Estimate from the first row, so that columns seldom grow.
