@@ -1,9 +1,10 @@
 """Cost of an archive against its length: `sections`, `reduce` and `judge` on one thread, with time, memory and bytes read. Standard library.
 
-    archive_cost.py PROGRAM FOLDER [--lengths 10,40,100,200,500,1000] [--plot docs/images/archive-cost.svg]
+    archive_cost.py PROGRAM FOLDER [--lengths 5,20,50,100,200,500] [--maker target/release/examples/archive] [--plot docs/images/archive-cost.svg]
 
-PROGRAM is `target/release/fishplate`. For each length an archive is made by the example `archive` in FOLDER, unless it is there; the runs
-of its first vehicle, half of the length, are evaluated. Needs Linux: /proc tells the bytes.
+PROGRAM is `target/release/fishplate`. For each length an archive is made in FOLDER/LENGTH, unless it is there: by the program `--maker`, or
+without it by `cargo run --example archive`. The vehicles of the archive are evaluated one after the other. Their times and bytes are added;
+the memory is the largest. Needs Linux: /proc tells the bytes.
 """
 
 import argparse
@@ -15,6 +16,8 @@ import subprocess
 import sys
 
 STEPS = ("sections", "reduce", "judge")
+#: The line of `campaign.yaml` that names the table of sections.
+NAMED = "sections: sections.csv\n"
 
 
 def measured(command):
@@ -28,32 +31,39 @@ def measured(command):
     return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, int(told["rchar"])
 
 
-def archive(folder, km):
-    """The campaign of the first vehicle of an archive of so many km."""
-    campaign = folder / str(km) / "coach"
-    if not campaign.exists():
+def archive(folder, km, maker):
+    """The campaigns of an archive of so many km, one for each vehicle."""
+    made = folder / str(km)
+    if not made.exists():
         runs = max(2, min(40, 2 * math.floor(km / 5)))
-        example = ["cargo", "run", "--release", "--example", "archive", "--"]
-        subprocess.run([*example, "--km", str(km), "--runs", str(runs), "--out", str(folder / str(km))], check=True)
-    return campaign
+        subprocess.run([*maker, "--km", str(km), "--runs", str(runs), "--out", str(made)], check=True)
+    return sorted(path.parent for path in made.glob("*/campaign.yaml"))
 
 
-def of_length(program, folder, km):
-    campaign = archive(folder, km)
+def of_vehicle(program, folder, campaign):
+    """Each step of one campaign."""
     described, table = campaign / "campaign.yaml", campaign / "sections.csv"
-    text = described.read_text()
-    if table.exists():
-        table.unlink()
-        text = text.replace("sections: sections.csv\n", "")
-        described.write_text(text)
+    text = described.read_text().replace(NAMED, "")
+    described.write_text(text)
+    table.unlink(missing_ok=True)
     found = {"sections": measured([program, "sections", campaign, "--out", table, "-j", "1"])}
-    described.write_text("sections: sections.csv\n" + text)
+    described.write_text(NAMED + text)
     values, out = folder / "values.parquet", folder / "out"
     found["reduce"] = measured([program, "reduce", campaign, "--no-plots", "-j", "1", "--out", values])
     found["judge"] = measured([program, "judge", values, "--only", "results", "--out", out])
-    size = sum(path.stat().st_size for path in (campaign / "runs").iterdir())
-    rows = {step: dict(zip(("seconds", "memory", "bytes"), numbers)) for step, numbers in found.items()}
-    return dict(km=km / 2, files=size, sections=len(table.read_text().splitlines()) - 1, **rows)
+    return found, len(table.read_text().splitlines()) - 1, values.stat().st_size
+
+
+def of_length(program, folder, km, maker):
+    campaigns = archive(folder, km, maker)
+    found = [of_vehicle(program, folder, campaign) for campaign in campaigns]
+    size = sum(path.stat().st_size for campaign in campaigns for path in (campaign / "runs").iterdir())
+    rows = {}
+    for step in STEPS:
+        seconds, memory, read = zip(*(steps[step] for steps, _, _ in found))
+        rows[step] = dict(seconds=round(sum(seconds), 3), memory=round(max(memory), 1), bytes=sum(read))
+    number = sum(count for _, count, _ in found)
+    return dict(km=km, files=size, number=number, values=sum(size for _, _, size in found), **rows)
 
 
 def svg(rows):
@@ -93,13 +103,15 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--lengths", default="10,40,100,200,500,1000")
+    parser.add_argument("--lengths", default="5,20,50,100,200,500")
+    parser.add_argument("--maker")
     parser.add_argument("--plot", type=pathlib.Path)
     given = parser.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
+    maker = ["cargo", "run", "--release", "--example", "archive", "--"] if given.maker is None else [given.maker]
     rows = []
     for km in given.lengths.split(","):
-        rows.append(of_length(given.program, given.folder, int(km)))
+        rows.append(of_length(given.program, given.folder, int(km), maker))
         print(json.dumps(rows[-1]), flush=True)
     if given.plot:
         given.plot.write_text(svg(rows))

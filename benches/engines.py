@@ -1,10 +1,11 @@
-"""What engines cost: the reduction of an archive by plain processes, by Dask and by Spark, with as many workers; and the peer under Dask.
+"""What engines cost: the reduction of an archive by plain processes, by Dask, Spark and Ray, with as many workers; and the peer under Dask.
 
-    engines.py CAMPAIGN [--workers 2] [--shards 34] [--rounds 3] [--only processes,dask,spark,peer]
+    engines.py CAMPAIGN... [--workers 2] [--shards 8] [--rounds 2] [--only processes,dask,spark,ray,peer]
 
-CAMPAIGN: runs as Parquet with a table of sections. Start-up is not counted: each engine has made a small job before. Times are
-processor times of all processes together, and wall times; the first tell more on a machine that does other work. The peak memory is the
-largest of a Python worker.
+CAMPAIGN: runs as Parquet with a table of sections, such as `archive_cost.py` leaves; several are evaluated as one. Start-up is not
+counted: each engine has made a small job before. Times are processor times of all processes together, and wall times, the least of all
+rounds; processor times tell more on a machine that does other work. The peak memory is the largest of a Python worker. The time of `judge`,
+which the caller needs by itself after all parts, is part of each time but the peer's, and is told.
 """
 
 import argparse
@@ -70,14 +71,14 @@ def timed(work, rounds):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("campaign")
+    parser.add_argument("campaigns", nargs="+")
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--shards", type=int, default=34)
-    parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--only", default="processes,dask,spark,peer")
+    parser.add_argument("--shards", type=int, default=8)
+    parser.add_argument("--rounds", type=int, default=2)
+    parser.add_argument("--only", default="processes,dask,spark,ray,peer")
     given = parser.parse_args()
     only, rounds, shards = given.only.split(","), given.rounds, given.shards
-    small = str(HERE.parent / "examples" / "coach")
+    small = [str(HERE.parent / "examples" / "coach")]
     told = {}
 
     def tell(name, times):
@@ -93,21 +94,27 @@ def main():
         with concurrent.futures.ProcessPoolExecutor(given.workers, mp_context=context) as pool:
 
             def processes(first):
-                made = job(small if first else given.campaign)
-                for number, values in zip(made.open, pool.map(_engines.part, made.open, [made.work] * shards)):
-                    made.made[number] = values
-                return made.result(0)
+                made = job(small if first else given.campaigns)
+                made.made = dict(enumerate(pool.map(_engines.part, range(shards), [made.work] * shards)))
+                begin = time.process_time()
+                made.result(0)
+                judging[:] = [time.process_time() - begin]
 
+            judging = []
             tell("processes", timed(processes, rounds))
+            print(f"    of it `judge`, by the caller: {judging[0]:.1f} s of processor time", flush=True)
     if {"dask", "peer"} & set(only):
+        import dask
         import distributed
 
         import fishplate.dask
 
+        # As `python -m fishplate.dask` sets it.
+        dask.config.set({"distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": fishplate.dask.TRIM})
         options = dict(n_workers=given.workers, threads_per_worker=1, dashboard_address=None)
         if "dask" in only:
             with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
-                of = lambda first: fishplate.dask.certify(client, small if first else given.campaign, shards=shards, plots=0)
+                of = lambda first: fishplate.dask.certify(client, small if first else given.campaigns, shards=shards, plots=0)
                 tell("dask", timed(of, rounds))
         if "peer" in only:
             sys.path.insert(0, str(HERE / "peer"))
@@ -117,7 +124,7 @@ def main():
             spec.loader.exec_module(peer)
             os.environ["PYTHONPATH"] = os.pathsep.join([str(HERE / "peer"), os.environ.get("PYTHONPATH", "")])
             with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
-                tell("peer under dask", timed(lambda first: peer.run(client, given.campaign), rounds))
+                tell("peer under dask", timed(lambda first: [peer.run(client, folder) for folder in given.campaigns], rounds))
     if "spark" in only:
         from pyspark.sql import SparkSession
 
@@ -127,9 +134,17 @@ def main():
         builder = SparkSession.builder.master(f"local-cluster[{given.workers},1,1024]").config("spark.ui.enabled", "false")
         spark = builder.config("spark.executor.memory", "512m").getOrCreate()
         spark.sparkContext.setLogLevel("OFF")
-        of = lambda first: fishplate.spark.certify(spark, small if first else given.campaign, shards=shards, plots=0)
+        of = lambda first: fishplate.spark.certify(spark, small if first else given.campaigns, shards=shards, plots=0)
         tell("spark", timed(of, rounds))
         spark.stop()
+    if "ray" in only:
+        import ray
+
+        import fishplate.ray
+
+        ray.init(num_cpus=given.workers, include_dashboard=False, log_to_driver=False, logging_level="error")
+        tell("ray", timed(lambda first: fishplate.ray.certify(small if first else given.campaigns, shards=shards, plots=0), rounds))
+        ray.shutdown()
 
 
 if __name__ == "__main__":

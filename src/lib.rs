@@ -39,6 +39,7 @@ pub mod robustness;
 pub mod run;
 pub mod simulate;
 pub mod source;
+pub mod store;
 pub mod study;
 pub mod syntax;
 pub mod units;

@@ -1,10 +1,9 @@
 //! A long record, block by block: a thread reads ahead of the one that asks.
 
-use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
-use super::record::{Block, Known, Wanted, stream_known};
+use super::record::{Block, Known, RecordSource, Wanted};
 use crate::problem::Problem;
 
 /// Blocks that are read ahead: one is worked on while the next is read.
@@ -23,11 +22,11 @@ pub struct Blocks {
 
 impl Blocks {
     /// The wanted columns of a record; all of them are required, and the first is its axis.
-    pub fn open(path: PathBuf, shown: String, wanted: Vec<Wanted>, known: Known) -> Self {
+    pub fn open(source: RecordSource, wanted: Vec<Wanted>, known: Known) -> Self {
         let (to, blocks) = sync_channel(AHEAD);
         thread::spawn(move || {
             let axis = wanted.first().map_or("", |axis| axis.name.as_str());
-            let read = stream_known(&path, &shown, &wanted, (axis, &known), |block| send(&to, block, &wanted));
+            let read = source.stream(&wanted, axis, &known, |block| send(&to, block, &wanted));
             if let Err(problems) = read {
                 // Who asked may have gone.
                 let _ = to.send(Err(problems));
@@ -39,7 +38,7 @@ impl Blocks {
     /// The next block; `None` at the end of the record.
     ///
     /// # Errors
-    /// Those of `stream_known`.
+    /// Those of [`RecordSource::stream`].
     pub fn following(&mut self) -> Result<Option<Columns>, Vec<Problem>> {
         self.blocks.recv().map_or(Ok(None), |block| block.map(Some))
     }

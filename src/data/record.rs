@@ -18,6 +18,7 @@ mod rows;
 mod runs;
 mod sink;
 mod source;
+mod stored;
 #[cfg(target_arch = "x86_64")]
 mod wide;
 
@@ -28,10 +29,13 @@ pub use memory::{Frame, ReadFrom};
 pub use raw::read_raw;
 pub use runs::{Block, Run, read_stretch, stream, stream_known};
 pub use source::RecordSource;
+pub use stored::Stored;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+use columnar::At;
 
 use super::cells::{self, Heading};
 use super::faults::Faults;
@@ -88,6 +92,7 @@ pub struct Record {
 #[derive(Clone, Debug)]
 enum Origin {
     File(PathBuf),
+    Object(Stored),
     Memory(Arc<Frame>),
 }
 
@@ -142,7 +147,7 @@ impl Record {
     pub fn row_shown(&self, row: usize) -> usize {
         let before = match &self.from {
             Origin::File(path) if Format::of(path) == Format::Csv => 2,
-            Origin::File(_) | Origin::Memory(_) => 1,
+            Origin::File(_) | Origin::Object(_) | Origin::Memory(_) => 1,
         };
         self.first_row + row + before
     }
@@ -152,7 +157,8 @@ impl Record {
         let row = self.first_row + row;
         let path = match &self.from {
             Origin::Memory(frame) => return frame.place(row, column),
-            Origin::File(path) if Format::of(path) == Format::Parquet => return columnar::place(path, &self.shown, row, column),
+            Origin::Object(stored) => return columnar::place(At::Object(stored), &self.shown, row, column),
+            Origin::File(path) if Format::of(path) == Format::Parquet => return columnar::place(At::Disk(path), &self.shown, row, column),
             Origin::File(path) => path,
         };
         let mut bytes = Vec::new();
@@ -179,7 +185,7 @@ impl Record {
 /// Of a Parquet file: `format-mislabelled`, `format-not-read` (compression, encryption), `file-damaged`, `unit-conflict`.
 pub fn read_record(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
     if Format::of(path) == Format::Parquet {
-        return columnar::read(path, shown, wanted);
+        return columnar::read(At::Disk(path), shown, wanted);
     }
     let mut buffer = BUFFER.take();
     let record = read_into(&mut buffer, path, shown, wanted);
@@ -234,7 +240,7 @@ fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -
 /// As [`read_record`], of the file and its header.
 pub fn read_headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
     if Format::of(path) == Format::Parquet {
-        return columnar::headings(path, shown);
+        return columnar::headings(At::Disk(path), shown);
     }
     let bytes = read_line(path, shown).map_err(|problem| vec![problem])?;
     let text = decode(&bytes, shown).map_err(|problem| vec![problem])?;

@@ -1,6 +1,7 @@
 //! Evaluation of one selection from its sections: the reference for the enumeration, and the method for single selections.
 
 use super::case::{Case, Kind, Measure};
+use crate::metrics::reduction::Measure as Scatter;
 use crate::result::Verdict;
 use crate::result::study::Selected;
 use crate::run::pool::Rule;
@@ -160,6 +161,16 @@ impl<'a> Sums<'a> {
             _ => f64::NAN,
         };
         Some(value * self.measure.scale).filter(|value| value.is_finite())
+    }
+
+    /// The same as a measure of scatter; `None` for a statistic that is none.
+    pub fn scatter(&self) -> Option<Scatter> {
+        let ddof = match self.measure.kind {
+            Kind::Deviation { ddof } => Some(ddof as f64),
+            Kind::RootMeanSquare => None,
+            _ => return None,
+        };
+        Some(Scatter { ddof, scale: self.measure.scale, sums: self.sections.iter().map(|(n, x, xx)| [*n, *x, *xx]).collect() })
     }
 
     pub fn measure(&self) -> &Measure {

@@ -14,6 +14,9 @@ from typing import Any
 
 from . import Result, Task, _engines, _launch, _records, _runs
 
+#: Bytes that workers keep for their next record before they give back memory.
+TRIM = 128 << 20
+
 
 def certify(
     client: Any,
@@ -88,6 +91,8 @@ def _cluster(address: str | None, work: Callable[..., Result]) -> Result:
         with distributed.Client(address) as client:
             return work(certify, client)
     options = dict(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=None)
+    # Dask lets its workers give back memory after each 64 kB. Records are larger: the system then clears their memory anew each time.
+    import_module("dask").config.set({"distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": TRIM})
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
         return work(certify, client)
 

@@ -1,15 +1,17 @@
 //! Runs of a campaign: one record of each kind over a long stretch, of which sections are parts.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use super::{Campaign, RecordKind};
 use crate::data::cells::name_and_unit;
 use crate::data::folder::Folder;
-use crate::data::record::{Held, Known, RecordSource};
+use crate::data::record::{Format, Held, Known, RecordSource};
 use crate::data::table::{Cell, Table};
 use crate::disk;
 use crate::problem::{Problem, Problems};
 use crate::source::{Span, Spanned};
+use crate::store;
 use crate::yaml::{Node, Value};
 
 /// The key of the runs in `campaign.yaml`.
@@ -68,7 +70,7 @@ impl Run {
 
 /// Reads the runs of a campaign.
 ///
-/// Problems: `wrong-kind`, `no-records`, `name-invalid`, `unknown-key`, `unknown-choice`, and those of [`Folder::place`].
+/// Problems: `wrong-kind`, `no-records`, `name-invalid`, `unknown-key`, `unknown-choice`, `format-not-read`, and those of [`Folder::place`].
 pub(super) fn read(tree: &Node, folder: &Folder, problems: &mut Problems) -> Vec<Run> {
     const EXAMPLE: &str = "for instance: `runs: {R1: {measurement: R1/measurement.parquet, simulation: R1/simulation.parquet}}`";
     let Some(node) = tree.get(RUNS) else { return Vec::new() };
@@ -109,8 +111,8 @@ fn one(name: Spanned<String>, node: &Node, (folder, held): (&Folder, &Held), pro
         let written = Spanned::new(text.to_string(), value.span.clone());
         let known = || RecordKind::ALL.into_iter().map(RecordKind::key).chain([DRIFT]);
         if let Some(kind) = RecordKind::ALL.into_iter().find(|kind| kind.key() == key.text) {
-            match folder.place(&written.value, &written.span) {
-                Ok(_) => run.files.push((kind, written)),
+            match check_file(&written, folder) {
+                Ok(()) => run.files.push((kind, written)),
                 Err(problem) => problems.push(problem),
             }
         } else if key.text == DRIFT {
@@ -136,6 +138,18 @@ fn one(name: Spanned<String>, node: &Node, (folder, held): (&Folder, &Held), pro
         problems.push(Problem::error("no-records", says).at(&node.span).help("name its files: `measurement`, `simulation`, `track`"));
     }
     (problems.errors() == before).then_some(run)
+}
+
+/// A file of a run is inside the campaign, or an object in a store. Of an object only Parquet can be read in parts.
+fn check_file(written: &Spanned<String>, folder: &Folder) -> Result<(), Problem> {
+    if !store::is_url(&written.value) {
+        return folder.place(&written.value, &written.span).map(|_| ());
+    }
+    if Format::of(Path::new(&written.value)) == Format::Parquet {
+        return Ok(());
+    }
+    let says = format!("`{}` is in a store and does not end in `.{}`", written.value, Format::Parquet.ending());
+    Err(Problem::error("format-not-read", says).at(&written.span).help("write it as Parquet, or copy it to the campaign's folder"))
 }
 
 /// Every run that the table of sections names is there.
@@ -181,12 +195,15 @@ impl Campaign {
     /// The record of a run, which must exist.
     ///
     /// # Errors
-    /// `key-missing`, `path-outside`, `file-missing`.
+    /// `key-missing`, `path-outside`, `file-missing`; of an object `url-invalid`, `store-not-allowed`, `store-not-built`, `file-unreadable`.
     pub fn run_source(&self, run: &Run, kind: RecordKind) -> Result<RecordSource, Problem> {
         let Some(file) = run.file(kind) else {
             let says = format!("the run `{}` has no `{}`", run.name.value, kind.key());
             return Err(Problem::error("key-missing", says).at(&run.name.span));
         };
+        if store::is_url(&file.value) {
+            return run.known(kind).stored(&file.value, &file.span).map(RecordSource::Object);
+        }
         let place = self.folder.place(&file.value, &file.span)?;
         if let Some(frame) = self.folder.memory().records.get(&place.inside) {
             return Ok(RecordSource::Memory(Arc::clone(frame)));

@@ -1,15 +1,21 @@
 //! What is known of a file of which several stretches are read: its hash, and of a text where in it which part of the axis is.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::Column;
 use super::held::Held;
+use super::stored::refused;
+use super::{Column, Stored};
+use crate::problem::Problem;
+use crate::source::Span;
+use crate::store::{Object, Refused};
 
 /// Known once for all that share it; computed by the first who asks while the others wait.
 #[derive(Clone, Debug, Default)]
 pub struct Known {
     file: Arc<Mutex<Option<Arc<KnownFile>>>>,
+    /// Of a record in a store: it is looked for once.
+    object: Arc<OnceLock<Result<Object, Refused>>>,
     /// Parts of this file and others.
     pub held: Held,
 }
@@ -61,7 +67,18 @@ impl Mark {
 impl Known {
     /// Of a file whose parts are kept with those of others.
     pub fn with(held: &Held) -> Self {
-        Self { file: Arc::default(), held: held.clone() }
+        Self { held: held.clone(), ..Self::default() }
+    }
+
+    /// The record in a store.
+    ///
+    /// # Errors
+    /// As [`Object::find`].
+    pub fn stored(&self, url: &str, at: &Span) -> Result<Stored, Problem> {
+        match self.object.get_or_init(|| Object::find(url)) {
+            Ok(object) => Ok(Stored { object: object.clone(), held: self.held.clone() }),
+            Err(why) => Err(refused(why, at)),
+        }
     }
 
     /// What is known, if it is enough; otherwise what is computed now.

@@ -4,7 +4,8 @@ use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
-use super::{Column, Format, Known, Origin, Record, Wanted, columnar, find_columns, header, indexed, rows};
+use super::columnar::{self, At};
+use super::{Column, Format, Known, Origin, Record, Wanted, find_columns, header, indexed, rows};
 use crate::data::hash::Hasher;
 use crate::data::text::{LONGEST_LINE, decode_from, long_line, open_text, read_line_of, unreadable};
 use crate::problem::Problem;
@@ -47,7 +48,7 @@ pub struct Run {
 /// As [`super::read_record`]; reading ends at the first block with a fault, and blocks before it were given to `each`.
 pub fn stream(path: &Path, shown: &str, wanted: &[Wanted], mut each: impl FnMut(&Block<'_>)) -> Result<Run, Vec<Problem>> {
     match Format::of(path) {
-        Format::Parquet => columnar::stream(path, shown, wanted, &Known::default(), &mut each),
+        Format::Parquet => columnar::stream(At::Disk(path), shown, wanted, &Known::default(), &mut each),
         Format::Csv => text(path, shown, wanted, &mut each),
     }
 }
@@ -64,7 +65,7 @@ pub fn stream_known(
     mut each: impl FnMut(&Block<'_>),
 ) -> Result<Run, Vec<Problem>> {
     match Format::of(path) {
-        Format::Parquet => columnar::stream(path, shown, wanted, known, &mut each),
+        Format::Parquet => columnar::stream(At::Disk(path), shown, wanted, known, &mut each),
         Format::Csv => indexed::stream(path, shown, wanted, (axis, known), &mut each),
     }
 }
@@ -85,7 +86,7 @@ pub fn read_stretch(
     known: &Known,
 ) -> Result<Record, Vec<Problem>> {
     match Format::of(path) {
-        Format::Parquet => columnar::stretch(path, shown, wanted, (axis, &range), known),
+        Format::Parquet => columnar::stretch(At::Disk(path), shown, wanted, (axis, &range), known),
         Format::Csv => indexed::stretch(path, shown, wanted, (axis, &range), known),
     }
 }

@@ -167,9 +167,8 @@ impl Windows {
                     wanted.push(Wanted::new(column.as_str(), node.dimension));
                 }
             }
-            let place =
-                campaign.run_source(run, kind).and_then(|source| source.file(&run.name.span)).map_err(|problem| Problems(vec![problem]))?;
-            all.push((source, Window::open(&place, wanted, run.known(kind).clone())));
+            let record = campaign.run_source(run, kind).map_err(|problem| Problems(vec![problem]))?;
+            all.push((source, Window::open(record, wanted, run.known(kind).clone())));
         }
         Ok(Self { all })
     }

@@ -1,8 +1,7 @@
 //! The part of a record around the places that are looked at. Samples behind it are forgotten as the search goes on.
 
-use crate::data::Place;
 use crate::data::blocks::Blocks;
-use crate::data::record::{Known, Wanted};
+use crate::data::record::{Known, RecordSource, Wanted};
 use crate::problem::Problem;
 
 /// A stretch of a record; its first column is the axis.
@@ -18,13 +17,13 @@ pub struct Window {
 }
 
 impl Window {
-    pub fn open(place: &Place, wanted: Vec<Wanted>, known: Known) -> Self {
+    pub fn open(source: RecordSource, wanted: Vec<Wanted>, known: Known) -> Self {
         let names: Vec<String> = wanted.iter().map(|wanted| wanted.name.clone()).collect();
         Self {
             columns: vec![Vec::new(); names.len()],
             names,
-            shown: place.inside.clone(),
-            blocks: Some(Blocks::open(place.path.clone(), place.inside.clone(), wanted, known)),
+            shown: source.inside().to_string(),
+            blocks: Some(Blocks::open(source, wanted, known)),
             first_row: 2,
             first: None,
             last: f64::NEG_INFINITY,

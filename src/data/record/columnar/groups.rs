@@ -14,6 +14,7 @@ use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::RowSelection;
 use parquet::arrow::push_decoder::{ParquetPushDecoderBuilder, PushBuffers};
 use parquet::basic::Type;
+use parquet::file::metadata::ColumnChunkMetaData;
 
 use super::open::{Opened, damaged, guarded};
 use super::{Column, Heading, guard, value_at};
@@ -22,6 +23,13 @@ use crate::problem::Problem;
 
 /// Rows decoded at a time: the numbers of twenty channels take 1 MB, which stays in the second-level cache.
 const BATCH: usize = 1 << 13;
+
+/// The bytes of a column in a group.
+fn range_of(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
+    let start = chunk.dictionary_page_offset().unwrap_or(chunk.data_page_offset());
+    let (start, length) = (u64::try_from(start).ok()?, u64::try_from(chunk.compressed_size()).ok()?);
+    Some(start..start.checked_add(length)?)
+}
 
 /// Called after each batch with the columns and the row of the file with which the batch begins; it may empty the columns.
 pub(super) type Each<'e> = &'e mut dyn FnMut(&mut [Column], usize);
@@ -97,14 +105,12 @@ impl Opened<'_> {
         let shown = self.shown;
         let mut chunks = self.store.buffers();
         let mut memory = 0_u64;
+        self.store.ahead(&self.ranges(group, columns), shown)?;
         for column in columns {
             let place = || format!("row group {}, column `{}`", group + 1, column.name);
             let Some(leaf) = self.leaf(column.position) else { return Err(damaged(shown, &format!("{}: no values", place()))) };
             let chunk = self.metadata.metadata().row_group(group).column(leaf);
-            let start = chunk.dictionary_page_offset().unwrap_or(chunk.data_page_offset());
-            let bounds = u64::try_from(start).ok().zip(u64::try_from(chunk.compressed_size()).ok());
-            let range = bounds.and_then(|(start, length)| Some(start..start.checked_add(length)?));
-            let range = range.filter(|range| range.end <= self.store.size());
+            let range = range_of(chunk).filter(|range| range.end <= self.store.size());
             let range = range.ok_or_else(|| damaged(shown, &format!("{}: its values lie outside the file", place())))?;
             let width = match chunk.column_type() {
                 Type::DOUBLE | Type::INT64 => 8,
@@ -120,6 +126,13 @@ impl Opened<'_> {
             self.within(memory, "a row group")?;
         }
         Ok(chunks)
+    }
+
+    /// Where the wanted columns of a group are, as far as it lies inside the file.
+    fn ranges(&self, group: usize, columns: &[Column]) -> Vec<Range<u64>> {
+        let group = self.metadata.metadata().row_group(group);
+        let leaves = columns.iter().filter_map(|column| self.leaf(column.position));
+        leaves.filter_map(|leaf| range_of(group.column(leaf)).filter(|range| range.end <= self.store.size())).collect()
     }
 
     fn decode(

@@ -16,12 +16,13 @@ mod runs;
 use std::path::Path;
 
 pub(super) use groups::{append, wrong};
+pub(super) use open::At;
 pub(crate) use open::guarded;
 use open::{Opened, Store};
 pub(super) use open::{headings_of, not_numbers};
 pub(super) use runs::{stream, stretch};
 
-use super::{Column, Record, Wanted, find_columns};
+use super::{Column, Known, Origin, Record, Wanted, find_columns};
 use crate::data::cells::Heading;
 use crate::data::faults::Faults;
 use crate::data::hash::sha256;
@@ -35,12 +36,22 @@ use crate::units::Unit;
 pub(super) const MAGIC: &[u8; 4] = b"PAR1";
 
 /// Reads the wanted columns of a record.
-pub(super) fn read(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
+pub(super) fn read(at: At<'_>, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
-    let mut bytes = Vec::new();
-    read_plain(path, shown, &mut bytes).map_err(one)?;
-    let (hash, size) = (sha256(&bytes), bytes.len());
-    let mut opened = Opened::open(Store::memory(bytes), shown).map_err(one)?;
+    let (mut opened, hash, from) = match at {
+        At::Disk(path) => {
+            let mut bytes = Vec::new();
+            read_plain(path, shown, &mut bytes).map_err(one)?;
+            let hash = sha256(&bytes);
+            let opened = Opened::open(Store::memory(bytes), shown).map_err(one)?;
+            (opened, hash, Origin::File(path.to_path_buf()))
+        }
+        At::Object(stored) => {
+            let (opened, hash) = runs::open_object(stored, shown, &Known::default()).map_err(one)?;
+            (opened, hash, Origin::Object(stored.clone()))
+        }
+    };
+    let size = usize::try_from(opened.store.size()).unwrap_or(usize::MAX);
     let mut columns = opened.find(wanted)?;
     let rows = opened.rows();
     if rows == 0 {
@@ -63,7 +74,7 @@ pub(super) fn read(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record
         first_row: 0,
         sha256: hash,
         bytes: size,
-        from: super::Origin::File(path.to_path_buf()),
+        from,
     })
 }
 
@@ -74,7 +85,7 @@ pub(super) fn no_rows(shown: &str) -> Problem {
 /// Every column as it is in the file: numbers in the unit of the file, or texts.
 pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
-    let mut opened = open_file(path, shown)?;
+    let mut opened = open_file(At::Disk(path), shown)?;
     let headings = opened.headings().to_vec();
     opened.within((opened.rows() as u64).saturating_mul(8 * headings.len() as u64), "the record").map_err(one)?;
     let mut columns = Vec::new();
@@ -103,21 +114,21 @@ pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Probl
 }
 
 /// The headings of a record.
-pub(super) fn headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
-    let opened = open_file(path, shown)?;
+pub(super) fn headings(at: At<'_>, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
+    let opened = open_file(at, shown)?;
     Ok(opened.headings().to_vec())
 }
 
-fn open_file<'a>(path: &Path, shown: &'a str) -> Result<Opened<'a>, Vec<Problem>> {
-    Store::disk(path, shown).and_then(|store| Opened::open(store, shown)).map_err(|problem| vec![problem])
+fn open_file<'a>(at: At<'_>, shown: &'a str) -> Result<Opened<'a>, Vec<Problem>> {
+    Store::at(at, shown).and_then(|store| Opened::open(store, shown)).map_err(|problem| vec![problem])
 }
 
 /// The place of a sample, from 0, or of its value in a column.
-pub(super) fn place(path: &Path, shown: &str, row: usize, column: Option<&Column>) -> Option<Span> {
+pub(super) fn place(at: At<'_>, shown: &str, row: usize, column: Option<&Column>) -> Option<Span> {
     let Some(column) = column else {
         return Some(Source::excerpt(shown, format!("row {}", row + 1), row + 1).whole());
     };
-    let mut opened = open_file(path, shown).ok()?;
+    let mut opened = open_file(at, shown).ok()?;
     let (group, first) = opened.group_of(row)?;
     let mut one = [Column { values: Vec::new(), ..column.clone() }];
     let mut faults = Faults::new(shown);

@@ -17,6 +17,7 @@ use parquet::file::reader::ChunkReader;
 
 use super::{Column, Heading, MAGIC, Wanted, find_columns, guard};
 use crate::data::cells::{HeadingUnit, duplicates, name_and_unit, shortened};
+use crate::data::record::Stored;
 use crate::data::record::held::Held;
 use crate::data::text::{LARGEST_RECORD, plain_size, unreadable};
 use crate::data::write::Digits;
@@ -38,6 +39,13 @@ const MOST_INFLATION: u64 = 1000;
 /// Bytes of numbers and pages that any file may need: a page of the maximum size.
 const FREE: u64 = guard::LARGEST_PAGE;
 
+/// Where a Parquet file is.
+#[derive(Clone, Copy)]
+pub(in crate::data::record) enum At<'a> {
+    Disk(&'a Path),
+    Object(&'a Stored),
+}
+
 /// Where the bytes are.
 pub(super) enum Store {
     /// The whole file: its parts are used where they lie, without a copy.
@@ -49,10 +57,18 @@ pub(super) enum Store {
         /// Where parts are kept that are read again.
         held: Option<Held>,
     },
+    Object(Stored),
 }
 
 impl Store {
-    pub fn disk(path: &Path, shown: &str) -> Result<Self, Problem> {
+    pub fn at(at: At<'_>, shown: &str) -> Result<Self, Problem> {
+        match at {
+            At::Disk(path) => Self::disk(path, shown),
+            At::Object(stored) => Ok(Self::Object(stored.clone())),
+        }
+    }
+
+    fn disk(path: &Path, shown: &str) -> Result<Self, Problem> {
         let size = plain_size(path, shown)?;
         let file = disk::open(path).map_err(|error| unreadable(shown, &error))?;
         Ok(Self::Disk { file, path: path.to_path_buf(), size, held: None })
@@ -78,7 +94,7 @@ impl Store {
     pub fn buffers(&self) -> PushBuffers {
         match self {
             Self::Memory(whole, _) => whole.clone(),
-            Self::Disk { .. } => PushBuffers::default(),
+            Self::Disk { .. } | Self::Object(_) => PushBuffers::default(),
         }
     }
 
@@ -96,7 +112,7 @@ impl Store {
                 let bytes = whole.get_bytes(range.start, count).map_err(|error| damaged(shown, &error.to_string()))?;
                 Ok(look(&bytes))
             }
-            Self::Disk { .. } => {
+            Self::Disk { .. } | Self::Object(_) => {
                 let bytes = self.read(range.clone(), shown)?;
                 let seen = look(&bytes);
                 buffers.push_range(range, bytes);
@@ -109,7 +125,20 @@ impl Store {
         match self {
             Self::Memory(_, size) => *size,
             Self::Disk { size, .. } => *size,
+            Self::Object(stored) => stored.object.size(),
         }
+    }
+
+    /// Parts that are read soon: those of an object are asked for together.
+    pub fn ahead(&self, ranges: &[Range<u64>], shown: &str) -> Result<(), Problem> {
+        let Self::Object(Stored { object, held }) = self else { return Ok(()) };
+        let name = Path::new(object.url());
+        let lacking: Vec<Range<u64>> = ranges.iter().filter(|range| held.get(name, range).is_none()).cloned().collect();
+        let read = object.read(&lacking).map_err(|why| unreadable(shown, &why))?;
+        for (range, bytes) in lacking.iter().zip(read) {
+            held.keep(name, range.start, bytes);
+        }
+        Ok(())
     }
 
     pub fn read(&mut self, range: Range<u64>, shown: &str) -> Result<Bytes, Problem> {
@@ -129,6 +158,16 @@ impl Store {
                 if let Some(held) = held {
                     held.keep(path, range.start, bytes.clone());
                 }
+                Ok(bytes)
+            }
+            Self::Object(Stored { object, held }) => {
+                let name = Path::new(object.url());
+                if let Some(kept) = held.get(name, &range) {
+                    return Ok(kept);
+                }
+                let read = object.read(std::slice::from_ref(&range)).map_err(|why| unreadable(shown, &why))?;
+                let bytes = read.into_iter().next().unwrap_or_default();
+                held.keep(name, range.start, bytes.clone());
                 Ok(bytes)
             }
         }
@@ -307,7 +346,7 @@ pub(in crate::data::record) fn not_numbers(kind: &DataType, name: &str, at: &Spa
 }
 
 /// The bytes of the footer.
-fn footer(store: &mut Store, shown: &str) -> Result<Bytes, Problem> {
+pub(super) fn footer(store: &mut Store, shown: &str) -> Result<Bytes, Problem> {
     let size = store.size();
     if size == 0 {
         return Err(Problem::error("file-empty", format!("`{shown}` is empty")));

@@ -1,31 +1,30 @@
 //! Long records: one block after the other, or a stretch of them.
 
 use std::ops::Range;
-use std::path::Path;
 
 use parquet::file::statistics::Statistics;
 
-use super::open::{Opened, Store};
+use super::open::{At, Opened, Store, footer};
 use super::{Column, no_rows};
 use crate::data::faults::Faults;
 use crate::data::hash::{Hasher, sha256};
 use crate::data::record::held::Held;
 use crate::data::record::known::{Known, KnownFile};
 use crate::data::record::runs::{Block, Run, Stretch, axis_of};
-use crate::data::record::{Record, Wanted};
+use crate::data::record::{Origin, Record, Stored, Wanted};
 use crate::data::text::unreadable;
 use crate::disk;
 use crate::problem::Problem;
 
 /// Calls `each` with the wanted columns, batch by batch in the order of the file.
 pub(crate) fn stream(
-    path: &Path,
+    at: At<'_>,
     shown: &str,
     wanted: &[Wanted],
     known: &Known,
     each: &mut dyn FnMut(&Block<'_>),
 ) -> Result<Run, Vec<Problem>> {
-    let (mut opened, sha256) = open(path, shown, known)?;
+    let (mut opened, sha256) = open(at, shown, known)?;
     let mut columns = opened.find(wanted)?;
     if opened.rows() == 0 {
         return Err(vec![no_rows(shown)]);
@@ -47,23 +46,23 @@ pub(crate) fn stream(
 
 /// The rows whose axis lies in a range. Row groups whose statistics exclude the range are not decoded.
 pub(crate) fn stretch(
-    path: &Path,
+    at: At<'_>,
     shown: &str,
     wanted: &[Wanted],
     (axis, range): (&str, &Range<f64>),
     known: &Known,
 ) -> Result<Record, Vec<Problem>> {
-    let (mut opened, sha256) = open(path, shown, known)?;
+    let (mut opened, sha256) = open(at, shown, known)?;
     let mut columns = opened.find(wanted)?;
-    let at = axis_of(&columns, axis, shown)?;
+    let place = axis_of(&columns, axis, shown)?;
     let mut faults = Faults::new(shown);
-    let mut stretch = Stretch::new(range.clone(), at, &columns);
+    let mut stretch = Stretch::new(range.clone(), place, &columns);
     for group in 0..opened.groups() {
-        if opened.without(group, &columns[at], range) {
+        if opened.without(group, &columns[place], range) {
             continue;
         }
         // The axis first: of the other columns, only the rows inside are decoded.
-        let mut alone = [Column { values: Vec::new(), ..columns[at].clone() }];
+        let mut alone = [Column { values: Vec::new(), ..columns[place].clone() }];
         opened.group(group, &mut alone, &mut faults, &mut |_, _| {}).map_err(|problem| vec![problem])?;
         if !faults.is_empty() {
             return Err(faults.into_vec());
@@ -83,7 +82,11 @@ pub(crate) fn stretch(
     }
     let channels = opened.headings().iter().map(|heading| heading.name.clone()).collect();
     let run = Run { channels, rows: opened.rows(), columns, sha256, bytes: opened.store.size() };
-    stretch.record(run, super::super::Origin::File(path.to_path_buf()), shown)
+    let from = match at {
+        At::Disk(path) => Origin::File(path.to_path_buf()),
+        At::Object(stored) => Origin::Object(stored.clone()),
+    };
+    stretch.record(run, from, shown)
 }
 
 impl Opened<'_> {
@@ -102,8 +105,12 @@ impl Opened<'_> {
 
 /// The file and its hash. A small file is read once, and kept for the stretches that follow. A larger one is read to its end for the
 /// hash, and the row groups that are needed once more.
-fn open<'a>(path: &Path, shown: &'a str, known: &Known) -> Result<(Opened<'a>, String), Vec<Problem>> {
+fn open<'a>(at: At<'_>, shown: &'a str, known: &Known) -> Result<(Opened<'a>, String), Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
+    let path = match at {
+        At::Disk(path) => path,
+        At::Object(stored) => return open_object(stored, shown, known).map_err(one),
+    };
     let store = Store::held(path, shown, &known.held).map_err(one)?;
     let compute = || {
         if Held::takes_whole(store.size()) {
@@ -120,4 +127,20 @@ fn open<'a>(path: &Path, shown: &'a str, known: &Known) -> Result<(Opened<'a>, S
     let file = known.or(|_| true, compute).map_err(|error: std::io::Error| one(unreadable(shown, &error)))?;
     let opened = Opened::open(store, shown).map_err(one)?;
     Ok((opened, file.sha256.clone()))
+}
+
+/// An object, and a hash that stands for it. Its bytes are not all read: the hash is that of its size, of its version in the store and of
+/// its footer, which has the place, the size and the extremes of each part.
+pub(super) fn open_object<'a>(stored: &Stored, shown: &'a str, known: &Known) -> Result<(Opened<'a>, String), Problem> {
+    let mut store = Store::at(At::Object(stored), shown)?;
+    let file = known.or(
+        |_| true,
+        || {
+            let mut hash = Hasher::default();
+            hash.add(format!("{}\n{}\n", stored.object.size(), stored.object.version()).as_bytes());
+            hash.add(&footer(&mut store, shown)?);
+            Ok(KnownFile { sha256: hash.finish(), bytes: stored.object.size(), index: None })
+        },
+    )?;
+    Ok((Opened::open(store, shown)?, file.sha256.clone()))
 }
