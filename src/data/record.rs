@@ -19,6 +19,7 @@ mod runs;
 mod sink;
 mod source;
 mod stored;
+mod stretch;
 #[cfg(target_arch = "x86_64")]
 mod wide;
 
@@ -27,9 +28,10 @@ pub use held::Held;
 pub use known::Known;
 pub use memory::{Frame, ReadFrom};
 pub use raw::read_raw;
-pub use runs::{Block, Run, read_stretch, stream, stream_known};
+pub use runs::{read_stretch, stream, stream_known};
 pub use source::RecordSource;
 pub use stored::Stored;
+pub use stretch::{Block, Run};
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::known::{Index, Known, KnownFile, Mark};
-use super::runs::{Block, Run, Stretch, axis_of, text};
+use super::stretch::{Block, Run, Stretch, axis_of, text};
 use super::{Origin, Record, Wanted, find_columns, header, rows};
 use crate::data::text::{decode_from, open_text, read_line_of, unreadable};
 use crate::problem::Problem;

@@ -10,7 +10,7 @@ use arrow_array::{Array, RecordBatch};
 use arrow_schema::{DataType, Schema};
 
 use super::columnar::{append, headings_of, no_rows, not_numbers, value_at, wrong};
-use super::runs::{Run, Stretch, axis_of};
+use super::stretch::{Run, Stretch, axis_of};
 use super::{Column, Record, Wanted, find_columns};
 use crate::data::cells::Heading;
 use crate::data::faults::Faults;

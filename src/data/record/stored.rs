@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::columnar::{self, At};
 use super::held::Held;
-use super::runs::{Block, Run};
+use super::stretch::{Block, Run};
 use super::{Known, Record, Wanted};
 use crate::data::cells::Heading;
 use crate::problem::Problem;

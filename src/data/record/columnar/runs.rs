@@ -10,7 +10,7 @@ use crate::data::faults::Faults;
 use crate::data::hash::{Hasher, sha256};
 use crate::data::record::held::Held;
 use crate::data::record::known::{Known, KnownFile};
-use crate::data::record::runs::{Block, Run, Stretch, axis_of};
+use crate::data::record::stretch::{Block, Run, Stretch, axis_of};
 use crate::data::record::{Origin, Record, Stored, Wanted};
 use crate::data::text::unreadable;
 use crate::disk;
