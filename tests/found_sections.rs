@@ -181,14 +181,56 @@ fn sections_are_cut_out_of_runs() {
     }
 }
 
-/// The diagnosis works on the sections that are found.
+/// One run of the example as a campaign of its own, with one section a zone.
+fn one_run(folder: &Path, run: &str, other: &str) -> String {
+    let to = folder.join("runs").join(run);
+    fs::create_dir_all(to.join("records")).expect("a folder");
+    let example = Path::new("examples/run");
+    for file in ["vehicle.yaml", "profile.csv"] {
+        fs::copy(example.join(file), to.join(file)).expect("copied");
+    }
+    for kind in ["measured", "simulated", "track"] {
+        let file = format!("records/{run}-{kind}.parquet");
+        fs::copy(example.join(&file), to.join(&file)).expect("copied");
+    }
+    let yaml = fs::read_to_string(example.join("campaign.yaml")).expect("a campaign");
+    let (before, from) = yaml.split_once(&format!("  {other}:\n")).expect("the other run");
+    let after: Vec<&str> = from.lines().skip_while(|line| line.starts_with("    ")).collect();
+    let yaml = format!("{before}{}\n", after.join("\n")).replace("sections_per_zone: 2", "sections_per_zone: 1");
+    fs::write(to.join("campaign.yaml"), yaml).expect("written");
+    to.display().to_string()
+}
+
+/// `diagnose` and `blind` work on the sections that are found, in references as well. A catalogue with one effect keeps it short.
 #[test]
 fn runs_are_diagnosed_by_their_sections() {
     let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().join("out");
-    done(&["diagnose", "examples/run", "--out", &out.display().to_string()], &[0, 1]);
-    let text = fs::read_to_string(out.join("diagnosis.json")).expect("a diagnosis");
-    assert!(text.contains("S12"), "no section in the diagnosis");
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let (north, south) = (one_run(folder.path(), "north", "south"), one_run(folder.path(), "south", "north"));
+    let shipped = fs::read_to_string("effects/bogie-vehicle.yaml").expect("the catalogue");
+    let (_, effects) = shipped.split_once("\neffects:\n").expect("effects");
+    let removed = effects
+        .lines()
+        .take_while(|line| line.is_empty() || line.starts_with(' '))
+        .filter(|line| line.starts_with("  ") && !line.starts_with("   ") && line.ends_with(':') && *line != "  friction:")
+        .map(|line| format!("{line} remove\n"));
+    let few = format!("catalogue: few\ntitle: One effect\nextends: bogie-vehicle\neffects:\n{}", removed.collect::<String>());
+    fs::write(at("few.yaml"), few).expect("written");
+    let json = |path: &str| -> serde_json::Value { serde_json::from_str(&fs::read_to_string(at(path)).expect("a result")).expect("JSON") };
+
+    // The friction of the example is the same on both sides; what its change would do is computed with the sections found as well.
+    let truth = r#"{"kind": "single", "effects": [{"name": "friction", "parameters": {"friction": 0.2}}]}"#;
+    fs::write(Path::new(&south).join("truth.json"), truth).expect("written");
+    done(&["blind", &south, "--effects", &at("few.yaml"), "--out", &at("blind")], &[0]);
+    let case = &json("blind/blind.json")["cases"][0];
+    assert_eq!((&case["fault"], &case["verdict"]), (&serde_json::Value::Null, &"no significant gap".into()), "{case:#}");
+    assert!(case["detectability"].as_f64().is_some_and(|distance| distance > 5.0), "{case:#}");
+
+    done(&["diagnose", &south, "--reference", &north, "--effects", &at("few.yaml"), "--out", &at("out")], &[0, 1]);
+    let (alone, beside) = (json("blind/south/diagnosis.json"), json("out/diagnosis.json"));
+    let standing = |found: &serde_json::Value| found["notes"].to_string().contains("standing discrepancy of the simulation was estimated");
+    assert!(!standing(&alone) && standing(&beside), "{:#} {:#}", alone["notes"], beside["notes"]);
+    assert_eq!((&alone["how"]["sections"], &beside["how"]["sections"]), (&6.into(), &6.into()));
 }
 
 /// The wheel sensor of the measurement counts 3 m too much in 1 km, and begins 1 m ahead. The shift that is found at each section is the

@@ -141,7 +141,7 @@ fn track_file(track: TrackTable) -> Result<Vec<u8>, String> {
         values: Values::Numbers(rounded(values, decimals)),
         digits: None::<Digits>,
     };
-    parquet(columns.into_iter().map(column).collect()).map_err(|problem| problem.says)
+    parquet(&columns.into_iter().map(column).collect::<Vec<_>>()).map_err(|problem| problem.says)
 }
 
 fn example(name: &str) -> Result<String, String> {

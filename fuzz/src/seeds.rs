@@ -123,7 +123,7 @@ fn of_file(path: &Path, bytes: Vec<u8>, seeds: &mut Vec<Seed>) {
 fn parquet(rows: &[u8]) -> Option<Vec<u8>> {
     let path = super::records::folder().join("seed.csv");
     super::records::write(&path, rows);
-    write::parquet(read_raw(&path, "seed.csv").ok()?).ok()
+    write::parquet(&read_raw(&path, "seed.csv").ok()?).ok()
 }
 
 fn first_rows(bytes: Vec<u8>) -> Vec<u8> {

@@ -61,7 +61,7 @@ pub fn convert(campaign: &Campaign, to: Format, outputs: &mut Outputs) -> Result
             let columns = read_raw(&place.path, &place.shown)?;
             let after = match to {
                 Format::Csv => csv(&columns),
-                Format::Parquet => parquet(columns).map_err(one)?,
+                Format::Parquet => parquet(&columns).map_err(one)?,
             };
             let stem = Format::stem(&place.inside).unwrap_or(&place.inside);
             let inside = format!("{stem}.{}", to.ending());

@@ -107,9 +107,10 @@ fn bytes(record: &Record, format: Format) -> Result<Vec<u8>, Problem> {
         values: Values::Numbers(column.values.iter().map(|value| rounded(column.unit.from_si(*value))).collect()),
         digits: None,
     });
+    let columns: Vec<FileColumn> = columns.collect();
     match format {
-        Format::Csv => Ok(csv(&columns.collect::<Vec<_>>())),
-        Format::Parquet => parquet(columns.collect()),
+        Format::Csv => Ok(csv(&columns)),
+        Format::Parquet => parquet(&columns),
     }
 }
 

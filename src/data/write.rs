@@ -4,14 +4,14 @@ mod columnar;
 mod digits;
 mod format;
 
-pub use columnar::{FileColumn, Values, csv, parquet};
+pub use columnar::{FileColumn, Layout, Values, csv, csv_header, csv_rows, parquet, parquet_in_groups};
 pub use digits::Digits;
 pub use format::{Entry, OutColumn, campaign_yaml, record, record_csv, table_csv, yaml_text};
 
 use std::io;
 use std::path::Path;
 
-use crate::disk::{self, Set, SetKind};
+use crate::disk::{self, ScratchFile, Set, SetKind};
 use crate::problem::Problem;
 
 /// Writes a file under a temporary name in the same folder, then renames it. The folder is created if missing.
@@ -79,12 +79,38 @@ impl Outputs {
     /// # Errors
     /// `write-failed`, `path-outside`.
     pub fn add(&mut self, inside: &str, bytes: &[u8]) -> Result<(), Problem> {
-        self.set.add(inside, bytes).map_err(|error| match error.kind() {
+        self.set.add(inside, bytes).map_err(|error| self.not_added(inside, &error))
+    }
+
+    /// Adds a file that is written in parts.
+    ///
+    /// # Errors
+    /// As [`Outputs::add`]; that of `fill`.
+    pub fn add_in_parts(
+        &mut self,
+        inside: &str,
+        fill: impl FnOnce(&mut (dyn io::Write + Send)) -> Result<(), Problem>,
+    ) -> Result<(), Problem> {
+        let mut file = self.set.open(inside).map_err(|error| self.not_added(inside, &error))?;
+        fill(&mut file)?;
+        self.set.close(file).map_err(|error| self.not_added(inside, &error))
+    }
+
+    /// A temporary file without a name on the disk of the folder, for what does not fit into the memory.
+    ///
+    /// # Errors
+    /// `write-failed`.
+    pub fn scratch_file(&mut self) -> Result<ScratchFile, Problem> {
+        self.set.scratch_file().map_err(|error| failed(&self.folder, &error))
+    }
+
+    fn not_added(&self, inside: &str, error: &io::Error) -> Problem {
+        match error.kind() {
             io::ErrorKind::InvalidInput => {
                 Problem::error("path-outside", format!("`{inside}` is not a path inside the output folder, or is given twice"))
             }
-            _ => failed(&self.set.path(inside), &error),
-        })
+            _ => failed(&self.set.path(inside), error),
+        }
     }
 
     /// A warning if the set of an interrupted run was completed.

@@ -337,6 +337,41 @@ pub fn scratch_in(folder: &Path) -> io::Result<tempfile::TempDir> {
     tempfile::Builder::new().prefix("fishplate-").tempdir_in(folder)
 }
 
+/// A temporary file without a name, written and read at any place; removed when dropped.
+#[derive(Debug)]
+pub struct ScratchFile(File);
+
+impl ScratchFile {
+    /// An empty file on the disk of a folder.
+    ///
+    /// # Errors
+    /// The system's error.
+    pub fn new(folder: &Path) -> io::Result<Self> {
+        pass(Op::Scratch, folder)?;
+        tempfile::tempfile_in(folder).map(Self)
+    }
+
+    /// Writes bytes from a place on.
+    ///
+    /// # Errors
+    /// The system's error.
+    pub fn write_at(&mut self, start: u64, bytes: &[u8]) -> io::Result<()> {
+        pass(Op::Write, Path::new(""))?;
+        self.0.seek(SeekFrom::Start(start))?;
+        self.0.write_all(bytes)
+    }
+
+    /// Fills the bytes from a place on.
+    ///
+    /// # Errors
+    /// The system's error; `UnexpectedEof`.
+    pub fn read_at(&mut self, start: u64, bytes: &mut [u8]) -> io::Result<()> {
+        pass(Op::Read, Path::new(""))?;
+        self.0.seek(SeekFrom::Start(start))?;
+        self.0.read_exact(bytes)
+    }
+}
+
 /// A temporary file without a name, removed when dropped.
 ///
 /// # Errors

@@ -6,14 +6,15 @@
 //! new ones.
 
 use std::collections::HashSet;
-use std::io::{self, ErrorKind};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
 use super::journal::{JOURNAL, Journal, plain};
 use super::{
-    Hold, Kind, create, hold, is_file, is_folder, is_link, kind, make_folders, names, read, remove_file, remove_folder, rename, sync_folder,
+    Hold, Kind, ScratchFile, Writer, create, hold, is_file, is_folder, is_link, kind, make_folders, names, read, remove_file,
+    remove_folder, rename, sync_folder,
 };
 
 /// Prefix of the names that this module uses in an output folder.
@@ -123,13 +124,44 @@ impl Set {
     /// # Errors
     /// The system's error; `InvalidInput` for a path outside the folder.
     pub fn add(&mut self, inside: &str, bytes: &[u8]) -> io::Result<()> {
+        let mut file = self.open(inside)?;
+        file.write_all(bytes)?;
+        self.close(file)
+    }
+
+    /// Begins a file that is written in parts; only one is open at a time.
+    ///
+    /// # Errors
+    /// As [`Set::add`].
+    pub fn open(&mut self, inside: &str) -> io::Result<Open> {
         if !plain(inside) || inside.starts_with(OWN) || self.paths.iter().any(|path| path == inside) {
             return Err(ErrorKind::InvalidInput.into());
         }
         self.begin()?;
-        self.stage(inside, bytes)?;
-        self.hashes.push(hashed(bytes));
+        let file = create(&self.folder.join(NEW).join(self.paths.len().to_string()))?;
+        Ok(Open { inside: inside.to_string(), file, hash: Sha256::new() })
+    }
+
+    /// Ends a file. On return its bytes are on the disk, but not in their place.
+    ///
+    /// # Errors
+    /// The system's error.
+    pub fn close(&mut self, open: Open) -> io::Result<()> {
+        if self.synced {
+            open.file.sync()?;
+        }
+        self.paths.push(open.inside);
+        self.hashes.push(in_hex(&open.hash.finalize()));
         Ok(())
+    }
+
+    /// A temporary file without a name, on the disk of the folder.
+    ///
+    /// # Errors
+    /// The system's error.
+    pub fn scratch_file(&mut self) -> io::Result<ScratchFile> {
+        self.begin()?;
+        ScratchFile::new(&self.folder.join(NEW))
     }
 
     fn stage(&mut self, inside: &str, bytes: &[u8]) -> io::Result<()> {
@@ -209,8 +241,32 @@ impl Set {
     }
 }
 
+/// A file of a set while it is written.
+#[derive(Debug)]
+pub struct Open {
+    inside: String,
+    file: Writer,
+    hash: Sha256,
+}
+
+impl Write for Open {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)?;
+        self.hash.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
 fn hashed(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    in_hex(&Sha256::digest(bytes))
+}
+
+fn in_hex(hash: &[u8]) -> String {
+    hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl Drop for Set {

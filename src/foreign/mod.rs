@@ -32,6 +32,8 @@ use std::path::Path;
 pub use format::Format;
 pub use text::{DateOrder, Separator};
 
+use bytes::Bytes;
+
 use crate::data::hash::sha256;
 use crate::problem::Problem;
 use crate::source::Span;
@@ -135,7 +137,7 @@ pub fn outline(path: &Path, shown: &str, options: &Options) -> Result<File, Vec<
 }
 
 fn read_as(path: &Path, shown: &str, options: &Options, want: Want) -> Result<File, Vec<Problem>> {
-    let bytes = load::bytes(path, shown)?;
+    let bytes = Bytes::from(load::bytes(path, shown)?);
     let format = format::of(&bytes, path, shown, options)?;
     let input = Input { bytes: &bytes, shown, options, want };
     let mut read = match format {
@@ -162,7 +164,7 @@ fn read_as(path: &Path, shown: &str, options: &Options, want: Want) -> Result<Fi
 
 /// What a reader is given.
 struct Input<'a> {
-    bytes: &'a [u8],
+    bytes: &'a Bytes,
     /// The name of the file in messages.
     shown: &'a str,
     options: &'a Options,

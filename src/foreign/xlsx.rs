@@ -31,7 +31,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let shown = input.shown;
     let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Xlsx, shown, place, why);
     unpacks(input)?;
-    let mut book: Xlsx<_> = Xlsx::new(Cursor::new(input.bytes)).map_err(|error| bad("the workbook", &error))?;
+    let mut book: Xlsx<_> = Xlsx::new(Cursor::new(&input.bytes[..])).map_err(|error| bad("the workbook", &error))?;
     let mut budget = Budget::new(input.bytes.len(), shown);
     let mut read = Read::default();
     for name in book.sheet_names() {
@@ -60,7 +60,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
 fn unpacks(input: &Input<'_>) -> Result<(), Problem> {
     let shown = input.shown;
     let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Xlsx, shown, place, why);
-    let mut archive = zip::ZipArchive::new(Cursor::new(input.bytes)).map_err(|error| bad("the list of its parts", &error))?;
+    let mut archive = zip::ZipArchive::new(Cursor::new(&input.bytes[..])).map_err(|error| bad("the list of its parts", &error))?;
     let mut left = most_unpacked(input.bytes.len()) as u64;
     for index in 0..archive.len() {
         let part = archive.by_index(index).map_err(|error| bad(&format!("part {}", index + 1), &error))?;

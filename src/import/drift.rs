@@ -1,7 +1,10 @@
-//! Drift of the distance of a run's measurement against its simulation: estimated in windows along the whole run, and corrected.
+//! Drift of the distance and of the clock of a run's measurement against its simulation: estimated in windows along the whole run, and
+//! corrected.
+
+use std::borrow::Cow;
 
 use super::mapping::Drift;
-use super::process::{Column, Made, short};
+use super::process::{Column, Made, Values, short};
 use crate::data::RecordKind;
 use crate::metrics::drift::{Curve, Point, Signals, Tracker, Windows, within};
 use crate::metrics::statistics::{Divisor, regression, standard_deviation};
@@ -10,11 +13,19 @@ use crate::units::Dimension;
 
 /// Most points of the curve that are listed one by one.
 const MOST_LISTED: usize = 12;
+/// Parts of a million.
+const PARTS: f64 = 1e6;
+/// Windows that must agree for the drift of the clock to be corrected: with fewer, its standard error is itself not certain.
+const FEWEST_TIMES: usize = 8;
+/// Largest standard error of a drift of the clock that is corrected, 10 ppm: clocks of recorders are off by some tens of ppm.
+const UNCERTAIN_CLOCK: f64 = 10e-6;
+/// Largest drift of the clock that is corrected, 500 ppm. A quartz is never off by more; the simulation then had another speed.
+const MOST_CLOCK: f64 = 500e-6;
 
 /// Estimates the drift, corrects it where this is asked for, and tells it with its numbers.
 ///
 /// # Errors
-/// `no-drift`: no window in which the records agree; `axis-not-increasing`: the corrected distance would go back.
+/// `no-drift`: no window in which the records agree, or no certain drift of the clock; `axis-not-increasing`: the corrected distance would go back.
 pub fn drift(asked: &Drift, measured: &mut Made, simulated: &Made) -> Result<(), Problem> {
     let name = measured.section.clone();
     let fault = |code: &'static str, says: String| Problem::error(code, format!("run `{name}`: {says}")).at(&asked.span);
@@ -28,13 +39,8 @@ pub fn drift(asked: &Drift, measured: &mut Made, simulated: &Made) -> Result<(),
         let help = "the channels of both sides are compared that have the same name";
         return Err(fault("no-drift", "measurement and simulation have no channel in common".into()).help(help));
     }
-    let of = |made: &Made| -> Vec<Vec<f64>> {
-        let column = |name: &String| made.columns.iter().find(|column| column.name == *name).map(|column| column.values.clone());
-        names.iter().filter_map(column).collect()
-    };
     let windows = Windows::of(asked.window, asked.within);
-    let (m, s) = (&measured.columns[own].values, &simulated.columns[other].values);
-    let (points, looked) = tracked(windows, (m, &of(measured)), (s, &of(simulated)));
+    let (points, looked) = tracked(windows, &Record::of(measured, own, &names)?, &Record::of(simulated, other, &names)?)?;
     let Some(curve) = Curve::new(&points) else {
         let says = match points.len() {
             0 => format!("in none of {looked} windows of {} m do measurement and simulation agree", short(asked.window)),
@@ -44,11 +50,12 @@ pub fn drift(asked: &Drift, measured: &mut Made, simulated: &Made) -> Result<(),
         return Err(fault("no-drift", says).help(help));
     };
     measured.steps.push(told(&points, looked, asked, names.len()));
-    measured.steps.extend(clock(measured, simulated, &points, (own, other)));
+    let of_clock = clock(measured, simulated, &points, (own, other))?;
+    told_clock(asked, measured, of_clock, points.len())?;
     if !asked.correct {
         return Ok(());
     }
-    let values = &mut measured.columns[own].values;
+    let mut values = measured.columns[own].values.all()?.into_owned();
     values.iter_mut().for_each(|at| *at += curve.at(*at));
     // Beyond the last point the curve goes on as before, which a distance can be too steep for.
     if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
@@ -56,6 +63,7 @@ pub fn drift(asked: &Drift, measured: &mut Made, simulated: &Made) -> Result<(),
         return Err(fault("axis-not-increasing", says).help("leave the drift as it is: `drift: tell`"));
     }
     let (first, last) = (values[0], values[values.len() - 1]);
+    measured.columns[own].values = Values::Held(values);
     measured.steps.push(format!(
         "distance of the {} corrected along the run, linear between these points: now {} m to {} m",
         measured.kind.key(),
@@ -73,30 +81,44 @@ fn common(measured: &Made, simulated: &Made) -> Vec<String> {
     both.map(|column| column.name.clone()).collect()
 }
 
-type Record<'a> = (&'a [f64], &'a [Vec<f64>]);
+/// The axis of a record, and the channels that are compared.
+struct Record<'a> {
+    axis: Cow<'a, [f64]>,
+    channels: Vec<&'a Values>,
+}
+
+impl<'a> Record<'a> {
+    fn of(made: &'a Made, axis: usize, names: &[String]) -> Result<Self, Problem> {
+        let column = |name: &String| made.columns.iter().find(|column| column.name == *name).map(|column| &column.values);
+        Ok(Self { axis: made.columns[axis].values.all()?, channels: names.iter().filter_map(column).collect() })
+    }
+
+    /// What lies in a range of the axis.
+    fn part(&self, range: (f64, f64)) -> Result<(Vec<f64>, Vec<Vec<f64>>), Problem> {
+        let rows = within(&self.axis, range);
+        let channels = self.channels.iter().map(|values| Ok(values.part(rows.clone())?.into_owned())).collect::<Result<_, _>>()?;
+        Ok((self.axis[rows].to_vec(), channels))
+    }
+}
 
 /// The shifts along the run, and the number of windows that were looked at.
-fn tracked(windows: Windows, measured: Record<'_>, simulated: Record<'_>) -> (Vec<Point>, usize) {
+fn tracked(windows: Windows, measured: &Record<'_>, simulated: &Record<'_>) -> Result<(Vec<Point>, usize), Problem> {
     let mut tracker = Tracker::new(windows);
     let ends = |axis: &[f64]| axis.first().copied().zip(axis.last().copied()).unwrap_or((0.0, 0.0));
-    let ((m0, m1), (s0, s1)) = (ends(measured.0), ends(simulated.0));
+    let ((m0, m1), (s0, s1)) = (ends(&measured.axis), ends(&simulated.axis));
     let mut start = s0.max(m0 + 1.0);
     loop {
         let end = start + windows.length;
         if end > s1 || end > m1 + tracker.expected() {
             break;
         }
-        let part = |(axis, values): Record<'_>, range: (f64, f64)| -> (Vec<f64>, Vec<Vec<f64>>) {
-            let rows = within(axis, range);
-            (axis[rows.clone()].to_vec(), values.iter().map(|values| values[rows.clone()].to_vec()).collect())
-        };
-        let (s, sv) = part(simulated, (start, end));
-        let (m, mv) = part(measured, tracker.reach(start));
+        let (s, sv) = simulated.part((start, end))?;
+        let (m, mv) = measured.part(tracker.reach(start))?;
         tracker.look(start, Signals { axis: &s, values: &sv }, Signals { axis: &m, values: &mv });
         start += windows.every;
     }
     let looked = tracker.looked();
-    (tracker.finish(), looked)
+    Ok((tracker.finish(), looked))
 }
 
 fn told(points: &[Point], looked: usize, asked: &Drift, channels: usize) -> String {
@@ -118,28 +140,71 @@ fn told(points: &[Point], looked: usize, asked: &Drift, channels: usize) -> Stri
     )
 }
 
-/// How much faster the clock of the measurement runs than that of the simulation over the same distance. It says something about the
-/// clock if the simulation was run with the recorded speed.
-fn clock(measured: &Made, simulated: &Made, points: &[Point], (own, other): (usize, usize)) -> Option<String> {
-    let time = |made: &Made, axis: usize, at: f64| -> Option<f64> {
-        let times = &made.columns.iter().find(|column| column.name == "time")?.values;
-        let axis = &made.columns[axis].values;
-        let after = axis.partition_point(|x| *x < at).clamp(1, axis.len() - 1);
-        let share = (at - axis[after - 1]) / (axis[after] - axis[after - 1]);
-        Some(times[after - 1] + share * (times[after] - times[after - 1]))
+/// How the clock of the measurement runs against that of the simulation.
+struct Clock {
+    /// By how much the measured time is too long, as a share of it.
+    drift: f64,
+    /// Standard error of the drift.
+    error: f64,
+}
+
+/// Compares the times at the same places. It says something about the clock if the simulation was run with the recorded speed.
+fn clock(measured: &Made, simulated: &Made, points: &[Point], (own, other): (usize, usize)) -> Result<Option<Clock>, Problem> {
+    let times = |made: &Made, axis: usize, places: Vec<f64>| -> Result<Vec<f64>, Problem> {
+        let Some(column) = made.columns.iter().find(|column| column.name == "time") else { return Ok(Vec::new()) };
+        let (times, axis) = (column.values.all()?, made.columns[axis].values.all()?);
+        let at = |place: f64| {
+            let after = axis.partition_point(|x| *x < place).clamp(1, axis.len() - 1);
+            let share = (place - axis[after - 1]) / (axis[after] - axis[after - 1]);
+            times[after - 1] + share * (times[after] - times[after - 1])
+        };
+        Ok(places.into_iter().map(at).collect())
     };
-    let mut pairs = Vec::new();
-    for point in points {
-        pairs.push((time(simulated, other, point.at)?, time(measured, own, point.at - point.estimate.shift)?));
+    let x = times(simulated, other, points.iter().map(|point| point.at).collect())?;
+    let y = times(measured, own, points.iter().map(|point| point.at - point.estimate.shift).collect())?;
+    Ok(regression(&x, &y).and_then(|line| {
+        let left: Vec<f64> = x.iter().zip(&y).map(|(x, y)| y - line.intercept - line.slope * x).collect();
+        let spread = standard_deviation(&x, Divisor::Sample)? * (x.len() as f64 - 1.0).sqrt();
+        Some(Clock { drift: line.slope - 1.0, error: standard_deviation(&left, Divisor::Sample)? / spread })
+    }))
+}
+
+/// Tells the drift of the clock, and corrects the time of the measurement where this is asked for.
+///
+/// # Errors
+/// `no-drift`: a drift that is to be corrected is not certain.
+fn told_clock(asked: &Drift, measured: &mut Made, found: Option<Clock>, count: usize) -> Result<(), Problem> {
+    let certain = found.as_ref().filter(|clock| count >= FEWEST_TIMES && clock.error <= UNCERTAIN_CLOCK && clock.drift.abs() <= MOST_CLOCK);
+    if asked.correct_clock && certain.is_none() {
+        let why = match &found {
+            Some(_) if count < FEWEST_TIMES => format!("{count} windows agree; at least {FEWEST_TIMES} are needed"),
+            Some(clock) => format!(
+                "the times differ by {:+.0} ppm with a standard error of {:.0} ppm; at most {:.0} ppm with {:.0} ppm can be the clock",
+                clock.drift * PARTS,
+                clock.error * PARTS,
+                MOST_CLOCK * PARTS,
+                UNCERTAIN_CLOCK * PARTS
+            ),
+            None => format!("{count} windows agree; at least {FEWEST_TIMES} are needed"),
+        };
+        let says = format!("run `{}`: the drift of the clock cannot be estimated: {why}", measured.section);
+        let help = "the simulation must be run with the recorded speed; a drift that is known is stated: `time: {drift: 50 ppm}`";
+        return Err(Problem::error("no-drift", says).at(&asked.span).help(help));
     }
-    let (x, y): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
-    let line = regression(&x, &y)?;
-    let parts = 1e6;
-    let left: Vec<f64> = x.iter().zip(&y).map(|(x, y)| y - line.intercept - line.slope * x).collect();
-    let error = standard_deviation(&left, Divisor::Sample)? / (standard_deviation(&x, Divisor::Sample)? * (x.len() as f64 - 1.0).sqrt());
-    Some(format!(
-        "time against that of the simulation at the same places: {:+.0} ppm (standard error {:.0} ppm); nothing was corrected",
-        (line.slope - 1.0) * parts,
-        error * parts
-    ))
+    let Some(clock) = found else { return Ok(()) };
+    let done = if asked.correct_clock {
+        for column in measured.columns.iter_mut().filter(|column| column.name == "time") {
+            let times = column.values.all()?.iter().map(|time| time / (1.0 + clock.drift)).collect();
+            column.values = Values::Held(times);
+        }
+        format!("time divided by 1 + {:.8}", clock.drift)
+    } else {
+        "nothing was corrected".to_string()
+    };
+    measured.steps.push(format!(
+        "time against that of the simulation at the same places: {:+.0} ppm (standard error {:.0} ppm); {done}",
+        clock.drift * PARTS,
+        clock.error * PARTS
+    ));
+    Ok(())
 }

@@ -126,7 +126,7 @@ fn work(job: &Job<'_>, mapping: &Mapping, needs: Option<&Needs>, format: Format,
     };
     let mut done = Done { source: None, texts: Vec::new(), problems: Vec::new() };
     for section in &job.sections {
-        let of = Of { mapping, side: job.side, needs, section, file: &file, shown: &shown };
+        let of = Of { mapping, side: job.side, needs, section, file: &file, store: None, shown: &shown };
         match record(&of) {
             Ok(made) => match record_bytes(&made.columns, format) {
                 Ok(text) => done.texts.push((Made { columns: Vec::new(), ..made }, text)),

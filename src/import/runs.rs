@@ -1,8 +1,10 @@
 //! Import of whole runs: both records of a run are made together, since a drift between them concerns both.
 
+use std::sync::Arc;
+
 use super::mapping::{self, Mapping};
-use super::process::{Made, Of, record};
-use super::write::{SourceFile, account, record_bytes};
+use super::process::{Made, Of, Store, record};
+use super::write::{SourceFile, account, write_record};
 use super::{drift, read_as};
 use crate::data::RecordKind;
 use crate::data::origin::ImportedRecord;
@@ -22,7 +24,7 @@ pub struct Imported {
     pub warnings: Problems,
 }
 
-/// Makes the records of all runs, one run after the other: two files are in memory at a time.
+/// Makes the records of all runs. One file is in memory at a time; what is made of it waits in a file without a name.
 ///
 /// # Errors
 /// `write-failed`. Faults of the records are in [`Imported::faults`]; after one, nothing more is written.
@@ -35,11 +37,10 @@ pub fn import(
 ) -> Result<Imported, Problem> {
     let mut all = Imported::default();
     for name in &mapping.sections.names {
-        let side = |kind: RecordKind| mapping.side(kind).map(|side| of_side(mapping, side, needs, &name.value));
-        let (measured, simulated) = rayon::join(|| side(RecordKind::Measurement), || side(RecordKind::Simulation));
+        let store = Store::new(outputs.scratch_file()?);
         let mut made: Vec<(Made, SourceFile)> = Vec::new();
-        for done in [measured, simulated].into_iter().flatten() {
-            match done {
+        for side in [RecordKind::Measurement, RecordKind::Simulation].into_iter().filter_map(|kind| mapping.side(kind)) {
+            match of_side(mapping, side, needs, &name.value, &store) {
                 Ok(one) => made.push(one),
                 Err(problems) => problems.into_iter().for_each(|problem| all.faults.push(problem)),
             }
@@ -63,10 +64,8 @@ pub fn import(
             }
         }
         for (made, source) in made {
-            match record_bytes(&made.columns, format) {
-                Ok(bytes) => outputs.add(&mapping::record_path(made.kind, &made.section, format.ending()), &bytes)?,
-                Err(problem) => all.faults.push(problem),
-            }
+            let inside = mapping::record_path(made.kind, &made.section, format.ending());
+            outputs.add_in_parts(&inside, |sink| write_record(&made.columns, format, Some(&store), sink))?;
             all.accounts.push(account(&made, &source));
             made.warnings.into_iter().for_each(|problem| all.warnings.push(problem));
             if !all.sources.contains(&source) {
@@ -78,11 +77,17 @@ pub fn import(
     Ok(all)
 }
 
-fn of_side(mapping: &Mapping, side: &mapping::Side, needs: Option<&Needs>, run: &str) -> Result<(Made, SourceFile), Vec<Problem>> {
+fn of_side(
+    mapping: &Mapping,
+    side: &mapping::Side,
+    needs: Option<&Needs>,
+    run: &str,
+    store: &Arc<Store>,
+) -> Result<(Made, SourceFile), Vec<Problem>> {
     let written = mapping.sections.fill(&side.files.value, run);
     let (path, shown) = mapping.place(&written);
     let at = |problem: Problem| if problem.at.is_some() { problem } else { problem.at(&side.files.span) };
     let file = foreign::read(&path, &shown, &side.format).map_err(|problems| problems.into_iter().map(at).collect::<Vec<_>>())?;
-    let made = record(&Of { mapping, side, needs, section: run, file: &file, shown: &shown })?;
+    let made = record(&Of { mapping, side, needs, section: run, file: &file, store: Some(store), shown: &shown })?;
     Ok((made, SourceFile { path: written, sha256: file.sha256.clone(), read_as: read_as(&file) }))
 }

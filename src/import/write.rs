@@ -1,14 +1,20 @@
 //! Writes the campaign: records, tables, vehicle, track, the mapping and an account of what was done.
 
+use std::io;
+use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
+
+use rayon::prelude::*;
 
 use super::mapping::{Channels, Distance, Mapping, Runs, Side, record_path};
-use super::process::{Column, Made};
+use super::process::{BLOCK, Column, Made, Store, Values};
 use crate::data::campaign::RUNS;
 use crate::data::origin::{Imported, ImportedRecord, ORIGIN_FILE, ORIGIN_KEY, Origin, OriginFile};
 use crate::data::record::Format;
 use crate::data::text::read_any;
-use crate::data::write::{Entry, FileColumn, Outputs, Values, campaign_yaml, csv, parquet};
+use crate::data::write::Values::{self as FileValues, Numbers};
+use crate::data::write::{Entry, FileColumn, Layout, Outputs, campaign_yaml, csv_header, csv_rows, parquet_in_groups};
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
 use crate::yaml::{Key, Node, Value};
@@ -18,24 +24,56 @@ const DIGITS: usize = 9;
 /// Significant digits of time and distance, which may begin far from zero: a micrometre at 100 km, a microsecond in a day.
 const AXIS_DIGITS: usize = 12;
 
-/// The record in a format; both hold the same numbers.
+/// Writes the record in a format; both hold the same numbers. With a store, a few rows of all columns are in memory at a time, and of each
+/// worker all rows of one column.
+///
+/// # Errors
+/// `write-failed`.
+pub fn write_record(
+    columns: &[Column],
+    format: Format,
+    store: Option<&Arc<Store>>,
+    sink: &mut (dyn io::Write + Send),
+) -> Result<(), Problem> {
+    let of_file = |column: &Column| -> Result<(Layout, Values), Problem> {
+        let digits = if ["time", "distance"].contains(&column.name.as_str()) { AXIS_DIGITS } else { DIGITS };
+        let values = column.values.all()?.iter().map(|value| rounded(column.unit.from_si(*value), digits)).collect();
+        let heading = format!("{} [{}]", column.name, column.unit);
+        let column = FileColumn { heading, values: Numbers(values), digits: None };
+        let layout = Layout::of(&column);
+        let Numbers(values) = column.values else { return Ok((layout, Values::Held(Vec::new()))) };
+        Ok((layout, Values::keep(values, store)?))
+    };
+    let columns: Vec<(Layout, Values)> = columns.par_iter().map(of_file).collect::<Result<_, _>>()?;
+    let rows = columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
+    let (layouts, columns): (Vec<Layout>, Vec<Values>) = columns.into_iter().unzip();
+    let part = |range: Range<usize>| -> Result<Vec<FileValues>, Problem> {
+        columns.iter().map(|values| Ok(Numbers(values.part(range.clone())?.into_owned()))).collect()
+    };
+    let failed = |error: io::Error| Problem::error("write-failed", format!("a record cannot be written: {error}"));
+    match format {
+        Format::Csv => {
+            let headings: Vec<&str> = layouts.iter().map(Layout::heading).collect();
+            sink.write_all(csv_header(&headings).as_bytes()).map_err(failed)?;
+            for start in (0..rows).step_by(BLOCK) {
+                let file = |(heading, values): (&&str, FileValues)| FileColumn { heading: (*heading).to_string(), values, digits: None };
+                let some: Vec<FileColumn> = headings.iter().zip(part(start..start + BLOCK)?).map(file).collect();
+                sink.write_all(csv_rows(&some).as_bytes()).map_err(failed)?;
+            }
+            Ok(())
+        }
+        Format::Parquet => parquet_in_groups(&layouts, rows, part, sink),
+    }
+}
+
+/// The bytes of a record that is in memory.
 ///
 /// # Errors
 /// `write-failed`.
 pub fn record_bytes(columns: &[Column], format: Format) -> Result<Vec<u8>, Problem> {
-    let file = |column: &Column| {
-        let digits = if ["time", "distance"].contains(&column.name.as_str()) { AXIS_DIGITS } else { DIGITS };
-        FileColumn {
-            heading: format!("{} [{}]", column.name, column.unit),
-            values: Values::Numbers(column.values.iter().map(|value| rounded(column.unit.from_si(*value), digits)).collect()),
-            digits: None,
-        }
-    };
-    let columns: Vec<FileColumn> = columns.iter().map(file).collect();
-    match format {
-        Format::Csv => Ok(csv(&columns)),
-        Format::Parquet => parquet(columns),
-    }
+    let mut bytes = Vec::new();
+    write_record(columns, format, None, &mut bytes)?;
+    Ok(bytes)
 }
 
 /// The number with so many digits; adding zero removes the sign of a zero.
@@ -178,18 +216,55 @@ fn channels(mapping: &Mapping) -> Vec<(String, Vec<String>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::write::{csv, parquet};
+    use crate::disk::ScratchFile;
     use crate::units::Unit;
 
     #[test]
     fn numbers_keep_nine_digits_and_no_more() {
         let unit = |text: &str| Unit::parse(text).expect("known");
         let columns = [
-            Column { name: "time".into(), unit: unit("s"), values: vec![86_399.000_5, 86_399.005_5] },
-            Column { name: "Y".into(), unit: unit("kN"), values: vec![f64::from(1130.1_f32), -0.0] },
-            Column { name: "a".into(), unit: unit("m/s^2"), values: vec![0.1 * 9.806_65 * 3.0, 1e-7] },
+            Column { name: "time".into(), unit: unit("s"), values: Values::Held(vec![86_399.000_5, 86_399.005_5]) },
+            Column { name: "Y".into(), unit: unit("kN"), values: Values::Held(vec![f64::from(1130.1_f32), -0.0]) },
+            Column { name: "a".into(), unit: unit("m/s^2"), values: Values::Held(vec![0.1 * 9.806_65 * 3.0, 1e-7]) },
         ];
         let text = String::from_utf8(record_bytes(&columns, Format::Csv).expect("written")).expect("a text");
         assert_eq!(text, "time [s],Y [kN],a [m/s^2]\n86399.0005,1.13009998,2.941995\n86399.0055,0,1e-7\n");
         assert!(record_bytes(&columns, Format::Parquet).expect("written").starts_with(b"PAR1"));
+    }
+
+    /// Written in blocks from a file, a record is the same bytes as from memory, and as its columns written at once.
+    #[test]
+    fn blocks_do_not_change_the_bytes() {
+        let unit = |text: &str| Unit::parse(text).expect("known");
+        for rows in [1, 100, BLOCK - 1, BLOCK, BLOCK + 1, 2 * BLOCK, 2 * BLOCK + 5] {
+            let times: Vec<f64> = (0..rows).map(|row| row as f64 * 0.005).collect();
+            let force: Vec<f64> = times.iter().map(|time| 4000.0 * (time * 7.3).sin()).collect();
+            let flag: Vec<f64> = (0..rows).map(|row| if row % BLOCK < 70 { 1.0 } else { 0.0 }).collect();
+            let columns = [("time", "s", times), ("Y", "kN", force), ("flag", "1", flag)];
+            let store = Store::new(ScratchFile::new(&std::env::temp_dir()).expect("a file"));
+            let kept = |store: Option<&Arc<Store>>| -> Vec<Column> {
+                let column = |(name, text, values): &(&str, &str, Vec<f64>)| Column {
+                    name: (*name).to_string(),
+                    unit: unit(text),
+                    values: Values::keep(values.clone(), store).expect("kept"),
+                };
+                columns.iter().map(column).collect()
+            };
+            for format in [Format::Csv, Format::Parquet] {
+                let held = record_bytes(&kept(None), format).expect("written");
+                let mut stored = Vec::new();
+                write_record(&kept(Some(&store)), format, Some(&store), &mut stored).expect("written");
+                assert!(stored == held, "{rows} rows, {format:?}");
+                let file = |(name, text, values): &(&str, &str, Vec<f64>)| {
+                    let digits = if *name == "time" { AXIS_DIGITS } else { DIGITS };
+                    let values = Numbers(values.iter().map(|value| rounded(unit(text).from_si(*value), digits)).collect());
+                    FileColumn { heading: format!("{name} [{}]", unit(text)), values, digits: None }
+                };
+                let all: Vec<FileColumn> = columns.iter().map(file).collect();
+                let at_once = if format == Format::Csv { csv(&all) } else { parquet(&all).expect("written") };
+                assert!(held == at_once, "{rows} rows, {format:?}, at once");
+            }
+        }
     }
 }

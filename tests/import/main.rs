@@ -4,6 +4,7 @@
 //! it. Numbers are compared with closed forms.
 
 mod example;
+mod memory;
 mod process;
 mod runs;
 

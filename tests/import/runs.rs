@@ -26,7 +26,11 @@ fn mapping() -> String {
 }
 
 fn imported_as(text: &str, out: &Path) -> Problems {
-    let (problems, done) = imported(text, "mapping.yaml", Path::new(FOLDER), out);
+    imported_from(text, Path::new(FOLDER), out)
+}
+
+fn imported_from(text: &str, folder: &Path, out: &Path) -> Problems {
+    let (problems, done) = imported(text, "mapping.yaml", folder, out);
     assert!(done, "{}", problems.render(false));
     problems
 }
@@ -98,6 +102,83 @@ fn the_drift_of_the_clock_is_told() {
     let without = ppm(&mapping().replace("{from: time, drift: 50 ppm}", "time"), "without");
     let with = ppm(&mapping(), "with");
     assert!((without - with - 50.0).abs() <= 1.0, "{without} {with}");
+}
+
+/// A run of 8 km with two channels, recorded with a clock that is 50 ppm fast and a wheel sensor that counts up to 7 m too much. The
+/// simulation has the recorded speed.
+fn long_run(folder: &Path, simulated_speed: f64) {
+    let wave = |x: f64, which: f64| (0.31 * x + which).sin() + 0.6 * (0.117 * x + 2.0 * which).sin() + 0.3 * (0.73 * x + which).cos();
+    let place = |time: f64| 40.0 * time + 200.0 * (time / 100.0).sin();
+    let write = |name: &str, row: &dyn Fn(f64) -> [f64; 4]| {
+        let rows = (0..20_000).map(|row| f64::from(row) * 0.01).map(row);
+        let rows = rows.map(|[t, x, y, a]| format!("{t:.9},{x:.6},{y:.6},{a:.6}\n"));
+        let text = "t [s],s [m],Y_1R [kN],ay_I [m/s^2]\n".to_string() + &rows.collect::<String>();
+        fs::write(folder.join(name), text).expect("written");
+    };
+    write("measured.csv", &|time| {
+        let x = place(time);
+        [time * (1.0 + 50e-6), x + 0.0008 * x + 0.5 * (x / 900.0).sin(), wave(x, 0.0), wave(x, 1.0)]
+    });
+    write("simulated.csv", &|time| [time / simulated_speed, place(time), wave(place(time), 0.0), wave(place(time), 1.0)]);
+}
+
+const LONG: &str = "name: long
+runs: [R]
+measurement:
+  files: measured.csv
+  time: t
+  distance: s
+  drift: {do: correct, clock: correct}
+  channels: as named
+simulation:
+  files: simulated.csv
+  time: t
+  distance: s
+  channels: as named
+";
+
+/// 50 ppm within 2 ppm; then the times are those of the true clock within 0.5 ms, in place of 10 ms.
+#[test]
+fn the_drift_of_the_clock_is_corrected_where_asked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    long_run(folder.path(), 1.0);
+    let out = folder.path().join("out");
+    let (problems, done) = imported(LONG, "mapping.yaml", folder.path(), &out);
+    assert!(done, "{}", problems.render(false));
+    let origin = fs::read_to_string(out.join("origin.yaml")).expect("the account");
+    let (_, rest) = origin.split_once("; time divided by 1 + ").unwrap_or_else(|| panic!("{origin}"));
+    let drift: f64 = rest.split('"').next().and_then(|number| number.parse().ok()).expect("a number");
+    assert!((drift - 50e-6).abs() < 2e-6, "{drift}");
+    let corrected = axes(&out.join("measurement/R.csv"));
+    let worst = corrected.iter().enumerate().map(|(row, (time, _))| (time - row as f64 * 0.01).abs()).fold(0.0, f64::max);
+    assert!(corrected.len() == 20_000 && worst < 0.5e-3, "{worst}");
+    // Only told, the time is as recorded.
+    for told in ["{do: correct, clock: tell}", "correct"] {
+        let out = folder.path().join("told");
+        imported_from(&LONG.replace("{do: correct, clock: correct}", told), folder.path(), &out);
+        let origin = fs::read_to_string(out.join("origin.yaml")).expect("the account");
+        assert!(origin.contains("+50 ppm") && origin.contains("nothing was corrected"), "{origin}");
+        assert!((axes(&out.join("measurement/R.csv"))[19_999].0 - 199.99 * (1.0 + 50e-6)).abs() < 1e-6);
+    }
+}
+
+/// A simulation at another speed says nothing about the clock, nor does a run of 2 km.
+#[test]
+fn a_clock_that_cannot_be_compared_is_not_corrected() {
+    let folder = tempfile::tempdir().expect("a folder");
+    long_run(folder.path(), 1.01);
+    let (problems, done) = imported(LONG, "mapping.yaml", folder.path(), &folder.path().join("out"));
+    let text = problems.render(false);
+    let parts = ["no-drift", "run `R`: the drift of the clock cannot be estimated", "run with the recorded speed", "time: {drift: 50 ppm}"];
+    assert!(!done && parts.iter().all(|part| text.contains(part)), "{text}");
+    let short = mapping().replace("drift: correct", "drift: {do: tell, clock: correct}");
+    let (problems, done) = imported(&short, "mapping.yaml", Path::new(FOLDER), &folder.path().join("short"));
+    let text = problems.render(false);
+    assert!(!done && text.contains("standard error"), "{text}");
+    let wrong = LONG.replace("clock: correct", "clock: corect");
+    let (problems, done) = imported(&wrong, "mapping.yaml", folder.path(), &folder.path().join("wrong"));
+    let text = problems.render(false);
+    assert!(!done && text.contains("`clock` cannot be `corect`") && text.contains("did you mean `correct`"), "{text}");
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
-use std::io::Write as _;
+use std::io::{self, Write as _};
+use std::ops::Range;
 use std::sync::Arc;
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray};
@@ -48,6 +49,15 @@ impl Values {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+
+    /// Those of a range of rows that are there.
+    fn part(&self, range: Range<usize>) -> Self {
+        let range = range.start.min(self.len())..range.end.min(self.len());
+        match self {
+            Self::Numbers(values) => Self::Numbers(values[range].to_vec()),
+            Self::Texts(texts) => Self::Texts(texts[range].to_vec()),
+        }
+    }
 }
 
 /// A column as it is in the file.
@@ -60,47 +70,100 @@ pub struct FileColumn {
     pub digits: Option<Digits>,
 }
 
+/// What a column is in a Parquet file, by all its values.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    heading: String,
+    kind: DataType,
+    digits: Option<Digits>,
+    dictionary: bool,
+    compressed: bool,
+}
+
+impl Layout {
+    pub fn heading(&self) -> &str {
+        &self.heading
+    }
+
+    pub fn of(column: &FileColumn) -> Self {
+        let (kind, dictionary, compressed) = match &column.values {
+            Values::Numbers(values) => {
+                let few = different(values) <= DICTIONARY;
+                (DataType::Float64, few, few || saved(values) >= LEAST_SAVED)
+            }
+            Values::Texts(_) => (DataType::Utf8, true, true),
+        };
+        Self { heading: column.heading.clone(), kind, digits: column.digits, dictionary, compressed }
+    }
+}
+
+/// Writes a Parquet file of so many rows; `part` gives the values of all columns in a range of rows, a row group at a time.
+///
+/// # Errors
+/// `write-failed`: columns of different length, or two of the same name; the system's error. That of `part`.
+pub fn parquet_in_groups(
+    layouts: &[Layout],
+    rows: usize,
+    mut part: impl FnMut(Range<usize>) -> Result<Vec<Values>, Problem>,
+    sink: impl io::Write + Send,
+) -> Result<(), Problem> {
+    let failed = |error: &dyn std::fmt::Display| Problem::error("write-failed", format!("a record cannot be written as Parquet: {error}"));
+    let mut properties = properties().map_err(|error| failed(&error))?;
+    let mut fields = Vec::new();
+    for layout in layouts {
+        let path = ColumnPath::new(vec![layout.heading.clone()]);
+        properties = properties.set_column_dictionary_enabled(path.clone(), layout.dictionary);
+        if !layout.compressed {
+            properties = properties.set_column_compression(path, Compression::UNCOMPRESSED);
+        }
+        let metadata = layout.digits.map(Digits::metadata).map(|(key, value)| (key.to_string(), value));
+        fields.push(Field::new(&layout.heading, layout.kind.clone(), false).with_metadata(metadata.into_iter().collect::<HashMap<_, _>>()));
+    }
+    let schema = Arc::new(Schema::new(fields));
+    let mut writer = ArrowWriter::try_new(sink, Arc::clone(&schema), Some(properties.build())).map_err(|error| failed(&error))?;
+    for start in (0..rows).step_by(GROUP) {
+        let array = |values: Values| -> ArrayRef {
+            match values {
+                Values::Numbers(values) => Arc::new(Float64Array::from(values)),
+                Values::Texts(texts) => Arc::new(StringArray::from(texts)),
+            }
+        };
+        let arrays = part(start..rows.min(start + GROUP))?.into_iter().map(array).collect();
+        let batch = RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(|error| failed(&error))?;
+        writer.write(&batch).map_err(|error| failed(&error))?;
+    }
+    writer.close().map_err(|error| failed(&error))?;
+    Ok(())
+}
+
 /// The bytes of a Parquet file.
 ///
 /// # Errors
 /// `write-failed`: columns of different length, or two of the same name.
-pub fn parquet(columns: Vec<FileColumn>) -> Result<Vec<u8>, Problem> {
-    let failed = |error: &dyn std::fmt::Display| Problem::error("write-failed", format!("a record cannot be written as Parquet: {error}"));
-    let mut properties = properties().map_err(|error| failed(&error))?;
-    let mut fields = Vec::new();
-    let mut arrays: Vec<ArrayRef> = Vec::new();
-    for column in columns {
-        let path = ColumnPath::new(vec![column.heading.clone()]);
-        if let Values::Numbers(values) = &column.values {
-            let few = different(values) <= DICTIONARY;
-            properties = properties.set_column_dictionary_enabled(path.clone(), few);
-            if !few && saved(values) < LEAST_SAVED {
-                properties = properties.set_column_compression(path, Compression::UNCOMPRESSED);
-            }
-        }
-        let (kind, array): (_, ArrayRef) = match column.values {
-            Values::Numbers(values) => (DataType::Float64, Arc::new(Float64Array::from(values))),
-            Values::Texts(texts) => (DataType::Utf8, Arc::new(StringArray::from(texts))),
-        };
-        let metadata = column.digits.map(Digits::metadata).map(|(key, value)| (key.to_string(), value));
-        fields.push(Field::new(column.heading, kind, false).with_metadata(metadata.into_iter().collect::<HashMap<_, _>>()));
-        arrays.push(array);
-    }
-    let schema = Arc::new(Schema::new(fields));
-    let batch = RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(|error| failed(&error))?;
+pub fn parquet(columns: &[FileColumn]) -> Result<Vec<u8>, Problem> {
+    let layouts: Vec<Layout> = columns.iter().map(Layout::of).collect();
+    let rows = columns.iter().map(|column| column.values.len()).max().unwrap_or(0);
     let mut bytes = Vec::new();
-    let properties = properties.build();
-    let mut writer = ArrowWriter::try_new(&mut bytes, schema, Some(properties)).map_err(|error| failed(&error))?;
-    writer.write(&batch).map_err(|error| failed(&error))?;
-    writer.close().map_err(|error| failed(&error))?;
+    let part = |range: Range<usize>| Ok(columns.iter().map(|column| column.values.part(range.clone())).collect());
+    parquet_in_groups(&layouts, rows, part, &mut bytes)?;
     Ok(bytes)
 }
 
-/// The bytes of a text with the same columns. Numbers have the form of their column, or else the fewest digits that give the same double
-/// again.
+/// The bytes of a text with the same columns.
 pub fn csv(columns: &[FileColumn]) -> Vec<u8> {
+    let headings: Vec<&str> = columns.iter().map(|column| column.heading.as_str()).collect();
+    (csv_header(&headings) + &csv_rows(columns)).into_bytes()
+}
+
+/// The first line of the text of a record.
+pub fn csv_header(headings: &[&str]) -> String {
+    table_csv(&[headings.to_vec()])
+}
+
+/// The other lines. Numbers have the form of their column, or else the fewest digits that give the same double again.
+pub fn csv_rows(columns: &[FileColumn]) -> String {
     let rows = columns.iter().map(|column| column.values.len()).max().unwrap_or(0);
-    let mut text = table_csv(&[columns.iter().map(|column| column.heading.as_str()).collect::<Vec<_>>()]);
+    let mut text = String::new();
     for row in 0..rows {
         for (at, column) in columns.iter().enumerate() {
             text.push_str(if at == 0 { "" } else { "," });
@@ -113,7 +176,7 @@ pub fn csv(columns: &[FileColumn]) -> Vec<u8> {
         }
         text.push('\n');
     }
-    text.into_bytes()
+    text
 }
 
 /// Line breaks cannot stand in a cell of a record: they become blanks.

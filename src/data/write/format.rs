@@ -59,7 +59,7 @@ pub fn record(format: Format, columns: &[OutColumn<'_>]) -> Result<Vec<u8>, Prob
                 values: Values::Numbers(values),
                 digits: Some(Digits::Decimals(column.decimals)),
             };
-            parquet(columns.iter().zip(values).map(file).collect())
+            parquet(&columns.iter().zip(values).map(file).collect::<Vec<_>>())
         }
     }
 }

@@ -11,7 +11,6 @@ use std::io::Cursor;
 use arrow_array::RecordBatch;
 use arrow_ipc::reader::FileReader;
 use arrow_schema::{Field, Schema};
-use bytes::Bytes;
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder};
 use parquet::basic::Type;
@@ -40,7 +39,7 @@ pub(super) fn parquet(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let shown = input.shown;
     let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Parquet, shown, place, why);
     guard::footer(footer(input.bytes).map_err(|why| bad("the footer", &why))?).map_err(|why| bad("the footer", &why))?;
-    let bytes = Bytes::copy_from_slice(input.bytes);
+    let bytes = input.bytes.clone();
     let metadata = ArrowReaderMetadata::load(&bytes, ArrowReaderOptions::new()).map_err(|error| bad("the footer", &error))?;
     let rows =
         usize::try_from(metadata.metadata().file_metadata().num_rows()).map_err(|_| bad("the footer", &"a negative number of rows"))?;
@@ -56,6 +55,7 @@ pub(super) fn parquet(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
         let builder = ParquetRecordBatchReaderBuilder::new_with_metadata(bytes, metadata);
         let reader = builder.with_projection(mask).with_batch_size(BATCH).build().map_err(|error| bad("the columns", &error))?;
         let (mut found, mut origins) = (0, vec![None; table.channels.len()]);
+        table.channels.iter_mut().for_each(|channel| channel.values.reserve_exact(rows));
         for batch in reader {
             let batch = batch.map_err(|error| bad(&format!("row {}", found + 1), &error))?;
             add(&mut table, &mut origins, &batch).map_err(|why| bad(&format!("row {}", found + 1), &why))?;
@@ -106,7 +106,7 @@ pub(super) fn arrow(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let shown = input.shown;
     let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Arrow, shown, place, why);
     let rows = ipc::check(input.bytes, shown)?;
-    let reader = FileReader::try_new(Cursor::new(input.bytes), None).map_err(|error| bad("the footer", &error))?;
+    let reader = FileReader::try_new(Cursor::new(&input.bytes[..]), None).map_err(|error| bad("the footer", &error))?;
     let (mut table, columns) = table(&reader.schema());
     Budget::new(input.bytes.len(), shown).take(columns.len(), rows, "the table")?;
     table.rows = rows;
@@ -114,7 +114,7 @@ pub(super) fn arrow(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     table.facts = facts(reader.custom_metadata().iter().chain(schema.metadata()).map(|(key, value)| (key.clone(), value.clone())));
     drop(reader);
     if input.want == Want::Values {
-        let reader = FileReader::try_new(Cursor::new(input.bytes), Some(columns)).map_err(|error| bad("the footer", &error))?;
+        let reader = FileReader::try_new(Cursor::new(&input.bytes[..]), Some(columns)).map_err(|error| bad("the footer", &error))?;
         let mut origins = vec![None; table.channels.len()];
         for (index, batch) in reader.enumerate() {
             let place = format!("batch {}", index + 1);

@@ -16,7 +16,8 @@ const WINDOW: f64 = 250.0;
 const SHORTEST: f64 = 2.0;
 
 const DRIFT: &str = "drift";
-const KEYS: [&str; 3] = ["do", "within", "window"];
+const CLOCK: &str = "clock";
+const KEYS: [&str; 4] = ["do", CLOCK, "within", "window"];
 
 /// The runs of a mapping.
 #[derive(Clone, Debug)]
@@ -31,6 +32,8 @@ pub struct Runs {
 #[derive(Clone, Debug)]
 pub struct Drift {
     pub correct: bool,
+    /// Whether the time is corrected as well.
+    pub correct_clock: bool,
     /// In m.
     pub within: f64,
     pub window: f64,
@@ -98,7 +101,7 @@ fn of_one(reader: &mut Reader<'_>, name: &str, node: &Node) -> Vec<(Key, Node)> 
     node.entries().to_vec()
 }
 
-/// `drift: correct`, `drift: tell`, or `drift: {do: correct, within: 20 m, window: 250 m}`.
+/// `drift: correct`, `drift: tell`, or `drift: {do: correct, clock: correct, within: 20 m, window: 250 m}`.
 pub(super) fn drift(reader: &mut Reader<'_>, side: &Node, sections: &Sections) -> Option<Drift> {
     let (key, node) = side.entry(DRIFT)?;
     let before = reader.problems.errors();
@@ -109,9 +112,12 @@ pub(super) fn drift(reader: &mut Reader<'_>, side: &Node, sections: &Sections) -
         }
         _ => reader.text_of(node, DRIFT)?,
     };
-    if ![CORRECT, TELL].contains(&what.value.as_str()) {
-        let problem = Problem::error("unknown-choice", format!("`{DRIFT}` cannot be `{}`", what.value)).at(&what.span);
-        reader.problems.push(problem.suggest(&what.value, [CORRECT, TELL]));
+    let clock = reader.text(node, CLOCK);
+    for (key, what) in std::iter::once((DRIFT, &what)).chain(clock.as_ref().map(|clock| (CLOCK, clock))) {
+        if ![CORRECT, TELL].contains(&what.value.as_str()) {
+            let problem = Problem::error("unknown-choice", format!("`{key}` cannot be `{}`", what.value)).at(&what.span);
+            reader.problems.push(problem.suggest(&what.value, [CORRECT, TELL]));
+        }
     }
     let within = reader.number(node, "within", &metre()).unwrap_or(WITHIN);
     let window = reader.number(node, "window", &metre()).unwrap_or_else(|| WINDOW.max(SHORTEST * within));
@@ -126,5 +132,12 @@ pub(super) fn drift(reader: &mut Reader<'_>, side: &Node, sections: &Sections) -
         let problem = Problem::error("contradiction", "a drift is looked for along runs, and this mapping imports sections").at(&key.span);
         reader.problems.push(problem.help("name the runs in `runs`; the shift of single sections is `offsets`"));
     }
-    (reader.problems.errors() == before).then(|| Drift { correct: what.value == CORRECT, within, window, span: key.span.clone() })
+    let correct_clock = clock.is_some_and(|clock| clock.value == CORRECT);
+    (reader.problems.errors() == before).then(|| Drift {
+        correct: what.value == CORRECT,
+        correct_clock,
+        within,
+        window,
+        span: key.span.clone(),
+    })
 }

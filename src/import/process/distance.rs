@@ -3,7 +3,7 @@
 use super::clock::Clock;
 use super::find::{Found, Of, find};
 use crate::data::record::{Column, Wanted, read_record};
-use crate::foreign::Table;
+use crate::foreign::{Channel, Table};
 use crate::import::mapping::{ChannelMap, Distance, Match, Stated};
 use crate::metrics::synchronise::{self, Estimate, Pair, Search};
 use crate::metrics::{along, resample, statistics};
@@ -95,32 +95,56 @@ fn need(of: &Of<'_>, clocks: &[Option<Clock>], found: Found<'_>) -> Result<Clock
         .ok_or_else(|| Problem::error("time-missing", format!("`{}` has no time", of.shown)).at(&of.side.time.span))
 }
 
+/// The channels of a file that a channel of the campaign is made of, all in one table.
+#[derive(Debug)]
+pub struct Source<'a> {
+    pub first: Found<'a>,
+    /// Each with its unit and its sign.
+    terms: Vec<(&'a Channel, Unit, f64)>,
+}
+
+impl<'a> Source<'a> {
+    /// Finds the channels and their units.
+    pub fn find(of: &Of<'_>, map: &ChannelMap, tables: &[&'a Table], wanted: Option<&Unit>) -> Result<Self, Problem> {
+        let mut source: Option<Self> = None;
+        for term in &map.terms {
+            let found = find(of, tables, &term.name, map.table.as_ref())?;
+            let unit = of.unit(map, &term.name, found.channel, wanted)?;
+            let source = source.get_or_insert(Self { first: found, terms: Vec::new() });
+            if source.first.table != found.table {
+                let says = format!(
+                    "`{}` is a sum of channels of different tables: `{}` and `{}`",
+                    map.name.value, tables[source.first.table].name, tables[found.table].name
+                );
+                return Err(Problem::error("sum-of-tables", says).at(&term.name.span));
+            }
+            source.terms.push((found.channel, unit, if term.reversed { -1.0 } else { 1.0 }));
+        }
+        source.ok_or_else(|| Problem::error("key-missing", "no channel is stated").at(&map.name.span))
+    }
+
+    /// The values in SI.
+    pub fn values(&self, map: &ChannelMap) -> Vec<f64> {
+        let mut sum: Vec<f64> = Vec::new();
+        for (number, (channel, unit, sign)) in self.terms.iter().enumerate() {
+            let values = channel.values.iter().map(|value| sign * unit.to_si(*value));
+            match number {
+                0 => sum = values.collect(),
+                _ => sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value),
+            }
+        }
+        let offset = map.offset.as_ref().map_or(0.0, |offset| offset.value.0);
+        if map.factor != 1.0 || offset != 0.0 {
+            sum.iter_mut().for_each(|value| *value = map.factor * *value + offset);
+        }
+        sum
+    }
+}
+
 /// The values of a channel in SI in its own table, and where the first of its terms is.
 pub fn values<'a>(of: &Of<'_>, map: &ChannelMap, tables: &[&'a Table], wanted: Option<&Unit>) -> Result<(Found<'a>, Vec<f64>), Problem> {
-    let (mut first, mut sum): (Option<Found<'a>>, Vec<f64>) = (None, Vec::new());
-    for term in &map.terms {
-        let found = find(of, tables, &term.name, map.table.as_ref())?;
-        let unit = of.unit(map, &term.name, found.channel, wanted)?;
-        if let Some(before) = first.filter(|before| before.table != found.table) {
-            let says = format!(
-                "`{}` is a sum of channels of different tables: `{}` and `{}`",
-                map.name.value, tables[before.table].name, tables[found.table].name
-            );
-            return Err(Problem::error("sum-of-tables", says).at(&term.name.span));
-        }
-        let sign = if term.reversed { -1.0 } else { 1.0 };
-        let values = found.channel.values.iter().map(|value| sign * unit.to_si(*value));
-        match first {
-            None => sum = values.collect(),
-            Some(_) => sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value),
-        }
-        first = first.or(Some(found));
-    }
-    let offset = map.offset.as_ref().map_or(0.0, |offset| offset.value.0);
-    if map.factor != 1.0 || offset != 0.0 {
-        sum.iter_mut().for_each(|value| *value = map.factor * *value + offset);
-    }
-    first.map(|first| (first, sum)).ok_or_else(|| Problem::error("key-missing", "no channel is stated").at(&map.name.span))
+    let source = Source::find(of, map, tables, wanted)?;
+    Ok((source.first, source.values(map)))
 }
 
 /// Times at which a signal rises through a level, linear between samples.

@@ -1,5 +1,8 @@
 //! Finds the channels of a mapping in a file, and their units.
 
+use std::sync::Arc;
+
+use super::store::Store;
 use crate::foreign::{Channel, File, Table};
 use crate::import::mapping::{ChannelMap, Mapping, Side, agree};
 use crate::problem::Problem;
@@ -15,6 +18,8 @@ pub struct Of<'a> {
     pub needs: Option<&'a Needs>,
     pub section: &'a str,
     pub file: &'a File,
+    /// Where the values of long records wait; they are held in memory if there is none.
+    pub store: Option<&'a Arc<Store>>,
     /// Name of the file in messages.
     pub shown: &'a str,
 }

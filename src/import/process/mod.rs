@@ -5,12 +5,15 @@
 //! | `find` | channels in the file, and their units |
 //! | `clock` | time of a table, the grid of a record, resampling |
 //! | `distance` | distance from a channel, a speed or a trigger; match with the track file |
+//! | `store` | values of columns, in memory or in a file |
 
 mod clock;
 mod distance;
 mod find;
+mod store;
 
 pub use find::Of;
+pub use store::{BLOCK, Store, Values};
 
 use super::mapping::{ChannelMap, Channels, Term, agree};
 use crate::data::RecordKind;
@@ -19,13 +22,14 @@ use crate::problem::Problem;
 use crate::source::Spanned;
 use crate::units::{Dimension, Unit};
 use clock::{Clock, Grid, How, clock, grid, on_grid};
+use distance::Source;
 
 /// A column of a record in SI.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Column {
     pub name: String,
     pub unit: Unit,
-    pub values: Vec<f64>,
+    pub values: Values,
 }
 
 /// The record of a section as it is written.
@@ -55,49 +59,54 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     let tables = of.tables().map_err(one)?;
     let facts: Vec<(String, String)> = tables.iter().flat_map(|table| &table.facts).chain(&of.file.facts).cloned().collect();
     let maps = maps(of, &tables)?;
-    // Every channel in its own table.
+    // Where every channel is; its values are made one after the other below, so that only those of one channel are in memory twice.
     let mut faults = Vec::new();
-    let mut raw: Vec<(usize, Vec<f64>, Unit)> = Vec::new();
+    let mut sources: Vec<(Source<'_>, Unit)> = Vec::new();
     for map in &maps {
         let target = of.target(map);
-        match distance::values(of, map, &tables, target.as_ref()) {
-            Ok((found, values)) => {
-                let own = target.map_or_else(|| of.unit(map, &map.terms[0].name, found.channel, None).map(plainly), Ok);
-                match own {
-                    Ok(unit) => raw.push((found.table, values, unit)),
-                    Err(problem) => faults.push(problem),
-                }
-            }
+        let found = Source::find(of, map, &tables, target.as_ref()).and_then(|source| {
+            let own = target.map_or_else(|| of.unit(map, &map.terms[0].name, source.first.channel, None).map(plainly), Ok)?;
+            Ok((source, own))
+        });
+        match found {
+            Ok(found) => sources.push(found),
             Err(problem) => faults.push(problem),
         }
     }
     if !faults.is_empty() {
         return Err(few(faults));
     }
-    of_their_dimension(of, &maps, &mut raw);
+    of_their_dimension(of, &maps, &mut sources);
+    let used = || sources.iter().map(|(source, _)| source.first.table);
     let matched: Vec<(usize, Vec<f64>, Unit)> = match &of.side.matched {
         None => Vec::new(),
         Some(wanted) => wanted.channels.iter().map(|map| values_for_match(of, map, &tables)).collect::<Result<_, _>>().map_err(one)?,
     };
-    let base = most_used(raw.iter().map(|(table, ..)| *table), &tables);
-    let clocks = clocks(of, &tables, &facts, raw.iter().chain(&matched).map(|(table, ..)| *table)).map_err(one)?;
+    let used_or_matched = || used().chain(matched.iter().map(|(table, ..)| *table));
+    let base = most_used(used(), &tables);
+    let clocks = clocks(of, &tables, &facts, used_or_matched()).map_err(one)?;
     let curve =
         of.side.distance.as_ref().map(|distance| distance::curve(of, distance, &tables, &clocks, &facts)).transpose().map_err(one)?;
     let Some(base_clock) = clocks.get(base).and_then(Option::as_ref) else {
         return Err(vec![Problem::error("time-missing", format!("`{}` has no time", of.shown)).at(&of.side.time.span)]);
     };
     let mut steps = Vec::new();
-    let span = span(&clocks, raw.iter().chain(&matched).map(|(table, ..)| *table), curve.as_ref().map(|curve| &curve.clock));
+    let span = span(&clocks, used_or_matched(), curve.as_ref().map(|curve| &curve.clock));
     let rate = of.side.rate.as_ref().map(|rate| rate.value);
     let Some(grid) = grid(base_clock, rate, span) else {
         let says = format!("{}: the channels of `{}` have no time in common ({} s to {} s)", of.called(), of.shown, span.0, span.1);
         return Err(vec![Problem::error("no-common-time", says).at(&of.side.time.span)]);
     };
     told_times(of, base_clock, &grid, &mut steps);
-    let mut sampled = Vec::new();
-    for (map, (table, values, _)) in maps.iter().zip(&raw) {
-        match clocks[*table].as_ref().map(|clock| on_grid(values, clock, *table == base, &grid, false)) {
-            Some(Ok((values, how))) => sampled.push((values, how, *table)),
+    let (mut sampled, mut columns) = (Vec::new(), Vec::new());
+    for (map, (source, unit)) in maps.iter().zip(&sources) {
+        let table = source.first.table;
+        match clocks[table].as_ref().map(|clock| on_grid(&source.values(map), clock, table == base, &grid, false)) {
+            Some(Ok((values, how))) => {
+                sampled.push((how, table));
+                let values = Values::keep(values, of.store).map_err(one)?;
+                columns.push(Column { name: map.name.value.clone(), unit: unit.clone(), values });
+            }
             Some(Err(why)) => faults
                 .push(Problem::error("uneven-time", format!("{}: `{}` {why}", of.called(), map.name.value)).at(&map.terms[0].name.span)),
             None => {}
@@ -107,12 +116,6 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
         return Err(few(faults));
     }
     told_resampling(&maps, &sampled, &clocks, &grid, &tables, &mut steps);
-    let mut columns: Vec<Column> = maps
-        .iter()
-        .zip(sampled)
-        .zip(&raw)
-        .map(|((map, (values, ..)), (.., unit))| Column { name: map.name.value.clone(), unit: unit.clone(), values })
-        .collect();
     turn(of, &mut columns, &mut steps);
     let mut at = None;
     if let Some(curve) = curve {
@@ -133,9 +136,9 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
 }
 
 /// A channel that the protocol does not know is written in the unit that other channels of its dimension have by the protocol.
-fn of_their_dimension(of: &Of<'_>, maps: &[ChannelMap], raw: &mut [(usize, Vec<f64>, Unit)]) {
+fn of_their_dimension(of: &Of<'_>, maps: &[ChannelMap], sources: &mut [(Source<'_>, Unit)]) {
     let known: Vec<Unit> = maps.iter().filter_map(|map| of.target(map)).collect();
-    for (map, (.., unit)) in maps.iter().zip(raw) {
+    for (map, (_, unit)) in maps.iter().zip(sources) {
         if let (None, Some(other)) = (of.target(map), known.iter().find(|other| other.dimension == unit.dimension)) {
             *unit = other.clone();
         }
@@ -245,13 +248,13 @@ fn told_times(of: &Of<'_>, base: &Clock, grid: &Grid, steps: &mut Vec<String>) {
 /// Channels of other tables than the base.
 fn told_resampling(
     maps: &[ChannelMap],
-    sampled: &[(Vec<f64>, How, usize)],
+    sampled: &[(How, usize)],
     clocks: &[Option<Clock>],
     grid: &Grid,
     tables: &[&Table],
     steps: &mut Vec<String>,
 ) {
-    if grid.rows.is_none() && sampled.iter().all(|(_, how, _)| *how == How::Filtered) {
+    if grid.rows.is_none() && sampled.iter().all(|(how, _)| *how == How::Filtered) {
         return;
     }
     for (number, table) in tables.iter().enumerate() {
@@ -259,7 +262,7 @@ fn told_resampling(
             let names: Vec<&str> = maps
                 .iter()
                 .zip(sampled)
-                .filter(|(_, (_, its, of))| *its == how && *of == number)
+                .filter(|(_, (its, of))| *its == how && *of == number)
                 .map(|(map, _)| map.name.value.as_str())
                 .collect();
             let (false, Some(clock)) = (names.is_empty(), &clocks[number]) else { continue };
@@ -272,18 +275,25 @@ fn told_resampling(
 /// Exchanges channels and signs in a section that was run with the other end leading.
 fn turn(of: &Of<'_>, columns: &mut [Column], steps: &mut Vec<String>) {
     let Some(turning) = of.mapping.turning.as_ref().filter(|_| of.side.turned.has(of.section, &of.mapping.sections)) else { return };
-    let before: Vec<(String, Vec<f64>)> = columns.iter().map(|column| (column.name.clone(), column.values.clone())).collect();
+    let partner = |columns: &[Column], at: usize| {
+        let partner = turning.partner(&columns[at].name);
+        columns.iter().position(|column| column.name == partner).filter(|other| *other != at)
+    };
     let (mut exchanged, mut reversed) = (0, 0);
-    for column in columns.iter_mut() {
-        let partner = turning.partner(&column.name);
-        if let Some((_, values)) = before.iter().find(|(name, _)| name == partner && *name != column.name) {
-            column.values.clone_from(values);
+    for at in 0..columns.len() {
+        if let Some(other) = partner(columns, at) {
             exchanged += 1;
+            // Each pair once.
+            if let (before, [second, ..]) = columns.split_at_mut(at.max(other))
+                && at < other
+            {
+                std::mem::swap(&mut before[at].values, &mut second.values);
+            }
         }
-        if turning.reverses(&column.name) {
-            column.values.iter_mut().for_each(|value| *value = -*value);
-            reversed += 1;
-        }
+    }
+    for column in columns.iter_mut().filter(|column| turning.reverses(&column.name)) {
+        column.values.reverse();
+        reversed += 1;
     }
     steps.push(format!(
         "turned, with the other end leading: {exchanged} channels exchanged, {reversed} with the opposite sign ({})",
@@ -325,31 +335,36 @@ fn along_track(
 /// Cuts the record, checks that its axes increase and that all values are there.
 fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, mut steps: Vec<String>) -> Result<Made, Vec<Problem>> {
     let unit = |text: &str, dimension: Dimension| Unit { text: text.into(), factor: 1.0, dimension };
-    let mut columns = vec![Column { name: "time".into(), unit: unit("s", Dimension::TIME), values: grid.times }];
-    columns.extend(at.map(|values| Column { name: "distance".into(), unit: unit("m", Dimension::LENGTH), values }));
-    let along = columns.len() > 1;
-    columns.extend(channels);
-    let extent = of.mapping.sections.extent(of.section).filter(|_| along);
+    let (mut times, mut at, mut channels) = (grid.times, at, channels);
+    let extent = of.mapping.sections.extent(of.section).filter(|_| at.is_some());
     let mut warnings = Vec::new();
-    if let (Some((start, end)), Some(margin)) = (extent, of.mapping.margin) {
-        let inside: Vec<usize> =
-            (0..columns[1].values.len()).filter(|&row| (start - margin..=end + margin).contains(&columns[1].values[row])).collect();
+    if let (Some((start, end)), Some(margin), Some(values)) = (extent, of.mapping.margin, &mut at) {
+        let inside: Vec<usize> = (0..values.len()).filter(|&row| (start - margin..=end + margin).contains(&values[row])).collect();
         let (Some(&first), Some(&last)) = (inside.first(), inside.last()) else {
-            return Err(vec![outside(of, (start, end), &columns[1].values)]);
+            return Err(vec![outside(of, (start, end), values)]);
         };
         steps.push(format!("cut to {margin} m before and after the section, {} rows", last + 1 - first));
-        columns.iter_mut().for_each(|column| column.values = column.values[first..=last].to_vec());
+        times = times[first..=last].to_vec();
+        *values = values[first..=last].to_vec();
+        channels.iter_mut().for_each(|column| column.values.cut(first..last + 1));
     }
+    let time_of = |row: usize| short(times[row]);
     let mut faults = Vec::new();
+    let mut columns = vec![Column { name: "time".into(), unit: unit("s", Dimension::TIME), values: Values::Held(times.clone()) }];
+    columns.extend(at.clone().map(|values| Column {
+        name: "distance".into(),
+        unit: unit("m", Dimension::LENGTH),
+        values: Values::Held(values),
+    }));
+    columns.extend(channels);
     for column in &columns {
-        if let Some(row) = column.values.iter().position(|value| !value.is_finite()) {
-            let missing = column.values.iter().filter(|value| !value.is_finite()).count();
+        if let Some((row, missing)) = column.values.missing().map_err(|problem| vec![problem])? {
             let says = format!(
                 "{}: `{}` has no value in {missing} of {} rows, first at {} s",
                 of.called(),
                 column.name,
                 column.values.len(),
-                short(columns[0].values[row])
+                time_of(row)
             );
             let place = of
                 .side
@@ -364,13 +379,12 @@ fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, 
             );
         }
     }
-    if along && faults.is_empty() {
-        let values = &columns[1].values;
+    if let Some(values) = at.filter(|_| faults.is_empty()) {
         if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
             let says = format!(
                 "{}: the distance does not increase at {} s: {} m after {} m",
                 of.called(),
-                short(columns[0].values[row]),
+                time_of(row),
                 short(values[row]),
                 short(values[row - 1])
             );
@@ -382,7 +396,7 @@ fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, 
             };
             faults.push(Problem::error("axis-not-increasing", says).at(&of.side.span).help(help));
         } else if let Some((start, end)) = extent.filter(|(start, end)| *start < values[0] || *end > values[values.len() - 1]) {
-            let mut problem = outside(of, (start, end), values);
+            let mut problem = outside(of, (start, end), &values);
             problem.severity = crate::problem::Severity::Warning;
             warnings.push(problem);
         }

@@ -19,7 +19,7 @@ fn sample(rows: usize) -> Vec<u8> {
     let texts = FileColumn { heading: "note [-]".into(), values: Values::Texts(vec!["a, b".into(); rows]), digits: None };
     let time = numbers("time [ms]", (0..rows).map(|row| 5.0 * row as f64));
     let force = numbers("Y [kN]", (0..rows).map(|row| (row as f64).sin() * 8.0));
-    parquet(vec![force, texts, time]).expect("written")
+    parquet(&[force, texts, time]).expect("written")
 }
 
 fn with<T>(bytes: &[u8], name: &str, run: impl FnOnce(&Path) -> T) -> T {
@@ -102,7 +102,7 @@ fn blocks_and_stretches_are_the_record() {
 fn an_axis_that_returns_has_no_stretch() {
     let there_and_back = |row: usize| if row < 100 { row as f64 } else { 200.0 - row as f64 };
     let columns = || vec![numbers("time [s]", (0..200).map(there_and_back)), numbers("Y [kN]", vec![1.0; 200])];
-    with(&parquet(columns()).expect("written"), "r.parquet", |path| {
+    with(&parquet(&columns()).expect("written"), "r.parquet", |path| {
         let problems = read_stretch(path, "r.parquet", &wanted(), "time", 10.0..20.0, &Known::default()).expect_err("twice");
         assert_eq!(problems[0].code, "axis-not-increasing");
         assert!(problems[0].says.contains("row 181"), "{}", problems[0].says);
@@ -113,7 +113,7 @@ fn an_axis_that_returns_has_no_stretch() {
 fn each_fault_at_its_row_and_column() {
     let with_values = |heading: &str, values: Vec<f64>| {
         let times = numbers("time [s]", (0..values.len()).map(|row| row as f64));
-        parquet(vec![times, numbers(heading, values)]).expect("written")
+        parquet(&[times, numbers(heading, values)]).expect("written")
     };
     let problems = read_bytes(&with_values("Y [kN]", vec![1.0, f64::NAN, 2.0, f64::INFINITY])).expect_err("not finite");
     let told: Vec<_> = problems.iter().map(|problem| (problem.code, problem.at.as_ref().map(ToString::to_string))).collect();
@@ -126,7 +126,7 @@ fn each_fault_at_its_row_and_column() {
     assert_eq!(code(&with_values("time [kN]", vec![1.0])), Some("duplicate-column"));
     assert_eq!(code(&with_values("Y [kN]", Vec::new())), Some("no-rows"));
     let text = FileColumn { heading: "Y [kN]".into(), values: Values::Texts(vec!["1".into()]), digits: None };
-    let problems = read_bytes(&parquet(vec![numbers("time [s]", [0.0]), text]).expect("written")).expect_err("text");
+    let problems = read_bytes(&parquet(&[numbers("time [s]", [0.0]), text]).expect("written")).expect_err("text");
     assert_eq!((problems[0].code, problems[0].at.as_ref().map(ToString::to_string)), ("not-a-number", Some("r.parquet:1:11".into())));
 }
 
