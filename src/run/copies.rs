@@ -177,6 +177,7 @@ fn named(channels: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::print::{Print, mixed};
 
     fn signal(seed: u64, count: usize) -> Vec<f64> {
         let mut state = seed;

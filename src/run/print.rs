@@ -71,7 +71,7 @@ fn hash_of(value: f64) -> u64 {
 }
 
 /// Mixes the bits (finaliser of SplitMix64, Steele et al. 2014).
-fn mixed(mut bits: u64) -> u64 {
+pub(super) fn mixed(mut bits: u64) -> u64 {
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     bits ^ (bits >> 31)
