@@ -16,7 +16,7 @@ pub struct Unit {
     /// Number of its campaign, and what that is called where there are several.
     pub campaign: usize,
     pub campaign_name: Option<String>,
-    /// Number of its vehicle in [`Facts::vehicles`].
+    /// Number of its vehicle in [`super::Facts::vehicles`].
     pub vehicle: usize,
     /// The section name with its place in the table; it is also the name of the records.
     pub cell: Cell,
@@ -31,7 +31,7 @@ pub struct Unit {
     pub extent: Option<Extent>,
     /// The range that a report states: that of the section, or of the measured record.
     pub covered: Option<Extent>,
-    /// One for each [`Plan::columns`].
+    /// One for each [`crate::check::plan::Plan::columns`].
     pub columns: Vec<Result<Scalar, String>>,
     pub checks: Vec<CheckResult>,
     /// Why it is not used.
