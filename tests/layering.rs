@@ -288,3 +288,21 @@ fn rules_live_in_protocols() {
         }
     }
 }
+
+/// With the same features of all crates, the program and its tests share one build of them.
+#[test]
+fn tests_and_program_share_one_build() {
+    let tree = |edges: &str| {
+        let arguments = ["tree", "--locked", "--offline", "-p", "fishplate", "-e", edges, "-f", "{p} {f}", "--prefix", "none"];
+        let ran = std::process::Command::new(env!("CARGO")).args(arguments).current_dir(root()).output().ok()?;
+        let text = String::from_utf8_lossy(&ran.stdout).into_owned();
+        ran.status.success().then(|| text.lines().map(|line| line.trim_end_matches(" (*)").to_string()).collect::<BTreeSet<_>>())
+    };
+    let (Some(program), Some(tests)) = (tree("normal,build"), tree("normal,build,dev")) else {
+        eprintln!("skipped: `cargo tree` cannot be run here");
+        return;
+    };
+    assert!(program.len() > 100, "the crates were not found");
+    let other: Vec<&String> = program.difference(&tests).collect();
+    assert!(other.is_empty(), "tests compile these with more features; ask for the same in Cargo.toml: {other:#?}");
+}
