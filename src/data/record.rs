@@ -4,6 +4,7 @@
 //! is parsed again cell by cell to determine the fault (`fault`).
 
 mod columnar;
+mod decoded;
 mod fault;
 mod header_fault;
 mod held;

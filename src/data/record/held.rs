@@ -8,15 +8,28 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bytes::Bytes;
 
+use super::columnar::Layout;
+use super::decoded::Decoded;
+
 /// Most bytes that are kept in all: both sides and the track of a run of 60 km with 24 channels, or some row groups of longer ones. It
 /// bounds the memory of a worker, whatever the length of the archive.
 const MOST: usize = 64 << 20;
 /// Largest file that is kept as a whole, when it is read for its hash: four of them fit.
 const WHOLE: u64 = MOST as u64 / 4;
 
-/// The parts of files that were read last; shared by all files of a campaign.
+/// Files whose footer is kept for each thread: the three records of a run, and the one that was used before.
+const FOOTERS: usize = 4;
+
+/// The parts of files that were read last, and what was decoded last; shared by all files of a campaign.
 #[derive(Clone, Default)]
-pub struct Held(Arc<Mutex<Parts>>);
+pub struct Held {
+    parts: Arc<Mutex<Parts>>,
+    /// Footers of Parquet files; the one that was used last is the first.
+    layouts: Arc<Mutex<Layouts>>,
+    pub(super) decoded: Decoded,
+}
+
+type Layouts = VecDeque<(PathBuf, Arc<Layout>)>;
 
 #[derive(Default)]
 struct Parts {
@@ -51,9 +64,26 @@ impl Held {
         size <= WHOLE
     }
 
+    /// What the footer of a file says, if it is kept.
+    pub(super) fn layout(&self, file: &Path) -> Option<Arc<Layout>> {
+        let mut layouts = self.layouts.lock().unwrap_or_else(PoisonError::into_inner);
+        let at = layouts.iter().position(|(known, _)| known == file)?;
+        let used = layouts.remove(at)?;
+        let layout = Arc::clone(&used.1);
+        layouts.push_front(used);
+        Some(layout)
+    }
+
+    /// Keeps what the footer of a file says.
+    pub(super) fn keep_layout(&self, file: &Path, layout: &Arc<Layout>) {
+        let mut layouts = self.layouts.lock().unwrap_or_else(PoisonError::into_inner);
+        layouts.push_front((file.to_path_buf(), Arc::clone(layout)));
+        layouts.truncate(FOOTERS * rayon::current_num_threads());
+    }
+
     /// A part of a file, if it is kept.
     pub fn get(&self, file: &Path, range: &Range<u64>) -> Option<Bytes> {
-        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut held = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
         let at = held.parts.iter().position(|part| part.of(file, range).is_some())?;
         let part = held.parts.remove(at)?;
         let found = part.of(file, range);
@@ -66,7 +96,7 @@ impl Held {
         if bytes.len() > MOST {
             return;
         }
-        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut held = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
         held.bytes += bytes.len();
         held.parts.push_front(Part { file: file.to_path_buf(), start, bytes });
         while held.bytes > MOST {
@@ -106,6 +136,6 @@ mod tests {
         assert_eq!(kept, [true, false, true, true, true]);
         held.keep(Path::new("large"), 0, Bytes::from(vec![0_u8; MOST + 1]));
         assert_eq!(held.get(Path::new("large"), &(0..1)), None);
-        assert!(held.0.lock().expect("held").bytes <= MOST);
+        assert!(held.parts.lock().expect("held").bytes <= MOST);
     }
 }

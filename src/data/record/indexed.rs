@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::known::{Index, Known, KnownFile, Mark};
-use super::stretch::{Block, Run, Stretch, axis_of, text};
+use super::stretch::{Block, Run, Stretch, axis_of, text, values};
 use super::{Origin, Record, Wanted, find_columns, header, rows};
 use crate::data::text::{decode_from, open_text, read_line_of, unreadable};
 use crate::problem::Problem;
@@ -62,7 +62,7 @@ pub fn stretch(
         read.map_err(|error| one(unreadable(shown, &error)))?;
         let text = decode_from(&buffer, shown, mark.first_row + 2).map_err(one)?;
         rows::read(text, 0, headings.len(), &mut columns, rows::Part { shown, before: mark.first_row }, None)?;
-        stretch.add(&columns, mark.first_row);
+        stretch.add(&values(&columns), mark.first_row);
     }
     columns.iter_mut().for_each(|column| column.values = Vec::new());
     let channels = headings.into_iter().map(|heading| heading.name).collect();

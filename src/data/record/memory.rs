@@ -10,7 +10,7 @@ use arrow_array::{Array, RecordBatch};
 use arrow_schema::{DataType, Schema};
 
 use super::columnar::{append, headings_of, no_rows, not_numbers, value_at, wrong};
-use super::stretch::{Run, Stretch, axis_of};
+use super::stretch::{Run, Stretch, axis_of, values};
 use super::{Column, Record, Wanted, find_columns};
 use crate::data::cells::Heading;
 use crate::data::faults::Faults;
@@ -99,7 +99,7 @@ impl Frame {
         let columns = self.columns(wanted)?;
         let at = axis_of(&columns, axis, &self.name)?;
         let mut stretch = Stretch::new(range, at, &columns);
-        stretch.add(&columns, 0);
+        stretch.add(&values(&columns), 0);
         let (bytes, sha256) = (self.bytes() as u64, self.sha256());
         let run = Run { channels: self.channels(), rows: self.rows, columns, sha256, bytes };
         stretch.record(run, super::Origin::Memory(Arc::clone(self)), &self.name)

@@ -48,6 +48,11 @@ pub(super) fn axis_of(columns: &[Column], axis: &str, shown: &str) -> Result<usi
     })
 }
 
+/// The values of columns.
+pub(super) fn values(columns: &[Column]) -> Vec<&[f64]> {
+    columns.iter().map(|column| column.values.as_slice()).collect()
+}
+
 /// The rows inside a range of the axis, collected block by block.
 pub(super) struct Stretch {
     range: Range<f64>,
@@ -66,8 +71,9 @@ impl Stretch {
         Self { range, axis, columns: columns.iter().map(empty).collect(), first_row: 0, next: 0, again: None }
     }
 
-    pub fn add(&mut self, columns: &[Column], first_row: usize) {
-        let axis = &columns[self.axis].values;
+    /// Adds the rows inside of a block, given by its columns.
+    pub fn add(&mut self, columns: &[&[f64]], first_row: usize) {
+        let axis = columns[self.axis];
         let inside = |value: &f64| *value >= self.range.start && *value <= self.range.end;
         let mut at = 0;
         while let Some(start) = axis[at..].iter().position(inside).map(|found| at + found) {
@@ -79,7 +85,7 @@ impl Stretch {
                 return;
             }
             for (kept, column) in self.columns.iter_mut().zip(columns) {
-                kept.values.extend_from_slice(&column.values[start..end]);
+                kept.values.extend_from_slice(&column[start..end]);
             }
             self.next = first_row + end;
             at = end;
@@ -91,10 +97,11 @@ impl Stretch {
         let axis = &self.columns[self.axis];
         let number = |value: f64| format!("{}{}", axis.unit.from_si(value), axis.unit.suffix());
         let (start, end) = (number(self.range.start), number(self.range.end));
+        let (name, rows) = (axis.name.clone(), axis.values.len());
         let record = Record {
             shown: shown.to_string(),
-            rows: axis.values.len(),
-            columns: self.columns.clone(),
+            rows,
+            columns: self.columns,
             channels: run.channels,
             first_row: self.first_row,
             sha256: run.sha256,
@@ -103,11 +110,11 @@ impl Stretch {
         };
         if let Some(row) = self.again {
             let row = record.row_shown(row - self.first_row);
-            let says = format!("`{}` enters the range from {start} to {end} again at row {row} of `{shown}`; it must increase", axis.name);
+            let says = format!("`{name}` enters the range from {start} to {end} again at row {row} of `{shown}`; it must increase");
             return Err(vec![Problem::error("axis-not-increasing", says)]);
         }
         if record.rows == 0 {
-            let says = format!("no sample of `{shown}` has a `{}` from {start} to {end}", axis.name);
+            let says = format!("no sample of `{shown}` has a `{name}` from {start} to {end}");
             return Err(vec![Problem::error("outside-record", says)]);
         }
         Ok(record)

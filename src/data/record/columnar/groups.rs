@@ -1,6 +1,7 @@
 //! The numbers of a row group, batch by batch.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::{
@@ -16,9 +17,11 @@ use parquet::arrow::push_decoder::{ParquetPushDecoderBuilder, PushBuffers};
 use parquet::basic::Type;
 use parquet::file::metadata::ColumnChunkMetaData;
 
-use super::open::{Opened, damaged, guarded};
+use super::layout::{damaged, guarded};
+use super::open::Opened;
 use super::{Column, Heading, guard, value_at};
 use crate::data::faults::Faults;
+use crate::data::record::decoded::Numbers;
 use crate::problem::Problem;
 
 /// Rows decoded at a time: the numbers of twenty channels take 1 MB, which stays in the second-level cache.
@@ -40,7 +43,7 @@ type Take<'t> = &'t mut dyn FnMut(&RecordBatch, &mut [Column], &[usize]) -> Resu
 impl Opened<'_> {
     /// Appends the numbers of a group to the columns, in SI units.
     pub(super) fn group(&mut self, group: usize, columns: &mut [Column], faults: &mut Faults<'_>, each: Each<'_>) -> Result<(), Problem> {
-        let rows = self.rows_of(group);
+        let rows = self.layout.rows_of(group);
         self.rows_in(group, rows, columns, faults, each)
     }
 
@@ -53,18 +56,41 @@ impl Opened<'_> {
         faults: &mut Faults<'_>,
         each: Each<'_>,
     ) -> Result<(), Problem> {
+        let (shown, layout) = (self.shown, Arc::clone(&self.layout));
+        let mut fault = |row: usize, column: &Column, value: Option<f64>| {
+            let place = format!("row {}, in row group {}", row + 1, group + 1);
+            faults.push(|| wrong(shown, &layout.headings()[column.position], row, value).label(place));
+        };
+        self.rows_told(group, rows, columns, &mut fault, each)
+    }
+
+    /// The numbers of some columns in some rows of a group; `None` for a column with a fault there.
+    pub(super) fn block(&mut self, group: usize, rows: Range<usize>, columns: &[Column]) -> Vec<Numbers> {
+        let empty = |column: &Column| Column { values: Vec::with_capacity(rows.len()), ..column.clone() };
+        let mut columns: Vec<Column> = columns.iter().map(empty).collect();
+        let mut faulty = vec![false; self.layout.headings().len()];
+        let mut fault = |_: usize, column: &Column, _: Option<f64>| faulty[column.position] = true;
+        let done = self.rows_told(group, rows, &mut columns, &mut fault, &mut |_, _| {});
+        let good = |column: Column| (done.is_ok() && !faulty[column.position]).then(|| Arc::new(column.values));
+        columns.into_iter().map(good).collect()
+    }
+
+    fn rows_told(
+        &mut self,
+        group: usize,
+        rows: Range<usize>,
+        columns: &mut [Column],
+        fault: Fault<'_>,
+        each: Each<'_>,
+    ) -> Result<(), Problem> {
         if rows.is_empty() || columns.is_empty() {
             return Ok(());
         }
         let chunks = self.chunks(group, columns)?;
         let mut next = rows.start;
-        let mut fault = |row: usize, column: &Column, value: Option<f64>| {
-            let place = format!("row {}, in row group {}", row + 1, group + 1);
-            faults.push(|| wrong(self.shown, &self.headings()[column.position], row, value).label(place));
-        };
         let decoded = self.decode(group, &rows, &chunks, columns, &mut |batch, columns, order| {
             for (array, at) in batch.columns().iter().zip(order) {
-                append(array.as_ref(), &mut columns[*at], next, &mut fault)?;
+                append(array.as_ref(), &mut columns[*at], next, fault)?;
             }
             each(columns, next);
             next += batch.num_rows();
@@ -82,8 +108,8 @@ impl Opened<'_> {
     pub(super) fn texts(&mut self, column: &Column) -> Result<Vec<String>, Problem> {
         let mut texts: Vec<String> = Vec::new();
         let columns = std::slice::from_ref(column);
-        for group in 0..self.groups() {
-            let rows = self.rows_of(group);
+        for group in 0..self.layout.groups() {
+            let rows = self.layout.rows_of(group);
             if rows.is_empty() {
                 continue;
             }
@@ -108,8 +134,8 @@ impl Opened<'_> {
         self.store.ahead(&self.ranges(group, columns), shown)?;
         for column in columns {
             let place = || format!("row group {}, column `{}`", group + 1, column.name);
-            let Some(leaf) = self.leaf(column.position) else { return Err(damaged(shown, &format!("{}: no values", place()))) };
-            let chunk = self.metadata.metadata().row_group(group).column(leaf);
+            let Some(leaf) = self.layout.leaf(column.position) else { return Err(damaged(shown, &format!("{}: no values", place()))) };
+            let chunk = self.layout.metadata.metadata().row_group(group).column(leaf);
             let range = range_of(chunk).filter(|range| range.end <= self.store.size());
             let range = range.ok_or_else(|| damaged(shown, &format!("{}: its values lie outside the file", place())))?;
             let width = match chunk.column_type() {
@@ -130,8 +156,8 @@ impl Opened<'_> {
 
     /// Where the wanted columns of a group are, as far as it lies inside the file.
     fn ranges(&self, group: usize, columns: &[Column]) -> Vec<Range<u64>> {
-        let group = self.metadata.metadata().row_group(group);
-        let leaves = columns.iter().filter_map(|column| self.leaf(column.position));
+        let group = self.layout.metadata.metadata().row_group(group);
+        let leaves = columns.iter().filter_map(|column| self.layout.leaf(column.position));
         leaves.filter_map(|leaf| range_of(group.column(leaf)).filter(|range| range.end <= self.store.size())).collect()
     }
 
@@ -146,13 +172,13 @@ impl Opened<'_> {
         // A batch has the columns in the order of the file.
         let mut order: Vec<usize> = (0..columns.len()).collect();
         order.sort_by_key(|at| columns[*at].position);
-        let leaves = columns.iter().filter_map(|column| self.leaf(column.position));
-        let mask = ProjectionMask::leaves(self.metadata.parquet_schema(), leaves);
-        let all = self.rows_of(group);
+        let leaves = columns.iter().filter_map(|column| self.layout.leaf(column.position));
+        let mask = ProjectionMask::leaves(self.layout.metadata.parquet_schema(), leaves);
+        let all = self.layout.rows_of(group);
         let part = rows.start - all.start..rows.end - all.start;
         guarded(|| {
             let said = |error: parquet::errors::ParquetError| error.to_string();
-            let mut builder = ParquetPushDecoderBuilder::new_with_metadata(self.metadata.clone())
+            let mut builder = ParquetPushDecoderBuilder::new_with_metadata(self.layout.metadata.clone())
                 .with_row_groups(vec![group])
                 .with_projection(mask)
                 .with_batch_size(BATCH)
@@ -187,7 +213,7 @@ impl Opened<'_> {
             };
             let row = rows.start + found;
             let problem = damaged(self.shown, &format!("row group {}, column `{}`: {why}", group + 1, column.name));
-            return problem.at(&value_at(self.shown, &self.headings()[column.position], row, "?"));
+            return problem.at(&value_at(self.shown, &self.layout.headings()[column.position], row, "?"));
         }
         damaged(self.shown, &format!("row group {}: {why}", group + 1))
     }

@@ -3,23 +3,26 @@
 //! | file | content |
 //! |---|---|
 //! | `mod` | record, headings, place of a sample |
-//! | `open` | the file, its footer and its columns |
+//! | `layout` | what the footer says |
+//! | `open` | the file and the wanted columns |
 //! | `groups` | the numbers of a row group |
 //! | `runs` | long records: block by block, or a stretch of them |
 //! | `guard` | declared sizes, checked before the decoder reserves memory for them |
 
 mod groups;
 pub(crate) mod guard;
+mod layout;
 mod open;
 mod runs;
 
 use std::path::Path;
 
 pub(super) use groups::{append, wrong};
+pub(super) use layout::Layout;
+pub(crate) use layout::guarded;
+pub(super) use layout::{headings_of, not_numbers};
 pub(super) use open::At;
-pub(crate) use open::guarded;
 use open::{Opened, Store};
-pub(super) use open::{headings_of, not_numbers};
 pub(super) use runs::{stream, stretch};
 
 use super::{Column, Known, Origin, Record, Wanted, find_columns};
@@ -53,7 +56,7 @@ pub(super) fn read(at: At<'_>, shown: &str, wanted: &[Wanted]) -> Result<Record,
     };
     let size = usize::try_from(opened.store.size()).unwrap_or(usize::MAX);
     let mut columns = opened.find(wanted)?;
-    let rows = opened.rows();
+    let rows = opened.layout.rows();
     if rows == 0 {
         return Err(vec![no_rows(shown)]);
     }
@@ -62,14 +65,14 @@ pub(super) fn read(at: At<'_>, shown: &str, wanted: &[Wanted]) -> Result<Record,
         column.values.reserve_exact(rows);
     }
     let mut faults = Faults::new(shown);
-    for group in 0..opened.groups() {
+    for group in 0..opened.layout.groups() {
         opened.group(group, &mut columns, &mut faults, &mut |_, _| {}).map_err(one)?;
     }
     faults.finish(())?;
     Ok(Record {
         shown: shown.to_string(),
         columns,
-        channels: opened.headings().iter().map(|heading| heading.name.clone()).collect(),
+        channels: opened.layout.headings().iter().map(|heading| heading.name.clone()).collect(),
         rows,
         first_row: 0,
         sha256: hash,
@@ -86,29 +89,29 @@ pub(super) fn no_rows(shown: &str) -> Problem {
 pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
     let mut opened = open_file(At::Disk(path), shown)?;
-    let headings = opened.headings().to_vec();
-    opened.within((opened.rows() as u64).saturating_mul(8 * headings.len() as u64), "the record").map_err(one)?;
+    let headings = opened.layout.headings().to_vec();
+    opened.within((opened.layout.rows() as u64).saturating_mul(8 * headings.len() as u64), "the record").map_err(one)?;
     let mut columns = Vec::new();
     for (position, heading) in headings.iter().enumerate() {
         let mut column = [Column { name: heading.name.clone(), unit: Unit::one(), values: Vec::new(), position }];
         if let Some(problem) = opened.other_codec(&column[0]) {
             return Err(one(problem));
         }
-        let values = if opened.is_text(position) {
+        let values = if opened.layout.is_text(position) {
             Values::Texts(opened.texts(&column[0]).map_err(one)?)
         } else {
             if let Some(problem) = opened.not_numbers(&column[0]) {
                 return Err(one(problem));
             }
             let mut faults = Faults::new(shown);
-            for group in 0..opened.groups() {
+            for group in 0..opened.layout.groups() {
                 opened.group(group, &mut column, &mut faults, &mut |_, _| {}).map_err(one)?;
             }
             faults.finish(())?;
             let [column] = column;
             Values::Numbers(column.values)
         };
-        columns.push(FileColumn { heading: heading.span.text().to_string(), values, digits: opened.digits(position) });
+        columns.push(FileColumn { heading: heading.span.text().to_string(), values, digits: opened.layout.digits(position) });
     }
     Ok(columns)
 }
@@ -116,7 +119,7 @@ pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Probl
 /// The headings of a record.
 pub(super) fn headings(at: At<'_>, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
     let opened = open_file(at, shown)?;
-    Ok(opened.headings().to_vec())
+    Ok(opened.layout.headings().to_vec())
 }
 
 fn open_file<'a>(at: At<'_>, shown: &'a str) -> Result<Opened<'a>, Vec<Problem>> {
@@ -129,12 +132,12 @@ pub(super) fn place(at: At<'_>, shown: &str, row: usize, column: Option<&Column>
         return Some(Source::excerpt(shown, format!("row {}", row + 1), row + 1).whole());
     };
     let mut opened = open_file(at, shown).ok()?;
-    let (group, first) = opened.group_of(row)?;
+    let (group, first) = opened.layout.group_of(row)?;
     let mut one = [Column { values: Vec::new(), ..column.clone() }];
     let mut faults = Faults::new(shown);
     opened.group(group, &mut one, &mut faults, &mut |_, _| {}).ok()?;
     let value = column.unit.from_si(*one[0].values.get(row - first)?);
-    Some(value_at(shown, &opened.headings()[column.position], row, &value.to_string()))
+    Some(value_at(shown, &opened.layout.headings()[column.position], row, &value.to_string()))
 }
 
 /// A Parquet file has no text: the place shows `name [unit] = value`, in the line with the number of the row, from 1.

@@ -1,6 +1,7 @@
 //! Long records: one block after the other, or a stretch of them.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use parquet::file::statistics::Statistics;
 
@@ -8,9 +9,10 @@ use super::open::{At, Opened, Store, footer};
 use super::{Column, no_rows};
 use crate::data::faults::Faults;
 use crate::data::hash::{Hasher, sha256};
+use crate::data::record::decoded::{self, Place};
 use crate::data::record::held::Held;
 use crate::data::record::known::{Known, KnownFile};
-use crate::data::record::stretch::{Block, Run, Stretch, axis_of};
+use crate::data::record::stretch::{Block, Run, Stretch, axis_of, values};
 use crate::data::record::{Origin, Record, Stored, Wanted};
 use crate::data::text::unreadable;
 use crate::disk;
@@ -26,11 +28,11 @@ pub(crate) fn stream(
 ) -> Result<Run, Vec<Problem>> {
     let (mut opened, sha256) = open(at, shown, known)?;
     let mut columns = opened.find(wanted)?;
-    if opened.rows() == 0 {
+    if opened.layout.rows() == 0 {
         return Err(vec![no_rows(shown)]);
     }
     let mut faults = Faults::new(shown);
-    for group in 0..opened.groups() {
+    for group in 0..opened.layout.groups() {
         let done = opened.group(group, &mut columns, &mut faults, &mut |columns, first_row| {
             each(&Block { first_row, rows: columns.first().map_or(0, |column| column.values.len()), columns, bytes: (0, 0) });
             columns.iter_mut().for_each(|column| column.values.clear());
@@ -40,11 +42,12 @@ pub(crate) fn stream(
             return Err(faults.into_vec());
         }
     }
-    let channels = opened.headings().iter().map(|heading| heading.name.clone()).collect();
-    Ok(Run { channels, rows: opened.rows(), columns, sha256, bytes: opened.store.size() })
+    let channels = opened.layout.headings().iter().map(|heading| heading.name.clone()).collect();
+    Ok(Run { channels, rows: opened.layout.rows(), columns, sha256, bytes: opened.store.size() })
 }
 
-/// The rows whose axis lies in a range. Row groups whose statistics exclude the range are not decoded.
+/// The rows whose axis lies in a range. Row groups whose statistics exclude the range are not decoded; of the others, the blocks that lie
+/// in it, once for all stretches that follow each other along the run.
 pub(crate) fn stretch(
     at: At<'_>,
     shown: &str,
@@ -57,31 +60,35 @@ pub(crate) fn stretch(
     let place = axis_of(&columns, axis, shown)?;
     let mut faults = Faults::new(shown);
     let mut stretch = Stretch::new(range.clone(), place, &columns);
-    for group in 0..opened.groups() {
+    for group in 0..opened.layout.groups() {
         if opened.without(group, &columns[place], range) {
             continue;
         }
-        // The axis first: of the other columns, only the rows inside are decoded.
-        let mut alone = [Column { values: Vec::new(), ..columns[place].clone() }];
-        opened.group(group, &mut alone, &mut faults, &mut |_, _| {}).map_err(|problem| vec![problem])?;
-        if !faults.is_empty() {
-            return Err(faults.into_vec());
-        }
-        let inside = |value: &f64| *value >= range.start && *value <= range.end;
-        let values = &alone[0].values;
-        let (Some(first), Some(last)) = (values.iter().position(inside), values.iter().rposition(inside)) else { continue };
-        let start = opened.rows_of(group).start;
-        let done = opened.rows_in(group, start + first..start + last + 1, &mut columns, &mut faults, &mut |columns, first_row| {
-            stretch.add(columns, first_row);
-            columns.iter_mut().for_each(|column| column.values.clear());
-        });
-        done.map_err(|problem| vec![problem])?;
-        if !faults.is_empty() {
-            return Err(faults.into_vec());
+        for rows in blocks(opened.layout.rows_of(group)) {
+            let (first, part) = match opened.inside(group, &rows, &columns[place], range, known, &mut faults) {
+                Ok(Some(part)) if faults.is_empty() => (rows.start + part.start, part),
+                Ok(None) if faults.is_empty() => continue,
+                Ok(_) => return Err(faults.into_vec()),
+                Err(problem) => return Err(vec![problem]),
+            };
+            if let Some(numbers) = opened.numbers(group, &rows, &columns, known) {
+                stretch.add(&numbers.iter().map(|column| &column[part.clone()]).collect::<Vec<_>>(), first);
+                continue;
+            }
+            // Not all numbers of the block are sound: those outside the range do not concern the stretch.
+            let part = first..first + part.len();
+            let done = opened.rows_in(group, part, &mut columns, &mut faults, &mut |columns, first_row| {
+                stretch.add(&values(columns), first_row);
+                columns.iter_mut().for_each(|column| column.values.clear());
+            });
+            done.map_err(|problem| vec![problem])?;
+            if !faults.is_empty() {
+                return Err(faults.into_vec());
+            }
         }
     }
-    let channels = opened.headings().iter().map(|heading| heading.name.clone()).collect();
-    let run = Run { channels, rows: opened.rows(), columns, sha256, bytes: opened.store.size() };
+    let channels = opened.layout.headings().iter().map(|heading| heading.name.clone()).collect();
+    let run = Run { channels, rows: opened.layout.rows(), columns, sha256, bytes: opened.store.size() };
     let from = match at {
         At::Disk(path) => Origin::File(path.to_path_buf()),
         At::Object(stored) => Origin::Object(stored.clone()),
@@ -89,10 +96,47 @@ pub(crate) fn stretch(
     stretch.record(run, from, shown)
 }
 
+/// A row group in parts of at most so many rows as a block has.
+fn blocks(rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    rows.clone().step_by(decoded::ROWS).map(move |start| start..rows.end.min(start + decoded::ROWS))
+}
+
 impl Opened<'_> {
+    /// The numbers of columns in a block; `None` if not all are sound.
+    fn numbers(&mut self, group: usize, rows: &Range<usize>, columns: &[Column], known: &Known) -> Option<Vec<Arc<Vec<f64>>>> {
+        let positions: Vec<usize> = columns.iter().map(|column| column.position).collect();
+        let place = Place::new(self.store.name(), rows.start);
+        let numbers = known.held.decoded.get(place, &positions, |lacking| {
+            let of = |position: &usize| columns.iter().find(|column| column.position == *position).cloned();
+            self.block(group, rows.clone(), &lacking.iter().filter_map(of).collect::<Vec<_>>())
+        });
+        numbers.into_iter().collect()
+    }
+
+    /// From the first to the last row of a block, counted from its start, whose axis lies in a range.
+    fn inside(
+        &mut self,
+        group: usize,
+        rows: &Range<usize>,
+        axis: &Column,
+        range: &Range<f64>,
+        known: &Known,
+        faults: &mut Faults<'_>,
+    ) -> Result<Option<Range<usize>>, Problem> {
+        let inside = |value: &f64| *value >= range.start && *value <= range.end;
+        let ends = |values: &[f64]| Some(values.iter().position(inside)?..values.iter().rposition(inside)? + 1);
+        if let Some(numbers) = self.numbers(group, rows, std::slice::from_ref(axis), known) {
+            return Ok(numbers.first().and_then(|values| ends(values)));
+        }
+        let mut alone = [Column { values: Vec::new(), ..axis.clone() }];
+        self.rows_in(group, rows.clone(), &mut alone, faults, &mut |_, _| {})?;
+        Ok(ends(&alone[0].values))
+    }
+
     /// Whether the statistics of a group say that no value of a column lies in a range of SI units. They are trusted.
     fn without(&self, group: usize, column: &Column, range: &Range<f64>) -> bool {
-        let statistics = self.leaf(column.position).and_then(|leaf| self.metadata.metadata().row_group(group).column(leaf).statistics());
+        let statistics =
+            self.layout.leaf(column.position).and_then(|leaf| self.layout.metadata.metadata().row_group(group).column(leaf).statistics());
         let ends = match statistics {
             Some(Statistics::Double(of)) => of.min_opt().copied().zip(of.max_opt().copied()),
             Some(Statistics::Float(of)) => of.min_opt().copied().zip(of.max_opt().copied()).map(|(min, max)| (min.into(), max.into())),
@@ -125,7 +169,7 @@ fn open<'a>(at: At<'_>, shown: &'a str, known: &Known) -> Result<(Opened<'a>, St
         Ok(KnownFile { sha256: hash.finish(), bytes, index: None })
     };
     let file = known.or(|_| true, compute).map_err(|error: std::io::Error| one(unreadable(shown, &error)))?;
-    let opened = Opened::open(store, shown).map_err(one)?;
+    let opened = Opened::again(store, shown, &known.held).map_err(one)?;
     Ok((opened, file.sha256.clone()))
 }
 
@@ -142,5 +186,5 @@ pub(super) fn open_object<'a>(stored: &Stored, shown: &'a str, known: &Known) ->
             Ok(KnownFile { sha256: hash.finish(), bytes: stored.object.size(), index: None })
         },
     )?;
-    Ok((Opened::open(store, shown)?, file.sha256.clone()))
+    Ok((Opened::again(store, shown, &known.held)?, file.sha256.clone()))
 }

@@ -1,0 +1,179 @@
+//! Decoded numbers that neighbouring stretches have in common: decoded once, and kept for the next stretch within a bound.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Rows of a block: a row group with at most so many is one block, a longer one is parted, since some programs write a million rows in a
+/// group. At 200 Hz a block has 160 s; 24 channels of both sides take 13 MB.
+pub(super) const ROWS: usize = 1 << 15;
+/// Most bytes that are kept for each thread: two blocks of 24 channels of both sides and of the track, since a section may lie across the
+/// end of a block. It bounds the memory, whatever the length of a run and the number of runs.
+const MOST: usize = 32 << 20;
+
+/// The numbers of a column in a block, SI; `None` if one of them is missing or not finite, or the block cannot be decoded.
+pub(super) type Numbers = Option<Arc<Vec<f64>>>;
+
+/// Rows of a file that are decoded together.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Place {
+    pub file: PathBuf,
+    pub first_row: usize,
+}
+
+impl Place {
+    pub fn new(file: &Path, first_row: usize) -> Self {
+        Self { file: file.to_path_buf(), first_row }
+    }
+}
+
+/// The blocks that were used last; shared by all files of a campaign.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Decoded(Arc<Mutex<Kept>>);
+
+#[derive(Debug, Default)]
+struct Kept {
+    blocks: BTreeMap<Place, Entry>,
+    bytes: usize,
+    /// Counts the uses.
+    now: u64,
+    /// Columns of blocks that were decoded.
+    #[cfg(test)]
+    made: usize,
+}
+
+#[derive(Debug, Default)]
+struct Entry {
+    block: Arc<Block>,
+    bytes: usize,
+    used: u64,
+}
+
+/// Columns of a block by their position in the file. Who decodes holds the lock, so that others wait instead of decoding the same.
+#[derive(Debug, Default)]
+struct Block(Mutex<Vec<(usize, Numbers)>>);
+
+impl Decoded {
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        // Nothing is half-written under the lock, so a panic of another thread does no harm.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The numbers of some columns of a block, given by their positions in the file. `decode` gives those that are not kept, in the order in
+    /// which it is asked for them.
+    pub fn get(&self, place: Place, positions: &[usize], decode: impl FnOnce(&[usize]) -> Vec<Numbers>) -> Vec<Numbers> {
+        let block = self.kept().block(place.clone());
+        let mut columns = block.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = |columns: &[(usize, Numbers)], position: usize| columns.iter().position(|(known, _)| *known == position);
+        let lacking: Vec<usize> = positions.iter().copied().filter(|position| known(&columns, *position).is_none()).collect();
+        if !lacking.is_empty() {
+            let new = decode(&lacking);
+            let bytes = new.iter().flatten().map(|numbers| numbers.len() * size_of::<f64>()).sum();
+            columns.extend(lacking.iter().copied().zip(new));
+            let mut kept = self.kept();
+            #[cfg(test)]
+            {
+                kept.made += lacking.len();
+            }
+            kept.grown(&place, &block, bytes);
+        }
+        positions.iter().map(|&position| known(&columns, position).and_then(|at| columns[at].1.clone())).collect()
+    }
+
+    /// Columns of blocks that were decoded so far.
+    #[cfg(test)]
+    pub fn made(&self) -> usize {
+        self.kept().made
+    }
+}
+
+impl Kept {
+    fn block(&mut self, place: Place) -> Arc<Block> {
+        self.now += 1;
+        let entry = self.blocks.entry(place).or_default();
+        entry.used = self.now;
+        Arc::clone(&entry.block)
+    }
+
+    /// Counts what was added to a block; the blocks that were not used for the longest time go.
+    fn grown(&mut self, place: &Place, block: &Arc<Block>, bytes: usize) {
+        // A block that went meanwhile is not counted: it lives as long as who reads it.
+        let Some(entry) = self.blocks.get_mut(place).filter(|entry| Arc::ptr_eq(&entry.block, block)) else { return };
+        entry.bytes += bytes;
+        self.bytes += bytes;
+        let most = MOST * rayon::current_num_threads();
+        while self.bytes > most {
+            let oldest = self.blocks.iter().min_by_key(|(_, entry)| entry.used).map(|(place, _)| place.clone());
+            let Some(gone) = oldest.and_then(|place| self.blocks.remove(&place)) else { return };
+            self.bytes -= gone.bytes;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(length: usize) -> Numbers {
+        Some(Arc::new(vec![1.0; length]))
+    }
+
+    #[test]
+    fn each_column_of_a_block_is_decoded_once() {
+        let decoded = Decoded::default();
+        let place = || Place::new(Path::new("a"), 0);
+        let mut asked = Vec::new();
+        for positions in [&[3, 1][..], &[1, 2], &[2, 3, 1], &[1]] {
+            let found = decoded.get(place(), positions, |lacking| {
+                asked.push(lacking.to_vec());
+                lacking.iter().map(|position| numbers(*position)).collect()
+            });
+            let lengths: Vec<usize> = found.iter().flatten().map(|numbers| numbers.len()).collect();
+            assert_eq!(lengths, positions);
+        }
+        assert_eq!(asked, [vec![3, 1], vec![2]]);
+        let other = decoded.get(Place::new(Path::new("a"), 1), &[1], |_| vec![None]);
+        assert_eq!((other, decoded.made()), (vec![None], 4), "what cannot be used is not decoded again either");
+        decoded.get(Place::new(Path::new("a"), 1), &[1], |_| panic!("known"));
+    }
+
+    #[test]
+    fn threads_wait_for_who_decodes_the_same() {
+        let decoded = Decoded::default();
+        std::thread::scope(|scope| {
+            for _ in 0..8 {
+                scope.spawn(|| {
+                    for row in 0..50 {
+                        let found = decoded.get(Place::new(Path::new("a"), row), &[0, 1], |lacking| vec![numbers(row); lacking.len()]);
+                        assert!(found.iter().flatten().all(|numbers| numbers.len() == row));
+                    }
+                });
+            }
+        });
+        assert_eq!(decoded.made(), 100);
+    }
+
+    #[test]
+    fn what_is_kept_is_bounded_and_the_least_used_goes_first() {
+        let decoded = Decoded::default();
+        let most = MOST * rayon::current_num_threads();
+        let quarter = most / 4 / size_of::<f64>();
+        let get = |row: usize| {
+            let mut new = false;
+            decoded.get(Place::new(Path::new("a"), row), &[0], |_| {
+                new = true;
+                vec![numbers(quarter)]
+            });
+            new
+        };
+        assert_eq!([0, 1, 2, 3, 0].map(get), [true, true, true, true, false]);
+        assert_eq!([4, 0, 1].map(get), [true, false, true], "the second went for the fifth");
+        for row in 5..30 {
+            get(row);
+            let kept = decoded.kept();
+            assert!(kept.bytes <= most && kept.blocks.len() <= 4, "{} bytes of {most}", kept.bytes);
+        }
+        decoded.get(Place::new(Path::new("a"), 99), &[0], |_| vec![numbers(most / size_of::<f64>() + 1)]);
+        assert!(decoded.kept().bytes <= most, "one that is too large is not kept");
+    }
+}
